@@ -1,0 +1,72 @@
+# The house of the design: one folder, one library, and only the listed links.
+#
+# A folder's headers are found as "folder/header.h" through a directory that holds nothing but that folder, and that
+# directory is a property of its library. So code can include only what its library links: an arrow that
+# src/CMakeLists.txt does not draw does not compile.
+
+add_library(culprit_options INTERFACE)
+target_compile_options(culprit_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                                                 -Wold-style-cast -Wcast-qual -Werror)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # g++ 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
+  target_compile_options(culprit_options INTERFACE -Wno-restrict)
+endif()
+if(CULPRIT_SANITIZE)
+  target_compile_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE} -fno-omit-frame-pointer
+                                                   -fno-sanitize-recover=all)
+  target_link_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE})
+endif()
+
+# culprit_library(<folder> [USES <folder>...] [PACKAGES <target>...])
+#
+# Builds src/<folder>/**.cpp but its tests and programs, and the test program <folder>_test of src/<folder>/**_test.cpp.
+# USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
+function(culprit_library folder)
+  cmake_parse_arguments(ARG "" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES" ${ARGN})
+  set(dir ${CMAKE_SOURCE_DIR}/src/${folder})
+  set(headers ${CMAKE_BINARY_DIR}/include/${folder})
+  file(MAKE_DIRECTORY ${headers})
+  file(CREATE_LINK ${dir} ${headers}/${folder} SYMBOLIC)
+
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${dir}/*.cpp)
+  set(tests ${sources})
+  list(FILTER sources EXCLUDE REGEX "_(test|main)\\.cpp$")
+  list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
+
+  if(sources)
+    add_library(${folder} STATIC ${sources})
+    set(scope PUBLIC)
+  else()
+    add_library(${folder} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(${folder} ${scope} ${headers})
+  target_link_libraries(${folder} ${scope} ${ARG_USES} ${ARG_PACKAGES} culprit_options)
+
+  if(CULPRIT_TESTS AND tests)
+    culprit_test(${folder}_test SOURCES ${tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES})
+  endif()
+endfunction()
+
+# culprit_program(<name> <source> USES <folder>...): lands in build/<preset>/bin.
+function(culprit_program name source)
+  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
+  add_executable(${name} ${source})
+  target_link_libraries(${name} PRIVATE ${ARG_USES} culprit_options)
+  install(TARGETS ${name} RUNTIME DESTINATION bin)
+endfunction()
+
+# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL]): one CTest test for each TEST.
+# SERIAL tests run alone: they start processes or measure how a live robot behaves.
+function(culprit_test name)
+  cmake_parse_arguments(ARG "SERIAL" "" "SOURCES;USES;PACKAGES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PACKAGES} GTest::gtest_main GTest::gmock rapidcheck
+                                        culprit_options)
+  set(properties TIMEOUT 300)
+  if(ARG_SERIAL)
+    list(APPEND properties RUN_SERIAL TRUE)
+  endif()
+  gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60
+                       PROPERTIES ${properties})
+endfunction()

@@ -1,0 +1,370 @@
+#include "language/checker.h"
+
+#include <algorithm>
+
+#include "language/compiler.h"
+#include "language/evaluate.h"
+#include "language/parser.h"
+#include "language/rule_checks.h"
+#include "language/typing.h"
+
+namespace culprit {
+namespace {
+
+constexpr double kMaxImpact = 1e6;  // cycles
+constexpr std::int64_t kMaxCount = 1000;
+constexpr Duration kMaxCycle = std::chrono::hours(1);
+constexpr int kDefaultRounds = 3;  // each strategy is tried this often before the rule is exhausted
+
+class Checker {
+ public:
+  Checker(const syntax::File& file, Strictness strictness, std::vector<Diagnostic>& diagnostics)
+      : file_(file), diagnostics_(diagnostics), symbols_(rules_, strictness, diagnostics) {}
+
+  RuleSet check() {
+    header();
+    symbols_.declare(file_);
+    constants();
+    dependencies();
+    infer();
+    for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
+    for (const syntax::Rule& rule : file_.rules) add_rule(rule);
+    for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
+    for (std::size_t r = 0; r < rules_.rules.size(); ++r) link_readers(RuleId(r));
+    check_circles(file_, rules_, diagnostics_);
+    return std::move(rules_);
+  }
+
+ private:
+  void header() {
+    if (file_.robot) rules_.robot = file_.robot->text;
+    if (file_.cycle) {
+      if (file_.cycle->length > kMaxCycle) {
+        report(Code::kPolicyRange, file_.cycle->span, "a cycle is at most an hour",
+               "the paper's is 200ms");
+      } else {
+        rules_.cycle = file_.cycle->length;
+      }
+    }
+    for (const syntax::Name& topic : file_.ignored_topics)
+      rules_.ignored_topics.push_back(topic.text);
+  }
+
+  void constants() {
+    for (const syntax::Constant& constant : file_.constants) {
+      if (const auto* known = symbols_.constant(constant.name.text);
+          known != nullptr && !known->broken)
+        continue;
+      if (auto value = constant_value(constant))
+        symbols_.define_constant(constant.name, {std::move(*value), false});
+    }
+  }
+
+  std::optional<syntax::Literal> constant_value(const syntax::Constant& constant) {
+    if (names_a_signal(constant.value)) return std::nullopt;
+    const auto typed = type_expression(constant.value, symbols_, diagnostics_);
+    if (!typed) return std::nullopt;
+    const Slot slot = evaluate(compile(*typed), {});
+    if (reads_inputs(*typed)) {
+      report(Code::kNotConstant, constant.value.span, "this changes at run time",
+             "a constant is made of constants");
+      return std::nullopt;
+    }
+    if (!slot.known) {
+      report(Code::kNoValue, constant.value.span, "this has no value",
+             "it divides by zero or overflows");
+      return std::nullopt;
+    }
+    switch (typed->type) {
+      case Type::kBool:
+        return slot.b;
+      case Type::kInt:
+        return slot.i;
+      case Type::kDouble:
+        return slot.d;
+      case Type::kString:
+        return std::string(slot.s);
+      case Type::kDuration:
+        return Duration(slot.i);
+    }
+    return std::nullopt;
+  }
+
+  // A constant must not create signals by naming them.
+  bool names_a_signal(const syntax::Expression& e) {
+    if (e.kind == syntax::Expression::Kind::kCall || e.kind == syntax::Expression::Kind::kName) {
+      const auto* constant = symbols_.constant(e.name.text);
+      const bool is_name = e.kind == syntax::Expression::Kind::kName;
+      const bool pure = e.name.text == "abs" || e.name.text == "min" || e.name.text == "max" ||
+                        e.name.text == "pow" || e.name.text == "sqrt";
+      if (is_name ? constant == nullptr : !pure) {
+        report(Code::kNotConstant, e.span, "'" + e.name.text + "' is no constant",
+               "a constant is made of numbers, texts and constants");
+        return true;
+      }
+      if (is_name && constant->broken) {
+        report(Code::kNotConstant, e.span, "'" + e.name.text + "' has no value yet",
+               "define it in a line before this one");
+        return true;
+      }
+    }
+    return std::any_of(e.children.begin(), e.children.end(),
+                       [&](const auto& c) { return names_a_signal(c); });
+  }
+
+  void dependencies() {
+    for (const syntax::Dependency& d : file_.dependencies) {
+      const ComponentId consumer = symbols_.component(d.consumer);
+      for (const syntax::Name& producer : d.producers) {
+        rules_.dependencies.push_back({consumer, symbols_.component(producer)});
+      }
+    }
+  }
+
+  void infer() {
+    bool learned = true;
+    while (learned) {
+      learned = false;
+      for (const syntax::Rule& rule : file_.rules) {
+        if (rule.trigger) infer_types(*rule.trigger, Type::kBool, symbols_, learned);
+        for (const syntax::Strategy& strategy : rule.strategies) {
+          if (strategy.when) infer_types(*strategy.when, Type::kBool, symbols_, learned);
+          for (const syntax::Adaptation& a : strategy.adaptations) {
+            const bool number = a.type == AdaptationType::kIncreaseParameter ||
+                                a.type == AdaptationType::kDecreaseParameter;
+            if (a.value)
+              infer_types(*a.value, number ? std::optional(Type::kDouble) : std::nullopt, symbols_,
+                          learned);
+          }
+        }
+      }
+    }
+  }
+
+  void declare_signal_type(SignalId id) {
+    if (const auto type = symbols_.type_of(id)) rules_.signals[id.index].type = *type;
+  }
+
+  void add_rule(const syntax::Rule& written) {
+    if (written.name.text.empty()) return;  // its line was broken
+    if (!rule_names_.insert(written.name.text).second) {
+      report(Code::kDuplicateName, written.name.span,
+             "there is a rule '" + written.name.text + "' already", "give this rule another name");
+    }
+    const RuleId id(rules_.rules.size());
+    Rule rule;
+    rule.name = written.name.text;
+    rule.declaration = written.name;
+    if (!written.has_broken_part) check_complete(written);
+    if (written.policies) policies(*written.policies, written, rule.policies);
+    if (written.trigger) {
+      if (auto typed = boolean(*written.trigger, "a trigger")) {
+        rule.trigger = compile(*typed);
+        check_constant_trigger(written, rule.trigger, diagnostics_);
+        collect_thresholds(*typed, rules_.inputs);
+      }
+    }
+    rules_.rules.push_back(std::move(rule));
+    std::set<std::string> names;
+    for (const syntax::Strategy& strategy : written.strategies) {
+      if (strategy.name.text.empty()) continue;
+      if (!names.insert(strategy.name.text).second) {
+        report(
+            Code::kDuplicateName, strategy.name.span,
+            "rule '" + written.name.text + "' has a strategy '" + strategy.name.text + "' already",
+            "give this strategy another name");
+        continue;
+      }
+      add_strategy(strategy, id);
+    }
+    if (!written.has_broken_part) check_launches(written, rules_, id, diagnostics_);
+  }
+
+  void check_complete(const syntax::Rule& rule) {
+    std::string missing;
+    const auto need = [&](bool there, const char* what) {
+      if (!there) missing += (missing.empty() ? "" : ", ") + std::string(what);
+    };
+    need(rule.policies.has_value(), "POLICIES");
+    need(rule.trigger.has_value(), "TRIGGER");
+    need(!rule.strategies.empty(), "STRATEGY");
+    if (missing.empty()) return;
+    report(Code::kIncomplete, rule.name.span,
+           "rule '" + rule.name.text + "' is incomplete: no " + missing,
+           "a rule says how critical the failure is (POLICIES), when it is there (TRIGGER) and "
+           "what may help (STRATEGY)");
+  }
+
+  void policies(const syntax::Policies& written, const syntax::Rule& rule, Policies& policies) {
+    policies.criticality = written.criticality;
+    policies.hold_for = written.hold_for.value_or(Duration::zero());
+    policies.cooldown = written.cooldown.value_or(Duration::zero());
+    policies.on_change = written.on_change;
+    policies.attempts =
+        kDefaultRounds * static_cast<int>(std::min<std::size_t>(rule.strategies.size(), kMaxCount));
+    if (written.attempts) {
+      if (written.attempts->count < 1 || written.attempts->count > kMaxCount) {
+        report(Code::kPolicyRange, written.attempts->span, "ATTEMPTS is a number from 1 to 1000",
+               "");
+      } else {
+        policies.attempts = static_cast<int>(written.attempts->count);
+      }
+    }
+    if (written.hold) {
+      const auto [needed, window, span] = *written.hold;
+      if (needed < 1 || window > kMaxCount || needed > window) {
+        report(Code::kPolicyRange, span, "HOLD n/k needs 1 <= n <= k <= 1000",
+               "HOLD 3/5 means: true in 3 of the last 5 cycles");
+      } else {
+        policies.hold_needed = static_cast<int>(needed);
+        policies.hold_window = static_cast<int>(window);
+      }
+    }
+  }
+
+  void add_strategy(const syntax::Strategy& written, RuleId rule) {
+    const StrategyId id(rules_.strategies.size());
+    Strategy strategy;
+    strategy.name = written.name.text;
+    strategy.rule = rule;
+    const auto in_percent = [](const syntax::Number& n) { return n.value > 0 && n.value <= 100; };
+    if (!in_percent(written.probability)) {
+      report(Code::kProbabilityRange, written.probability.span,
+             "a success probability is above 0 and at most 100 percent",
+             written.probability.value == 0 ? "a strategy that never helps need not be written down"
+                                            : "");
+    }
+    if (!in_percent(written.confidence)) {
+      report(Code::kConfidenceRange, written.confidence.span,
+             "a confidence is above 0 and at most 100", "it counts as that many past attempts");
+    }
+    strategy.success = percent(written.probability.value);
+    strategy.confidence = written.confidence.value;
+    if (written.when) {
+      if (auto typed = boolean(*written.when, "a WHEN condition")) strategy.when = compile(*typed);
+    }
+    if (written.adaptations.empty() && !written.has_broken_adaptation) {
+      report(Code::kIncomplete, written.name.span,
+             "strategy '" + written.name.text + "' has no ADAPTATION",
+             "say what it does: ADAPTATION component restart 5");
+    }
+    for (const syntax::Adaptation& adaptation : written.adaptations)
+      add_adaptation(adaptation, strategy);
+    check_contradictions(written, diagnostics_);
+
+    sort_unique(strategy.components);
+    auto& touched = rules_.rules[rule.index].components;
+    touched.insert(touched.end(), strategy.components.begin(), strategy.components.end());
+    sort_unique(touched);
+    rules_.heaviest = std::max(rules_.heaviest, strategy.impact);
+    rules_.rules[rule.index].strategies.push_back(id);
+    rules_.strategies.push_back(std::move(strategy));
+  }
+
+  void add_adaptation(const syntax::Adaptation& written, Strategy& strategy) {
+    Adaptation adaptation;
+    adaptation.component = symbols_.component(written.component);
+    adaptation.type = written.type;
+    adaptation.subject = written.subject.text;
+    adaptation.topic = written.topic.text;
+    if (names_parameter(written.type))
+      adaptation.parameter = symbols_.parameter(adaptation.component, adaptation.subject);
+    if (!written.impact.whole || written.impact.value < 1 || written.impact.value > kMaxImpact) {
+      report(Code::kImpactRange, written.impact.span,
+             "an impact is a whole number of cycles, at least 1",
+             "count how many cycles it takes until the failure is gone");
+    } else {
+      adaptation.impact = {static_cast<std::int64_t>(written.impact.value)};
+    }
+    if (written.value) {
+      if (auto typed = type_expression(*written.value, symbols_, diagnostics_)) {
+        adaptation_value(written, std::move(*typed), adaptation);
+      }
+    }
+    strategy.components.push_back(adaptation.component);
+    strategy.impact = std::max(strategy.impact, adaptation.impact);
+    strategy.adaptations.push_back(std::move(adaptation));
+  }
+
+  static bool names_parameter(AdaptationType type) {
+    return type == AdaptationType::kSetParameter || type == AdaptationType::kIncreaseParameter ||
+           type == AdaptationType::kDecreaseParameter ||
+           type == AdaptationType::kChangeCommunication;
+  }
+
+  void adaptation_value(const syntax::Adaptation& written, Typed typed, Adaptation& adaptation) {
+    const bool changes = written.type != AdaptationType::kSetParameter;
+    const bool number = typed.type == Type::kInt || typed.type == Type::kDouble;
+    if (changes && !number) {
+      report(
+          Code::kTypeMismatch, written.value->span,
+          std::string(keyword(written.type)) + " needs a number; this is " + describe(typed.type),
+          "");
+    } else if (typed.type == Type::kDuration) {
+      report(Code::kTypeMismatch, written.value->span, "ROS parameters hold no durations",
+             "write the number that the node expects, for example its seconds");
+    } else if (fits_stack(typed, *written.value)) {
+      adaptation.value = compile(typed);
+    }
+  }
+
+  std::optional<Typed> boolean(const syntax::Expression& e, const std::string& what) {
+    auto typed = type_expression(e, symbols_, diagnostics_);
+    if (!typed || !fits_stack(*typed, e)) return std::nullopt;
+    if (typed->type == Type::kBool) return typed;
+    report(Code::kTypeMismatch, e.span,
+           what + " is true or false; this is " + describe(typed->type),
+           "compare it with something, as in rate(/topic) < 1");
+    return std::nullopt;
+  }
+
+  bool fits_stack(const Typed& typed, const syntax::Expression& e) {
+    if (stack_need(typed) <= kStackSize) return true;
+    report(Code::kTooDeep, e.span, "this expression is nested too deeply",
+           "split it into several rules");
+    return false;
+  }
+
+  void link_readers(RuleId id) {
+    Rule& rule = rules_.rules[id.index];
+    for (const Instruction& instruction : rule.trigger.code) {
+      if (instruction.op == Op::kInput) rule.inputs.push_back(InputId(instruction.operand));
+    }
+    sort_unique(rule.inputs);
+    for (const InputId input : rule.inputs) rules_.inputs[input.index].readers.push_back(id);
+  }
+
+  template <class T>
+  static void sort_unique(std::vector<T>& items) {
+    std::sort(items.begin(), items.end());
+    items.erase(std::unique(items.begin(), items.end()), items.end());
+  }
+
+  void report(Code code, Span span, std::string cause, std::string remedy) {
+    diagnostics_.push_back({code, Severity::kError, span, std::move(cause), std::move(remedy)});
+  }
+
+  const syntax::File& file_;
+  std::vector<Diagnostic>& diagnostics_;
+  RuleSet rules_;
+  Symbols symbols_;
+  std::set<std::string> rule_names_;
+};
+
+}  // namespace
+
+Checked check(const Source& source, Strictness strictness) {
+  Checked result;
+  const syntax::File file = parse(source, result.diagnostics);
+  RuleSet rules = Checker(file, strictness, result.diagnostics).check();
+  std::stable_sort(
+      result.diagnostics.begin(), result.diagnostics.end(),
+      [](const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; });
+  const bool failed =
+      std::any_of(result.diagnostics.begin(), result.diagnostics.end(),
+                  [](const Diagnostic& d) { return d.severity == Severity::kError; });
+  if (!failed) result.rules = std::move(rules);
+  return result;
+}
+
+}  // namespace culprit

@@ -1,0 +1,88 @@
+#include "language/compiler.h"
+
+#include <algorithm>
+
+#include "language/evaluate.h"
+
+namespace culprit {
+namespace {
+
+void emit(const Typed& e, Program& program) {
+  for (const Typed& child : e.children) emit(child, program);
+  std::uint32_t operand = 0;
+  if (e.op == Op::kConstant) {
+    operand = static_cast<std::uint32_t>(program.constants.size());
+    program.constants.push_back(e.constant);
+  } else if (e.op == Op::kInput) {
+    operand = e.input.index;
+  }
+  program.code.push_back({e.op, operand});
+}
+
+bool is_comparison(Op op) {
+  switch (op) {
+    case Op::kLessInt:
+    case Op::kLessDouble:
+    case Op::kLessEqualInt:
+    case Op::kLessEqualDouble:
+    case Op::kEqualInt:
+    case Op::kEqualDouble:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool is_plain_input(const Typed& e) {
+  return e.op == Op::kInput || (e.op == Op::kIntToDouble && e.children[0].op == Op::kInput);
+}
+
+// The number that an input is compared with, as the monitor counts: durations in seconds.
+double threshold(const Typed& constant) {
+  const Slot slot = evaluate(compile(constant), {});
+  if (constant.type == Type::kDouble) return slot.d;
+  return constant.type == Type::kDuration ? seconds(Duration(slot.i)) : static_cast<double>(slot.i);
+}
+
+}  // namespace
+
+Program compile(const Typed& expression) {
+  Program program;
+  program.type = expression.type;
+  emit(expression, program);
+  return program;
+}
+
+std::size_t stack_need(const Typed& expression) {
+  std::size_t need = 1;
+  for (std::size_t i = 0; i < expression.children.size(); ++i) {
+    need = std::max(need, i + stack_need(expression.children[i]));
+  }
+  return need;
+}
+
+bool reads_inputs(const Typed& expression) {
+  return expression.op == Op::kInput ||
+         std::any_of(expression.children.begin(), expression.children.end(),
+                     [](const Typed& c) { return reads_inputs(c); });
+}
+
+void collect_thresholds(const Typed& trigger, std::vector<Input>& inputs) {
+  if (trigger.op == Op::kInput) inputs[trigger.input.index].only_compared = false;
+  if (is_comparison(trigger.op)) {
+    for (const int side : {0, 1}) {
+      const Typed& here = trigger.children[static_cast<std::size_t>(side)];
+      const Typed& there = trigger.children[static_cast<std::size_t>(1 - side)];
+      if (!is_plain_input(here) || reads_inputs(there)) continue;
+      const Typed& leaf = here.op == Op::kInput ? here : here.children[0];
+      auto& known = inputs[leaf.input.index].thresholds;
+      const double value = threshold(there);
+      const auto place = std::lower_bound(known.begin(), known.end(), value);
+      if (place == known.end() || *place != value) known.insert(place, value);
+      return;
+    }
+  }
+  for (const Typed& child : trigger.children) collect_thresholds(child, inputs);
+}
+
+}  // namespace culprit

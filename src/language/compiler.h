@@ -1,0 +1,22 @@
+// Typed tree -> program, in postfix order.
+#pragma once
+
+#include <cstddef>
+
+#include "language/program.h"
+#include "language/typing.h"
+
+namespace culprit {
+
+Program compile(const Typed& expression);
+
+// How many slots of the stack the compiled expression needs.
+std::size_t stack_need(const Typed& expression);
+
+bool reads_inputs(const Typed& expression);
+
+// Enters into `inputs` the constants that `trigger` compares its inputs with, and which inputs it
+// uses in other ways.
+void collect_thresholds(const Typed& trigger, std::vector<Input>& inputs);
+
+}  // namespace culprit

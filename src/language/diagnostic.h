@@ -1,0 +1,76 @@
+// What a check says about a rule file: one mistake, one diagnostic.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "language/source.h"
+
+namespace culprit {
+
+// Stable: a code never changes its meaning, and the number of a retired one is not used again.
+enum class Code : std::uint16_t {
+  // Syntax
+  kUnknownStatement = 1,
+  kSyntax = 2,
+  kBadToken = 3,
+  kExtraText = 4,
+  kOutOfPlace = 5,
+  kIncomplete = 6,
+  kTooDeep = 7,
+  kPlaceholder = 8,
+  // Names
+  kDuplicateName = 10,
+  kUnknownName = 11,
+  kUndeclared = 12,
+  kUnknownFunction = 13,
+  kUnknownAdaptation = 14,
+  kUnknownPolicy = 15,
+  kReservedWord = 16,
+  kBadRosName = 17,
+  // Types and values
+  kTypeMismatch = 20,
+  kUnknownType = 21,
+  kArguments = 22,
+  kNotConstant = 23,
+  kNoValue = 24,
+  // Ranges
+  kProbabilityRange = 30,
+  kConfidenceRange = 31,
+  kImpactRange = 32,
+  kPolicyRange = 33,
+  kEmptyRange = 34,
+  // Rules that cannot work
+  kContradiction = 40,
+  kNoLaunch = 41,
+  kNeverValid = 42,
+  kAlwaysTrue = 50,
+  kNeverTrue = 51,
+  kCircularDependency = 53,
+};
+
+// "R011"
+std::string to_string(Code code);
+
+enum class Severity : std::uint8_t { kError, kWarning };
+
+struct Diagnostic {
+  Code code;
+  Severity severity = Severity::kError;
+  Span span;
+  std::string cause;   // one line: what is wrong
+  std::string remedy;  // one line: what to do about it; may be empty where the cause says it
+};
+
+enum class Colour : std::uint8_t { kOff, kOn };
+
+// As a compiler shows it: place and cause, the line with carets under the span, the remedy.
+std::string render(const Diagnostic& diagnostic, const Source& source,
+                   Colour colour = Colour::kOff);
+
+// The known name that `name` was probably meant to be; empty if none is near.
+// Near is an edit distance of at most a third of the longer name.
+std::string closest(std::string_view name, const std::vector<std::string_view>& known);
+
+}  // namespace culprit

@@ -1,0 +1,212 @@
+#include "language/expression_parser.h"
+
+#include <array>
+
+#include "language/functions.h"
+
+namespace culprit {
+namespace {
+
+using syntax::Expression;
+using syntax::Operator;
+using Kind = Expression::Kind;
+
+struct BinaryOperator {
+  std::string_view symbol;
+  Operator op;
+  int precedence;
+};
+constexpr std::array kBinary = {
+    BinaryOperator{"||", Operator::kOr, 1},       BinaryOperator{"&&", Operator::kAnd, 2},
+    BinaryOperator{"==", Operator::kEqual, 3},    BinaryOperator{"!=", Operator::kNotEqual, 3},
+    BinaryOperator{"<", Operator::kLess, 4},      BinaryOperator{"<=", Operator::kLessEqual, 4},
+    BinaryOperator{">", Operator::kGreater, 4},   BinaryOperator{">=", Operator::kGreaterEqual, 4},
+    BinaryOperator{"+", Operator::kAdd, 5},       BinaryOperator{"-", Operator::kSubtract, 5},
+    BinaryOperator{"*", Operator::kMultiply, 6},  BinaryOperator{"/", Operator::kDivide, 6},
+    BinaryOperator{"%", Operator::kRemainder, 6},
+};
+
+const BinaryOperator* binary_operator(const Token& token) {
+  if (token.kind != Token::Kind::kSymbol) return nullptr;
+  for (const BinaryOperator& candidate : kBinary) {
+    if (candidate.symbol == token.text) return &candidate;
+  }
+  return nullptr;
+}
+
+class ExpressionParser {
+ public:
+  ExpressionParser(Scanner& scanner, std::vector<Diagnostic>& diagnostics)
+      : scanner_(scanner), diagnostics_(diagnostics) {}
+
+  std::optional<Expression> conditional(int depth) {
+    auto condition = binary(1, depth);
+    if (!condition || !scanner_.peek().is("?")) return condition;
+    if (depth >= kMaxNesting) return too_deep();
+    scanner_.next();
+    auto yes = conditional(depth + 1);
+    if (!yes || !expect(":", "':' and the value for 'otherwise'")) return std::nullopt;
+    auto no = conditional(depth + 1);
+    if (!no) return std::nullopt;
+    Expression e;
+    e.kind = Kind::kConditional;
+    e.span = {condition->span.begin, no->span.end};
+    e.children = {std::move(*condition), std::move(*yes), std::move(*no)};
+    return e;
+  }
+
+ private:
+  std::optional<Expression> binary(int min_precedence, int depth) {
+    auto left = unary(depth);
+    if (!left) return std::nullopt;
+    // A long chain of operators nests to the left as deep as it is long, and later stages walk it
+    // recursively.
+    int length = 0;
+    while (const BinaryOperator* found = binary_operator(scanner_.peek())) {
+      if (found->precedence < min_precedence) break;
+      if (++length + depth > kMaxNesting) return too_deep();
+      scanner_.next();
+      auto right = binary(found->precedence + 1, depth + length);
+      if (!right) return std::nullopt;
+      Expression e;
+      e.kind = Kind::kBinary;
+      e.op = found->op;
+      e.span = {left->span.begin, right->span.end};
+      e.children = {std::move(*left), std::move(*right)};
+      left = std::move(e);
+    }
+    return left;
+  }
+
+  std::optional<Expression> unary(int depth) {
+    const Token token = scanner_.peek();
+    if (!token.is("!") && !token.is("-")) return primary(depth);
+    if (depth >= kMaxNesting) return too_deep();
+    scanner_.next();
+    auto operand = unary(depth + 1);
+    if (!operand) return std::nullopt;
+    Expression e;
+    e.kind = Kind::kUnary;
+    e.op = token.is("!") ? Operator::kNot : Operator::kNegate;
+    e.span = {token.span.begin, operand->span.end};
+    e.children = {std::move(*operand)};
+    return e;
+  }
+
+  std::optional<Expression> primary(int depth) {
+    const Token token = scanner_.next();
+    Expression e;
+    e.span = token.span;
+    switch (token.kind) {
+      case Token::Kind::kNumber:
+      case Token::Kind::kDuration:
+      case Token::Kind::kString:
+        e.literal = token.literal;
+        return e;
+      case Token::Kind::kIdentifier:
+        if (token.text == "true" || token.text == "false") {
+          e.literal = token.literal;
+          return e;
+        }
+        e.kind = Kind::kName;
+        e.name = {token.text, token.span};
+        return scanner_.peek().is("(") ? call(std::move(e), depth) : std::optional(std::move(e));
+      case Token::Kind::kSymbol:
+        if (token.is("(")) return parenthesis(token, depth);
+        break;
+      case Token::Kind::kBad:
+        return fail(Code::kBadToken, token.span, token.text, "");
+      case Token::Kind::kEnd:
+        break;
+    }
+    return fail(
+        Code::kSyntax, token.span, "a value is missing here",
+        "write a number, true or false, a \"text\", a signal, a constant or a function call");
+  }
+
+  std::optional<Expression> parenthesis(const Token& open, int depth) {
+    if (depth >= kMaxNesting) return too_deep();
+    auto inner = conditional(depth + 1);
+    if (!inner) return std::nullopt;
+    const Token close = scanner_.next();
+    if (!close.is(")"))
+      return fail(Code::kSyntax, open.span, "this '(' is never closed", "add a ')'");
+    inner->span = {open.span.begin, close.span.end};
+    return inner;
+  }
+
+  std::optional<Expression> call(Expression e, int depth) {
+    const FunctionInfo* function = find_function(e.name.text);
+    if (function == nullptr) {
+      const std::string near = closest(e.name.text, function_names());
+      return fail(
+          Code::kUnknownFunction, e.name.span, "there is no function '" + e.name.text + "'",
+          near.empty()
+              ? "known functions: rate age phi alive lifecycle parameter level mean min max stddev "
+                "changed abs pow sqrt"
+              : "did you mean '" + near + "'?");
+    }
+    if (depth >= kMaxNesting) return too_deep();
+    e.kind = Kind::kCall;
+    const Token open = scanner_.next();
+    while (!scanner_.peek().is(")")) {
+      if (!e.children.empty() && !expect(",", "',' or ')'")) return std::nullopt;
+      auto argument = this->argument(*function, e.children.size(), depth);
+      if (!argument) return std::nullopt;
+      e.children.push_back(std::move(*argument));
+      if (scanner_.at_end())
+        return fail(Code::kSyntax, open.span, "this '(' is never closed", "add a ')'");
+    }
+    e.span.end = scanner_.next().span.end;
+    if (e.children.size() < function->min_arguments ||
+        e.children.size() > function->max_arguments) {
+      return fail(Code::kArguments, e.span, "wrong number of arguments for " + e.name.text,
+                  "usage: " + std::string(function->usage));
+    }
+    return e;
+  }
+
+  std::optional<Expression> argument(const FunctionInfo& function, std::size_t index, int depth) {
+    const bool is_name =
+        index < function.arguments.size() && function.arguments[index] != Argument::kExpression;
+    if (!is_name) return conditional(depth + 1);
+    Expression e;
+    e.kind = Kind::kName;
+    e.name = scanner_.next_name();
+    e.span = e.name.span;
+    if (e.name.text.empty()) {
+      return fail(Code::kSyntax, e.span, "a name is missing here",
+                  "usage: " + std::string(function.usage));
+    }
+    return e;
+  }
+
+  bool expect(std::string_view symbol, const std::string& what) {
+    const Token token = scanner_.next();
+    if (token.is(symbol)) return true;
+    fail(Code::kSyntax, token.span, "expected " + what, "");
+    return false;
+  }
+
+  std::nullopt_t too_deep() {
+    return fail(Code::kTooDeep, scanner_.rest(), "this expression is nested too deeply",
+                "split it into several rules, or name parts of it with CONST");
+  }
+
+  std::nullopt_t fail(Code code, Span span, std::string cause, std::string remedy) {
+    diagnostics_.push_back({code, Severity::kError, span, std::move(cause), std::move(remedy)});
+    return std::nullopt;
+  }
+
+  Scanner& scanner_;
+  std::vector<Diagnostic>& diagnostics_;
+};
+
+}  // namespace
+
+std::optional<syntax::Expression> parse_expression(Scanner& scanner,
+                                                   std::vector<Diagnostic>& diagnostics) {
+  return ExpressionParser(scanner, diagnostics).conditional(0);
+}
+
+}  // namespace culprit

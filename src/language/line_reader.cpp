@@ -1,0 +1,176 @@
+#include "language/line_reader.h"
+
+#include <algorithm>
+#include <array>
+
+#include "language/expression_parser.h"
+
+namespace culprit {
+namespace {
+
+using syntax::Name;
+
+constexpr std::array<std::string_view, 28> kReservedWords = {
+    "ROBOT",     "CYCLE",    "CONST",    "COMPONENT", "DEPENDENCY", "IGNORE", "SIGNAL",
+    "RULE",      "POLICIES", "TRIGGER",  "STRATEGY",  "NODE",       "LAUNCH", "ON",
+    "TOPIC",     "FIELD",    "STALE",    "RANGE",     "KEY",        "FOR",    "DIAGNOSTIC",
+    "PARAMETER", "HOLD",     "COOLDOWN", "ATTEMPTS",  "ON_CHANGE",  "WHEN",   "ADAPTATION"};
+
+bool is_reserved(std::string_view word) {
+  return std::find(kReservedWords.begin(), kReservedWords.end(), word) != kReservedWords.end();
+}
+
+bool is_ros_name(std::string_view name) {
+  if (name.size() < 2 || name.front() != '/' || name.back() == '/') return false;
+  for (std::size_t i = 1; i < name.size(); ++i) {
+    const char c = name[i];
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    const bool digit = c >= '0' && c <= '9';
+    const bool begins_token = name[i - 1] == '/';
+    if (!letter && !(digit && !begins_token) && !(c == '/' && !begins_token)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<Name> LineReader::identifier(Scanner& s, std::string_view what) {
+  const Token token = s.next();
+  if (token.kind == Token::Kind::kIdentifier) return Name{token.text, token.span};
+  fail_token(token, what, "a name is made of letters, digits and '_', and begins with no digit");
+  return std::nullopt;
+}
+
+std::optional<Name> LineReader::declared_name(Scanner& s, std::string_view what) {
+  auto name = identifier(s, what);
+  if (name && (is_reserved(name->text) || name->text == "true" || name->text == "false")) {
+    fail(Code::kReservedWord, name->span, "'" + name->text + "' is a word of the language",
+         "choose another name");
+    return std::nullopt;
+  }
+  return name;
+}
+
+std::optional<Name> LineReader::name_or_text(Scanner& s, std::string_view what) {
+  Name name = s.next_name();
+  if (!name.text.empty() && name.text.size() <= Scanner::kMaxName) return name;
+  fail(Code::kSyntax, name.span, "expected " + std::string(what),
+       name.text.empty() ? "" : "it is too long for a name");
+  return std::nullopt;
+}
+
+std::optional<Name> LineReader::component_reference(Scanner& s) {
+  if (s.position() < source_.text().size() && source_.text()[s.position()] == '/')
+    return ros_name(s, "a component");
+  return identifier(s, "a component");
+}
+
+std::optional<Name> LineReader::ros_name(Scanner& s, std::string_view what) {
+  auto name = name_or_text(s, what);
+  if (!name || is_ros_name(name->text)) return name;
+  fail(Code::kBadRosName, name->span, "'" + name->text + "' is no full ROS name",
+       "full names look like /namespace/name: letters, digits and '_' between slashes");
+  return std::nullopt;
+}
+
+std::optional<Duration> LineReader::duration(Scanner& s, std::string_view what) {
+  const Token token = s.next();
+  if (token.kind == Token::Kind::kDuration) return std::get<Duration>(token.literal);
+  fail_token(token, what, "a duration is a number and its unit, as in 500ms or 2s");
+  return std::nullopt;
+}
+
+std::optional<Duration> LineReader::positive_duration(Scanner& s, std::string_view what) {
+  const Span span = s.peek().span;
+  const auto d = duration(s, what);
+  if (!d || *d > Duration::zero()) return d;
+  fail(Code::kPolicyRange, span, "this duration must be longer than zero", "");
+  return std::nullopt;
+}
+
+std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view what) {
+  const Token token = s.next();
+  if (token.kind == Token::Kind::kNumber) {
+    if (const auto* whole = std::get_if<std::int64_t>(&token.literal)) {
+      return syntax::Number{static_cast<double>(*whole), true, token.span};
+    }
+    return syntax::Number{std::get<double>(token.literal), false, token.span};
+  }
+  fail_token(token, what,
+             token.kind == Token::Kind::kEnd ? "a number is missing at the end of this line" : "");
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> LineReader::whole_number(Scanner& s, std::string_view what) {
+  const Token token = s.next();
+  if (const auto* whole = std::get_if<std::int64_t>(&token.literal)) return *whole;
+  fail_token(token, what, "");
+  return std::nullopt;
+}
+
+std::optional<double> LineReader::signed_number(Scanner& s) {
+  const bool negative = s.peek().is("-");
+  if (negative) s.next();
+  const auto magnitude = number(s, "a number");
+  if (!magnitude) return std::nullopt;
+  return negative ? -magnitude->value : magnitude->value;
+}
+
+bool LineReader::expect_word(Scanner& s, std::string_view word) {
+  const Token token = s.next();
+  return token.text == word || fail_token(token, word, "");
+}
+
+bool LineReader::expect_symbol(Scanner& s, std::string_view symbol) {
+  const Token token = s.next();
+  return token.is(symbol) || fail_token(token, "'" + std::string(symbol) + "'", "");
+}
+
+bool LineReader::fail(Code code, Span span, std::string cause, std::string remedy) {
+  diagnostics_.push_back({code, Severity::kError, span, std::move(cause), std::move(remedy)});
+  return false;
+}
+
+bool LineReader::fail_token(const Token& token, std::string_view expected, std::string remedy) {
+  if (token.kind == Token::Kind::kBad)
+    return fail(Code::kBadToken, token.span, token.text, std::move(remedy));
+  const std::string got = token.kind == Token::Kind::kEnd
+                              ? ""
+                              : ", not '" + std::string(source_.text(token.span)) + "'";
+  return fail(Code::kSyntax, token.span, "expected " + std::string(expected) + got,
+              std::move(remedy));
+}
+
+bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_view> known,
+                                   std::string remedy, Code code) {
+  if (token.kind == Token::Kind::kBad) return fail(Code::kBadToken, token.span, token.text, "");
+  if (std::find(known.begin(), known.end(), token.text) != known.end()) {
+    return fail(code, token.span, token.text + " is given twice", "keep one of them");
+  }
+  std::string list;
+  for (const std::string_view word : known) list += (list.empty() ? "" : ", ") + std::string(word);
+  const std::string near = closest(token.text, known);
+  if (!near.empty()) remedy = "did you mean " + near + "?";
+  const std::string got = token.kind == Token::Kind::kEnd
+                              ? ""
+                              : ", not '" + std::string(source_.text(token.span)) + "'";
+  return fail(code, token.span, "expected one of " + list + got, std::move(remedy));
+}
+
+bool LineReader::line_ends(Scanner& s) {
+  const Token token = s.peek();
+  if (token.kind == Token::Kind::kEnd) return true;
+  if (token.kind == Token::Kind::kBad) return fail(Code::kBadToken, token.span, token.text, "");
+  std::string remedy = "remove it, or begin a comment with #";
+  if (token.is("=")) remedy = "write == to compare";
+  if (token.text == "and") remedy = "write && for 'and'";
+  if (token.text == "or") remedy = "write || for 'or'";
+  return fail(Code::kExtraText, s.rest(), "this text does not belong to the line",
+              std::move(remedy));
+}
+
+std::optional<syntax::Expression> LineReader::expression(Scanner& s) {
+  return parse_expression(s, diagnostics_);
+}
+
+}  // namespace culprit

@@ -1,0 +1,58 @@
+// The pieces that statements are made of, read off one line.
+//
+// A reader that does not find its piece says what it expected, at the place where it looked, and
+// gives nothing; the statement is then given up, so each line is complained about at most once.
+// `what` names the piece for the message.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "language/diagnostic.h"
+#include "language/scanner.h"
+#include "language/source.h"
+#include "language/syntax.h"
+
+namespace culprit {
+
+class LineReader {
+ public:
+  LineReader(const Source& source, std::vector<Diagnostic>& diagnostics)
+      : source_(source), diagnostics_(diagnostics) {}
+
+  std::optional<syntax::Name> identifier(Scanner& s, std::string_view what);
+  // An identifier that is no word of the language.
+  std::optional<syntax::Name> declared_name(Scanner& s, std::string_view what);
+  // Anything without blanks, or a quoted text.
+  std::optional<syntax::Name> name_or_text(Scanner& s, std::string_view what);
+  // A component's name, or a node's full name.
+  std::optional<syntax::Name> component_reference(Scanner& s);
+  std::optional<syntax::Name> ros_name(Scanner& s, std::string_view what);
+
+  std::optional<Duration> duration(Scanner& s, std::string_view what);
+  std::optional<Duration> positive_duration(Scanner& s, std::string_view what);
+  std::optional<syntax::Number> number(Scanner& s, std::string_view what);
+  std::optional<std::int64_t> whole_number(Scanner& s, std::string_view what);
+  std::optional<double> signed_number(Scanner& s);
+  std::optional<syntax::Expression> expression(Scanner& s);
+
+  bool expect_word(Scanner& s, std::string_view word);
+  bool expect_symbol(Scanner& s, std::string_view symbol);
+  // Nothing but a comment is left.
+  bool line_ends(Scanner& s);
+
+  // Complaints. All give false, for `return fail(...)`.
+  bool fail(Code code, Span span, std::string cause, std::string remedy);
+  bool fail_token(const Token& token, std::string_view expected, std::string remedy);
+  bool unexpected_clause(const Token& token, std::vector<std::string_view> known,
+                         std::string remedy = "", Code code = Code::kSyntax);
+
+ private:
+  const Source& source_;
+  std::vector<Diagnostic>& diagnostics_;
+};
+
+}  // namespace culprit

@@ -1,0 +1,157 @@
+#include "language/rule_checks.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "language/evaluate.h"
+
+namespace culprit {
+namespace {
+
+using syntax::Adaptation;
+using enum AdaptationType;
+
+bool sets_parameter(const Adaptation& a) {
+  return a.type == kSetParameter || a.type == kIncreaseParameter || a.type == kDecreaseParameter ||
+         a.type == kChangeCommunication;
+}
+bool ends_process(const Adaptation& a) { return a.type == kRedeploy || a.type == kStop; }
+bool needs_launch(AdaptationType type) { return type == kRedeploy || type == kStart; }
+
+// Why the two cannot be in one strategy; null if they can. Both are about one component, `first`
+// stands before.
+const char* contradiction(const Adaptation& first, const Adaptation& second) {
+  const auto are = [&](AdaptationType a, AdaptationType b) {
+    return (first.type == a && second.type == b) || (first.type == b && second.type == a);
+  };
+  if (are(kStart, kStart)) return "this component is started already";
+  if (are(kStop, kStop)) return "this component is stopped already";
+  if (are(kStart, kStop)) return "the component is both started and stopped";
+  if (are(kActivate, kDeactivate)) return "the component is both activated and deactivated";
+  if (are(kActivate, kActivate) || are(kDeactivate, kDeactivate)) return "this is done already";
+  const bool lifecycle =
+      second.type == kActivate || second.type == kDeactivate || second.type == kRestart;
+  if (first.type == kRestart && lifecycle) return "a restart activates the component already";
+  if (second.type == kRestart) return "a restart undoes what was done to the component before";
+  const bool other_configures = sets_parameter(first) || sets_parameter(second) ||
+                                first.type == kChangeMode || second.type == kChangeMode ||
+                                lifecycle || first.type == kActivate || first.type == kDeactivate;
+  if (ends_process(first) && ends_process(second))
+    return "the component's process is ended already";
+  if ((ends_process(first) || ends_process(second)) && other_configures) {
+    return "the component is both redeployed or stopped and reconfigured";
+  }
+  if (sets_parameter(first) && sets_parameter(second) &&
+      first.subject.text == second.subject.text) {
+    return "this parameter is set twice";
+  }
+  if (are(kChangeMode, kChangeMode)) return "the component's mode is changed twice";
+  return nullptr;
+}
+
+}  // namespace
+
+void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnostic>& diagnostics) {
+  const auto& all = strategy.adaptations;
+  for (std::size_t second = 1; second < all.size(); ++second) {
+    for (std::size_t first = 0; first < second; ++first) {
+      if (all[first].component.text != all[second].component.text) continue;
+      if (const char* why = contradiction(all[first], all[second])) {
+        diagnostics.push_back({Code::kContradiction, Severity::kError, all[second].span,
+                               "strategy '" + strategy.name.text + "' contradicts itself: " + why,
+                               "split it into two strategies, or remove one of the adaptations"});
+        break;
+      }
+    }
+  }
+}
+
+void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
+                    std::vector<Diagnostic>& diagnostics) {
+  std::size_t impossible = 0;
+  for (std::size_t s = 0; s < rules[id].strategies.size(); ++s) {
+    bool reported = false;
+    const Strategy& strategy = rules[rules[id].strategies[s]];
+    for (const auto& adaptation : strategy.adaptations) {
+      const Component& component = rules[adaptation.component];
+      if (reported || !needs_launch(adaptation.type) || !component.launch.empty()) continue;
+      reported = true;
+      ++impossible;
+      const auto written =
+          std::find_if(rule.strategies.begin(), rule.strategies.end(),
+                       [&](const syntax::Strategy& w) { return w.name.text == strategy.name; });
+      const auto line = std::find_if(written->adaptations.begin(), written->adaptations.end(),
+                                     [](const auto& a) { return needs_launch(a.type); });
+      diagnostics.push_back({Code::kNoLaunch, Severity::kWarning, line->span,
+                             "strategy '" + strategy.name + "' can never run: component '" +
+                                 component.name + "' has no LAUNCH command",
+                             "add LAUNCH \"program arguments\" to its COMPONENT line"});
+    }
+  }
+  if (impossible > 0 && impossible == rules[id].strategies.size()) {
+    diagnostics.push_back({Code::kNeverValid, Severity::kError, rule.name.span,
+                           "no strategy of rule '" + rule.name.text + "' can ever run",
+                           "add a strategy that works, or the LAUNCH commands that they need"});
+  }
+}
+
+void check_constant_trigger(const syntax::Rule& rule, const Program& trigger,
+                            std::vector<Diagnostic>& diagnostics) {
+  const bool reads = std::any_of(trigger.code.begin(), trigger.code.end(),
+                                 [](const Instruction& i) { return i.op == Op::kInput; });
+  if (reads) return;
+  const Slot result = evaluate(trigger, {});
+  const bool always = result.known && result.b;
+  diagnostics.push_back({always ? Code::kAlwaysTrue : Code::kNeverTrue, Severity::kError,
+                         rule.trigger->span,
+                         always ? "this trigger is always true" : "this trigger is never true",
+                         "let it read a signal or call a function such as rate(topic)"});
+}
+
+void check_circles(const syntax::File& file, const RuleSet& rules,
+                   std::vector<Diagnostic>& diagnostics) {
+  const std::size_t count = rules.components.size();
+  std::vector<std::vector<std::size_t>> producers(count);
+  for (const Dependency& d : rules.dependencies)
+    producers[d.consumer.index].push_back(d.producer.index);
+
+  enum class Mark : std::uint8_t { kNew, kOpen, kDone };
+  std::vector<Mark> marks(count, Mark::kNew);
+  std::set<std::size_t> in_circle;
+  struct Visit {
+    std::size_t component;
+    std::size_t next = 0;
+  };
+  for (std::size_t start = 0; start < count; ++start) {
+    if (marks[start] != Mark::kNew) continue;
+    std::vector<Visit> path{{start}};
+    marks[start] = Mark::kOpen;
+    while (!path.empty()) {
+      Visit& here = path.back();
+      if (here.next == producers[here.component].size()) {
+        marks[here.component] = Mark::kDone;
+        path.pop_back();
+        continue;
+      }
+      const std::size_t to = producers[here.component][here.next++];
+      if (marks[to] == Mark::kOpen) in_circle.insert(to);
+      if (marks[to] == Mark::kNew) {
+        marks[to] = Mark::kOpen;
+        path.push_back({to});
+      }
+    }
+  }
+  for (const syntax::Dependency& d : file.dependencies) {
+    const auto consumer = std::find_if(in_circle.begin(), in_circle.end(), [&](std::size_t c) {
+      return rules.components[c].name == d.consumer.text;
+    });
+    if (consumer == in_circle.end()) continue;
+    diagnostics.push_back({Code::kCircularDependency, Severity::kError, d.consumer.span,
+                           "the declared dependencies of '" + d.consumer.text + "' lead back to it",
+                           "remove the DEPENDENCY that closes the circle"});
+    in_circle.erase(consumer);
+  }
+}
+
+}  // namespace culprit

@@ -1,0 +1,29 @@
+// Design-time checks of rules that parse and type: what cannot work, or cannot be meant.
+#pragma once
+
+#include <vector>
+
+#include "language/diagnostic.h"
+#include "language/rule_set.h"
+#include "language/syntax.h"
+
+namespace culprit {
+
+// A strategy that contradicts itself: it adds a node twice, activates and deactivates it, redeploys
+// and reconfigures it, sets one parameter twice.
+void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnostic>& diagnostics);
+
+// Strategies that need a LAUNCH command that is not there, and rules for which no strategy is left
+// then.
+void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
+                    std::vector<Diagnostic>& diagnostics);
+
+// A trigger that reads nothing is always or never true.
+void check_constant_trigger(const syntax::Rule& rule, const Program& trigger,
+                            std::vector<Diagnostic>& diagnostics);
+
+// Declared dependencies that lead in a circle.
+void check_circles(const syntax::File& file, const RuleSet& rules,
+                   std::vector<Diagnostic>& diagnostics);
+
+}  // namespace culprit

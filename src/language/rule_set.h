@@ -1,0 +1,180 @@
+// A checked rule file: every name looked up, every expression typed and compiled, every number in
+// its range.
+//
+// Things refer to each other by Id, the index into the table of their kind. A rule set is a value
+// and never changes once it is checked; what happens at run time is kept by knowledge/.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "language/ids.h"
+#include "language/program.h"
+#include "language/syntax.h"
+#include "language/units.h"
+
+namespace culprit {
+
+using syntax::AdaptationType;
+using syntax::Criticality;
+
+// A managed ROS 2 node (paper: c in C).
+struct Component {
+  std::string name;
+  std::string node;  // full name; empty: the node of the graph whose own name is `name`
+  std::vector<std::string> launch;  // argument vector; empty: culprit cannot start it
+  bool declared = true;             // by a COMPONENT line
+};
+
+struct Topic {
+  std::string name;
+};
+
+// A parameter that the rules read or write.
+struct Parameter {
+  ComponentId component;
+  std::string name;
+};
+
+// A diagnostic status whose level the rules read; `name` is its name or its hardware id.
+struct StatusLevel {
+  std::string name;
+};
+
+struct DiagnosticKey {
+  std::string status;  // name or hardware id of the status
+  std::string key;
+};
+struct TopicField {
+  TopicId topic;
+  std::string field;  // "data", "pose.position.x", "ranges[0]"
+};
+// Not declared: the key of a diagnostic, or "<hardware id>_<key>" as one name.
+struct LookedUp {};
+
+struct Signal {
+  std::string name;
+  std::variant<DiagnosticKey, TopicField, ParameterId, LookedUp> source;
+  Type type = Type::kDouble;
+  std::optional<Duration> stale;  // older values are unknown
+  struct Range {
+    double low = 0;
+    double high = 0;
+  };
+  std::optional<Range> range;
+};
+
+// One value that programs read: a signal as it is, or something that the monitor derives.
+struct Input {
+  enum class Kind : std::uint8_t {
+    kSignal,     // signal
+    kRate,       // topic, over window: Hz
+    kAge,        // topic: time since the last sample
+    kPhi,        // topic: suspicion
+    kAlive,      // component
+    kLifecycle,  // component: "unconfigured", "inactive", "active", "finalized"
+    kParameter,  // parameter
+    kLevel,      // diagnostic
+    kMean,       // signal, over window
+    kMin,
+    kMax,
+    kStddev,
+    kChanged  // signal: its value became another within the last cycle
+  };
+  Kind kind = Kind::kSignal;
+  Type type = Type::kDouble;
+  TopicId topic;
+  SignalId signal;
+  ComponentId component;
+  ParameterId parameter;
+  DiagnosticId diagnostic;
+  Duration window{};
+
+  // The constants that this input is compared with anywhere, ascending (durations in seconds).
+  // Where the rules use it in no other way (`only_compared`), nothing can change while it moves
+  // between two of them.
+  std::vector<double> thresholds;
+  bool only_compared = true;
+
+  std::vector<RuleId> readers;  // the rules whose trigger reads it
+};
+
+struct Adaptation {
+  ComponentId component;
+  AdaptationType type = AdaptationType::kSetParameter;
+  std::string subject;    // parameter, mode or service (absolute, or relative to the node)
+  ParameterId parameter;  // the same parameter; where there is one
+  Program value;          // set, increase and decrease parameter
+  std::string topic;      // change_communication
+  Cycles impact;          // paper: i_exec,a
+};
+
+struct Strategy {
+  std::string name;
+  RuleId rule;
+  Probability success;    // paper: P_s,init
+  double confidence = 1;  // paper: c_p, in pseudo-counts
+  Program when;           // empty: always
+  std::vector<Adaptation> adaptations;
+  Cycles impact;                        // paper: i_exec,s, the maximum over the adaptations
+  std::vector<ComponentId> components;  // that it adapts, each once, ascending
+};
+
+struct Policies {
+  Criticality criticality = Criticality::kNonCritical;
+  Duration hold_for{};  // FOR
+  int hold_needed = 1;  // HOLD n/k, evaluated once per cycle
+  int hold_window = 1;
+  Duration cooldown{};
+  int attempts = 0;  // executions of strategies before the rule is exhausted
+  bool on_change = false;
+};
+
+struct Rule {
+  std::string name;
+  Policies policies;
+  Program trigger;
+  std::vector<StrategyId> strategies;   // in file order
+  std::vector<ComponentId> components;  // that its strategies adapt, each once, ascending
+  std::vector<InputId> inputs;          // that its trigger reads
+  syntax::Name declaration;             // where it stands
+};
+
+struct Dependency {
+  ComponentId consumer;
+  ComponentId producer;
+};
+
+struct RuleSet {
+  std::string robot;
+  Duration cycle = std::chrono::milliseconds(200);
+  std::vector<Component> components;
+  std::vector<Topic> topics;  // that rules watch
+  std::vector<Parameter> parameters;
+  std::vector<StatusLevel> diagnostics;
+  std::vector<Signal> signals;
+  std::vector<Input> inputs;
+  std::vector<Rule> rules;
+  std::vector<Strategy> strategies;
+  std::vector<Dependency> dependencies;
+  std::vector<std::string> ignored_topics;
+
+  Cycles heaviest;  // paper: i_max, the highest impact of any strategy
+
+  const Component& operator[](ComponentId id) const { return components[id.index]; }
+  const Topic& operator[](TopicId id) const { return topics[id.index]; }
+  const Parameter& operator[](ParameterId id) const { return parameters[id.index]; }
+  const Signal& operator[](SignalId id) const { return signals[id.index]; }
+  const Input& operator[](InputId id) const { return inputs[id.index]; }
+  const Rule& operator[](RuleId id) const { return rules[id.index]; }
+  const Strategy& operator[](StrategyId id) const { return strategies[id.index]; }
+};
+
+// How long `cycles` last with this rule set.
+inline Duration duration_of(Cycles cycles, const RuleSet& rules) {
+  return rules.cycle * cycles.count;
+}
+
+}  // namespace culprit

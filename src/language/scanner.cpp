@@ -1,0 +1,174 @@
+#include "language/scanner.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace culprit {
+namespace {
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+
+Token bad(Span span, std::string message) {
+  return {Token::Kind::kBad, span, std::move(message), {}};
+}
+
+}  // namespace
+
+bool Scanner::is_comment(std::uint32_t at) const {
+  return text_[at] == '#' || (text_[at] == '/' && at + 1 < end_ && text_[at + 1] == '/');
+}
+
+// The next character that counts, or end_.
+std::uint32_t Scanner::skip_blanks() const {
+  std::uint32_t at = at_;
+  while (at < end_ && is_blank(text_[at])) ++at;
+  return at < end_ && is_comment(at) ? end_ : at;
+}
+
+bool Scanner::at_end() const { return skip_blanks() == end_; }
+std::uint32_t Scanner::position() const { return skip_blanks(); }
+
+Span Scanner::rest() const {
+  const std::uint32_t begin = skip_blanks();
+  std::uint32_t end = begin;
+  for (std::uint32_t at = begin; at < end_ && !is_comment(at); ++at) {
+    if (!is_blank(text_[at])) end = at + 1;
+  }
+  return {begin, end};
+}
+
+Token Scanner::next() {
+  Token token = peek();
+  at_ = token.span.end;
+  return token;
+}
+
+Token Scanner::peek() const {
+  const std::uint32_t at = skip_blanks();
+  if (at == end_) return {Token::Kind::kEnd, {at, at}, "", {}};
+  const char c = text_[at];
+  const bool fraction = c == '.' && at + 1 < end_ && is_digit(text_[at + 1]);
+  if (is_digit(c) || fraction) return number(at);
+  if (is_letter(c)) return identifier(at);
+  if (c == '"') return quoted(at);
+  return symbol(at);
+}
+
+Token Scanner::identifier(std::uint32_t at) const {
+  std::uint32_t end = at;
+  while (end < end_ && (is_letter(text_[end]) || is_digit(text_[end]))) ++end;
+  if (end - at > kMaxName) return bad({at, end}, "this name is longer than 255 characters");
+  std::string text(text_.substr(at, end - at));
+  if (text == "true" || text == "false") {
+    // Keywords of expressions; elsewhere the text serves.
+    return {Token::Kind::kIdentifier, {at, end}, text, syntax::Literal(text == "true")};
+  }
+  return {Token::Kind::kIdentifier, {at, end}, std::move(text), {}};
+}
+
+Token Scanner::number(std::uint32_t at) const {
+  std::uint32_t end = at;
+  const auto digits = [&] {
+    while (end < end_ && is_digit(text_[end])) ++end;
+  };
+  bool whole = true;
+  digits();
+  // "0..1" is a range, not a number with a point.
+  if (end < end_ && text_[end] == '.' && !(end + 1 < end_ && text_[end + 1] == '.')) {
+    whole = false;
+    ++end;
+    digits();
+  }
+  if (end < end_ && (text_[end] == 'e' || text_[end] == 'E')) {
+    std::uint32_t exponent = end + 1;
+    if (exponent < end_ && (text_[exponent] == '+' || text_[exponent] == '-')) ++exponent;
+    if (exponent < end_ && is_digit(text_[exponent])) {
+      whole = false;
+      end = exponent;
+      digits();
+    }
+  }
+  const std::uint32_t number_end = end;
+  while (end < end_ && (is_letter(text_[end]) || is_digit(text_[end]))) ++end;
+
+  const std::string_view text = text_.substr(at, end - at);
+  if (end > number_end) {
+    if (const auto duration = parse_duration(text))
+      return {Token::Kind::kDuration, {at, end}, "", *duration};
+    return bad({at, end}, "'" + std::string(text) + "' is neither a number nor a duration");
+  }
+  const char* last = text_.data() + number_end;
+  if (std::int64_t i = 0; whole) {
+    if (std::from_chars(text_.data() + at, last, i).ec == std::errc()) {
+      return {Token::Kind::kNumber, {at, end}, "", i};
+    }
+    return bad({at, end}, "this whole number does not fit in 64 bits");
+  }
+  double d = 0;
+  if (std::from_chars(text_.data() + at, last, d).ec != std::errc() || !std::isfinite(d)) {
+    return bad({at, end}, "this number is out of range");
+  }
+  return {Token::Kind::kNumber, {at, end}, "", d};
+}
+
+Token Scanner::quoted(std::uint32_t at) const {
+  std::string out;
+  for (std::uint32_t i = at + 1; i < end_; ++i) {
+    char c = text_[i];
+    if (c == '"') return {Token::Kind::kString, {at, i + 1}, "", std::move(out)};
+    if (c == '\\' && i + 1 < end_) {
+      c = text_[++i];
+      if (c == 'n')
+        c = '\n';
+      else if (c == 't')
+        c = '\t';
+      else if (c != '"' && c != '\\')
+        return bad({i - 1, i + 1}, "unknown escape in a string; known: \\\" \\\\ \\n \\t");
+    }
+    out += c;
+  }
+  return bad({at, end_}, "this string has no closing '\"'");
+}
+
+Token Scanner::symbol(std::uint32_t at) const {
+  constexpr std::array<std::string_view, 21> kSymbols = {"<=", ">=", "==", "!=", "&&", "||", "..",
+                                                         "<",  ">",  "!",  "-",  "+",  "*",  "/",
+                                                         "%",  "(",  ")",  "?",  ":",  ",",  "="};
+  for (const std::string_view s : kSymbols) {
+    if (text_.substr(at, s.size()) == s && at + s.size() <= end_) {
+      return {Token::Kind::kSymbol,
+              {at, static_cast<std::uint32_t>(at + s.size())},
+              std::string(s),
+              {}};
+    }
+  }
+  std::uint32_t end = at + 1;
+  while (end < end_ && (static_cast<unsigned char>(text_[end]) & 0xC0) == 0x80)
+    ++end;  // one whole character
+  const bool control = static_cast<unsigned char>(text_[at]) < 0x20 || text_[at] == 0x7f;
+  if (control) return bad({at, end}, "a control character has no place in a rule file");
+  return bad({at, end}, "'" + std::string(text_.substr(at, end - at)) + "' means nothing here");
+}
+
+syntax::Name Scanner::next_name() {
+  const std::uint32_t begin = skip_blanks();
+  if (begin < end_ && text_[begin] == '"') {
+    Token token = quoted(begin);
+    if (token.kind == Token::Kind::kString) {
+      at_ = token.span.end;
+      return {std::get<std::string>(token.literal), token.span};
+    }
+  }
+  std::uint32_t end = begin;
+  while (end < end_ && !is_blank(text_[end]) && text_[end] != ',' && text_[end] != ')' &&
+         text_[end] != '(' && !is_comment(end)) {
+    ++end;
+  }
+  at_ = end;
+  return {std::string(text_.substr(begin, end - begin)), {begin, end}};
+}
+
+}  // namespace culprit

@@ -1,0 +1,71 @@
+// Source text -> tokens, one line at a time and on demand.
+//
+// The language is line-oriented, so a scanner stands in one line and never leaves it: a mistake
+// cannot spread to the next line. What a '/' or a '.' means depends on the place (division or topic
+// name, decimal point or parameter name), so the parser asks for the kind of token that it can use
+// there. Comments (# and //) and line ends look the same.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "language/source.h"
+#include "language/syntax.h"
+
+namespace culprit {
+
+struct Token {
+  enum class Kind : std::uint8_t {
+    kEnd,         // of the line
+    kIdentifier,  // [A-Za-z_][A-Za-z0-9_]*
+    kNumber,      // literal is an int64 or a double
+    kDuration,
+    kString,
+    kSymbol,  // an operator or a parenthesis; text says which
+    kBad      // text says what is wrong with it
+  };
+  Kind kind = Kind::kEnd;
+  Span span;
+  std::string text;  // identifier, symbol, or the message of kBad
+  syntax::Literal literal;
+
+  bool is(std::string_view symbol) const { return kind == Kind::kSymbol && text == symbol; }
+};
+
+class Scanner {
+ public:
+  // The longest name that is accepted, as in DDS (topic names are string<255>).
+  static constexpr std::size_t kMaxName = 255;
+
+  Scanner(std::string_view text, Span line) : text_(text), at_(line.begin), end_(line.end) {}
+
+  // The next token of an expression or a clause.
+  Token next();
+  Token peek() const;
+
+  // The next run of non-blank characters up to a comment, a comma or a closing parenthesis: a
+  // topic, node, parameter or mode name. A quoted string is taken as a name too. Empty at the end
+  // of the line.
+  syntax::Name next_name();
+
+  bool at_end() const;
+  // Where the next token begins.
+  std::uint32_t position() const;
+  // From the next token to the end of the line's text, comment and trailing blanks left out.
+  Span rest() const;
+
+ private:
+  std::uint32_t skip_blanks() const;
+  bool is_comment(std::uint32_t at) const;
+  Token number(std::uint32_t at) const;
+  Token quoted(std::uint32_t at) const;
+  Token identifier(std::uint32_t at) const;
+  Token symbol(std::uint32_t at) const;
+
+  std::string_view text_;
+  std::uint32_t at_;
+  std::uint32_t end_;
+};
+
+}  // namespace culprit

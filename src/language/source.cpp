@@ -1,0 +1,61 @@
+#include "language/source.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace culprit {
+
+Source::Source(std::string name, std::string text)
+    : name_(std::move(name)), text_(std::move(text)) {
+  if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
+  line_starts_.push_back(0);
+  for (std::size_t i = 0; i < text_.size(); ++i) {
+    if (text_[i] == '\n') line_starts_.push_back(static_cast<std::uint32_t>(i + 1));
+  }
+}
+
+Expected<Source> Source::read(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return Error{"cannot read rule file '" + path + "': " + std::strerror(errno)};
+  std::string text;
+  char block[1 << 16];
+  while (file.read(block, sizeof block) || file.gcount() > 0) {
+    text.append(block, static_cast<std::size_t>(file.gcount()));
+    if (text.size() > kMaxSize)
+      return Error{"rule file '" + path + "' is larger than 64 MiB; is it a rule file?"};
+  }
+  if (file.bad() || !file.eof())
+    return Error{"cannot read rule file '" + path + "': is it a directory?"};
+  return Source(path, std::move(text));
+}
+
+std::string_view Source::text(Span span) const {
+  return std::string_view(text_).substr(span.begin, span.end - span.begin);
+}
+
+Position Source::position(std::uint32_t offset) const {
+  const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
+  const auto line = static_cast<std::uint32_t>(after - line_starts_.begin());
+  const std::uint32_t start = line_starts_[line - 1];
+  return {line, character_count(text({start, offset})) + 1};
+}
+
+Span Source::line(std::uint32_t line) const {
+  const std::uint32_t begin = line_starts_[line - 1];
+  auto end = line < line_starts_.size() ? line_starts_[line] - 1
+                                        : static_cast<std::uint32_t>(text_.size());
+  if (end > begin && text_[end - 1] == '\r') --end;
+  return {begin, end};
+}
+
+std::uint32_t character_count(std::string_view text) {
+  const auto starts_character = [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  };
+  return static_cast<std::uint32_t>(std::count_if(text.begin(), text.end(), starts_character));
+}
+
+}  // namespace culprit

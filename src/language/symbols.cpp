@@ -1,0 +1,216 @@
+#include "language/symbols.h"
+
+#include <algorithm>
+
+namespace culprit {
+namespace {
+
+// Splits a launch command into its arguments: blanks separate, quotes group, a backslash takes the
+// next character as it is. No variables, no globs, no shell.
+std::optional<std::vector<std::string>> split_command(std::string_view text) {
+  std::vector<std::string> arguments;
+  bool inside = false;
+  char quote = '\0';
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quote == '\0' && (c == ' ' || c == '\t')) {
+      inside = false;
+      continue;
+    }
+    if (!inside) arguments.emplace_back();
+    inside = true;
+    if (c == '\\' && quote != '\'' && i + 1 < text.size()) {
+      arguments.back() += text[++i];
+    } else if (quote == '\0' && (c == '"' || c == '\'')) {
+      quote = c;
+    } else if (c == quote) {
+      quote = '\0';
+    } else {
+      arguments.back() += c;
+    }
+  }
+  if (quote != '\0' || arguments.empty() || arguments.front().empty()) return std::nullopt;
+  return arguments;
+}
+
+std::string key_of(const Input& input) {
+  std::string key;
+  for (const auto part :
+       {static_cast<std::int64_t>(input.kind), static_cast<std::int64_t>(input.topic.index),
+        static_cast<std::int64_t>(input.signal.index),
+        static_cast<std::int64_t>(input.component.index),
+        static_cast<std::int64_t>(input.parameter.index),
+        static_cast<std::int64_t>(input.diagnostic.index), std::int64_t{input.window.count()}}) {
+    key += std::to_string(part) + ' ';
+  }
+  return key;
+}
+
+}  // namespace
+
+bool Symbols::first_declaration(const syntax::Name& name, const char* what) {
+  if (declared_.insert(name.text).second) return true;
+  diagnostics_.push_back({Code::kDuplicateName, Severity::kError, name.span,
+                          "'" + name.text + "' is declared already",
+                          std::string("give this ") + what + " another name"});
+  return false;
+}
+
+void Symbols::declare(const syntax::File& file) {
+  for (const syntax::Constant& c : file.constants) {
+    // Its value follows, in file order: a constant may use the ones before it.
+    if (first_declaration(c.name, "constant")) constants_[c.name.text] = {{}, true};
+  }
+  std::map<std::string, std::string> owner_of_node;
+  for (const syntax::Component& c : file.components) {
+    if (!first_declaration(c.name, "component")) continue;
+    Component component{c.name.text, c.node ? c.node->text : "", {}, true};
+    if (c.node) {
+      const auto [owner, is_first] = owner_of_node.emplace(c.node->text, c.name.text);
+      if (!is_first) {
+        diagnostics_.push_back({Code::kDuplicateName, Severity::kError, c.node->span,
+                                "this node is component '" + owner->second + "' already",
+                                "declare each node once"});
+      }
+    }
+    if (c.launch) {
+      if (auto command = split_command(c.launch->text)) {
+        component.launch = std::move(*command);
+      } else {
+        diagnostics_.push_back({Code::kSyntax, Severity::kError, c.launch->span,
+                                "this is no command",
+                                "write the program and its arguments; close every quote"});
+      }
+    }
+    components_[c.name.text] = ComponentId(rules_.components.size());
+    rules_.components.push_back(std::move(component));
+  }
+  for (const syntax::Signal& s : file.signals) {
+    if (!first_declaration(s.name, "signal")) continue;
+    Signal signal{s.name.text, LookedUp{}, Type::kDouble, s.stale, {}};
+    if (const auto* d = std::get_if<syntax::DiagnosticSource>(&s.source)) {
+      signal.source = DiagnosticKey{d->status.text, d->key.text};
+    } else if (const auto* t = std::get_if<syntax::TopicSource>(&s.source)) {
+      signal.source = TopicField{topic(t->topic.text), t->field.text};
+    } else {
+      const auto& p = std::get<syntax::ParameterSource>(s.source);
+      signal.source = parameter(component(p.component), p.parameter.text);
+    }
+    if (s.range) {
+      if (s.range->low >= s.range->high) {
+        diagnostics_.push_back({Code::kEmptyRange, Severity::kError, s.range->span,
+                                "this range holds no values", "write the smaller number first"});
+      }
+      signal.range = {s.range->low, s.range->high};
+    }
+    signals_[s.name.text] = SignalId(rules_.signals.size());
+    signal_types_.push_back(s.range ? std::optional(Type::kDouble) : std::nullopt);
+    rules_.signals.push_back(std::move(signal));
+  }
+}
+
+const Symbols::Constant* Symbols::constant(const std::string& name) const {
+  const auto found = constants_.find(name);
+  return found == constants_.end() ? nullptr : &found->second;
+}
+
+void Symbols::define_constant(const syntax::Name& name, Constant value) {
+  constants_[name.text] = std::move(value);
+}
+
+void Symbols::report_undeclared(const syntax::Name& name, const char* what,
+                                const std::vector<std::string_view>& declared) {
+  const std::string near = closest(name.text, declared);
+  if (strictness_ == Strictness::kStrict) {
+    diagnostics_.push_back(
+        {Code::kUndeclared, Severity::kError, name.span,
+         std::string(what) + " '" + name.text + "' is not declared",
+         near.empty() ? "declare it, or check without --strict" : "did you mean '" + near + "'?"});
+  } else if (!near.empty()) {
+    near_misses_[name.text] = {near, name.span};
+    diagnostics_.push_back({Code::kUnknownName, Severity::kWarning, name.span,
+                            std::string(what) + " '" + name.text +
+                                "' is not declared and will be looked up on the robot",
+                            "did you mean '" + near + "'?"});
+  }
+}
+
+ComponentId Symbols::component(const syntax::Name& name) {
+  const auto found = components_.find(name.text);
+  if (found != components_.end()) return found->second;
+  // A full node name may stand for the component that is declared with it.
+  const bool is_node = name.text.starts_with('/');
+  const auto same_node =
+      std::find_if(rules_.components.begin(), rules_.components.end(),
+                   [&](const Component& c) { return is_node && c.node == name.text; });
+  if (same_node != rules_.components.end())
+    return ComponentId(same_node - rules_.components.begin());
+
+  std::vector<std::string_view> declared;
+  for (const Component& c : rules_.components) {
+    if (c.declared) declared.push_back(c.name);
+  }
+  report_undeclared(name, "component", declared);
+  const ComponentId id(rules_.components.size());
+  rules_.components.push_back({name.text, is_node ? name.text : "", {}, false});
+  components_[name.text] = id;
+  return id;
+}
+
+SignalId Symbols::signal(const syntax::Name& name) {
+  const auto found = signals_.find(name.text);
+  if (found != signals_.end()) return found->second;
+  std::vector<std::string_view> declared;
+  for (const auto& [constant, value] : constants_) declared.push_back(constant);
+  for (const Signal& s : rules_.signals) {
+    if (!std::holds_alternative<LookedUp>(s.source)) declared.push_back(s.name);
+  }
+  std::sort(declared.begin(), declared.end());
+  report_undeclared(name, "signal", declared);
+  const SignalId id(rules_.signals.size());
+  rules_.signals.push_back({name.text, LookedUp{}, Type::kDouble, {}, {}});
+  signal_types_.emplace_back();
+  signals_[name.text] = id;
+  return id;
+}
+
+std::string Symbols::forget_near_miss(const std::string& signal) {
+  const auto found = near_misses_.find(signal);
+  if (found == near_misses_.end()) return "";
+  const NearMiss miss = found->second;
+  near_misses_.erase(found);
+  std::erase_if(diagnostics_, [&](const Diagnostic& d) {
+    return d.code == Code::kUnknownName && d.span == miss.span;
+  });
+  return miss.near;
+}
+
+TopicId Symbols::topic(const std::string& name) {
+  const auto [found, is_new] = topics_.emplace(name, TopicId(rules_.topics.size()));
+  if (is_new) rules_.topics.push_back({name});
+  return found->second;
+}
+
+DiagnosticId Symbols::diagnostic(const std::string& name) {
+  const auto [found, is_new] = level_names_.emplace(name, DiagnosticId(rules_.diagnostics.size()));
+  if (is_new) rules_.diagnostics.push_back({name});
+  return found->second;
+}
+
+ParameterId Symbols::parameter(ComponentId component, const std::string& name) {
+  const auto [found, is_new] =
+      parameters_.emplace(std::pair(component, name), ParameterId(rules_.parameters.size()));
+  if (is_new) {
+    rules_.parameters.push_back({component, name});
+    parameter_types_.emplace_back();
+  }
+  return found->second;
+}
+
+InputId Symbols::input(const Input& wanted) {
+  const auto [found, is_new] = inputs_.emplace(key_of(wanted), InputId(rules_.inputs.size()));
+  if (is_new) rules_.inputs.push_back(wanted);
+  return found->second;
+}
+
+}  // namespace culprit

@@ -1,0 +1,193 @@
+// The syntax tree: a rule file as it is written, before any name or type is looked up.
+//
+// Every part knows its place in the text. A part that was missing or broken in the text is left out
+// or left empty; the parser has said so, and whoever reads the tree stays silent about it (one
+// mistake, one message).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "language/source.h"
+#include "language/units.h"
+#include "language/value.h"
+
+namespace culprit::syntax {
+
+struct Name {
+  std::string text;
+  Span span;
+};
+
+// A constant as written. Durations are a type of their own; the rest are Values.
+using Literal = std::variant<bool, std::int64_t, double, std::string, Duration>;
+
+enum class Operator : std::uint8_t {
+  kNot,
+  kNegate,
+  kMultiply,
+  kDivide,
+  kRemainder,
+  kAdd,
+  kSubtract,
+  kLess,
+  kLessEqual,
+  kGreater,
+  kGreaterEqual,
+  kEqual,
+  kNotEqual,
+  kAnd,
+  kOr
+};
+std::string_view symbol(Operator op);
+
+struct Expression {
+  enum class Kind : std::uint8_t {
+    kLiteral,  // literal
+    kName,   // name: a constant, a signal; as an argument also a topic, a component, a parameter, a
+             // diagnostic
+    kUnary,  // op children[0]
+    kBinary,       // children[0] op children[1]
+    kConditional,  // children[0] ? children[1] : children[2]
+    kCall          // name(children...)
+  };
+  Kind kind = Kind::kLiteral;
+  Span span;
+  Literal literal;
+  Name name;
+  Operator op = Operator::kNot;
+  std::vector<Expression> children;
+};
+
+struct Number {
+  double value = 0;
+  bool whole = false;  // written without point and exponent
+  Span span;
+};
+
+struct Constant {
+  Name name;
+  Expression value;
+};
+
+struct Component {
+  Name name;
+  std::optional<Name> node;
+  std::optional<Name> launch;  // the quoted text, unescaped
+};
+
+struct Dependency {
+  Name consumer;
+  std::vector<Name> producers;
+};
+
+struct DiagnosticSource {
+  Name status;
+  Name key;
+};
+struct TopicSource {
+  Name topic;
+  Name field;
+};
+struct ParameterSource {
+  Name component;
+  Name parameter;
+};
+
+struct Signal {
+  Name name;
+  std::variant<DiagnosticSource, TopicSource, ParameterSource> source;
+  std::optional<Duration> stale;
+  struct Range {
+    double low = 0;
+    double high = 0;
+    Span span;
+  };
+  std::optional<Range> range;
+};
+
+enum class AdaptationType : std::uint8_t {
+  kSetParameter,
+  kIncreaseParameter,
+  kDecreaseParameter,
+  kChangeCommunication,
+  kActivate,
+  kDeactivate,
+  kRestart,
+  kRedeploy,
+  kStart,
+  kStop,
+  kChangeMode,
+  kCall
+};
+std::string_view keyword(AdaptationType type);
+std::optional<AdaptationType> adaptation_type(std::string_view keyword);
+std::vector<std::string_view> adaptation_keywords();
+
+struct Adaptation {
+  Name component;
+  AdaptationType type = AdaptationType::kSetParameter;
+  Name subject;  // parameter, mode or service; empty for types without one
+  Name topic;    // change_communication
+  std::optional<Expression> value;
+  Number impact;
+  Span span;
+};
+
+struct Strategy {
+  Name name;
+  Number probability;
+  Number confidence;
+  std::optional<Expression> when;
+  std::vector<Adaptation> adaptations;
+  bool has_broken_adaptation = false;
+};
+
+enum class Criticality : std::uint8_t { kNonCritical, kWarning, kError };
+
+struct Policies {
+  Criticality criticality = Criticality::kNonCritical;
+  std::optional<Duration> hold_for;
+  struct Hold {
+    std::int64_t needed = 1;
+    std::int64_t window = 1;
+    Span span;
+  };
+  std::optional<Hold> hold;
+  std::optional<Duration> cooldown;
+  struct Attempts {
+    std::int64_t count = 0;
+    Span span;
+  };
+  std::optional<Attempts> attempts;
+  bool on_change = false;
+  Span span;
+};
+
+struct Rule {
+  Name name;
+  std::optional<Policies> policies;
+  std::optional<Expression> trigger;
+  std::vector<Strategy> strategies;
+  bool has_broken_part = false;  // a POLICIES, TRIGGER or STRATEGY line is there and does not parse
+};
+
+struct File {
+  std::optional<Name> robot;
+  struct Cycle {
+    Duration length{};
+    Span span;
+  };
+  std::optional<Cycle> cycle;
+  std::vector<Constant> constants;
+  std::vector<Component> components;
+  std::vector<Dependency> dependencies;
+  std::vector<Name> ignored_topics;
+  std::vector<Signal> signals;
+  std::vector<Rule> rules;
+};
+
+}  // namespace culprit::syntax

@@ -1,0 +1,499 @@
+#include "language/typing.h"
+
+#include <array>
+
+#include "language/compiler.h"
+#include "language/evaluate.h"
+#include "language/functions.h"
+
+namespace culprit {
+namespace {
+
+using syntax::Expression;
+using syntax::Operator;
+using Kind = Expression::Kind;
+
+bool is_number(Type type) { return type == Type::kInt || type == Type::kDouble; }
+bool is_exact(Type type) { return type == Type::kInt || type == Type::kDuration; }
+
+Typed node(Op op, Type type, std::vector<Typed> children) {
+  Typed typed;
+  typed.op = op;
+  typed.type = type;
+  typed.children = std::move(children);
+  return typed;
+}
+
+Typed literal(const syntax::Literal& value) {
+  Typed typed;
+  if (const auto* b = std::get_if<bool>(&value)) {
+    typed.type = Type::kBool;
+    typed.constant.slot = Slot::of(*b);
+  } else if (const auto* i = std::get_if<std::int64_t>(&value)) {
+    typed.type = Type::kInt;
+    typed.constant.slot = Slot::of(*i);
+  } else if (const auto* d = std::get_if<double>(&value)) {
+    typed.type = Type::kDouble;
+    typed.constant.slot = Slot::of(*d);
+  } else if (const auto* duration = std::get_if<Duration>(&value)) {
+    typed.type = Type::kDuration;
+    typed.constant.slot = Slot::of(*duration);
+  } else {
+    typed.type = Type::kString;
+    typed.constant.text = std::get<std::string>(value);
+    typed.constant.slot = Slot::of(std::string_view());
+  }
+  return typed;
+}
+
+// One instruction for whole numbers (and durations), one for doubles, one for texts, one for bools.
+struct Family {
+  Op exact, real, text, truth;
+};
+constexpr Op kNone = Op::kConstant;
+constexpr Family kLess{Op::kLessInt, Op::kLessDouble, Op::kLessString, kNone};
+constexpr Family kLessEqual{Op::kLessEqualInt, Op::kLessEqualDouble, Op::kLessEqualString, kNone};
+constexpr Family kEqual{Op::kEqualInt, Op::kEqualDouble, Op::kEqualString, Op::kEqualBool};
+
+Op member(const Family& family, Type type) {
+  switch (type) {
+    case Type::kBool:
+      return family.truth;
+    case Type::kInt:
+    case Type::kDuration:
+      return family.exact;
+    case Type::kDouble:
+      return family.real;
+    case Type::kString:
+      return family.text;
+  }
+  return kNone;
+}
+
+class Typer {
+ public:
+  Typer(Symbols& symbols, std::vector<Diagnostic>& diagnostics)
+      : symbols_(symbols), diagnostics_(diagnostics) {}
+
+  std::optional<Typed> type(const Expression& e) {
+    switch (e.kind) {
+      case Kind::kLiteral:
+        return literal(e.literal);
+      case Kind::kName:
+        return name(e);
+      case Kind::kUnary:
+        return unary(e);
+      case Kind::kBinary:
+        return binary(e);
+      case Kind::kConditional:
+        return conditional(e);
+      case Kind::kCall:
+        return call(e);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::optional<Typed> name(const Expression& e) {
+    if (const auto* constant = symbols_.constant(e.name.text)) {
+      if (constant->broken) return std::nullopt;  // reported where it is defined
+      return literal(constant->value);
+    }
+    const SignalId signal = symbols_.signal(e.name);
+    const auto type = symbols_.type_of(signal);
+    if (!type) return unknown_type(e);
+    Input wanted;
+    wanted.kind = Input::Kind::kSignal;
+    wanted.signal = signal;
+    return input(wanted, *type);
+  }
+
+  std::nullopt_t unknown_type(const Expression& e) {
+    const std::string near = symbols_.forget_near_miss(e.name.text);
+    if (!near.empty()) {
+      return fail(Code::kUnknownName, e.span, "signal '" + e.name.text + "' is not declared",
+                  "did you mean '" + near + "'?");
+    }
+    return fail(Code::kUnknownType, e.span, "nothing tells what kind of value this is",
+                "compare it with a constant; a text needs quotes: \"" + e.name.text + "\"");
+  }
+
+  Typed input(Input wanted, Type type) {
+    wanted.type = type;
+    Typed typed;
+    typed.op = Op::kInput;
+    typed.type = type;
+    typed.input = symbols_.input(wanted);
+    return typed;
+  }
+
+  std::optional<Typed> unary(const Expression& e) {
+    auto operand = type(e.children[0]);
+    if (!operand) return std::nullopt;
+    const Type t = operand->type;
+    if (e.op == Operator::kNot) {
+      if (t == Type::kBool) return node(Op::kNot, t, {std::move(*operand)});
+      return fail(Code::kTypeMismatch, e.children[0].span,
+                  std::string("! needs true or false; this is ") + describe(t), "");
+    }
+    if (is_exact(t)) return node(Op::kNegateInt, t, {std::move(*operand)});
+    if (t == Type::kDouble) return node(Op::kNegateDouble, t, {std::move(*operand)});
+    return fail(Code::kTypeMismatch, e.children[0].span,
+                std::string("- needs a number; this is ") + describe(t), "");
+  }
+
+  std::optional<Typed> conditional(const Expression& e) {
+    auto condition = type(e.children[0]);
+    if (!condition) return std::nullopt;
+    if (condition->type != Type::kBool) {
+      return fail(Code::kTypeMismatch, e.children[0].span,
+                  std::string("the condition of ?: must be true or false; this is ") +
+                      describe(condition->type),
+                  "");
+    }
+    auto yes = type(e.children[1]);
+    if (!yes) return std::nullopt;
+    auto no = type(e.children[2]);
+    if (!no || !alike(*yes, *no)) {
+      if (no) mismatch(e, yes->type, no->type, "choose between");
+      return std::nullopt;
+    }
+    const Type result = yes->type;
+    return node(Op::kSelect, result, {std::move(*condition), std::move(*yes), std::move(*no)});
+  }
+
+  std::optional<Typed> binary(const Expression& e) {
+    auto left = type(e.children[0]);
+    if (!left) return std::nullopt;
+    auto right = type(e.children[1]);
+    if (!right) return std::nullopt;
+    switch (e.op) {
+      case Operator::kAnd:
+        return logic(e, Op::kAnd, std::move(*left), std::move(*right));
+      case Operator::kOr:
+        return logic(e, Op::kOr, std::move(*left), std::move(*right));
+      case Operator::kLess:
+        return compare(e, kLess, std::move(*left), std::move(*right));
+      case Operator::kLessEqual:
+        return compare(e, kLessEqual, std::move(*left), std::move(*right));
+      case Operator::kGreater:
+        return compare(e, kLess, std::move(*right), std::move(*left));
+      case Operator::kGreaterEqual:
+        return compare(e, kLessEqual, std::move(*right), std::move(*left));
+      case Operator::kEqual:
+        return compare(e, kEqual, std::move(*left), std::move(*right));
+      case Operator::kNotEqual: {
+        auto equal = compare(e, kEqual, std::move(*left), std::move(*right));
+        if (!equal) return std::nullopt;
+        return node(Op::kNot, Type::kBool, {std::move(*equal)});
+      }
+      default:
+        return arithmetic(e, std::move(*left), std::move(*right));
+    }
+  }
+
+  std::optional<Typed> logic(const Expression& e, Op op, Typed left, Typed right) {
+    if (left.type == Type::kBool && right.type == Type::kBool) {
+      return node(op, Type::kBool, {std::move(left), std::move(right)});
+    }
+    const bool left_wrong = left.type != Type::kBool;
+    return fail(Code::kTypeMismatch, e.children[left_wrong ? 0 : 1].span,
+                std::string(symbol(e.op)) + " needs true or false on both sides; this is " +
+                    describe(left_wrong ? left.type : right.type),
+                "compare it with something, as in x > 0");
+  }
+
+  std::optional<Typed> compare(const Expression& e, const Family& family, Typed left, Typed right) {
+    const Type a = left.type;
+    const Type b = right.type;
+    if (!alike(left, right))
+      return mismatch(e, type_at(e, 0, a, b), type_at(e, 1, a, b), "compare");
+    const Op op = member(family, left.type);
+    if (op == kNone) {
+      return fail(Code::kTypeMismatch, e.span, "true and false have no order",
+                  "compare them with == or !=");
+    }
+    return node(op, Type::kBool, {std::move(left), std::move(right)});
+  }
+
+  static bool is_comparison(const Expression& e) {
+    return e.kind == Kind::kBinary && e.op >= Operator::kLess && e.op <= Operator::kNotEqual;
+  }
+
+  // > and >= are < and <= with the sides swapped; messages speak of the sides as written.
+  static Type type_at(const Expression& e, int side, Type first, Type second) {
+    const bool swapped = e.op == Operator::kGreater || e.op == Operator::kGreaterEqual;
+    return (side == 0) != swapped ? first : second;
+  }
+
+  std::optional<Typed> arithmetic(const Expression& e, Typed left, Typed right) {
+    if (left.type == Type::kDuration || right.type == Type::kDuration) {
+      return duration_arithmetic(e, std::move(left), std::move(right));
+    }
+    if (!is_number(left.type) || !is_number(right.type))
+      return mismatch(e, left.type, right.type, "calculate with");
+    alike(left, right);
+    const bool exact = left.type == Type::kInt;
+    const Type result = left.type;
+    return node(arithmetic_op(e.op, exact), result, {std::move(left), std::move(right)});
+  }
+
+  static Op arithmetic_op(Operator op, bool exact) {
+    switch (op) {
+      case Operator::kAdd:
+        return exact ? Op::kAddInt : Op::kAddDouble;
+      case Operator::kSubtract:
+        return exact ? Op::kSubtractInt : Op::kSubtractDouble;
+      case Operator::kMultiply:
+        return exact ? Op::kMultiplyInt : Op::kMultiplyDouble;
+      case Operator::kDivide:
+        return exact ? Op::kDivideInt : Op::kDivideDouble;
+      default:
+        return exact ? Op::kRemainderInt : Op::kRemainderDouble;
+    }
+  }
+
+  std::optional<Typed> duration_arithmetic(const Expression& e, Typed left, Typed right) {
+    const bool both = left.type == right.type;
+    if (both && e.op == Operator::kDivide)
+      return node(Op::kRatio, Type::kDouble, {std::move(left), std::move(right)});
+    if (both && e.op != Operator::kMultiply) {
+      return node(arithmetic_op(e.op, true), Type::kDuration, {std::move(left), std::move(right)});
+    }
+    if (e.op == Operator::kMultiply && right.type == Type::kDuration) std::swap(left, right);
+    const bool scales = e.op == Operator::kMultiply || e.op == Operator::kDivide;
+    if (scales && left.type == Type::kDuration && is_number(right.type)) {
+      auto factor = converted(std::move(right), Type::kDouble);
+      const Op op = e.op == Operator::kMultiply ? Op::kScale : Op::kShrink;
+      return node(op, Type::kDuration, {std::move(left), std::move(*factor)});
+    }
+    return mismatch(e, left.type, right.type, "calculate with");
+  }
+
+  std::optional<Typed> call(const Expression& e) {
+    const Function function = find_function(e.name.text)->function;
+    Input wanted;
+    switch (function) {
+      case Function::kRate:
+        return rate(e);
+      case Function::kAge:
+      case Function::kPhi: {
+        const auto topic = topic_argument(e.children[0]);
+        if (!topic) return std::nullopt;
+        wanted.kind = function == Function::kAge ? Input::Kind::kAge : Input::Kind::kPhi;
+        wanted.topic = *topic;
+        return input(wanted, function == Function::kAge ? Type::kDuration : Type::kDouble);
+      }
+      case Function::kAlive:
+      case Function::kLifecycle:
+        wanted.kind = function == Function::kAlive ? Input::Kind::kAlive : Input::Kind::kLifecycle;
+        wanted.component = symbols_.component(e.children[0].name);
+        return input(wanted, function == Function::kAlive ? Type::kBool : Type::kString);
+      case Function::kParameter: {
+        wanted.kind = Input::Kind::kParameter;
+        wanted.component = symbols_.component(e.children[0].name);
+        wanted.parameter = symbols_.parameter(wanted.component, e.children[1].name.text);
+        const auto type = symbols_.type_of(wanted.parameter);
+        if (!type) return unknown_type(e.children[1]);
+        return input(wanted, *type);
+      }
+      case Function::kLevel:
+        wanted.kind = Input::Kind::kLevel;
+        wanted.diagnostic = symbols_.diagnostic(e.children[0].name.text);
+        return input(wanted, Type::kInt);
+      case Function::kMean:
+        return window(e, Input::Kind::kMean);
+      case Function::kStddev:
+        return window(e, Input::Kind::kStddev);
+      case Function::kChanged: {
+        const auto signal = signal_argument(e.children[0], "changed(signal)");
+        if (!signal) return std::nullopt;
+        wanted.kind = Input::Kind::kChanged;
+        wanted.signal = *signal;
+        return input(wanted, Type::kBool);
+      }
+      case Function::kMin:
+        return is_window(e) ? window(e, Input::Kind::kMin)
+                            : extreme(e, Op::kMinInt, Op::kMinDouble);
+      case Function::kMax:
+        return is_window(e) ? window(e, Input::Kind::kMax)
+                            : extreme(e, Op::kMaxInt, Op::kMaxDouble);
+      case Function::kAbs:
+        return absolute(e);
+      case Function::kPow:
+        return real_function(e, Op::kPower);
+      case Function::kSqrt:
+        return real_function(e, Op::kSquareRoot);
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Typed> rate(const Expression& e) {
+    constexpr Duration kDefaultWindow = std::chrono::seconds(2);
+    const auto topic = topic_argument(e.children[0]);
+    if (!topic) return std::nullopt;
+    Input wanted;
+    wanted.kind = Input::Kind::kRate;
+    wanted.topic = *topic;
+    wanted.window = kDefaultWindow;
+    if (e.children.size() == 2) {
+      const auto given = window_argument(e.children[1]);
+      if (!given) return std::nullopt;
+      wanted.window = *given;
+    }
+    return input(wanted, Type::kDouble);
+  }
+
+  // min and max of a signal over a time, not of two values: a bare signal and a duration.
+  bool is_window(const Expression& e) const {
+    const Expression& first = e.children[0];
+    return first.kind == Kind::kName && symbols_.constant(first.name.text) == nullptr &&
+           e.children[1].kind == Kind::kLiteral &&
+           std::holds_alternative<Duration>(e.children[1].literal);
+  }
+
+  std::optional<Typed> window(const Expression& e, Input::Kind kind) {
+    const auto signal =
+        signal_argument(e.children[0], std::string(find_function(e.name.text)->usage));
+    if (!signal) return std::nullopt;
+    if (symbols_.type_of(*signal) != Type::kDouble) {
+      return fail(Code::kTypeMismatch, e.children[0].span,
+                  e.name.text + " over time needs a number", "");
+    }
+    const auto length = window_argument(e.children[1]);
+    if (!length) return std::nullopt;
+    Input wanted;
+    wanted.kind = kind;
+    wanted.signal = *signal;
+    wanted.window = *length;
+    return input(wanted, Type::kDouble);
+  }
+
+  std::optional<Duration> window_argument(const Expression& e) {
+    auto typed = type(e);
+    if (!typed) return std::nullopt;
+    const Slot slot = typed->type == Type::kDuration ? evaluate(compile(*typed), {}) : Slot();
+    constexpr Duration kLongest = std::chrono::hours(24);
+    if (reads_inputs(*typed) || !slot.known) {
+      return fail(Code::kTypeMismatch, e.span, "a window is a constant duration",
+                  "write for example 2s");
+    }
+    if (Duration(slot.i) <= Duration::zero() || Duration(slot.i) > kLongest) {
+      return fail(Code::kPolicyRange, e.span, "a window is longer than zero and at most a day", "");
+    }
+    return Duration(slot.i);
+  }
+
+  std::optional<SignalId> signal_argument(const Expression& e, const std::string& usage) {
+    const bool is_signal = e.kind == Kind::kName && symbols_.constant(e.name.text) == nullptr;
+    if (is_signal) return symbols_.signal(e.name);
+    return fail(Code::kArguments, e.span, "this must be a signal", "usage: " + usage);
+  }
+
+  std::optional<TopicId> topic_argument(const Expression& e) {
+    if (e.name.text.starts_with('/') && e.name.text.size() > 1) return symbols_.topic(e.name.text);
+    return fail(Code::kBadRosName, e.span, "'" + e.name.text + "' is no full topic name",
+                "write it with its namespace, as in /robot/camera/image");
+  }
+
+  std::optional<Typed> extreme(const Expression& e, Op exact, Op real) {
+    auto a = type(e.children[0]);
+    if (!a) return std::nullopt;
+    auto b = type(e.children[1]);
+    if (!b) return std::nullopt;
+    const bool ordered = a->type != Type::kBool && a->type != Type::kString;
+    if (!ordered || !alike(*a, *b)) return mismatch(e, a->type, b->type, "calculate with");
+    const Type result = a->type;
+    return node(is_exact(result) ? exact : real, result, {std::move(*a), std::move(*b)});
+  }
+
+  std::optional<Typed> absolute(const Expression& e) {
+    auto a = type(e.children[0]);
+    if (!a) return std::nullopt;
+    const Type t = a->type;
+    if (is_exact(t)) return node(Op::kAbsInt, t, {std::move(*a)});
+    if (t == Type::kDouble) return node(Op::kAbsDouble, t, {std::move(*a)});
+    return fail(Code::kTypeMismatch, e.children[0].span,
+                std::string("abs needs a number; this is ") + describe(t), "");
+  }
+
+  std::optional<Typed> real_function(const Expression& e, Op op) {
+    std::vector<Typed> operands;
+    for (const Expression& child : e.children) {
+      auto typed = type(child);
+      if (!typed) return std::nullopt;
+      const Type t = typed->type;
+      auto real = converted(std::move(*typed), Type::kDouble);
+      if (!real) {
+        return fail(Code::kTypeMismatch, child.span,
+                    e.name.text + " needs a number; this is " + describe(t), "");
+      }
+      operands.push_back(std::move(*real));
+    }
+    return node(op, Type::kDouble, std::move(operands));
+  }
+
+  // Makes both of one type if a whole number may become a number.
+  static bool alike(Typed& a, Typed& b) {
+    if (a.type == b.type) return true;
+    if (!is_number(a.type) || !is_number(b.type)) return false;
+    Typed& whole = a.type == Type::kInt ? a : b;
+    whole = *converted(std::move(whole), Type::kDouble);
+    return true;
+  }
+
+  std::nullopt_t mismatch(const Expression& e, Type left, Type right, const std::string& verb) {
+    std::string remedy;
+    const bool duration_and_number = (left == Type::kDuration && is_number(right)) ||
+                                     (right == Type::kDuration && is_number(left));
+    if (duration_and_number) remedy = "give the number a unit, as in 500ms or 2s";
+    if (left == Type::kString || right == Type::kString)
+      remedy = "texts compare with texts: \"active\"";
+    if (verb == "compare" && is_comparison(e.children[0]))
+      remedy = "to test a range, write a < x && x < b";
+    return fail(Code::kTypeMismatch, e.span,
+                "cannot " + verb + " " + describe(left) + " and " + describe(right),
+                std::move(remedy));
+  }
+
+  std::nullopt_t fail(Code code, Span span, std::string cause, std::string remedy) {
+    diagnostics_.push_back({code, Severity::kError, span, std::move(cause), std::move(remedy)});
+    return std::nullopt;
+  }
+
+  Symbols& symbols_;
+  std::vector<Diagnostic>& diagnostics_;
+};
+
+}  // namespace
+
+std::optional<Typed> type_expression(const Expression& expression, Symbols& symbols,
+                                     std::vector<Diagnostic>& diagnostics) {
+  return Typer(symbols, diagnostics).type(expression);
+}
+
+std::optional<Typed> converted(Typed typed, Type wanted) {
+  if (typed.type == wanted) return typed;
+  if (typed.type == Type::kInt && wanted == Type::kDouble) {
+    return node(Op::kIntToDouble, Type::kDouble, {std::move(typed)});
+  }
+  return std::nullopt;
+}
+
+const char* describe(Type type) {
+  switch (type) {
+    case Type::kBool:
+      return "true or false";
+    case Type::kInt:
+      return "a whole number";
+    case Type::kDouble:
+      return "a number";
+    case Type::kString:
+      return "a text";
+    case Type::kDuration:
+      return "a duration";
+  }
+  return "";
+}
+
+}  // namespace culprit

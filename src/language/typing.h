@@ -1,0 +1,46 @@
+// Expressions get their types: syntax tree -> typed tree, in two passes.
+//
+// Constants, literals and functions have types of their own; signals and parameters get theirs from
+// how they are used
+// (`x > 0.5` makes x a number, `x == "dock"` a text, `x` alone true or false). So all expressions
+// of a file are first walked to learn (`infer_types`), until nothing new is learned, and then typed
+// one by one (`type_expression`).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "language/diagnostic.h"
+#include "language/program.h"
+#include "language/symbols.h"
+#include "language/syntax.h"
+
+namespace culprit {
+
+// A node that knows its instruction. Leaves are kConstant and kInput; otherwise the children are
+// the operands.
+struct Typed {
+  Op op = Op::kConstant;
+  Type type = Type::kBool;
+  Constant constant;
+  InputId input;
+  std::vector<Typed> children;
+};
+
+// Learns types of signals and parameters from `expression`, which is wanted to be of type `wanted`
+// (nothing: any). `learned` is set when something new was learned. Gives the expression's type as
+// far as it is known.
+std::optional<Type> infer_types(const syntax::Expression& expression, std::optional<Type> wanted,
+                                Symbols& symbols, bool& learned);
+
+// Reports the first mistake and gives nothing if the expression has no type.
+std::optional<Typed> type_expression(const syntax::Expression& expression, Symbols& symbols,
+                                     std::vector<Diagnostic>& diagnostics);
+
+// `typed` as a `wanted`: itself, or a whole number as a number. Nothing if that cannot be.
+std::optional<Typed> converted(Typed typed, Type wanted);
+
+// For messages: "a number", "true or false".
+const char* describe(Type type);
+
+}  // namespace culprit

@@ -1,0 +1,65 @@
+// What a robot is told: the only way out for adaptations.
+//
+// A command is one request that an adapter carries out without being asked twice; its Reply carries
+// the same number. Reads may be repeated on the wire until they are answered; the others go out
+// exactly once.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "robot/observation.h"
+
+namespace culprit {
+
+// Transitions of a managed node that a manager asks for (lifecycle_msgs/Transition).
+enum class Transition : std::uint8_t { kConfigure, kCleanup, kActivate, kDeactivate };
+
+struct ChangeLifecycle {
+  Transition transition;
+};
+struct ReadLifecycle {};
+
+struct SetParameter {
+  std::string name;
+  Value value;
+};
+struct ReadParameter {
+  std::string name;
+};
+
+// A Trigger-style routine of the component (std_srvs/srv/Trigger). `service` is absolute.
+struct CallService {
+  std::string service;
+};
+
+// system_modes_msgs/srv/{ChangeMode,GetMode}.
+struct ChangeMode {
+  std::string mode;
+};
+struct ReadMode {};
+
+// Ends the component's process: politely, then harder, until it is proven gone. Done when it is
+// gone, also if it was.
+struct StopProcess {
+  int pid = 0;  // which one is meant; 0 = the one that was started or adopted last
+};
+
+// Starts the component's LAUNCH command. Done when the process runs; that the node joins the graph
+// is seen there.
+struct StartProcess {};
+
+struct Command {
+  CommandId id;
+  ComponentId component;
+  std::variant<ChangeLifecycle, ReadLifecycle, SetParameter, ReadParameter, CallService, ChangeMode,
+               ReadMode, StopProcess, StartProcess>
+      what;
+  Duration timeout{};  // after which the adapter answers kTimedOut
+};
+
+// What is asked, in words: "set exposure to 0.5".
+std::string to_string(const Command& command);
+
+}  // namespace culprit

@@ -1,0 +1,140 @@
+// What a robot tells: the only way in for facts about the managed system.
+//
+// Adapters (ros2, process, simulation, recorded bags) produce observations, the monitor consumes
+// them. Things that the rule set names come with their number in the rule set; the rest of the
+// robot's graph comes with its names.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include "language/ids.h"
+#include "language/value.h"
+#include "robot/time.h"
+
+namespace culprit {
+
+// A node joined the graph. `node` is its full name, "/namespace/name".
+// `pid` is its process on this machine, 0 where that is not known (another machine, a container).
+struct NodeAppeared {
+  std::string node;
+  int pid = 0;
+};
+
+// A node left the graph: it said good-bye, or its lease ran out.
+struct NodeVanished {
+  std::string node;
+};
+
+enum class EndpointKind : std::uint8_t { kPublisher, kSubscriber, kServer, kClient };
+
+// A node offers or uses a topic (publisher, subscriber) or a service (server, client). `name` is
+// the ROS name of it.
+struct EndpointAppeared {
+  std::string node;
+  EndpointKind kind;
+  std::string name;
+};
+
+struct EndpointVanished {
+  std::string node;
+  EndpointKind kind;
+  std::string name;
+};
+
+// A message came on a watched topic. `published` is how many its publisher sent since the last one
+// that reached us, this one included: more than 1 where the way here lost some (RTPS sequence
+// numbers tell).
+struct SampleArrived {
+  TopicId topic;
+  std::uint32_t published = 1;
+};
+
+// A declared or looked-up signal was read.
+struct SignalRead {
+  SignalId signal;
+  Value value;
+};
+
+// The level of a diagnostic status: 0 OK, 1 WARN, 2 ERROR, 3 STALE
+// (diagnostic_msgs/DiagnosticStatus).
+struct DiagnosticRead {
+  DiagnosticId diagnostic;
+  std::uint8_t level = 0;
+};
+
+// A parameter of a component was read, or it announced a new value.
+struct ParameterRead {
+  ParameterId parameter;
+  Value value;
+};
+
+// Primary states of a managed node (design.ros2.org/articles/node_lifecycle.html), with "a
+// transition is under way".
+enum class Lifecycle : std::uint8_t {
+  kUnknown,
+  kUnconfigured,
+  kInactive,
+  kActive,
+  kFinalized,
+  kTransition
+};
+
+struct LifecycleRead {
+  ComponentId component;
+  Lifecycle state = Lifecycle::kUnknown;
+};
+
+enum class ProcessState : std::uint8_t {
+  kRunning,
+  kStopped,  // by SIGSTOP or a debugger: it exists and does nothing
+  kGone      // exited, killed, or never started
+};
+
+// What the operating system says about the process behind a component.
+struct ProcessSeen {
+  ComponentId component;
+  ProcessState state = ProcessState::kGone;
+  int pid = 0;         // of the process that this is about
+  std::string remark;  // how it ended ("killed by signal 9", "exit code 1"); empty while it lives
+};
+
+// How a command ended. A command that gets no Reply within its time is settled by reading the state
+// back.
+enum class Outcome : std::uint8_t {
+  kDone,
+  kRefused,      // the component answered, and said no
+  kUnreachable,  // there is nobody to ask: no such node, no such service, no way to start it
+  kTimedOut      // asked, not answered
+};
+
+struct CommandId {
+  std::uint64_t number = 0;
+  auto operator<=>(const CommandId&) const = default;
+};
+
+// The answer to a command. `value` is what was read, for commands that read; `text` is a reason for
+// people.
+struct Reply {
+  CommandId command;
+  Outcome outcome = Outcome::kDone;
+  std::variant<std::monostate, Value, Lifecycle> value;
+  std::string text;
+};
+
+// Something about the link itself that a person should know: a payload that does not decode, two
+// nodes of one name.
+struct LinkTrouble {
+  std::string text;
+};
+
+struct Observation {
+  Time at;
+  std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived,
+               SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Reply,
+               LinkTrouble>
+      what;
+};
+
+}  // namespace culprit

@@ -1,0 +1,28 @@
+// The port to a managed system. Everything that drives a manager does it through this: live robots,
+// simulated ones, recordings.
+#pragma once
+
+#include <vector>
+
+#include "robot/command.h"
+#include "robot/observation.h"
+
+namespace culprit {
+
+// One thread calls all members of a Robot.
+class Robot {
+ public:
+  virtual ~Robot() = default;
+
+  virtual Time now() const = 0;
+
+  // Waits until something was observed, or until `until` (kNever: without end), or until it is
+  // interrupted. Appends what came, oldest first. A simulated robot moves its clock instead of
+  // waiting.
+  virtual void observe(Time until, std::vector<Observation>& observations) = 0;
+
+  // Begins to carry out `command` and returns at once; a Reply follows as an observation.
+  virtual void execute(const Command& command) = 0;
+};
+
+}  // namespace culprit
