@@ -19,7 +19,8 @@ endif()
 
 # culprit_library(<folder> [USES <folder>...] [PACKAGES <target>...])
 #
-# Builds src/<folder>/**.cpp but its tests and programs, and the test program <folder>_test of src/<folder>/**_test.cpp.
+# Builds src/<folder>/**.cpp but its tests and programs (*_main.cpp), and the test program <folder>_test of *_test.cpp and
+# of what only tests use (test_*.cpp).
 # USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
 function(culprit_library folder)
   cmake_parse_arguments(ARG "" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES" ${ARGN})
@@ -30,8 +31,8 @@ function(culprit_library folder)
 
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${dir}/*.cpp)
   set(tests ${sources})
-  list(FILTER sources EXCLUDE REGEX "_(test|main)\\.cpp$")
-  list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
+  list(FILTER sources EXCLUDE REGEX "(_test|_main|/test_[a-z_]+)\\.cpp$")
+  list(FILTER tests INCLUDE REGEX "(_test|/test_[a-z_]+)\\.cpp$")
 
   if(sources)
     add_library(${folder} STATIC ${sources})

@@ -100,6 +100,13 @@ struct ProcessSeen {
   std::string remark;  // how it ended ("killed by signal 9", "exit code 1"); empty while it lives
 };
 
+// A component whose process is not known (another machine, a container) was asked whether it is
+// there.
+struct Probed {
+  ComponentId component;
+  bool answered = false;
+};
+
 // How a command ended. A command that gets no Reply within its time is settled by reading the state
 // back.
 enum class Outcome : std::uint8_t {
@@ -132,7 +139,7 @@ struct LinkTrouble {
 struct Observation {
   Time at;
   std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived,
-               SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Reply,
+               SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply,
                LinkTrouble>
       what;
 };

@@ -1,0 +1,240 @@
+#include "analyze/analyzer.h"
+
+#include <algorithm>
+
+#include "language/evaluate.h"
+
+namespace culprit {
+namespace {
+
+bool is_true(const Slot& slot) { return slot.known && slot.b; }
+bool is_false(const Slot& slot) { return slot.known && !slot.b; }
+
+}  // namespace
+
+Analyzer::Analyzer(Knowledge& knowledge)
+    : knowledge_(knowledge), deadlines_(knowledge.rules.rules.size()) {}
+
+void Analyzer::advance(Time now) {
+  for (const RuleId id : knowledge_.signals.take_touched()) look_at(id, now);
+  while (const auto due = deadlines_.pop_due(now)) look_at(RuleId(*due), now);
+}
+
+std::vector<RuleId> Analyzer::plannable(Time now) const {
+  std::vector<RuleId> ids;
+  for (const RuleId id : knowledge_.states.active()) {
+    const RuleState& state = knowledge_.states[id];
+    const bool wants_help = state.phase == RulePhase::kFailing && is_true(state.trigger);
+    if (wants_help && state.retry_at <= now && !state.is_advised) ids.push_back(id);
+  }
+  return ids;
+}
+
+void Analyzer::look_at(RuleId id, Time now) {
+  evaluate_trigger(id, now);
+  switch (knowledge_.states[id].phase) {
+    case RulePhase::kQuiet:
+      if (detects(id, now)) detect(id, now);
+      break;
+    case RulePhase::kFailing:
+    case RulePhase::kExhausted:
+      watch_failing(id, now);
+      break;
+    case RulePhase::kAttempting:
+      judge(id, now);
+      break;
+  }
+  schedule(id, now);
+}
+
+void Analyzer::evaluate_trigger(RuleId id, Time now) {
+  RuleState& state = knowledge_.states.state(id);
+  const Slot value = evaluate(knowledge_.rules[id].trigger, knowledge_.signals.slots());
+  if (!same(value, state.trigger, Type::kBool) || state.trigger_since == kLongAgo) {
+    state.trigger = value;
+    state.trigger_since = now;
+  }
+  if (!is_true(value)) state.armed = true;
+  if (!state.history.empty()) sample_history(id, now);
+}
+
+void Analyzer::sample_history(RuleId id, Time now) {
+  RuleState& state = knowledge_.states.state(id);
+  if (state.sampled != kLongAgo && now < later(state.sampled, knowledge_.rules.cycle)) return;
+  state.sampled = now;
+  state.newest = (state.newest + 1) % state.history.size();
+  state.true_in_history -= state.history[state.newest] ? 1 : 0;
+  state.history[state.newest] = is_true(state.trigger);
+  state.true_in_history += state.history[state.newest] ? 1 : 0;
+}
+
+bool Analyzer::detects(RuleId id, Time now) const {
+  const RuleState& state = knowledge_.states[id];
+  const Policies& policies = knowledge_.rules[id].policies;
+  if (now < state.quiet_until || (policies.on_change && !state.armed)) return false;
+  if (!state.history.empty()) return state.true_in_history >= policies.hold_needed;
+  return is_true(state.trigger) && now >= later(state.trigger_since, policies.hold_for);
+}
+
+Duration Analyzer::clearing_time(RuleId id) const {
+  const Policies& policies = knowledge_.rules[id].policies;
+  const int held = policies.hold_window > 1 ? policies.hold_window - policies.hold_needed + 1 : 1;
+  return std::max(policies.hold_for, knowledge_.rules.cycle * held);
+}
+
+bool Analyzer::is_gone(RuleId id, Time now) const {
+  const RuleState& state = knowledge_.states[id];
+  return is_false(state.trigger) && now >= later(state.trigger_since, clearing_time(id));
+}
+
+Duration Analyzer::signal_latency(RuleId id) const {
+  Duration latency{};
+  for (const InputId input : knowledge_.rules[id].inputs)
+    latency = std::max(latency, knowledge_.signals.latency(input));
+  return latency;
+}
+
+void Analyzer::detect(RuleId id, Time now) {
+  RuleState& state = knowledge_.states.state(id);
+  state.failing_since = now;
+  state.armed = false;
+  state.attempts = 0;
+  state.round = 0;
+  state.retry_at = now;
+  state.is_advised = false;
+  std::fill(state.tried.begin(), state.tried.end(), false);
+  knowledge_.states.enter(id, RulePhase::kFailing);
+  knowledge_.tell(now, FailureDetected{id});
+}
+
+void Analyzer::watch_failing(RuleId id, Time now) {
+  const RuleState& state = knowledge_.states[id];
+  if (is_gone(id, now)) {
+    resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
+  } else if (!state.trigger.known && now >= later(state.trigger_since, kLostAfter)) {
+    knowledge_.states.enter(id, RulePhase::kQuiet);
+    knowledge_.tell(now, FailureLost{id});
+  }
+}
+
+void Analyzer::judge(RuleId id, Time now) {
+  RuleState& state = knowledge_.states.state(id);
+  Attempt& attempt = *state.attempt;
+  switch (attempt.stage) {
+    case Attempt::Stage::kAdapting:
+      if (!attempt.obstacle.empty()) fail(id, now);
+      return;
+    case Attempt::Stage::kWaiting:
+      break;
+    case Attempt::Stage::kUndoing:
+      return;
+    case Attempt::Stage::kOver:
+      state.attempt.reset();
+      knowledge_.states.enter(id, RulePhase::kFailing);
+      exhaust_if_spent(id, now);
+      return watch_failing(id, now);
+  }
+  if (attempt.deadline == kNever) {
+    const Duration impact =
+        duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
+    attempt.deadline = later(later(attempt.effective, impact), signal_latency(id));
+  }
+  if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
+  if (now < attempt.deadline || is_false(state.trigger)) return;
+  if (state.trigger.known || now >= later(attempt.deadline, kLostAfter)) fail(id, now);
+}
+
+bool Analyzer::can_have_caused(RuleId id) const {
+  const RuleState& state = knowledge_.states[id];
+  return knowledge_.rules[id].policies.on_change || state.trigger_since >= state.attempt->first_change;
+}
+
+void Analyzer::succeed(RuleId id, Time now) {
+  RuleState& state = knowledge_.states.state(id);
+  const StrategyId strategy = state.attempt->strategy;
+  const bool caused = can_have_caused(id);
+  if (caused && !state.attempt->is_ambiguous) knowledge_.beliefs.helped(strategy);
+  state.attempt.reset();
+  if (caused) {
+    resolve(id, {id, FailureResolved::How::kByStrategy, strategy, {}}, now);
+  } else {
+    resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
+  }
+}
+
+void Analyzer::fail(RuleId id, Time now) {
+  RuleState& state = knowledge_.states.state(id);
+  Attempt& attempt = *state.attempt;
+  const auto& siblings = knowledge_.rules[id].strategies;
+  const auto place =
+      std::find(siblings.begin(), siblings.end(), attempt.strategy) - siblings.begin();
+  state.tried[static_cast<std::size_t>(place)] = true;
+  ++state.attempts;
+  // An unknown trigger proves nothing, nor does an overlap with another strategy.
+  if (!attempt.is_ambiguous && state.trigger.known)
+    knowledge_.beliefs.did_not_help(attempt.strategy);
+  const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
+                             : state.trigger.known
+                                 ? "the failure is still there"
+                                 : "nobody can see whether the failure is still there";
+  attempt.stage = Attempt::Stage::kUndoing;
+  knowledge_.tell(now, StrategyFailed{attempt.strategy, reason});
+}
+
+void Analyzer::resolve(RuleId id, FailureResolved how, Time now) {
+  RuleState& state = knowledge_.states.state(id);
+  how.reaction = now - state.failing_since;
+  state.quiet_until = later(now, knowledge_.rules[id].policies.cooldown);
+  knowledge_.states.enter(id, RulePhase::kQuiet);
+  knowledge_.tell(now, std::move(how));
+}
+
+void Analyzer::round_is_spent(RuleId id, Time now) {
+  RuleState& state = knowledge_.states.state(id);
+  ++state.round;
+  std::fill(state.tried.begin(), state.tried.end(), false);
+  const int doublings = std::min(state.round - 1, 10);
+  state.retry_at =
+      later(now, std::min<Duration>(kFirstBackoff * (1 << doublings), kLongestBackoff));
+  exhaust_if_spent(id, now);
+  if (state.phase == RulePhase::kFailing) knowledge_.tell(now, RoundSpent{id, state.retry_at});
+  schedule(id, now);
+}
+
+void Analyzer::exhaust_if_spent(RuleId id, Time now) {
+  const RuleState& state = knowledge_.states[id];
+  const int limit = knowledge_.rules[id].policies.attempts;
+  if (state.attempts < limit && state.round < limit) return;
+  knowledge_.states.enter(id, RulePhase::kExhausted);
+  knowledge_.tell(now, RuleExhausted{id});
+}
+
+// When the rule must be looked at next if nothing that it reads changes.
+void Analyzer::schedule(RuleId id, Time now) {
+  const RuleState& state = knowledge_.states[id];
+  const Policies& policies = knowledge_.rules[id].policies;
+  Time next = kNever;
+  const auto want = [&](Time at) {
+    if (at > now) next = std::min(next, at);
+  };
+  if (is_false(state.trigger) && state.phase != RulePhase::kQuiet)
+    want(later(state.trigger_since, clearing_time(id)));
+  if (!state.trigger.known && state.phase != RulePhase::kQuiet)
+    want(later(state.trigger_since, kLostAfter));
+  if (is_true(state.trigger) && state.phase == RulePhase::kQuiet) {
+    want(later(state.trigger_since, policies.hold_for));
+    want(state.quiet_until);
+  }
+  if (state.phase == RulePhase::kFailing) want(state.retry_at);
+  if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
+    want(state.attempt->deadline);
+    if (!state.trigger.known) want(later(state.attempt->deadline, kLostAfter));
+  }
+  const auto window = static_cast<int>(state.history.size());
+  if (window > 0 && state.true_in_history != (is_true(state.trigger) ? window : 0)) {
+    want(later(state.sampled, knowledge_.rules.cycle));
+  }
+  deadlines_.set(id.index, next);
+}
+
+}  // namespace culprit

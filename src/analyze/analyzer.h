@@ -1,0 +1,79 @@
+// Knowledge -> failures, and verdicts on the strategies under way (paper, "Analyzing").
+//
+// Only rules whose trigger can have changed, or whose own time has come, are looked at. What a rule
+// goes through:
+//
+//   detected   its trigger held for its policy's time (FOR, HOLD n/k) and its COOLDOWN is over
+//   resolved   its trigger was false for its policy's time; unknown is neither true nor false
+//   a strategy under way succeeds when that happens, once its adaptations took effect; it fails at
+//   its deadline:
+//              its impact in cycles after they took effect, plus the latency of what the trigger
+//              reads
+//   a round    of strategies is followed by a back-off that doubles each time; after ATTEMPTS
+//   strategies (or as many
+//              rounds without any valid strategy) the rule is exhausted
+//
+// A rule with ON_CHANGE acts once on the rising edge of its trigger; its strategy succeeds when its
+// adaptations took effect, because the condition is expected to last.
+//
+// Success and failure go to the beliefs only where this strategy alone can have caused them: the
+// symptom went away after the first request that changed anything, and no other strategy upstream
+// of it was under way.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "knowledge/deadlines.h"
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+class Analyzer {
+ public:
+  static constexpr Duration kFirstBackoff = std::chrono::seconds(1);
+  static constexpr Duration kLongestBackoff = std::chrono::seconds(60);
+  // A failing rule whose trigger is unknown for longer is no longer called failing: nobody can see
+  // whether it is.
+  static constexpr Duration kLostAfter = std::chrono::seconds(30);
+
+  // `knowledge` must outlive the analyzer.
+  explicit Analyzer(Knowledge& knowledge);
+
+  // Looks at every rule that the monitor touched and at those whose time has come.
+  void advance(Time now);
+  Time next_deadline() const { return deadlines_.next(); }
+
+  // Failures that a planner should decide about now, ascending: there, and no strategy under way,
+  // no back-off.
+  std::vector<RuleId> plannable(Time now) const;
+  // Whether there is any, for steps where nothing is wrong.
+  bool anything_active() const { return !knowledge_.states.active().empty(); }
+
+  // No untried strategy of the rule is valid: its round is over.
+  void round_is_spent(RuleId id, Time now);
+
+ private:
+  void look_at(RuleId id, Time now);
+  void evaluate_trigger(RuleId id, Time now);
+  void sample_history(RuleId id, Time now);
+  bool detects(RuleId id, Time now) const;
+  bool is_gone(RuleId id, Time now) const;
+  Duration clearing_time(RuleId id) const;
+  Duration signal_latency(RuleId id) const;
+
+  void detect(RuleId id, Time now);
+  void watch_failing(RuleId id, Time now);
+  void judge(RuleId id, Time now);
+  void succeed(RuleId id, Time now);
+  void fail(RuleId id, Time now);
+  void resolve(RuleId id, FailureResolved how, Time now);
+  void exhaust_if_spent(RuleId id, Time now);
+  bool can_have_caused(RuleId id) const;
+  void schedule(RuleId id, Time now);
+
+  Knowledge& knowledge_;
+  Deadlines deadlines_;  // by RuleId
+};
+
+}  // namespace culprit

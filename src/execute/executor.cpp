@@ -1,0 +1,169 @@
+#include "execute/executor.h"
+
+#include <algorithm>
+
+#include "knowledge/ambiguity.h"
+
+namespace culprit {
+
+using execute::Goal;
+using execute::Pursuit;
+
+void Executor::begin(StrategyId strategy, Time now) {
+  const RuleId rule = knowledge_.rules[strategy].rule;
+  RuleState& state = knowledge_.states.state(rule);
+  state.attempt.emplace();
+  state.attempt->strategy = strategy;
+  state.attempt->chosen = now;
+  knowledge_.states.enter(rule, RulePhase::kAttempting);
+  std::erase_if(runs_, [&](const Run& old) { return old.rule == rule; });
+  Run run;
+  run.rule = rule;
+  run.strategy = strategy;
+  runs_.push_back(std::move(run));
+}
+
+void Executor::answered(const Reply& reply, Time now) {
+  for (Run& run : runs_) {
+    if (run.pursuit && run.pending == reply.command) {
+      run.pending = {};
+      run.pursuit->answered(reply, now);
+      return;
+    }
+  }
+}
+
+void Executor::advance(Time now, std::vector<Command>& commands) {
+  // An attempt that succeeded left its rule; nothing of it is left to do.
+  std::erase_if(runs_, [&](const Run& run) { return attempt_of(run) == nullptr; });
+  for (Run& run : runs_) advance(run, now, commands);
+}
+
+void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
+  const Attempt::Stage stage = attempt_of(run)->stage;
+  if (stage == Attempt::Stage::kUndoing && !run.is_undoing) {
+    run.is_undoing = true;
+    run.pursuit.reset();
+  }
+  if (stage == Attempt::Stage::kWaiting || stage == Attempt::Stage::kOver) return;
+  while (run.pursuit || (run.is_undoing ? next_undo(run, now) : next_goal(run, now))) {
+    const bool had_changed = run.pursuit->has_changed_anything();
+    if (run.pending == CommandId{} || run.pursuit->next_deadline() <= now) {
+      if (auto request = run.pursuit->advance(knowledge_, now)) {
+        run.pending = {++last_command_};
+        commands.push_back(
+            {run.pending, run.pursuit->component(), *request, Pursuit::timeout(*request)});
+      }
+    }
+    if (!had_changed && run.pursuit->has_changed_anything()) note_change(run, now);
+    if (run.pursuit->is_under_way()) return;
+    run.is_undoing ? finish_undo(run, now) : finish_goal(run, now);
+    if (!attempt_of(run)->obstacle.empty() && !run.is_undoing)
+      return;  // the analysis takes it from here
+  }
+}
+
+// Sets out for the next goal; gives false if the attempt has none left.
+bool Executor::next_goal(Run& run, Time now) {
+  const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
+  while (run.adaptation < adaptations.size()) {
+    const Adaptation& adaptation = adaptations[run.adaptation];
+    if (run.goals.empty()) {
+      auto goals = execute::goals_of(adaptation, knowledge_);
+      if (!goals) {
+        attempt_of(run)->obstacle = goals.error();
+        knowledge_.tell(now, AdaptationFailed{run.strategy, run.adaptation, goals.error()});
+        knowledge_.signals.touch(run.rule);
+        return false;
+      }
+      run.goals = std::move(*goals);
+      run.goal = 0;
+    }
+    if (run.goal < run.goals.size()) {
+      run.pursuit.emplace(run.goals[run.goal], adaptation.component, now);
+      return true;
+    }
+    knowledge_.tell(now, AdaptationDone{run.strategy, run.adaptation, run.remark});
+    run.goals.clear();
+    run.remark.clear();
+    ++run.adaptation;
+  }
+  attempt_of(run)->effective = now;
+  enter(run, Attempt::Stage::kWaiting);
+  return false;
+}
+
+void Executor::finish_goal(Run& run, Time now) {
+  const Pursuit& pursuit = *run.pursuit;
+  const AdaptationType type = knowledge_.rules[run.strategy].adaptations[run.adaptation].type;
+  if (pursuit.has_changed_anything() && pursuit.before()) {
+    if (auto goal = execute::undoing(pursuit.goal(), type, *pursuit.before())) {
+      run.undo.push_back({pursuit.component(), std::move(*goal)});
+    }
+  }
+  if (pursuit.is_reached()) {
+    const bool switches = type == AdaptationType::kActivate || type == AdaptationType::kDeactivate;
+    if (switches) note_lifecycle(pursuit);
+    if (!pursuit.remark().empty()) run.remark = pursuit.remark();
+    ++run.goal;
+  } else {
+    attempt_of(run)->obstacle =
+        knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark();
+    knowledge_.tell(now, AdaptationFailed{run.strategy, run.adaptation, pursuit.remark()});
+    knowledge_.signals.touch(run.rule);
+  }
+  run.pursuit.reset();
+}
+
+bool Executor::next_undo(Run& run, Time now) {
+  if (run.undo.empty()) {
+    enter(run, Attempt::Stage::kOver);
+    return false;
+  }
+  run.pursuit.emplace(run.undo.back().goal, run.undo.back().component, now);
+  return true;
+}
+
+void Executor::finish_undo(Run& run, Time now) {
+  const std::string what =
+      knowledge_.rules[run.pursuit->component()].name + " " + describe(run.pursuit->goal());
+  const bool reached = run.pursuit->is_reached();
+  if (reached) note_lifecycle(*run.pursuit);
+  knowledge_.tell(
+      now, Undone{run.strategy, reached ? what : what + ": " + run.pursuit->remark(), reached});
+  run.undo.pop_back();
+  run.pursuit.reset();
+}
+
+void Executor::note_change(Run& run, Time now) {
+  Attempt& attempt = *attempt_of(run);
+  if (run.is_undoing || attempt.first_change != kNever) return;
+  attempt.first_change = now;
+  mark_ambiguous(knowledge_, run.rule);
+}
+
+// The component's lifecycle is now where it was brought on purpose.
+void Executor::note_lifecycle(const Pursuit& pursuit) {
+  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
+  if (lifecycle != nullptr) knowledge_.components[pursuit.component()].intended_lifecycle = lifecycle->target;
+}
+
+Attempt* Executor::attempt_of(const Run& run) {
+  auto& attempt = knowledge_.states.state(run.rule).attempt;
+  return attempt && attempt->strategy == run.strategy ? &*attempt : nullptr;
+}
+
+void Executor::enter(Run& run, Attempt::Stage stage) {
+  attempt_of(run)->stage = stage;
+  knowledge_.signals.touch(run.rule);
+}
+
+Time Executor::next_deadline() const {
+  Time next = kNever;
+  for (const Run& run : runs_) {
+    if (run.pursuit) next = std::min(next, run.pursuit->next_deadline());
+  }
+  return next;
+}
+
+}  // namespace culprit

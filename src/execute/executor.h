@@ -1,0 +1,67 @@
+// Strategies -> commands (paper, "Execution").
+//
+// A strategy's adaptations are carried out in the order they are written, each to its proof
+// (goal.h), before the next begins. If one cannot be carried out, or the verdict is that the
+// strategy failed, what was changed is undone in reverse order where it can be. From its choice to
+// the end of its undoing a strategy has its components to itself.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "execute/pursuit.h"
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+class Executor {
+ public:
+  // `knowledge` must outlive the executor.
+  explicit Executor(Knowledge& knowledge) : knowledge_(knowledge) {}
+
+  // The rule's attempt begins. @pre the rule is failing and none is under way.
+  void begin(StrategyId strategy, Time now);
+
+  // An answer; one that nobody waits for any more is ignored.
+  void answered(const Reply& reply, Time now);
+
+  // Takes every attempt as far as it goes, and appends the requests that are due. Touches the rules
+  // whose attempt came to another stage.
+  void advance(Time now, std::vector<Command>& commands);
+
+  Time next_deadline() const;
+
+ private:
+  struct Undo {
+    ComponentId component;
+    execute::Goal goal;
+  };
+  struct Run {
+    RuleId rule;
+    StrategyId strategy;
+    bool is_undoing = false;
+    std::size_t adaptation = 0;
+    std::vector<execute::Goal> goals;  // of the adaptation
+    std::size_t goal = 0;
+    std::optional<execute::Pursuit> pursuit;
+    CommandId pending;
+    std::string remark;
+    std::vector<Undo> undo;
+  };
+
+  void advance(Run& run, Time now, std::vector<Command>& commands);
+  bool next_goal(Run& run, Time now);
+  bool next_undo(Run& run, Time now);
+  void finish_goal(Run& run, Time now);
+  void finish_undo(Run& run, Time now);
+  void note_change(Run& run, Time now);
+  void note_lifecycle(const execute::Pursuit& pursuit);
+  Attempt* attempt_of(const Run& run);
+  void enter(Run& run, Attempt::Stage stage);
+
+  Knowledge& knowledge_;
+  std::vector<Run> runs_;
+  std::uint64_t last_command_ = 0;
+};
+
+}  // namespace culprit

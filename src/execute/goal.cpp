@@ -1,0 +1,137 @@
+#include "execute/goal.h"
+
+#include "language/evaluate.h"
+
+namespace culprit::execute {
+namespace {
+
+using namespace std::chrono_literals;
+
+template <class... F>
+struct Overload : F... {
+  using F::operator()...;
+};
+
+// "~/recalibrate" and "recalibrate" are the component's own.
+std::string absolute(const std::string& service, const std::string& node) {
+  if (service.starts_with('/')) return service;
+  return node + "/" + (service.starts_with("~/") ? service.substr(2) : service);
+}
+
+Value negated(const Value& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value))
+    return *whole == INT64_MIN ? INT64_MAX : -*whole;
+  return -std::get<double>(value);
+}
+
+}  // namespace
+
+Duration patience(const Goal& goal) {
+  return std::visit(Overload{[](const ParameterGoal&) -> Duration { return 3s; },
+                             [](const LifecycleGoal& g) -> Duration { return 10s + g.grace; },
+                             [](const ModeGoal&) -> Duration { return 10s; },
+                             [](const ServiceGoal&) -> Duration { return 10s; },
+                             [](const GoneGoal&) -> Duration { return 15s; },
+                             [](const PresentGoal&) -> Duration { return 20s; }},
+                    goal);
+}
+
+Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge) {
+  constexpr Duration kGrace = 1s;
+  const ComponentState& state = knowledge.components[adaptation.component];
+  switch (adaptation.type) {
+    case AdaptationType::kSetParameter:
+    case AdaptationType::kIncreaseParameter:
+    case AdaptationType::kDecreaseParameter: {
+      const Slot slot = evaluate(adaptation.value, knowledge.signals.slots());
+      if (!slot.known) return Error{"the new value of " + adaptation.subject + " is unknown now"};
+      const Value value = to_value(slot, adaptation.value.type);
+      if (adaptation.type == AdaptationType::kSetParameter) {
+        return std::vector<Goal>{
+            ParameterGoal{adaptation.subject, value, ParameterGoal::Kind::kSet}};
+      }
+      const bool up = adaptation.type == AdaptationType::kIncreaseParameter;
+      return std::vector<Goal>{ParameterGoal{adaptation.subject, up ? value : negated(value),
+                                             ParameterGoal::Kind::kAdd}};
+    }
+    case AdaptationType::kChangeCommunication:
+      return std::vector<Goal>{
+          ParameterGoal{adaptation.subject, adaptation.topic, ParameterGoal::Kind::kSet}};
+    case AdaptationType::kActivate:
+      return std::vector<Goal>{LifecycleGoal{Lifecycle::kActive, {}}};
+    case AdaptationType::kDeactivate:
+      return std::vector<Goal>{LifecycleGoal{Lifecycle::kInactive, {}}};
+    case AdaptationType::kRestart:
+      return std::vector<Goal>{LifecycleGoal{Lifecycle::kInactive, {}},
+                               LifecycleGoal{Lifecycle::kActive, {}}};
+    case AdaptationType::kRedeploy: {
+      std::vector<Goal> goals{GoneGoal{}, PresentGoal{}};
+      // A managed node comes back unconfigured unless it brings itself up: it is brought to where
+      // it was.
+      const Lifecycle was = state.intended_lifecycle;
+      if (was == Lifecycle::kActive || was == Lifecycle::kInactive)
+        goals.push_back(LifecycleGoal{was, kGrace});
+      return goals;
+    }
+    case AdaptationType::kStart: {
+      std::vector<Goal> goals{PresentGoal{}};
+      if (state.intended_lifecycle != Lifecycle::kUnknown)
+        goals.push_back(LifecycleGoal{Lifecycle::kActive, kGrace});
+      return goals;
+    }
+    case AdaptationType::kStop:
+      return std::vector<Goal>{GoneGoal{}};
+    case AdaptationType::kChangeMode:
+      return std::vector<Goal>{ModeGoal{adaptation.subject}};
+    case AdaptationType::kCall:
+      return std::vector<Goal>{ServiceGoal{
+          absolute(adaptation.subject, knowledge.graph.node_name(adaptation.component))}};
+  }
+  return std::vector<Goal>{};
+}
+
+std::optional<Look> look_for(const Goal& goal) {
+  if (const auto* parameter = std::get_if<ParameterGoal>(&goal))
+    return ReadParameter{parameter->name};
+  if (std::holds_alternative<LifecycleGoal>(goal)) return ReadLifecycle{};
+  if (std::holds_alternative<ModeGoal>(goal)) return ReadMode{};
+  return std::nullopt;
+}
+
+std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& before) {
+  if (const auto* parameter = std::get_if<ParameterGoal>(&goal)) {
+    const auto* value = std::get_if<Value>(&before.value);
+    if (value == nullptr) return std::nullopt;
+    return ParameterGoal{parameter->name, *value, ParameterGoal::Kind::kSet};
+  }
+  if (std::holds_alternative<ModeGoal>(goal)) {
+    const auto* value = std::get_if<Value>(&before.value);
+    const auto* mode = value != nullptr ? std::get_if<std::string>(value) : nullptr;
+    if (mode == nullptr || mode->empty()) return std::nullopt;
+    return ModeGoal{*mode};
+  }
+  // A restart or a redeploy ends where it began; there is nothing to go back to.
+  const bool switches = type == AdaptationType::kActivate || type == AdaptationType::kDeactivate;
+  const auto* state = std::get_if<Lifecycle>(&before.value);
+  const bool was_settled =
+      state != nullptr && (*state == Lifecycle::kActive || *state == Lifecycle::kInactive);
+  if (std::holds_alternative<LifecycleGoal>(goal) && switches && was_settled)
+    return LifecycleGoal{*state, {}};
+  return std::nullopt;
+}
+
+std::string describe(const Goal& goal) {
+  return std::visit(
+      Overload{[](const ParameterGoal& g) {
+                 return g.name + (g.kind == ParameterGoal::Kind::kAdd ? " + " : " = ") +
+                        culprit::to_string(g.value);
+               },
+               [](const LifecycleGoal& g) { return std::string(to_string(g.target)); },
+               [](const ModeGoal& g) { return "mode " + g.mode; },
+               [](const ServiceGoal& g) { return g.service; },
+               [](const GoneGoal&) { return std::string("stopped"); },
+               [](const PresentGoal&) { return std::string("running and in the graph"); }},
+      goal);
+}
+
+}  // namespace culprit::execute

@@ -1,0 +1,60 @@
+// What adaptations are made of: states of a component that are to be reached.
+//
+// A goal is pursued in three steps: look (is it reached already?), change (one request, never
+// repeated), look again until it is reached or the patience is over. What counts is what is read
+// back, not what the request was answered: a late or lost reply is settled by looking.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "knowledge/knowledge.h"
+#include "robot/command.h"
+
+namespace culprit::execute {
+
+struct ParameterGoal {
+  std::string name;
+  // The value to reach: `value` itself, or `value` more than the parameter is now.
+  Value value;
+  enum class Kind : std::uint8_t { kSet, kAdd } kind = Kind::kSet;
+};
+struct LifecycleGoal {
+  Lifecycle target = Lifecycle::kActive;
+  // A node that was just started may bring itself up: it gets this long before it is told to.
+  Duration grace{};
+};
+struct ModeGoal {
+  std::string mode;
+};
+// Nothing to look at: the routine says itself whether it succeeded.
+struct ServiceGoal {
+  std::string service;
+};
+struct GoneGoal {};
+struct PresentGoal {};
+
+using Goal =
+    std::variant<ParameterGoal, LifecycleGoal, ModeGoal, ServiceGoal, GoneGoal, PresentGoal>;
+
+// How long after the request a goal may take.
+Duration patience(const Goal& goal);
+
+// The goals of an adaptation, in order. An error if they cannot be told: the new value of a
+// parameter is unknown now.
+Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge);
+
+// How to look at the state that `goal` is about; nothing for goals that the knowledge answers.
+using Look = std::variant<ReadParameter, ReadLifecycle, ReadMode>;
+std::optional<Look> look_for(const Goal& goal);
+
+// The goal that brings back what was read before the change; nothing if a change of this kind is
+// not undone.
+std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& before);
+
+// For people: "exposure = 0.5", "active", "stopped".
+std::string describe(const Goal& goal);
+
+}  // namespace culprit::execute

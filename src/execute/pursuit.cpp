@@ -1,0 +1,235 @@
+#include "execute/pursuit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace culprit::execute {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A whole number for a parameter that holds numbers, and the other way round where nothing is lost:
+// ROS parameters are strictly typed, rule files are not.
+Value in_type_of(const Value& value, const Value& present) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value);
+      whole != nullptr && std::holds_alternative<double>(present)) {
+    return static_cast<double>(*whole);
+  }
+  if (const auto* number = std::get_if<double>(&value);
+      number != nullptr && std::holds_alternative<std::int64_t>(present)) {
+    constexpr double kExact = 9007199254740992.0;  // 2^53
+    if (std::nearbyint(*number) == *number && std::fabs(*number) <= kExact)
+      return static_cast<std::int64_t>(*number);
+  }
+  return value;
+}
+
+std::optional<Value> sum(const Value& present, const Value& change) {
+  const auto* whole = std::get_if<std::int64_t>(&present);
+  const auto* more = std::get_if<std::int64_t>(&change);
+  if (whole != nullptr && more != nullptr) {
+    std::int64_t result = 0;
+    return __builtin_add_overflow(*whole, *more, &result) ? std::nullopt
+                                                          : std::optional<Value>(result);
+  }
+  const auto number = [](const Value& v) -> std::optional<double> {
+    if (const auto* i = std::get_if<std::int64_t>(&v)) return static_cast<double>(*i);
+    if (const auto* d = std::get_if<double>(&v)) return *d;
+    return std::nullopt;
+  };
+  const auto a = number(present);
+  const auto b = number(change);
+  if (!a || !b) return std::nullopt;
+  return Value(*a + *b);
+}
+
+bool did_not_come(const Reply& reply) {
+  return reply.outcome == Outcome::kTimedOut || reply.outcome == Outcome::kUnreachable;
+}
+
+std::string why(const Reply& reply) {
+  if (!reply.text.empty()) return reply.text;
+  switch (reply.outcome) {
+    case Outcome::kRefused:
+      return "it refused";
+    case Outcome::kUnreachable:
+      return "it cannot be reached";
+    case Outcome::kTimedOut:
+      return "it did not answer";
+    case Outcome::kDone:
+      return "";
+  }
+  return "";
+}
+
+}  // namespace
+
+Pursuit::Pursuit(Goal goal, ComponentId component, Time now)
+    : goal_(std::move(goal)),
+      component_(component),
+      begun_(now),
+      deadline_(later(now, patience(goal_))) {}
+
+Duration Pursuit::timeout(const Request& request) {
+  if (std::holds_alternative<StopProcess>(request)) return 12s;
+  const bool is_slow = std::holds_alternative<ChangeLifecycle>(request) ||
+                       std::holds_alternative<CallService>(request) ||
+                       std::holds_alternative<ChangeMode>(request) ||
+                       std::holds_alternative<StartProcess>(request);
+  return is_slow ? 5s : 1s;
+}
+
+Time Pursuit::next_deadline() const {
+  if (step_ == Step::kLook || step_ == Step::kDecide) return kLongAgo;
+  return std::min(wake_, deadline_);
+}
+
+void Pursuit::answered(const Reply& reply, Time) {
+  wake_ = kNever;
+  if (step_ == Step::kLooking) {
+    seen_ = reply;
+    step_ = Step::kDecide;
+  } else if (step_ == Step::kChanging) {
+    answer_ = reply;
+    step_ = Step::kLook;
+  }
+}
+
+std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Time now) {
+  // An adapter that never answers must not hold a component for ever.
+  if (wake_ <= now && (step_ == Step::kLooking || step_ == Step::kChanging)) {
+    answered({{}, Outcome::kTimedOut, {}, ""}, now);
+  }
+  if (step_ == Step::kPausing && (wake_ <= now || !look_for(goal_))) step_ = Step::kLook;
+  if (step_ == Step::kLook) {
+    const auto look = look_for(goal_);
+    step_ = look ? Step::kLooking : Step::kDecide;
+    if (look) {
+      Request request = std::visit([](const auto& l) { return Request(l); }, *look);
+      wake_ = later(now, timeout(request) + 1s);
+      return request;
+    }
+  }
+  return step_ == Step::kDecide ? decide(knowledge, now) : std::nullopt;
+}
+
+std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time now) {
+  const ComponentState& state = knowledge.components[component_];
+  if (std::holds_alternative<GoneGoal>(goal_)) return pursue_gone(state, now);
+  if (std::holds_alternative<PresentGoal>(goal_)) return pursue_present(state, now);
+  if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return pursue(*service, now);
+  if (did_not_come(*seen_)) {
+    // Before the change: nobody there to change. After it: the answer may just be late.
+    if (!has_changed_anything() || now >= deadline_) return give_up(why(*seen_));
+    return look_again(now);
+  }
+  if (seen_->outcome == Outcome::kRefused) return give_up(why(*seen_));
+  if (!before_) before_ = seen_;
+  if (const auto* parameter = std::get_if<ParameterGoal>(&goal_)) return pursue(*parameter, now);
+  if (const auto* lifecycle = std::get_if<LifecycleGoal>(&goal_)) return pursue(*lifecycle, now);
+  return pursue(std::get<ModeGoal>(goal_), now);
+}
+
+std::optional<Pursuit::Request> Pursuit::pursue(const ParameterGoal& goal, Time now) {
+  const auto* present = std::get_if<Value>(&seen_->value);
+  if (present == nullptr) return give_up(goal.name + " has no value");
+  if (!wanted_) {
+    const bool adds = goal.kind == ParameterGoal::Kind::kAdd;
+    const auto target = adds ? sum(*present, goal.value) : std::optional(goal.value);
+    if (!target)
+      return give_up(goal.name + " is " + to_string(*present) + " and cannot be increased");
+    wanted_ = in_type_of(*target, *present);
+  }
+  if (!has_changed_anything()) return change(SetParameter{goal.name, *wanted_}, now);
+  if (*present == *wanted_) return reach();
+  if (answer_->outcome == Outcome::kRefused) return give_up(why(*answer_));
+  // Some parameters start a routine and reset themselves. Whether it helped, the symptom tells.
+  if (answer_->outcome == Outcome::kDone)
+    return reach("accepted, but it reads back " + to_string(*present));
+  return look_again(now);
+}
+
+std::optional<Pursuit::Request> Pursuit::pursue(const LifecycleGoal& goal, Time now) {
+  const auto* state = std::get_if<Lifecycle>(&seen_->value);
+  const Lifecycle present = state != nullptr ? *state : Lifecycle::kUnknown;
+  if (present == goal.target) return reach();
+  if (present == Lifecycle::kFinalized) return give_up("it is finalized");
+  if (present == Lifecycle::kUnknown || present == Lifecycle::kTransition) return look_again(now);
+  if (!has_changed_anything() && now < later(begun_, goal.grace)) return look_again(now);
+  const Transition next = present == Lifecycle::kUnconfigured ? Transition::kConfigure
+                          : present == Lifecycle::kInactive   ? Transition::kActivate
+                                                              : Transition::kDeactivate;
+  if (!has_sent(next)) return change(ChangeLifecycle{next}, now);
+  if (answer_->outcome == Outcome::kRefused)
+    return give_up("it refused to " + to_string(Command{{}, {}, sent_.back(), {}}));
+  return look_again(now);
+}
+
+std::optional<Pursuit::Request> Pursuit::pursue(const ModeGoal& goal, Time now) {
+  const auto* value = std::get_if<Value>(&seen_->value);
+  if (value != nullptr && *value == Value(goal.mode)) return reach();
+  if (!has_changed_anything()) return change(ChangeMode{goal.mode}, now);
+  if (answer_->outcome == Outcome::kRefused) return give_up(why(*answer_));
+  return look_again(now);
+}
+
+std::optional<Pursuit::Request> Pursuit::pursue(const ServiceGoal& goal, Time now) {
+  if (!has_changed_anything()) return change(CallService{goal.service}, now);
+  return answer_->outcome == Outcome::kDone ? reach() : give_up(why(*answer_));
+}
+
+std::optional<Pursuit::Request> Pursuit::pursue_gone(const ComponentState& state, Time now) {
+  if (!has_changed_anything()) return change(StopProcess{state.known_pid()}, now);
+  const bool is_gone = !state.in_graph && state.process == ProcessState::kGone;
+  if (answer_->outcome == Outcome::kDone || is_gone) return reach();
+  return answer_->outcome == Outcome::kTimedOut ? look_again(now) : give_up(why(*answer_));
+}
+
+std::optional<Pursuit::Request> Pursuit::pursue_present(const ComponentState& state, Time now) {
+  if (!has_changed_anything()) return change(StartProcess{}, now);
+  if (state.in_graph && state.node_seen >= begun_) return reach();
+  if (did_not_come(*answer_) || answer_->outcome == Outcome::kRefused)
+    return give_up(why(*answer_));
+  const auto* pid = std::get_if<Value>(&answer_->value);
+  const bool has_ended = state.process == ProcessState::kGone && pid != nullptr &&
+                         *pid == Value(std::int64_t{state.pid});
+  if (has_ended) return give_up("it ended at once: " + state.process_remark);
+  return look_again(now);
+}
+
+std::optional<Pursuit::Request> Pursuit::change(Request request, Time now) {
+  deadline_ = later(now, patience(goal_));
+  wake_ = later(now, timeout(request) + 1s);
+  step_ = Step::kChanging;
+  sent_.push_back(request);
+  return request;
+}
+
+std::optional<Pursuit::Request> Pursuit::look_again(Time now) {
+  if (now >= deadline_)
+    return give_up("not " + describe(goal_) + " after " + to_string(patience(goal_)));
+  wake_ = later(now, kPause);
+  step_ = Step::kPausing;
+  return std::nullopt;
+}
+
+std::optional<Pursuit::Request> Pursuit::reach(std::string remark) {
+  status_ = Status::kReached;
+  remark_ = std::move(remark);
+  return std::nullopt;
+}
+
+std::optional<Pursuit::Request> Pursuit::give_up(std::string reason) {
+  status_ = Status::kGivenUp;
+  remark_ = std::move(reason);
+  return std::nullopt;
+}
+
+bool Pursuit::has_sent(Transition transition) const {
+  return std::any_of(sent_.begin(), sent_.end(), [&](const Request& request) {
+    const auto* change = std::get_if<ChangeLifecycle>(&request);
+    return change != nullptr && change->transition == transition;
+  });
+}
+
+}  // namespace culprit::execute

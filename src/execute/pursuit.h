@@ -1,0 +1,80 @@
+// The pursuit of one goal: which request comes next, and when it is reached or given up.
+//
+// A state machine without I/O. It sends at most one request at a time and each changing request at
+// most once.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "execute/goal.h"
+
+namespace culprit::execute {
+
+class Pursuit {
+ public:
+  using Request = decltype(Command::what);
+
+  static constexpr Duration kPause = std::chrono::milliseconds(100);  // between two looks
+
+  Pursuit(Goal goal, ComponentId component, Time now);
+
+  // The next request, if one is due. `knowledge` answers for processes and the graph.
+  // @pre is_under_way()
+  std::optional<Request> advance(const Knowledge& knowledge, Time now);
+
+  // The answer to the last request.
+  void answered(const Reply& reply, Time now);
+
+  bool is_under_way() const { return status_ == Status::kUnderWay; }
+  bool is_reached() const { return status_ == Status::kReached; }
+  // Why the goal was given up; or what was odd about reaching it; or empty.
+  const std::string& remark() const { return remark_; }
+
+  // What was read before anything was changed.
+  const std::optional<Reply>& before() const { return before_; }
+  bool has_changed_anything() const { return !sent_.empty(); }
+
+  // How long the answer to `request` may take.
+  static Duration timeout(const Request& request);
+  // When to advance even if nothing was observed.
+  Time next_deadline() const;
+
+  const Goal& goal() const { return goal_; }
+  ComponentId component() const { return component_; }
+
+ private:
+  enum class Status : std::uint8_t { kUnderWay, kReached, kGivenUp };
+  enum class Step : std::uint8_t { kLook, kLooking, kDecide, kChanging, kPausing };
+
+  std::optional<Request> decide(const Knowledge& knowledge, Time now);
+  std::optional<Request> pursue(const ParameterGoal& goal, Time now);
+  std::optional<Request> pursue(const LifecycleGoal& goal, Time now);
+  std::optional<Request> pursue(const ModeGoal& goal, Time now);
+  std::optional<Request> pursue(const ServiceGoal& goal, Time now);
+  std::optional<Request> pursue_gone(const ComponentState& state, Time now);
+  std::optional<Request> pursue_present(const ComponentState& state, Time now);
+
+  std::optional<Request> change(Request request, Time now);
+  std::optional<Request> look_again(Time now);
+  std::optional<Request> reach(std::string remark = "");
+  std::optional<Request> give_up(std::string reason);
+  bool has_sent(Transition transition) const;
+
+  Goal goal_;
+  ComponentId component_;
+  Status status_ = Status::kUnderWay;
+  Step step_ = Step::kLook;
+  Time begun_;
+  Time deadline_;
+  Time wake_ = kNever;  // of the answer, or of the pause
+  std::optional<Reply> before_;
+  std::optional<Reply> seen_;    // the last look
+  std::optional<Reply> answer_;  // to the last change
+  std::vector<Request> sent_;    // changes
+  std::optional<Value> wanted_;  // ParameterGoal, once the present value is known
+  std::string remark_;
+};
+
+}  // namespace culprit::execute

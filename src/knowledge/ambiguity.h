@@ -1,0 +1,13 @@
+// Which outcomes can have two causes.
+#pragma once
+
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+// The strategy under way for `changed` begins to change the system. Marks every attempt whose
+// outcome it can cause, and its own if another one's changes can cause that: those that touch the
+// same components or are upstream of them.
+void mark_ambiguous(Knowledge& knowledge, RuleId changed);
+
+}  // namespace culprit

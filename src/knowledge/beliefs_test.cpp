@@ -1,0 +1,35 @@
+#include "knowledge/beliefs.h"
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+
+namespace culprit {
+namespace {
+
+TEST(Beliefs, BeginWhereTheDesignerPutThem) {
+  const Belief belief = initial_belief(percent(80), 50);
+  EXPECT_DOUBLE_EQ(belief.alpha, 40);
+  EXPECT_DOUBLE_EQ(belief.beta, 10);
+  EXPECT_DOUBLE_EQ(belief.mean().value, 0.8);
+}
+
+TEST(Beliefs, CanUnlearnCertainty) {
+  const Belief certain = initial_belief(percent(100), 10);
+  EXPECT_LT(certain.mean().value, 1);
+  EXPECT_GT(certain.beta, 0);
+}
+
+// The paper's update is the posterior mean of a Bernoulli rate: after many outcomes the designer's
+// belief hardly counts.
+TEST(Beliefs, ConvergeToTheTrueRate) {
+  const Checked checked = check(Source(
+      "t", "RULE R\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY s 90 10\nADAPTATION c restart 1\n"));
+  Beliefs beliefs(*checked.rules);
+  for (int i = 0; i < 1000; ++i)
+    i % 4 == 0 ? beliefs.helped(StrategyId(0)) : beliefs.did_not_help(StrategyId(0));
+  EXPECT_NEAR(beliefs[StrategyId(0)].mean().value, 0.25, 0.01);
+}
+
+}  // namespace
+}  // namespace culprit

@@ -1,0 +1,54 @@
+// What is known of each component itself: its process, its lifecycle, its parameters.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "robot/observation.h"
+
+namespace culprit {
+
+// "unconfigured", "inactive", "active", "finalized", "unknown", "in transition".
+std::string_view to_string(Lifecycle state);
+
+struct ComponentState {
+  bool in_graph = false;      // its node is there, and its process is not known to be gone
+  Time node_seen = kLongAgo;  // when the node joined the graph last
+  int node_pid = 0;           // the process that the node runs in; 0 = not known
+  ProcessState process = ProcessState::kRunning;  // meaningful if pid is set
+  int pid = 0;                 // the process that the operating system was asked about
+  std::string process_remark;  // how it ended
+  int missed_probes = 0;
+  Lifecycle lifecycle = Lifecycle::kUnknown;
+  // Where its lifecycle should be: where it was last while no strategy was at it, or where one
+  // brought it on purpose. A process that takes the place of another is brought there.
+  Lifecycle intended_lifecycle = Lifecycle::kUnknown;
+
+  // Does it work as a process and as a node? Nothing until something is known of it.
+  std::optional<bool> alive;
+
+  // The process to stop: the node's own, or else the one that was started or adopted.
+  int known_pid() const { return node_pid != 0 ? node_pid : pid; }
+};
+
+class ComponentStates {
+ public:
+  explicit ComponentStates(const RuleSet& rules)
+      : components_(rules.components.size()), parameters_(rules.parameters.size()) {}
+
+  ComponentState& operator[](ComponentId id) { return components_[id.index]; }
+  const ComponentState& operator[](ComponentId id) const { return components_[id.index]; }
+
+  // The last value that was read of a parameter; nothing while none was, or since its process began
+  // anew.
+  std::optional<Value>& operator[](ParameterId id) { return parameters_[id.index]; }
+  const std::optional<Value>& operator[](ParameterId id) const { return parameters_[id.index]; }
+
+ private:
+  std::vector<ComponentState> components_;
+  std::vector<std::optional<Value>> parameters_;
+};
+
+}  // namespace culprit

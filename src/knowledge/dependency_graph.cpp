@@ -1,0 +1,231 @@
+#include "knowledge/dependency_graph.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace culprit {
+namespace {
+
+bool produces(EndpointKind kind) {
+  return kind == EndpointKind::kPublisher || kind == EndpointKind::kServer;
+}
+
+bool is_service(EndpointKind kind) {
+  return kind == EndpointKind::kServer || kind == EndpointKind::kClient;
+}
+
+// "/namespace/camera" -> "camera"
+std::string own_name(const std::string& node) { return node.substr(node.rfind('/') + 1); }
+
+}  // namespace
+
+DependencyGraph::DependencyGraph(const RuleSet& rules)
+    : rules_(rules), nodes_of_components_(rules.components.size()) {
+  // Every node prints and announces parameters; none waits for another because of that.
+  ignored_ = {"/rosout", "/parameter_events"};
+  ignored_.insert(rules.ignored_topics.begin(), rules.ignored_topics.end());
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    if (!rules.components[c].node.empty()) intern_node(rules.components[c].node);
+  }
+  for (const Dependency& d : rules.dependencies) {
+    // A component without a known node gets a place now and its name when it is seen.
+    for (const ComponentId c : {d.consumer, d.producer}) {
+      if (nodes_of_components_[c.index]) continue;
+      nodes_of_components_[c.index] = NodeId(nodes_.size());
+      nodes_.emplace_back();
+      nodes_.back().component = c;
+    }
+    const NodeId consumer = *nodes_of_components_[d.consumer.index];
+    const NodeId producer = *nodes_of_components_[d.producer.index];
+    nodes_[consumer.index].declared_producers.push_back(producer);
+    nodes_[producer.index].declared_consumers.push_back(consumer);
+  }
+}
+
+std::optional<NodeId> DependencyGraph::intern_node(const std::string& name) {
+  const auto known = node_ids_.find(name);
+  if (known != node_ids_.end()) return known->second;
+  if (nodes_.size() >= kMaxNodes) return std::nullopt;
+
+  std::optional<ComponentId> component;
+  for (std::size_t c = 0; c < rules_.components.size() && !component; ++c) {
+    if (rules_.components[c].node == name) component = ComponentId(c);
+  }
+  for (std::size_t c = 0; c < rules_.components.size() && !component; ++c) {
+    const bool is_looked_up = rules_.components[c].node.empty();
+    const bool is_bound =
+        nodes_of_components_[c] && !nodes_[nodes_of_components_[c]->index].name.empty();
+    if (is_looked_up && !is_bound && rules_.components[c].name == own_name(name))
+      component = ComponentId(c);
+  }
+  std::optional<NodeId> id;
+  if (component) id = nodes_of_components_[component->index];
+  if (!id) {
+    id = NodeId(nodes_.size());
+    nodes_.emplace_back();
+  }
+  nodes_[id->index].name = name;
+  nodes_[id->index].component = component;
+  if (component) nodes_of_components_[component->index] = id;
+  node_ids_[name] = *id;
+  return id;
+}
+
+std::optional<DependencyGraph::ChannelId> DependencyGraph::intern_channel(EndpointKind kind,
+                                                                          const std::string& name) {
+  const std::string key = (is_service(kind) ? 's' : 't') + name;
+  const auto known = channel_ids_.find(key);
+  if (known != channel_ids_.end()) return known->second;
+  if (channels_.size() >= kMaxChannels) return std::nullopt;
+  const ChannelId id(channels_.size());
+  channels_.push_back({name, {}, {}, 0});
+  channel_ids_[key] = id;
+  return id;
+}
+
+bool DependencyGraph::node_appeared(const std::string& node) {
+  const auto id = intern_node(node);
+  if (!id || nodes_[id->index].is_present) return false;
+  return nodes_[id->index].is_present = true;
+}
+
+bool DependencyGraph::node_vanished(const std::string& node) {
+  const auto id = node_ids_.find(node);
+  if (id == node_ids_.end() || !nodes_[id->second.index].is_present) return false;
+  nodes_[id->second.index].is_present = false;
+  return true;
+}
+
+bool DependencyGraph::endpoint_appeared(const std::string& node, EndpointKind kind,
+                                        const std::string& name) {
+  if (!is_service(kind) && ignored_.contains(name)) return false;
+  const auto node_id = intern_node(node);
+  const auto channel_id = intern_channel(kind, name);
+  if (!node_id || !channel_id) return false;
+  Channel& channel = channels_[channel_id->index];
+  auto& ends = produces(kind) ? channel.producers : channel.consumers;
+  auto end =
+      std::find_if(ends.begin(), ends.end(), [&](const End& e) { return e.node == *node_id; });
+  if (end == ends.end()) {
+    Node& owner = nodes_[node_id->index];
+    (produces(kind) ? owner.produces : owner.consumes).push_back(*channel_id);
+    end = ends.insert(end, {*node_id, 0});
+  }
+  if (++end->count > 1) return false;
+  if (produces(kind)) ++channel.live_producers;
+  return true;
+}
+
+bool DependencyGraph::endpoint_vanished(const std::string& node, EndpointKind kind,
+                                        const std::string& name) {
+  const auto node_id = node_ids_.find(node);
+  const auto channel_id = channel_ids_.find((is_service(kind) ? 's' : 't') + name);
+  if (node_id == node_ids_.end() || channel_id == channel_ids_.end()) return false;
+  Channel& channel = channels_[channel_id->second.index];
+  auto& ends = produces(kind) ? channel.producers : channel.consumers;
+  const auto end = std::find_if(ends.begin(), ends.end(),
+                                [&](const End& e) { return e.node == node_id->second; });
+  if (end == ends.end() || end->count == 0) return false;
+  if (--end->count > 0) return false;
+  if (produces(kind)) --channel.live_producers;
+  return true;
+}
+
+bool DependencyGraph::counts(const End& end, const Channel& channel, bool producer) const {
+  if (end.count > 0 || !nodes_[end.node.index].is_present) return true;
+  return producer && channel.live_producers == 0;
+}
+
+bool DependencyGraph::is_present(ComponentId component) const {
+  const auto node = nodes_of_components_[component.index];
+  return node && nodes_[node->index].is_present;
+}
+
+const std::string& DependencyGraph::node_name(ComponentId component) const {
+  static const std::string kNone;
+  const auto node = nodes_of_components_[component.index];
+  return node ? nodes_[node->index].name : kNone;
+}
+
+std::optional<ComponentId> DependencyGraph::component_of(const std::string& node) const {
+  const auto id = node_ids_.find(node);
+  return id == node_ids_.end() ? std::nullopt : nodes_[id->second.index].component;
+}
+
+const std::vector<ComponentId>& DependencyGraph::upstream(ComponentId component) const {
+  return reach(component, Direction::kUpstream);
+}
+
+const std::vector<ComponentId>& DependencyGraph::downstream(ComponentId component) const {
+  return reach(component, Direction::kDownstream);
+}
+
+const std::vector<ComponentId>& DependencyGraph::reach(ComponentId from,
+                                                       Direction direction) const {
+  found_.clear();
+  const auto start = nodes_of_components_[from.index];
+  if (!start) return found_;
+  visited_.resize(nodes_.size(), 0);
+  ++search_;
+  frontier_.assign(1, *start);
+  visited_[start->index] = search_;
+  const auto visit = [&](NodeId node) {
+    if (visited_[node.index] == search_) return;
+    visited_[node.index] = search_;
+    frontier_.push_back(node);
+    if (nodes_[node.index].component) found_.push_back(*nodes_[node.index].component);
+  };
+  const bool up = direction == Direction::kUpstream;
+  while (!frontier_.empty()) {
+    const NodeId id = frontier_.back();
+    const Node& here = nodes_[id.index];
+    frontier_.pop_back();
+    for (const NodeId declared : up ? here.declared_producers : here.declared_consumers)
+      visit(declared);
+    for (const ChannelId channel_id : up ? here.consumes : here.produces) {
+      const Channel& channel = channels_[channel_id.index];
+      const auto& near = up ? channel.consumers : channel.producers;
+      const auto own =
+          std::find_if(near.begin(), near.end(), [&](const End& e) { return e.node == id; });
+      if (!counts(*own, channel, !up)) continue;
+      for (const End& far : up ? channel.producers : channel.consumers) {
+        if (counts(far, channel, up)) visit(far.node);
+      }
+    }
+  }
+  return found_;
+}
+
+std::vector<std::string> DependencyGraph::nodes() const {
+  std::vector<std::string> names;
+  for (const Node& node : nodes_) {
+    if (node.is_present) names.push_back(node.name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<DependencyGraph::Edge> DependencyGraph::edges() const {
+  std::vector<Edge> edges;
+  for (const Channel& channel : channels_) {
+    for (const End& consumer : channel.consumers) {
+      for (const End& producer : channel.producers) {
+        if (consumer.node == producer.node) continue;
+        if (!counts(consumer, channel, false) || !counts(producer, channel, true)) continue;
+        edges.push_back(
+            {nodes_[consumer.node.index].name, nodes_[producer.node.index].name, channel.name});
+      }
+    }
+  }
+  for (const Node& node : nodes_) {
+    for (const NodeId producer : node.declared_producers)
+      edges.push_back({node.name, nodes_[producer.index].name, ""});
+  }
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    return std::tie(a.consumer, a.producer, a.channel) <
+           std::tie(b.consumer, b.producer, b.channel);
+  });
+  return edges;
+}
+
+}  // namespace culprit

@@ -1,0 +1,110 @@
+// Who depends on whom: the live graph of the managed system (paper, "Knowledge base").
+//
+// A node depends on another if it subscribes to a topic that the other publishes, is a client of a
+// service that the other serves, or is declared to depend on it. Nodes are joined through their
+// channels (topics and services), so a channel with p producers and c consumers costs p + c, not p
+// * c.
+//
+// The graph remembers what it must not forget in a failure: a node that is gone still is what its
+// consumers wait for. So a vanished end of a channel goes on counting while its node is gone, and a
+// vanished producer also while nobody else produces on that channel. A change that a living node
+// made (a subscription moved elsewhere) counts at once.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "robot/observation.h"
+
+namespace culprit {
+
+using NodeId = Id<struct NodeTag>;
+
+class DependencyGraph {
+ public:
+  // More nodes, channels, or ends than this are not taken in: the network decides how many there
+  // are.
+  static constexpr std::size_t kMaxNodes = 20000;
+  static constexpr std::size_t kMaxChannels = 100000;
+
+  // `rules` must outlive the graph: components, declared dependencies, ignored topics.
+  explicit DependencyGraph(const RuleSet& rules);
+
+  // Each gives whether anything changed.
+  bool node_appeared(const std::string& node);
+  // Also when a process is known to be dead before its node's lease runs out.
+  bool node_vanished(const std::string& node);
+  bool endpoint_appeared(const std::string& node, EndpointKind kind, const std::string& name);
+  bool endpoint_vanished(const std::string& node, EndpointKind kind, const std::string& name);
+
+  bool is_present(ComponentId component) const;
+  // The full name of the component's node; empty while an undeclared one was not seen.
+  const std::string& node_name(ComponentId component) const;
+  // The component that this node is, if it is one.
+  std::optional<ComponentId> component_of(const std::string& node) const;
+
+  // The components that `component` depends on, directly or through any nodes between; not itself.
+  // The reference is valid until the next call.
+  const std::vector<ComponentId>& upstream(ComponentId component) const;
+  // The components that depend on it, likewise.
+  const std::vector<ComponentId>& downstream(ComponentId component) const;
+
+  struct Edge {
+    std::string consumer;
+    std::string producer;
+    std::string channel;  // topic or service; empty: declared
+    bool operator==(const Edge&) const = default;
+  };
+  // For display: all nodes that are present, all dependencies that count. Sorted.
+  std::vector<std::string> nodes() const;
+  std::vector<Edge> edges() const;
+
+ private:
+  using ChannelId = Id<struct ChannelTag>;
+  // One end of a channel. `count` endpoints of the node exist now; 0 = it is only remembered.
+  struct End {
+    NodeId node;
+    std::uint32_t count = 0;
+  };
+  struct Node {
+    std::string name;
+    bool is_present = false;
+    std::optional<ComponentId> component;
+    std::vector<ChannelId> consumes;
+    std::vector<ChannelId> produces;
+    std::vector<NodeId> declared_producers;
+    std::vector<NodeId> declared_consumers;
+  };
+  struct Channel {
+    std::string name;
+    std::vector<End> producers;
+    std::vector<End> consumers;
+    std::uint32_t live_producers = 0;
+  };
+  enum class Direction : std::uint8_t { kUpstream, kDownstream };
+
+  std::optional<NodeId> intern_node(const std::string& name);
+  std::optional<ChannelId> intern_channel(EndpointKind kind, const std::string& name);
+  bool counts(const End& end, const Channel& channel, bool producer) const;
+  const std::vector<ComponentId>& reach(ComponentId from, Direction direction) const;
+
+  const RuleSet& rules_;
+  std::vector<Node> nodes_;
+  std::vector<Channel> channels_;
+  std::unordered_map<std::string, NodeId> node_ids_;
+  std::unordered_map<std::string, ChannelId> channel_ids_;  // key: 't' or 's', then the name
+  std::vector<std::optional<NodeId>> nodes_of_components_;
+  std::unordered_set<std::string> ignored_;
+
+  // Scratch of reach(): who was visited in which search.
+  mutable std::vector<std::uint32_t> visited_;
+  mutable std::uint32_t search_ = 0;
+  mutable std::vector<NodeId> frontier_;
+  mutable std::vector<ComponentId> found_;
+};
+
+}  // namespace culprit

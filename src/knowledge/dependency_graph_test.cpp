@@ -1,0 +1,158 @@
+#include "knowledge/dependency_graph.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+
+namespace culprit {
+namespace {
+
+using enum EndpointKind;
+
+class Graph {
+ public:
+  explicit Graph(const std::string& rules)
+      : rules_(*check(Source("test.rules", rules)).rules), graph_(rules_) {}
+
+  Graph& node(const std::string& name) {
+    graph_.node_appeared(name);
+    return *this;
+  }
+  Graph& link(const std::string& producer, const std::string& topic, const std::string& consumer) {
+    graph_.endpoint_appeared(producer, kPublisher, topic);
+    graph_.endpoint_appeared(consumer, kSubscriber, topic);
+    return *this;
+  }
+  std::vector<std::string> upstream(const std::string& name) const {
+    return names(graph_.upstream(id(name)));
+  }
+  std::vector<std::string> downstream(const std::string& name) const {
+    return names(graph_.downstream(id(name)));
+  }
+  DependencyGraph& operator*() { return graph_; }
+
+ private:
+  ComponentId id(const std::string& name) const {
+    for (std::size_t c = 0; c < rules_.components.size(); ++c) {
+      if (rules_.components[c].name == name) return ComponentId(c);
+    }
+    return {};
+  }
+  std::vector<std::string> names(const std::vector<ComponentId>& ids) const {
+    std::vector<std::string> out;
+    for (const ComponentId c : ids) out.push_back(rules_[c].name);
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+  RuleSet rules_;
+  DependencyGraph graph_;
+};
+
+using Names = std::vector<std::string>;
+
+constexpr const char* kThree =
+    "COMPONENT camera NODE /camera\nCOMPONENT fusion NODE /fusion\nCOMPONENT seg NODE /seg\n";
+
+Graph pipeline() {
+  Graph graph(kThree);
+  graph.node("/camera")
+      .node("/fusion")
+      .node("/seg")
+      .link("/camera", "/rgb", "/fusion")
+      .link("/fusion", "/fused", "/seg");
+  return graph;
+}
+
+TEST(DependencyGraph, FollowsTopicsAgainstTheFlowOfData) {
+  Graph graph = pipeline();
+  EXPECT_EQ(graph.upstream("seg"), (Names{"camera", "fusion"}));
+  EXPECT_EQ(graph.downstream("camera"), (Names{"fusion", "seg"}));
+  EXPECT_EQ(graph.upstream("camera"), Names{});
+}
+
+TEST(DependencyGraph, LetsAClientDependOnItsServer) {
+  Graph graph(kThree);
+  graph.node("/camera").node("/fusion");
+  (*graph).endpoint_appeared("/camera", kServer, "/calibrate");
+  (*graph).endpoint_appeared("/fusion", kClient, "/calibrate");
+  EXPECT_EQ(graph.upstream("fusion"), Names{"camera"});
+  EXPECT_EQ(graph.upstream("camera"), Names{});
+}
+
+TEST(DependencyGraph, LeadsThroughNodesThatAreNoComponents) {
+  Graph graph(kThree);
+  graph.node("/camera")
+      .node("/relay")
+      .node("/seg")
+      .link("/camera", "/a", "/relay")
+      .link("/relay", "/b", "/seg");
+  EXPECT_EQ(graph.upstream("seg"), Names{"camera"});
+}
+
+TEST(DependencyGraph, EndsWithCycles) {
+  Graph graph = pipeline();
+  graph.link("/seg", "/feedback", "/camera");
+  EXPECT_EQ(graph.upstream("camera"), (Names{"fusion", "seg"}));
+}
+
+TEST(DependencyGraph, ForgetsASubscriptionThatALivingNodeGaveUp) {
+  Graph graph = pipeline();
+  (*graph).endpoint_vanished("/fusion", kSubscriber, "/rgb");
+  EXPECT_EQ(graph.upstream("fusion"), Names{});
+}
+
+TEST(DependencyGraph, RemembersWhoANodeNeedsAndServesWhileItIsGone) {
+  Graph graph = pipeline();
+  (*graph).endpoint_vanished("/fusion", kSubscriber, "/rgb");
+  (*graph).endpoint_vanished("/fusion", kPublisher, "/fused");
+  (*graph).node_vanished("/fusion");
+  EXPECT_EQ(graph.upstream("seg"), (Names{"camera", "fusion"}));
+  (*graph).node_appeared("/fusion");
+  (*graph).endpoint_appeared("/fusion", kPublisher, "/fused");
+  EXPECT_EQ(graph.upstream("seg"), Names{"fusion"}) << "it came back and subscribes to nothing";
+}
+
+TEST(DependencyGraph, RemembersADeactivatedProducerUntilAnotherTakesItsPlace) {
+  Graph graph = pipeline();
+  (*graph).endpoint_vanished("/camera", kPublisher, "/rgb");
+  EXPECT_EQ(graph.upstream("fusion"), Names{"camera"});
+  (*graph).endpoint_appeared("/backup", kPublisher, "/rgb");
+  EXPECT_EQ(graph.upstream("fusion"), Names{});
+}
+
+TEST(DependencyGraph, CountsSeveralEndpointsOfOneNode) {
+  Graph graph = pipeline();
+  (*graph).endpoint_appeared("/fusion", kSubscriber, "/rgb");
+  (*graph).endpoint_vanished("/fusion", kSubscriber, "/rgb");
+  EXPECT_EQ(graph.upstream("fusion"), Names{"camera"});
+}
+
+TEST(DependencyGraph, IgnoresWhatItIsToldToIgnore) {
+  Graph graph(std::string(kThree) + "IGNORE TOPIC /tf\n");
+  graph.node("/camera")
+      .node("/seg")
+      .link("/camera", "/tf", "/seg")
+      .link("/camera", "/rosout", "/seg");
+  EXPECT_EQ(graph.upstream("seg"), Names{});
+}
+
+TEST(DependencyGraph, TakesDeclaredDependencies) {
+  Graph graph(std::string(kThree) + "DEPENDENCY seg ON camera\n");
+  EXPECT_EQ(graph.upstream("seg"), Names{"camera"});
+  EXPECT_EQ(graph.downstream("camera"), Names{"seg"});
+}
+
+TEST(DependencyGraph, FindsUndeclaredComponentsByTheNameOfTheirNode) {
+  Graph graph(
+      "RULE R\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY s 50 10\nADAPTATION fusion restart 1\n"
+      "DEPENDENCY fusion ON lidar\n");
+  graph.node("/robot/fusion").node("/robot/lidar").node("/other/fusion");
+  EXPECT_EQ((*graph).component_of("/robot/fusion"), ComponentId(0));
+  EXPECT_EQ((*graph).component_of("/other/fusion"), std::nullopt) << "the first one is it";
+  EXPECT_EQ(graph.upstream("fusion"), Names{"lidar"});
+}
+
+}  // namespace
+}  // namespace culprit

@@ -1,0 +1,162 @@
+#include "knowledge/describe.h"
+
+#include <cstdio>
+
+namespace culprit {
+namespace {
+
+std::string joined(const std::vector<std::string>& items) {
+  std::string out;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) out += i + 1 == items.size() ? " and " : ", ";
+    out += items[i];
+  }
+  return out;
+}
+
+std::string two_decimals(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", value);
+  return text;
+}
+
+class Describer {
+ public:
+  explicit Describer(const RuleSet& rules) : rules_(rules) {}
+
+  std::string operator()(const FailureDetected& e) const {
+    const Rule& rule = rules_[e.rule];
+    return rule.name + " detected (" + std::string(to_string(rule.policies.criticality)) + ")";
+  }
+  std::string operator()(const FailureResolved& e) const {
+    const std::string after = " after " + two_decimals(seconds(e.reaction)) + " s";
+    if (e.strategy) return rules_[e.rule].name + " resolved by " + rules_[*e.strategy].name + after;
+    return rules_[e.rule].name + " went away without a strategy of its own" + after;
+  }
+  std::string operator()(const FailureLost& e) const {
+    return rules_[e.rule].name + " can no longer be seen: what its trigger reads is unknown";
+  }
+  std::string operator()(const StrategyChosen& e) const {
+    const Strategy& strategy = rules_[e.strategy];
+    std::vector<std::string> blamed;
+    for (const ComponentId component : strategy.components)
+      blamed.push_back(rules_[component].name);
+    std::vector<std::string> failures{rules_[strategy.rule].name};
+    for (const RuleId explained : e.explains) failures.push_back(rules_[explained].name);
+    std::vector<std::string> actions;
+    for (const Adaptation& adaptation : strategy.adaptations)
+      actions.push_back(describe(adaptation, rules_));
+    double cost = 0;
+    for (const Candidate& candidate : e.candidates) {
+      if (candidate.strategy == e.strategy) cost = candidate.cost;
+    }
+    return joined(blamed) + (blamed.size() == 1 ? " is" : " are") + " held responsible for " +
+           joined(failures) + ": " + (e.dry_run ? "would " : "") + joined(actions) + " (" +
+           strategy.name + ", cost " + two_decimals(cost) + ")";
+  }
+  std::string operator()(const FailureHeldBack& e) const {
+    if (e.candidates.empty()) return "";
+    // The first reason that is not "tried" is what it waits for.
+    const Candidate* shown = &e.candidates.front();
+    for (const Candidate& candidate : e.candidates) {
+      if (candidate.excluded == Condition::kTried) continue;
+      shown = &candidate;
+      break;
+    }
+    return rules_[e.rule].name + " waits: " + describe_exclusion(*shown, rules_);
+  }
+  std::string operator()(const AdaptationDone& e) const {
+    const Adaptation& adaptation = rules_[e.strategy].adaptations[e.adaptation];
+    return describe(adaptation, rules_) + ": done" +
+           (e.remark.empty() ? "" : " (" + e.remark + ")");
+  }
+  std::string operator()(const AdaptationFailed& e) const {
+    return describe(rules_[e.strategy].adaptations[e.adaptation], rules_) + ": failed, " + e.reason;
+  }
+  std::string operator()(const StrategyFailed& e) const {
+    const Strategy& strategy = rules_[e.strategy];
+    return strategy.name + " did not resolve " + rules_[strategy.rule].name + ": " + e.reason;
+  }
+  std::string operator()(const Undone& e) const {
+    return (e.succeeded ? "undone: " : "could not be undone: ") + e.what;
+  }
+  std::string operator()(const RoundSpent& e) const {
+    return rules_[e.rule].name + ": nothing left to try; trying anew after a pause";
+  }
+  std::string operator()(const RuleExhausted& e) const {
+    return rules_[e.rule].name + " is exhausted: nothing helped, a person must look";
+  }
+  std::string operator()(const ComponentLost& e) const {
+    return rules_[e.component].name + " is lost" + (e.remark.empty() ? "" : ": " + e.remark);
+  }
+  std::string operator()(const ComponentFound& e) const {
+    return rules_[e.component].name + " is there" +
+           (e.pid == 0 ? "" : " (process " + std::to_string(e.pid) + ")");
+  }
+  std::string operator()(const Trouble& e) const { return e.text; }
+
+ private:
+  const RuleSet& rules_;
+};
+
+}  // namespace
+
+std::string_view to_string(Criticality criticality) {
+  switch (criticality) {
+    case Criticality::kNonCritical:
+      return "NON_CRITICAL";
+    case Criticality::kWarning:
+      return "WARNING";
+    case Criticality::kError:
+      return "ERROR";
+  }
+  return "";
+}
+
+std::string describe(const Adaptation& adaptation, const RuleSet& rules) {
+  const std::string& component = rules[adaptation.component].name;
+  switch (adaptation.type) {
+    case AdaptationType::kSetParameter:
+      return "set " + adaptation.subject + " of " + component;
+    case AdaptationType::kIncreaseParameter:
+      return "increase " + adaptation.subject + " of " + component;
+    case AdaptationType::kDecreaseParameter:
+      return "decrease " + adaptation.subject + " of " + component;
+    case AdaptationType::kChangeCommunication:
+      return "let " + component + " use " + adaptation.topic + " as " + adaptation.subject;
+    case AdaptationType::kChangeMode:
+      return "change " + component + " to mode " + adaptation.subject;
+    case AdaptationType::kCall:
+      return "call " + adaptation.subject + " of " + component;
+    default:
+      return std::string(keyword(adaptation.type)) + " " + component;
+  }
+}
+
+std::string describe(const Event& event, const RuleSet& rules) {
+  return std::visit(Describer(rules), event.what);
+}
+
+std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules) {
+  const std::string& strategy = rules[candidate.strategy].name;
+  const std::string& component = rules[candidate.component].name;
+  if (!candidate.excluded) return strategy + " is chosen";
+  switch (*candidate.excluded) {
+    case Condition::kTried:
+      return strategy + " was tried already";
+    case Condition::kInvalid:
+      return strategy + " makes no sense now: " + candidate.remark;
+    case Condition::kAdapting:
+      return component + " is being adapted";
+    case Condition::kAffected:
+      return component + " is affected by a strategy chosen just now";
+    case Condition::kDependency:
+      return "it depends on " + component + ", which may be the cause" +
+             (candidate.because ? " (" + rules[*candidate.because].name + ")" : "");
+    case Condition::kOneEach:
+      return "another strategy was chosen for the same failure";
+  }
+  return "";
+}
+
+}  // namespace culprit

@@ -1,0 +1,23 @@
+// Events in words, one line each, for terminals and logs.
+#pragma once
+
+#include <string>
+
+#include "knowledge/event.h"
+
+namespace culprit {
+
+std::string_view to_string(Criticality criticality);
+
+// "restart camera", "set exposure of camera"
+std::string describe(const Adaptation& adaptation, const RuleSet& rules);
+
+// "camera is responsible for RGBDead and SegmentationDead: restart camera (cost 0.70)". May be
+// empty: nothing worth a line.
+std::string describe(const Event& event, const RuleSet& rules);
+
+// Why a candidate was not chosen: "sensor_fusion depends on camera, which may be the cause
+// (RGBDead)".
+std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules);
+
+}  // namespace culprit

@@ -1,0 +1,125 @@
+// What the manager did and why, for people, for the journal, for explanations.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "robot/observation.h"
+
+namespace culprit {
+
+// Why a strategy was not chosen: the paper's conditions (Section "Planning"), and what else can be
+// in the way.
+enum class Condition : std::uint8_t {
+  kTried,       // 1: it was tried already
+  kInvalid,     // 2: it makes no sense in the present state of the system
+  kAdapting,    // 3: a component of it is being adapted
+  kAffected,    // 4: a component of it is affected by a strategy chosen just now
+  kDependency,  // 5: a component of it depends on a component that may be the cause
+  kOneEach      // another strategy was chosen for the same failure
+};
+
+struct Candidate {
+  StrategyId strategy;
+  double cost = 0;                    // paper, Eq. 1
+  std::optional<Condition> excluded;  // nothing: chosen
+  ComponentId component;              // that the condition is about
+  std::optional<RuleId> because;  // kDependency: the failure that `component` may be the cause of
+  std::string remark;             // kInvalid: why
+};
+
+// A failure was detected.
+struct FailureDetected {
+  RuleId rule;
+};
+
+// A failure is gone.
+struct FailureResolved {
+  enum class How : std::uint8_t {
+    kByStrategy,      // the strategy under way resolved it
+    kWithoutStrategy  // it went away without one of its own: another repair, or by itself
+  };
+  RuleId rule;
+  How how = How::kWithoutStrategy;
+  std::optional<StrategyId> strategy;
+  Duration reaction{};  // since it was detected
+};
+
+// What the rule reads cannot be seen any more, so nobody knows whether the failure is still there.
+struct FailureLost {
+  RuleId rule;
+};
+
+struct StrategyChosen {
+  StrategyId strategy;
+  std::vector<Candidate> candidates;  // all of the same failure, this one included, by cost
+  std::vector<RuleId> explains;  // failures downstream that are expected to go away with this one
+  bool dry_run = false;          // it is only said, not done
+};
+
+// A failure is there, and nothing is done about it now.
+struct FailureHeldBack {
+  RuleId rule;
+  std::vector<Candidate> candidates;
+};
+
+struct AdaptationDone {
+  StrategyId strategy;
+  std::size_t adaptation = 0;  // index in Strategy::adaptations
+  std::string remark;          // empty, or what was odd ("reads back false")
+};
+
+struct AdaptationFailed {
+  StrategyId strategy;
+  std::size_t adaptation = 0;
+  std::string reason;
+};
+
+struct StrategyFailed {
+  StrategyId strategy;
+  std::string reason;
+};
+
+// Something that a failed strategy had changed is back as it was, or could not be brought back.
+struct Undone {
+  StrategyId strategy;
+  std::string what;
+  bool succeeded = true;
+};
+
+// All strategies were tried; they are tried anew from `retry_at` on.
+struct RoundSpent {
+  RuleId rule;
+  Time retry_at;
+};
+
+// Nothing is left to try. A person must look.
+struct RuleExhausted {
+  RuleId rule;
+};
+
+struct ComponentLost {
+  ComponentId component;
+  std::string remark;
+};
+struct ComponentFound {
+  ComponentId component;
+  int pid = 0;
+};
+
+struct Trouble {
+  std::string text;
+};
+
+struct Event {
+  Time at;
+  std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
+               AdaptationDone, AdaptationFailed, StrategyFailed, Undone, RoundSpent, RuleExhausted,
+               ComponentLost, ComponentFound, Trouble>
+      what;
+};
+
+}  // namespace culprit

@@ -1,0 +1,40 @@
+// Everything that the manager knows. The stages share it; only the manager's step touches it.
+#pragma once
+
+#include <vector>
+
+#include "knowledge/beliefs.h"
+#include "knowledge/component_states.h"
+#include "knowledge/dependency_graph.h"
+#include "knowledge/event.h"
+#include "knowledge/rule_states.h"
+#include "knowledge/signal_store.h"
+#include "language/rule_set.h"
+
+namespace culprit {
+
+struct Knowledge {
+  // `rule_set` must outlive the knowledge and keep its address.
+  explicit Knowledge(const RuleSet& rule_set)
+      : rules(rule_set),
+        signals(rules),
+        graph(rules),
+        components(rules),
+        states(rules),
+        beliefs(rules) {}
+
+  const RuleSet& rules;
+  SignalStore signals;
+  DependencyGraph graph;
+  ComponentStates components;
+  RuleStates states;
+  Beliefs beliefs;
+  std::vector<Event> events;  // of the step under way
+
+  template <class What>
+  void tell(Time at, What what) {
+    events.push_back({at, std::move(what)});
+  }
+};
+
+}  // namespace culprit

@@ -1,0 +1,70 @@
+#include "knowledge/rule_states.h"
+
+#include <algorithm>
+
+namespace culprit {
+
+RuleStates::RuleStates(const RuleSet& rules)
+    : rules_(rules), states_(rules.rules.size()), failing_(rules.components.size()) {
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    states_[r].tried.assign(rules.rules[r].strategies.size(), false);
+    const int window = rules.rules[r].policies.hold_window;
+    if (window > 1) states_[r].history.assign(static_cast<std::size_t>(window), false);
+  }
+  active_.reserve(rules.rules.size());
+}
+
+void RuleStates::enter(RuleId id, RulePhase phase) {
+  RuleState& state = states_[id.index];
+  const bool was = is_active(state.phase);
+  const bool is = is_active(phase);
+  state.phase = phase;
+  if (was == is) return;
+  const auto place = std::lower_bound(active_.begin(), active_.end(), id);
+  if (is) {
+    active_.insert(place, id);
+  } else {
+    active_.erase(place);
+  }
+  const auto level = static_cast<std::size_t>(rules_[id].policies.criticality);
+  for (const ComponentId component : rules_[id].components)
+    failing_[component.index][level] += is ? 1 : -1;
+}
+
+bool RuleStates::is_sick(ComponentId component, Criticality level, RuleId except) const {
+  int rules = 0;
+  for (auto l = static_cast<std::size_t>(level); l < 3; ++l) rules += failing_[component.index][l];
+  if (rules != 1) return rules > 1;
+  // The one rule may be the exception.
+  if (!is_active(states_[except.index].phase) || rules_[except].policies.criticality < level)
+    return true;
+  const auto& touched = rules_[except].components;
+  return !std::binary_search(touched.begin(), touched.end(), component);
+}
+
+std::optional<RuleId> RuleStates::sickness(ComponentId component, Criticality level,
+                                           RuleId except) const {
+  std::optional<RuleId> worst;
+  for (const RuleId id : active_) {
+    const Rule& rule = rules_[id];
+    if (id == except || rule.policies.criticality < level) continue;
+    if (!std::binary_search(rule.components.begin(), rule.components.end(), component)) continue;
+    const auto rank = [&](RuleId r) {
+      return std::pair(-static_cast<int>(rules_[r].policies.criticality), rules_[r].name);
+    };
+    if (!worst || rank(id) < rank(*worst)) worst = id;
+  }
+  return worst;
+}
+
+const Attempt* RuleStates::reservation(ComponentId component) const {
+  for (const RuleId id : active_) {
+    const auto& attempt = states_[id.index].attempt;
+    if (!attempt) continue;
+    const auto& adapted = rules_[attempt->strategy].components;
+    if (std::binary_search(adapted.begin(), adapted.end(), component)) return &*attempt;
+  }
+  return nullptr;
+}
+
+}  // namespace culprit

@@ -1,0 +1,86 @@
+// Where each rule stands: quiet -> failing -> (attempting <-> failing) -> resolved (quiet again) |
+// exhausted.
+//
+// And the health of components that follows from it. Health is a set: a component is as sick as the
+// most critical failing rule that touches it, and one rule's recovery never wipes another's. An
+// exhausted rule no longer counts: nothing more will be done about it, so nobody should wait for
+// it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "knowledge/attempt.h"
+#include "language/rule_set.h"
+#include "robot/time.h"
+
+namespace culprit {
+
+enum class RulePhase : std::uint8_t {
+  kQuiet,
+  kFailing,     // the failure is there, and no strategy is under way
+  kAttempting,  // a strategy is under way, or is being undone
+  kExhausted    // the failure is there, and nothing is left to try
+};
+
+struct RuleState {
+  RulePhase phase = RulePhase::kQuiet;
+  Slot trigger;                   // as last evaluated
+  Time trigger_since = kLongAgo;  // since when it has that value
+  Time failing_since = kNever;    // when the failure was detected
+  Time quiet_until = kLongAgo;    // COOLDOWN
+  bool armed = true;              // ON_CHANGE: the trigger was not true since the rule acted
+
+  // HOLD n/k: the last k evaluations, one per cycle, newest at `newest`.
+  std::vector<bool> history;
+  std::size_t newest = 0;
+  int true_in_history = 0;
+  Time sampled = kLongAgo;
+
+  // The search for a strategy that helps.
+  int attempts = 0;          // strategies executed since the failure was detected
+  int round = 0;             // how often all strategies were gone through
+  Time retry_at = kLongAgo;  // back-off after a round
+  std::vector<bool> tried;   // in this round, by place in Rule::strategies
+  std::optional<Attempt> attempt;
+  bool is_advised = false;  // dry run: what would be done was said
+};
+
+class RuleStates {
+ public:
+  explicit RuleStates(const RuleSet& rules);
+
+  const RuleState& operator[](RuleId id) const { return states_[id.index]; }
+  // For everything but `phase`, which enter() changes.
+  RuleState& state(RuleId id) { return states_[id.index]; }
+
+  // Moves a rule to another phase and keeps the health of its components.
+  void enter(RuleId id, RulePhase phase);
+
+  // Rules that are failing or attempting, ascending.
+  const std::vector<RuleId>& active() const { return active_; }
+
+  // Is there a failing rule other than `except` that touches `component` and is at least as
+  // critical as `level`?
+  bool is_sick(ComponentId component, Criticality level, RuleId except) const;
+  // The most critical such rule, the first by name among equals.
+  std::optional<RuleId> sickness(ComponentId component, Criticality level, RuleId except) const;
+
+  // The strategy attempt that has `component` reserved, if any: from its choice until its verdict
+  // and undoing.
+  const Attempt* reservation(ComponentId component) const;
+
+ private:
+  static bool is_active(RulePhase phase) {
+    return phase == RulePhase::kFailing || phase == RulePhase::kAttempting;
+  }
+
+  const RuleSet& rules_;
+  std::vector<RuleState> states_;
+  std::vector<RuleId> active_;
+  std::vector<std::array<int, 3>>
+      failing_;  // by component, by criticality: how many active rules touch it
+};
+
+}  // namespace culprit

@@ -1,0 +1,87 @@
+#include "knowledge/signal_store.h"
+
+#include <cmath>
+
+namespace culprit {
+
+SignalStore::SignalStore(const RuleSet& rules)
+    : rules_(rules),
+      slots_(rules.inputs.size()),
+      texts_(rules.inputs.size()),
+      latencies_(rules.inputs.size()),
+      is_touched_(rules.rules.size()) {
+  touched_.reserve(rules.rules.size());
+  taken_.reserve(rules.rules.size());
+}
+
+void SignalStore::set(InputId id, const Slot& value) {
+  if (same(slots_[id.index], value, rules_[id].type)) return;
+  set_quietly(id, value);
+  touch(id);
+}
+
+void SignalStore::set_quietly(InputId id, const Slot& value) {
+  Slot& slot = slots_[id.index];
+  slot = value;
+  if (rules_[id].type != Type::kString || !value.known) return;
+  texts_[id.index] = value.s;
+  slot.s = texts_[id.index];
+}
+
+void SignalStore::touch(InputId id) {
+  for (const RuleId reader : rules_[id].readers) touch(reader);
+}
+
+void SignalStore::touch(RuleId id) {
+  if (is_touched_[id.index]) return;
+  is_touched_[id.index] = true;
+  touched_.push_back(id);
+}
+
+std::span<const RuleId> SignalStore::take_touched() {
+  taken_.swap(touched_);
+  touched_.clear();
+  for (const RuleId id : taken_) is_touched_[id.index] = false;
+  return taken_;
+}
+
+bool same(const Slot& a, const Slot& b, Type type) {
+  if (!a.known || !b.known) return a.known == b.known;
+  switch (type) {
+    case Type::kBool:
+      return a.b == b.b;
+    case Type::kInt:
+    case Type::kDuration:
+      return a.i == b.i;
+    case Type::kDouble:
+      return a.d == b.d;
+    case Type::kString:
+      return a.s == b.s;
+  }
+  return false;
+}
+
+Slot as_type(const Value& value, Type type, std::string& text) {
+  if (type == Type::kString) {
+    const auto* already = std::get_if<std::string>(&value);
+    text = already != nullptr ? *already : to_string(value);
+    return Slot::of(std::string_view(text));
+  }
+  if (const auto* written = std::get_if<std::string>(&value)) {
+    const Value read = value_from_text(*written);
+    return std::holds_alternative<std::string>(read) ? Slot() : as_type(read, type, text);
+  }
+  const auto* whole = std::get_if<std::int64_t>(&value);
+  if (type == Type::kBool) {
+    if (const auto* b = std::get_if<bool>(&value)) return Slot::of(*b);
+    return whole != nullptr && (*whole == 0 || *whole == 1) ? Slot::of(*whole == 1) : Slot();
+  }
+  const auto* number = std::get_if<double>(&value);
+  if (type == Type::kDouble) {
+    if (whole != nullptr) return Slot::of(static_cast<double>(*whole));
+    return number != nullptr ? Slot::of(*number) : Slot();
+  }
+  return type == Type::kInt && whole != nullptr ? Slot::of(*whole) : Slot();
+}
+
+}  // namespace culprit

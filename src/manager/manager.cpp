@@ -1,0 +1,152 @@
+#include "manager/manager.h"
+
+#include <algorithm>
+
+namespace culprit {
+namespace {
+
+bool same_reasons(const std::vector<Candidate>& a, const std::vector<Candidate>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Candidate& x, const Candidate& y) {
+                      return x.strategy == y.strategy && x.excluded == y.excluded &&
+                             x.component == y.component && x.because == y.because;
+                    });
+}
+
+// Samples and readings are many, and reach a plan only through the rules that they trigger.
+bool is_news(const Observation& observation) {
+  return !std::holds_alternative<SampleArrived>(observation.what) &&
+         !std::holds_alternative<SignalRead>(observation.what) &&
+         !std::holds_alternative<DiagnosticRead>(observation.what);
+}
+
+}  // namespace
+
+Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Autonomy autonomy,
+                 Time start)
+    : knowledge_(rules),
+      monitor_(knowledge_, start),
+      analyzer_(knowledge_),
+      planner_(std::move(planner)),
+      executor_(knowledge_),
+      autonomy_(autonomy),
+      now_(start),
+      held_back_(rules.rules.size()) {}
+
+std::vector<Command> Manager::step(Time now, std::span<const Observation> observations) {
+  knowledge_.events.clear();
+  std::vector<Command> commands;
+  for (const Observation& observation : observations) {
+    // Late observations of an earlier time count for now: time does not go back.
+    now_ = std::max(now_, std::min(observation.at, now));
+    monitor_.advance(now_);
+    monitor_.observe(observation, now_);
+    if (const auto* reply = std::get_if<Reply>(&observation.what)) executor_.answered(*reply, now_);
+    news_ |= is_news(observation);
+    analyzer_.advance(now_);
+  }
+  now_ = std::max(now_, now);
+  monitor_.advance(now_);
+  analyzer_.advance(now_);
+  if (!analyzer_.anything_active()) {
+    next_plan_ = kNever;
+    return commands;
+  }
+  news_ |= !knowledge_.events.empty();
+
+  // Each stage can give the others something to do at once: a failed strategy makes room for the
+  // next. A chain of more rounds than this goes on in the next step.
+  constexpr int kRounds = 8;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::size_t said = knowledge_.events.size();
+    const std::size_t asked = commands.size();
+    executor_.advance(now_, commands);
+    analyzer_.advance(now_);
+    if (news_ || now_ >= next_plan_) plan(now_);
+    executor_.advance(now_, commands);
+    if (said == knowledge_.events.size() && asked == commands.size()) break;
+    news_ = true;
+  }
+  return commands;
+}
+
+void Manager::plan(Time now) {
+  const std::vector<RuleId> failures = analyzer_.plannable(now);
+  for (const RuleId failure : failures) {
+    for (const StrategyId strategy : knowledge_.rules[failure].strategies) {
+      monitor_.refresh(knowledge_.rules[strategy].when, now);
+    }
+  }
+  for (const Verdict& verdict : planner_->plan(failures, knowledge_)) {
+    if (verdict.chosen) {
+      carry_out(verdict, now);
+    } else if (verdict.is_spent) {
+      hold_back(verdict, now);
+      analyzer_.round_is_spent(verdict.rule, now);
+    } else {
+      hold_back(verdict, now);
+    }
+  }
+  news_ = false;
+  next_plan_ = next_planning(now);
+}
+
+// While a failure waits for its turn it is planned anew once per cycle, and when its back-off ends.
+Time Manager::next_planning(Time now) const {
+  Time next = kNever;
+  for (const RuleId id : knowledge_.states.active()) {
+    const RuleState& state = knowledge_.states[id];
+    if (state.phase != RulePhase::kFailing || state.is_advised) continue;
+    next = std::min(next, later(now, knowledge_.rules.cycle));
+    if (state.retry_at > now) next = std::min(next, state.retry_at);
+  }
+  return next;
+}
+
+void Manager::carry_out(const Verdict& verdict, Time now) {
+  const StrategyId strategy = *verdict.chosen;
+  held_back_[verdict.rule.index] = {};
+  const bool is_dry = autonomy_ == Autonomy::kAdvise;
+  knowledge_.tell(now,
+                  StrategyChosen{strategy, verdict.candidates, explained_by(strategy), is_dry});
+  if (is_dry) {
+    knowledge_.states.state(verdict.rule).is_advised = true;
+    return;
+  }
+  for (const Adaptation& adaptation : knowledge_.rules[strategy].adaptations)
+    monitor_.refresh(adaptation.value, now);
+  executor_.begin(strategy, now);
+}
+
+void Manager::hold_back(const Verdict& verdict, Time now) {
+  Said& said = held_back_[verdict.rule.index];
+  const Time since = knowledge_.states[verdict.rule].failing_since;
+  if (said.failing_since == since && same_reasons(said.candidates, verdict.candidates)) return;
+  said = {since, verdict.candidates};
+  knowledge_.tell(now, FailureHeldBack{verdict.rule, verdict.candidates});
+}
+
+// Other failures of components that depend on what `strategy` adapts.
+std::vector<RuleId> Manager::explained_by(StrategyId strategy) const {
+  std::vector<RuleId> explained;
+  for (const RuleId id : knowledge_.states.active()) {
+    if (id == knowledge_.rules[strategy].rule) continue;
+    const auto& touched = knowledge_.rules[id].components;
+    const auto is_downstream = [&](ComponentId adapted) {
+      const auto& downstream = knowledge_.graph.downstream(adapted);
+      return std::any_of(downstream.begin(), downstream.end(), [&](ComponentId c) {
+        return std::binary_search(touched.begin(), touched.end(), c);
+      });
+    };
+    const auto& adapted = knowledge_.rules[strategy].components;
+    if (std::any_of(adapted.begin(), adapted.end(), is_downstream)) explained.push_back(id);
+  }
+  return explained;
+}
+
+Time Manager::next_deadline() const {
+  return std::min(
+      {monitor_.next_deadline(), analyzer_.next_deadline(), executor_.next_deadline(), next_plan_});
+}
+
+}  // namespace culprit

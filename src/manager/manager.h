@@ -1,0 +1,73 @@
+// The managing system: monitor, analyze, plan, execute over shared knowledge (paper, "Managing
+// system").
+//
+// A pure state machine. No clock, no thread, no I/O, nothing random: the same observations give the
+// same commands and the same events. Live runs, simulations, replays and tests drive the same step.
+//
+// Not thread-safe; one owner calls it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "analyze/analyzer.h"
+#include "execute/executor.h"
+#include "knowledge/knowledge.h"
+#include "monitor/monitor.h"
+#include "plan/planner.h"
+#include "robot/command.h"
+#include "robot/observation.h"
+
+namespace culprit {
+
+enum class Autonomy : std::uint8_t {
+  kAct,
+  kAdvise  // dry run: strategies are chosen and said, and nothing is done
+};
+
+class Manager {
+ public:
+  // `rules` must outlive the manager and keep its address. `start` is when watching begins.
+  Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Autonomy autonomy,
+          Time start);
+
+  // Takes in what was observed, oldest first, and gives the requests that follow. Times never go
+  // back; one that does is taken for the latest seen. Never throws, never blocks; allocates nothing
+  // while nothing is wrong.
+  std::vector<Command> step(Time now, std::span<const Observation> observations);
+
+  // When step wants to be called even if nothing arrives.
+  Time next_deadline() const;
+
+  // What happened in the last step.
+  std::span<const Event> events() const { return knowledge_.events; }
+  const Knowledge& knowledge() const { return knowledge_; }
+
+  // For beliefs from an earlier run.
+  void set_belief(StrategyId id, Belief belief) { knowledge_.beliefs.set(id, belief); }
+
+ private:
+  void plan(Time now);
+  void carry_out(const Verdict& verdict, Time now);
+  void hold_back(const Verdict& verdict, Time now);
+  std::vector<RuleId> explained_by(StrategyId strategy) const;
+  Time next_planning(Time now) const;
+
+  Knowledge knowledge_;
+  Monitor monitor_;
+  Analyzer analyzer_;
+  std::unique_ptr<const Planner> planner_;
+  Executor executor_;
+  Autonomy autonomy_;
+  Time now_;
+  bool news_ = false;        // something a plan depends on changed since the last plan
+  Time next_plan_ = kNever;  // while failures are held back
+  struct Said {
+    Time failing_since = kNever;
+    std::vector<Candidate> candidates;
+  };
+  std::vector<Said> held_back_;  // by rule: what was said last about why it waits
+};
+
+}  // namespace culprit

@@ -1,0 +1,415 @@
+#include "manager/manager.h"
+
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+// camera -> fusion -> segmentation, each with a failure that restart or redeploy resolves.
+constexpr const char* kPipeline = R"(
+COMPONENT camera       NODE /camera       LAUNCH "camera"
+COMPONENT fusion       NODE /fusion       LAUNCH "fusion"
+COMPONENT segmentation NODE /segmentation LAUNCH "segmentation"
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 350ms
+    STRATEGY restart 50 10
+      ADAPTATION camera restart 3
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 10
+RULE FusionDead
+  POLICIES ERROR
+  TRIGGER age(/fused) > 350ms
+    STRATEGY restart 50 10
+      ADAPTATION fusion restart 3
+    STRATEGY redeploy 90 10
+      ADAPTATION fusion redeploy 10
+RULE SegmentationDead
+  POLICIES ERROR
+  TRIGGER age(/segmentation) > 350ms
+    STRATEGY restart 50 10
+      ADAPTATION segmentation restart 3
+    STRATEGY redeploy 90 10
+      ADAPTATION segmentation redeploy 10
+)";
+
+TestRobot pipeline(PaperSwitches switches = {}, Autonomy autonomy = Autonomy::kAct) {
+  TestRobot robot(kPipeline, switches, autonomy);
+  robot.add("camera", {}, "/rgb");
+  robot.add("fusion", {"camera"}, "/fused");
+  robot.add("segmentation", {"fusion"}, "/segmentation");
+  robot.discover();
+  robot.run_for(2s);
+  EXPECT_TRUE(robot.asked.empty());
+  return robot;
+}
+
+std::string transcript(const TestRobot& robot) {
+  std::string out;
+  for (const std::string& line : robot.said) out += "\n  said  " + line;
+  for (const std::string& line : robot.asked) out += "\n  asked " + line;
+  return out;
+}
+
+TEST(Manager, RestartsTheRootCauseAndNothingElse) {
+  TestRobot robot = pipeline();
+  robot["camera"].fault = "restart";
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("segmentation"));
+  EXPECT_EQ(robot.count("detected"), 3u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraDead resolved by restart"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("FusionDead went away without a strategy of its own"), 1u);
+  EXPECT_FALSE(robot.was_asked("fusion:"));
+  EXPECT_FALSE(robot.was_asked("segmentation:"));
+  EXPECT_EQ(robot.count_asked("camera: deactivate"), 1u);
+  EXPECT_EQ(robot.count_asked("camera: activate"), 1u);
+}
+
+TEST(Manager, BlamesEveryComponentWithoutTheDependencyGraph) {
+  TestRobot robot = pipeline({.dependencies = false});
+  robot["camera"].fault = "restart";
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.was_asked("fusion:"));
+  EXPECT_TRUE(robot.was_asked("segmentation:"));
+}
+
+TEST(Manager, RedeploysWhenARestartDidNotHelp) {
+  TestRobot robot = pipeline();
+  robot["fusion"].fault = "redeploy";
+  robot.run_for(8s);
+  EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
+  EXPECT_EQ(robot.count("restart did not resolve FusionDead"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("FusionDead resolved by redeploy"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("fusion: start process"), 1u);
+  EXPECT_FALSE(robot.was_asked("segmentation:"));
+}
+
+TEST(Manager, RedeploysADeadProcessAtOnce) {
+  TestRobot robot = pipeline();
+  robot.kill("camera");
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("camera: deactivate")) << "a dead process cannot restart its node";
+  EXPECT_EQ(robot.count("camera is lost: killed by signal 9"), 1u);
+}
+
+TEST(Manager, RedeploysAStoppedProcess) {
+  TestRobot robot = pipeline();
+  robot.stop("segmentation");
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("segmentation: stop process"), 1u);
+}
+
+TEST(Manager, HealsAHungNodeThatAnswersNothing) {
+  TestRobot robot = pipeline();
+  robot["fusion"].answers = false;
+  robot["fusion"].fault = "redeploy";
+  robot.run_for(12s);
+  EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
+  EXPECT_EQ(robot.count("restart fusion: failed, it did not answer"), 1u) << transcript(robot);
+}
+
+TEST(Manager, KnowsWhoNeedsADeadNodeEvenWhenItLeftTheGraph) {
+  TestRobot robot = pipeline();
+  robot["camera"].start_time = 3s;
+  robot.kill("camera");
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("segmentation"));
+  EXPECT_FALSE(robot.was_asked("fusion:")) << transcript(robot);
+}
+
+TEST(Manager, HealsTwoDeadNodesAtOnce) {
+  TestRobot robot = pipeline();
+  robot.kill("camera");
+  robot.kill("segmentation");
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("fusion:")) << transcript(robot);
+}
+
+TEST(Manager, SaysWhatItWouldDoAndDoesNothingInADryRun) {
+  TestRobot robot = pipeline({}, Autonomy::kAdvise);
+  robot["camera"].fault = "restart";
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.asked.empty());
+  EXPECT_EQ(robot.count("camera is held responsible for CameraDead and FusionDead and"), 0u);
+  EXPECT_EQ(robot.count("would restart camera"), 1u) << transcript(robot);
+}
+
+TEST(Manager, GivesUpAfterItsAttemptsAndNoLongerHoldsBackDependants) {
+  TestRobot robot = pipeline();
+  robot["camera"].fault = "a person";
+  robot["fusion"].fault = "restart";
+  robot.run_for(200s);
+  EXPECT_EQ(robot.count("CameraDead is exhausted"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 3u);
+  EXPECT_TRUE(robot.was_asked("fusion: deactivate"))
+      << "an exhausted failure must not hold back its dependants";
+  const std::size_t asked = robot.count_asked("camera:");
+  robot.run_for(100s);
+  EXPECT_EQ(robot.count_asked("camera:"), asked) << "nothing is tried after exhaustion";
+  robot["camera"].fault.clear();
+  robot.run_for(2s);
+  EXPECT_EQ(robot.count("CameraDead went away"), 1u)
+      << "an exhausted failure that heals is reported";
+}
+
+TEST(Manager, LearnsFromVerdicts) {
+  TestRobot robot = pipeline();
+  const Belief restart = robot.manager().knowledge().beliefs[StrategyId(2)];
+  const Belief redeploy = robot.manager().knowledge().beliefs[StrategyId(3)];
+  robot["fusion"].fault = "redeploy";
+  robot.run_for(8s);
+  EXPECT_EQ(robot.manager().knowledge().beliefs[StrategyId(2)],
+            (Belief{restart.alpha, restart.beta + 1}));
+  EXPECT_EQ(robot.manager().knowledge().beliefs[StrategyId(3)],
+            (Belief{redeploy.alpha + 1, redeploy.beta}));
+}
+
+TEST(Manager, LearnsNothingFromOutcomesWithTwoCauses) {
+  TestRobot robot = pipeline({.dependencies = false});
+  const Belief before = robot.manager().knowledge().beliefs[StrategyId(4)];
+  robot["camera"].fault = "restart";  // all three are restarted; only the camera's restart helps
+  robot.run_for(10s);
+  EXPECT_EQ(robot.manager().knowledge().beliefs[StrategyId(4)], before) << transcript(robot);
+}
+
+// ---- Adaptations that go wrong.
+
+constexpr const char* kGain = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Dark
+  POLICIES WARNING
+  TRIGGER brightness < 0.5
+    STRATEGY brighten 90 10
+      ADAPTATION camera set_parameter gain 2 2
+    STRATEGY more 50 10
+      ADAPTATION camera increase_parameter exposure 1 2
+)";
+
+TestRobot dark_camera() {
+  TestRobot robot(kGain);
+  TestRobot::Component& camera = robot.add("camera");
+  camera.parameters = {{"gain", Value(1.0)}, {"exposure", Value(std::int64_t{5})}};
+  robot.discover();
+  robot.signal("brightness", Value(1.0));
+  robot.run_for(1s);
+  return robot;
+}
+
+TEST(Manager, ProvesAParameterByReadingItBack) {
+  TestRobot robot = dark_camera();
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(100ms);
+  EXPECT_EQ(robot.asked,
+            (std::vector<std::string>{"camera: read parameter gain", "camera: set gain to 2.0",
+                                      "camera: read parameter gain"}));
+  robot.signal("brightness", Value(0.9));
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("Dark resolved by brighten"), 1u) << transcript(robot);
+}
+
+TEST(Manager, UndoesAStrategyThatFailedBeforeTheNext) {
+  TestRobot robot = dark_camera();
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(3s);
+  EXPECT_EQ(robot["camera"].parameters["gain"], Value(1.0)) << transcript(robot);
+  EXPECT_EQ(robot["camera"].parameters["exposure"], Value(std::int64_t{6})) << transcript(robot);
+  const auto place = [&](const std::string& line) {
+    return std::find(robot.asked.begin(), robot.asked.end(), line) - robot.asked.begin();
+  };
+  EXPECT_LT(place("camera: set gain to 1.0"), place("camera: set exposure to 6"))
+      << transcript(robot);
+}
+
+TEST(Manager, SettlesALostReplyByReadingBack) {
+  TestRobot robot = dark_camera();
+  robot["camera"].loses_replies = true;
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(1500ms);
+  robot.signal("brightness", Value(0.9));
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count_asked("set gain"), 1u) << "nothing is sent twice" << transcript(robot);
+  EXPECT_EQ(robot.count("Dark resolved by brighten"), 1u) << transcript(robot);
+}
+
+TEST(Manager, NoticesAParameterThatIsAcceptedAndIgnored) {
+  TestRobot robot = dark_camera();
+  robot["camera"].ignores_parameters = true;
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("accepted, but it reads back 1.0"), 1u) << transcript(robot);
+}
+
+TEST(Manager, GoesOnWhenAParameterIsRefusedOrUnknown) {
+  TestRobot robot = dark_camera();
+  robot["camera"].parameters.erase("gain");
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("set gain of camera: failed, no parameter gain"), 1u) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("set exposure to 6"));
+}
+
+TEST(Manager, TreatsARestartWhoseRepliesAreLostAsDone) {
+  TestRobot robot = pipeline();
+  robot["camera"].fault = "restart";
+  robot["camera"].loses_replies = true;
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: deactivate"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: activate"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("camera: start process"));
+}
+
+TEST(Manager, BringsARelaunchedLifecycleNodeBackToWhereItWas) {
+  TestRobot robot = pipeline();
+  robot["camera"].state_at_start = Lifecycle::kUnconfigured;
+  robot.kill("camera");
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: configure"), 1u);
+  EXPECT_EQ(robot.count_asked("camera: activate"), 1u);
+}
+
+TEST(Manager, ReportsAComponentThatDiesAtEveryStart) {
+  TestRobot robot = pipeline();
+  robot["camera"].dies_at_start = true;
+  robot.kill("camera");
+  robot.run_for(120s);
+  EXPECT_GE(robot.count("it ended at once: exit code 1"), 2u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraDead is exhausted"), 1u) << transcript(robot);
+}
+
+TEST(Manager, StartsAComponentThatWasNeverThere) {
+  TestRobot robot(R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Missing
+  POLICIES ERROR
+  TRIGGER !alive(camera) || age(/rgb) > 1s
+    STRATEGY start 90 10
+      ADAPTATION camera start 5
+)");
+  robot.add("camera", {}, "/rgb").process = ProcessState::kGone;
+  robot.run_for(4s);
+  EXPECT_TRUE(robot.said.empty()) << "discovery may still be under way" << transcript(robot);
+  robot.run_for(10s);
+  EXPECT_EQ(robot.count("Missing resolved by start"), 1u) << transcript(robot);
+}
+
+// ---- Policies.
+
+TestRobot one_signal(const std::string& policies) {
+  TestRobot robot("COMPONENT c NODE /c\nRULE R\nPOLICIES WARNING " + policies +
+                  "\nTRIGGER x > 1\nSTRATEGY s 50 10\nADAPTATION c set_parameter p 1 1\n");
+  robot.add("c").parameters["p"] = Value(std::int64_t{0});
+  robot.discover();
+  robot.signal("x", Value(0.0));
+  robot.run_for(1s);
+  return robot;
+}
+
+TEST(Policies, ForWaitsUntilTheTriggerHeldThatLong) {
+  TestRobot robot = one_signal("FOR 500ms");
+  robot.signal("x", Value(2.0));
+  robot.run_for(400ms);
+  robot.signal("x", Value(0.0));
+  robot.run_for(2s);
+  EXPECT_EQ(robot.count("detected"), 0u);
+  robot.signal("x", Value(2.0));
+  robot.run_for(600ms);
+  EXPECT_EQ(robot.count("detected"), 1u);
+}
+
+TEST(Policies, HoldCountsEvaluationsPerCycle) {
+  TestRobot robot = one_signal("HOLD 3/5");
+  for (int i = 0; i < 2; ++i) {
+    robot.signal("x", Value(2.0));
+    robot.run_for(200ms);
+    robot.signal("x", Value(0.0));
+    robot.run_for(600ms);
+  }
+  EXPECT_EQ(robot.count("detected"), 0u);
+  robot.signal("x", Value(2.0));
+  robot.run_for(700ms);
+  EXPECT_EQ(robot.count("detected"), 1u);
+}
+
+TEST(Policies, CooldownKeepsQuietAfterAResolution) {
+  TestRobot robot = one_signal("COOLDOWN 10s");
+  robot.signal("x", Value(2.0));
+  robot.run_for(50ms);
+  robot.signal("x", Value(0.0));
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("resolved"), 1u) << transcript(robot);
+  robot.signal("x", Value(2.0));
+  robot.run_for(5s);
+  EXPECT_EQ(robot.count("detected"), 1u);
+  robot.run_for(6s);
+  EXPECT_EQ(robot.count("detected"), 2u);
+}
+
+TEST(Policies, OnChangeActsOnceOnTheRisingEdge) {
+  TestRobot robot = one_signal("ON_CHANGE");
+  robot.signal("x", Value(2.0));
+  robot.run_for(30s);
+  EXPECT_EQ(robot.count("R resolved by s"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("set p"), 1u);
+  robot.signal("x", Value(0.0));
+  robot.run_for(1s);
+  robot.signal("x", Value(2.0));
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count_asked("set p"), 2u);
+}
+
+TEST(Policies, AttemptsBoundHowOftenStrategiesRun) {
+  TestRobot robot = one_signal("ATTEMPTS 2");
+  robot.signal("x", Value(2.0));
+  robot.run_for(300s);
+  EXPECT_EQ(robot.count("R is exhausted"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("s did not resolve R"), 2u);
+}
+
+TEST(Health, OneRulesRecoveryDoesNotWipeAnothers) {
+  TestRobot robot(R"(
+COMPONENT camera NODE /camera
+COMPONENT fusion NODE /fusion
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER dead > 0
+    STRATEGY s 50 10
+      ADAPTATION camera set_parameter p 1 100
+RULE Focus
+  POLICIES NON_CRITICAL
+  TRIGGER blur > 0
+    STRATEGY s 50 10
+      ADAPTATION camera set_parameter q 1 1
+RULE FusionDead
+  POLICIES ERROR
+  TRIGGER silent > 0
+    STRATEGY s 50 10
+      ADAPTATION fusion set_parameter p 1 1
+)");
+  robot.add("camera").parameters = {{"p", Value(std::int64_t{0})}, {"q", Value(std::int64_t{0})}};
+  robot.add("fusion", {"camera"}).parameters["p"] = Value(std::int64_t{0});
+  robot.discover();
+  for (const char* x : {"dead", "blur", "silent"}) robot.signal(x, Value(0.0));
+  robot.signal("blur", Value(1.0));
+  robot.signal("dead", Value(1.0));
+  robot.run_for(100ms);
+  robot.signal("blur", Value(0.0));
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("Focus resolved"), 1u) << transcript(robot);
+  robot.signal("silent", Value(1.0));
+  robot.run_for(2s);
+  EXPECT_FALSE(robot.was_asked("fusion:")) << "the camera is still sick" << transcript(robot);
+  EXPECT_EQ(
+      robot.count("FusionDead waits: it depends on camera, which may be the cause (CameraDead)"),
+      1u)
+      << transcript(robot);
+}
+
+}  // namespace
+}  // namespace culprit::test

@@ -1,0 +1,212 @@
+#include "manager/test_robot.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace culprit::test {
+
+TestRobot::TestRobot(const std::string& text, PaperSwitches switches, Autonomy autonomy) {
+  const Source source("test.rules", text);
+  Checked checked = check(source);
+  for (const Diagnostic& d : checked.diagnostics) {
+    if (d.severity == Severity::kError) ADD_FAILURE() << render(d, source);
+  }
+  rules_ = std::make_unique<RuleSet>(checked.rules.value_or(RuleSet{}));
+  manager_ =
+      std::make_unique<Manager>(*rules_, std::make_unique<PaperPlanner>(switches), autonomy, now);
+}
+
+TestRobot::Component& TestRobot::add(const std::string& name, std::vector<std::string> needs,
+                                     const std::string& topic, Duration period) {
+  Component component;
+  component.name = name;
+  component.pid = ++last_pid_;
+  component.needs = std::move(needs);
+  if (!topic.empty()) topics_.push_back({topic, name, period, now});
+  return components_[name] = component;
+}
+
+void TestRobot::discover() {
+  for (const auto& [name, component] : components_) appear(component);
+  for (const auto& [name, component] : components_) {
+    for (const std::string& producer : component.needs) {
+      const std::string topic = "/from_" + producer;
+      observe(EndpointAppeared{"/" + producer, EndpointKind::kPublisher, topic});
+      observe(EndpointAppeared{"/" + name, EndpointKind::kSubscriber, topic});
+    }
+  }
+  step();
+}
+
+void TestRobot::appear(const Component& component) {
+  observe(ProcessSeen{id(component.name), ProcessState::kRunning, component.pid, ""});
+  observe(NodeAppeared{"/" + component.name, component.pid});
+  if (component.has_lifecycle) observe(LifecycleRead{id(component.name), component.state});
+}
+
+ComponentId TestRobot::id(const std::string& name) const {
+  for (std::size_t c = 0; c < rules_->components.size(); ++c) {
+    if (rules_->components[c].name == name) return ComponentId(c);
+  }
+  ADD_FAILURE() << "the rules do not know component " << name;
+  return {};
+}
+
+bool TestRobot::works(const std::string& name) const {
+  const Component& c = components_.at(name);
+  return c.process == ProcessState::kRunning && c.state == Lifecycle::kActive && c.fault.empty() &&
+         std::all_of(c.needs.begin(), c.needs.end(),
+                     [&](const std::string& n) { return works(n); });
+}
+
+void TestRobot::signal(const std::string& name, Value value) {
+  for (std::size_t s = 0; s < rules_->signals.size(); ++s) {
+    if (rules_->signals[s].name == name) observe(SignalRead{SignalId(s), value});
+  }
+  step();
+}
+
+void TestRobot::kill(const std::string& name) {
+  Component& component = components_.at(name);
+  component.process = ProcessState::kGone;
+  observe(ProcessSeen{id(name), ProcessState::kGone, component.pid, "killed by signal 9"});
+  step();
+}
+
+void TestRobot::stop(const std::string& name) {
+  Component& component = components_.at(name);
+  component.process = ProcessState::kStopped;
+  observe(ProcessSeen{id(name), ProcessState::kStopped, component.pid, ""});
+  step();
+}
+
+void TestRobot::later(Duration delay, std::function<void()> action) {
+  agenda_.emplace(now + delay, std::move(action));
+}
+
+void TestRobot::run_for(Duration time) {
+  const Time end = now + time;
+  while (true) {
+    Time next = std::min(end, std::max(now, manager_->next_deadline()));
+    for (const Topic& topic : topics_) next = std::min(next, topic.next);
+    if (!agenda_.empty()) next = std::min(next, agenda_.begin()->first);
+    now = next;
+    for (Topic& topic : topics_) {
+      if (topic.next > now) continue;
+      topic.next += topic.period;
+      if (!works(topic.producer)) continue;
+      for (std::size_t t = 0; t < rules_->topics.size(); ++t) {
+        if (rules_->topics[t].name == topic.name) observe(SampleArrived{TopicId(t), 1});
+      }
+    }
+    while (!agenda_.empty() && agenda_.begin()->first <= now) {
+      const auto action = std::move(agenda_.begin()->second);
+      agenda_.erase(agenda_.begin());
+      action();
+    }
+    step();
+    if (now >= end) return;
+  }
+}
+
+void TestRobot::step() {
+  const std::vector<Command> commands = manager_->step(now, inbox_);
+  inbox_.clear();
+  for (const Event& event : manager_->events()) {
+    events.push_back(event);
+    const std::string line = describe(event, *rules_);
+    if (!line.empty()) said.push_back(line);
+  }
+  for (const Command& command : commands) {
+    asked.push_back(rules_->components[command.component.index].name + ": " + to_string(command));
+    later(5ms, [this, command] { serve(command); });
+  }
+}
+
+void TestRobot::reply(const Command& command, Outcome outcome, decltype(Reply::value) value,
+                      std::string text) {
+  observe(Reply{command.id, outcome, std::move(value), std::move(text)});
+}
+
+void TestRobot::serve(const Command& command) {
+  Component& c = components_.at(rules_->components[command.component.index].name);
+  if (std::holds_alternative<StopProcess>(command.what)) {
+    const bool was_there = c.process != ProcessState::kGone;
+    c.process = ProcessState::kGone;
+    if (was_there) observe(ProcessSeen{command.component, ProcessState::kGone, c.pid, "stopped"});
+    return reply(command, Outcome::kDone);
+  }
+  if (std::holds_alternative<StartProcess>(command.what)) return start(c, command);
+  const bool hears = c.process == ProcessState::kRunning && c.answers;
+  if (!hears) {
+    return later(command.timeout, [this, command] { reply(command, Outcome::kTimedOut); });
+  }
+  if (const auto* change = std::get_if<ChangeLifecycle>(&command.what)) {
+    return change_lifecycle(c, command, change->transition);
+  }
+  if (std::holds_alternative<ReadLifecycle>(command.what))
+    return reply(command, Outcome::kDone, c.state);
+  if (const auto* read = std::get_if<ReadParameter>(&command.what)) {
+    const auto found = c.parameters.find(read->name);
+    if (found == c.parameters.end())
+      return reply(command, Outcome::kRefused, {}, "no parameter " + read->name);
+    return reply(command, Outcome::kDone, found->second);
+  }
+  if (const auto* set = std::get_if<SetParameter>(&command.what)) {
+    if (c.refuses) return reply(command, Outcome::kRefused, {}, "read-only");
+    if (!c.ignores_parameters) c.parameters[set->name] = set->value;
+    if (c.fault == set->name + "=" + to_string(set->value)) c.fault.clear();
+    if (c.loses_replies)
+      return later(command.timeout, [this, command] { reply(command, Outcome::kTimedOut); });
+    return reply(command, Outcome::kDone);
+  }
+  reply(command, c.refuses ? Outcome::kRefused : Outcome::kDone);
+}
+
+void TestRobot::change_lifecycle(Component& c, const Command& command, Transition transition) {
+  using enum Lifecycle;
+  const bool legal = (transition == Transition::kConfigure && c.state == kUnconfigured) ||
+                     (transition == Transition::kActivate && c.state == kInactive) ||
+                     (transition == Transition::kDeactivate && c.state == kActive);
+  if (c.refuses || !legal)
+    return reply(command, Outcome::kRefused, {}, "the transition is not possible");
+  c.state = transition == Transition::kActivate ? kActive : kInactive;
+  if (transition == Transition::kActivate && c.fault == "restart") c.fault.clear();
+  observe(LifecycleRead{command.component, c.state});
+  if (c.loses_replies)
+    return later(command.timeout, [this, command] { reply(command, Outcome::kTimedOut); });
+  reply(command, Outcome::kDone);
+}
+
+void TestRobot::start(Component& c, const Command& command) {
+  c.pid = ++last_pid_;
+  reply(command, Outcome::kDone, Value(std::int64_t{c.pid}));
+  observe(ProcessSeen{command.component, ProcessState::kRunning, c.pid, ""});
+  if (c.dies_at_start) {
+    return later(50ms, [this, &c, command] {
+      observe(ProcessSeen{command.component, ProcessState::kGone, c.pid, "exit code 1"});
+    });
+  }
+  later(c.start_time, [this, &c] {
+    c.process = ProcessState::kRunning;
+    c.state = c.state_at_start;
+    c.answers = true;
+    if (c.fault == "restart" || c.fault == "redeploy") c.fault.clear();
+    appear(c);
+  });
+}
+
+std::size_t TestRobot::count(const std::string& part) const {
+  return static_cast<std::size_t>(
+      std::count_if(said.begin(), said.end(),
+                    [&](const std::string& line) { return line.find(part) != std::string::npos; }));
+}
+
+std::size_t TestRobot::count_asked(const std::string& part) const {
+  return static_cast<std::size_t>(
+      std::count_if(asked.begin(), asked.end(),
+                    [&](const std::string& line) { return line.find(part) != std::string::npos; }));
+}
+
+}  // namespace culprit::test

@@ -1,0 +1,104 @@
+// A robot for tests of the manager: a pipeline of components in virtual time, with faults and with
+// every way in which an adaptation can go wrong.
+//
+// A component works if its process runs, it is active, it has no fault, and everything that it
+// needs works. While it works it publishes each of its topics periodically. Requests are answered
+// after a few milliseconds.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "knowledge/describe.h"
+#include "language/checker.h"
+#include "manager/manager.h"
+#include "plan/paper_planner.h"
+
+namespace culprit::test {
+
+using namespace std::chrono_literals;
+
+class TestRobot {
+ public:
+  explicit TestRobot(const std::string& rules, PaperSwitches switches = {},
+                     Autonomy autonomy = Autonomy::kAct);
+
+  struct Component {
+    std::string name;
+    int pid = 0;
+    ProcessState process = ProcessState::kRunning;
+    Lifecycle state = Lifecycle::kActive;
+    bool has_lifecycle = true;
+    std::map<std::string, Value> parameters;
+    std::vector<std::string> needs;
+    std::string fault;  // "", or what resolves it: "restart", "redeploy", or "parameter=value"
+    // How it fails to serve.
+    bool answers = true;
+    bool refuses = false;
+    bool ignores_parameters = false;  // says yes and does nothing
+    bool loses_replies = false;       // does it, and the answer is lost
+    bool dies_at_start = false;
+    Duration start_time = 300ms;
+    Lifecycle state_at_start = Lifecycle::kActive;
+  };
+  Component& operator[](const std::string& name) { return components_.at(name); }
+  Component& add(const std::string& name, std::vector<std::string> needs = {},
+                 const std::string& topic = "", Duration period = 100ms);
+
+  void signal(const std::string& name, Value value);
+  void kill(
+      const std::string& name);  // -9: its process is gone, its node lingers until its lease ends
+  void stop(const std::string& name);  // -STOP
+  void run_for(Duration time);
+
+  // Says each node, topic and state to the manager, as discovery does. Call once, after add().
+  void discover();
+
+  bool works(const std::string& name) const;
+  Manager& manager() { return *manager_; }
+  const RuleSet& rules() const { return *rules_; }
+
+  // What the manager said, in words, and what it asked for: "camera: activate".
+  std::vector<std::string> said;
+  std::vector<std::string> asked;
+  std::vector<Event> events;
+  std::size_t count(const std::string& part) const;  // lines of `said` that contain it
+  std::size_t count_asked(const std::string& part) const;
+  bool was_asked(const std::string& part) const { return count_asked(part) > 0; }
+
+  Time now{};
+
+ private:
+  struct Topic {
+    std::string name;
+    std::string producer;
+    Duration period;
+    Time next{};
+  };
+  ComponentId id(const std::string& name) const;
+  template <class What>
+  void observe(What what) {
+    inbox_.push_back({now, std::move(what)});
+  }
+  void step();
+  void serve(const Command& command);
+  void reply(const Command& command, Outcome outcome, decltype(Reply::value) value = {},
+             std::string text = "");
+  void change_lifecycle(Component& component, const Command& command, Transition transition);
+  void start(Component& component, const Command& command);
+  void appear(const Component& component);
+  void later(Duration delay, std::function<void()> action);
+
+  std::unique_ptr<RuleSet> rules_;
+  std::unique_ptr<Manager> manager_;
+  std::map<std::string, Component> components_;
+  std::vector<Topic> topics_;
+  std::multimap<Time, std::function<void()>> agenda_;
+  std::vector<Observation> inbox_;
+  int last_pid_ = 100;
+};
+
+}  // namespace culprit::test

@@ -1,0 +1,108 @@
+// Observations -> knowledge (paper, "Monitoring"): K_system, the dependency graph, and what is
+// known of each component.
+//
+// Values that depend on time alone (ages, rates, suspicion, staleness) change without an
+// observation. For each of them the monitor knows when it will next matter to a trigger, from the
+// constants that triggers compare it with, and asks to be stepped then. A sample on a healthy topic
+// therefore costs no evaluation at all.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "knowledge/deadlines.h"
+#include "knowledge/knowledge.h"
+#include "monitor/phi_accrual.h"
+#include "monitor/sliding_count.h"
+#include "monitor/sliding_values.h"
+#include "robot/observation.h"
+
+namespace culprit {
+
+class Monitor {
+ public:
+  // Discovery needs this long in the worst case (announcements come every 3 s). Until then, what
+  // was not seen is unknown; from then on it is absent: a component that is not there is not alive,
+  // a topic that never spoke is silent.
+  static constexpr Duration kWarmUp = std::chrono::seconds(5);
+  // A component that is only known by probing is lost after this many unanswered ones.
+  static constexpr int kMissedProbes = 2;
+
+  // `knowledge` must outlive the monitor. `start` is when watching begins.
+  Monitor(Knowledge& knowledge, Time start);
+
+  // Takes in an observation as of `at`, which never goes back.
+  void observe(const Observation& observation, Time at);
+
+  // Lets time pass: updates every value whose deadline has come.
+  void advance(Time now);
+  Time next_deadline() const { return deadlines_.next(); }
+
+  // Brings the values up to date that `program` reads. Triggers need no such thing (see above); a
+  // WHEN condition or a parameter's new value does.
+  void refresh(const Program& program, Time now);
+
+ private:
+  struct Topic {
+    std::optional<Time> first;
+    std::optional<Time> last;
+    Duration interval{};
+    monitor::PhiAccrual phi;
+    std::vector<InputId> inputs;
+    bool needs_phi = false;
+  };
+  struct Signal {
+    std::optional<Time> last;
+    Duration interval{};
+    std::vector<InputId> inputs;
+  };
+  // What an input of a topic or of a signal window keeps, by InputId.
+  struct Derived {
+    monitor::SlidingCount count{Duration(1)};
+    monitor::SlidingValues values{Duration(1)};
+    std::vector<double> deviations;  // kPhi: for each threshold
+    Value last_value;                // kChanged
+  };
+
+  void on(Time at, const NodeAppeared& seen);
+  void on(Time at, const NodeVanished& seen);
+  void on(Time at, const EndpointAppeared& seen);
+  void on(Time at, const EndpointVanished& seen);
+  void on(Time at, const SampleArrived& seen);
+  void on(Time at, const SignalRead& seen);
+  void on(Time at, const DiagnosticRead& seen);
+  void on(Time at, const ParameterRead& seen);
+  void on(Time at, const LifecycleRead& seen);
+  void on(Time at, const ProcessSeen& seen);
+  void on(Time at, const Probed& seen);
+  void on(Time, const Reply&) {}  // the executor's
+  void on(Time at, const LinkTrouble& seen);
+
+  void read_signal(SignalId signal, const Value& value, Time at);
+  void update(InputId id, Time now);
+  void update_window(InputId id, Time now);
+  Time next_crossing(InputId id, Time now) const;
+  Time next_age(const Input& input, Time now) const;
+  Time next_phi(InputId id, Time now) const;
+  Time next_rate(InputId id) const;
+  Slot age(InputId id, Time now) const;
+  Slot rate(InputId id, Time now);
+  Slot phi(InputId id, Time now) const;
+
+  void forget_process(ComponentId component, Time at);
+  void update_alive(ComponentId component, Time at, const std::string& remark);
+  bool is_warm(Time now) const { return now >= later(start_, kWarmUp); }
+
+  Knowledge& knowledge_;
+  Time start_;
+  std::vector<Topic> topics_;
+  std::vector<Signal> signals_;
+  std::vector<Derived> derived_;
+  std::vector<std::vector<InputId>> component_inputs_;
+  std::vector<std::vector<InputId>> parameter_inputs_;
+  std::vector<std::vector<SignalId>> parameter_signals_;
+  std::vector<std::vector<InputId>> diagnostic_inputs_;
+  Deadlines deadlines_;  // by InputId; one more for the end of the warm-up
+};
+
+}  // namespace culprit

@@ -1,0 +1,239 @@
+#include "monitor/monitor.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "language/checker.h"
+
+namespace culprit {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* kRules = R"(
+SIGNAL s DIAGNOSTIC d KEY k STALE 70ms
+RULE R
+  POLICIES ERROR
+  TRIGGER age(/t) > 25ms || age(/t) >= 40ms || rate(/t, 100ms) < 50 || rate(/t, 100ms) <= 80 || phi(/t) > 3 || s > 2 || mean(s, 50ms) > 1 || max(s, 50ms) > 1
+    STRATEGY s 50 10
+      ADAPTATION c restart 2
+)";
+
+// Truth, computed anew from everything that was ever observed.
+struct Oracle {
+  std::vector<std::pair<Time, std::uint32_t>> samples;
+  std::vector<std::pair<Time, double>> readings;
+
+  std::optional<double> age(Time now) const {
+    if (samples.empty()) return std::nullopt;
+    return seconds(now - samples.back().first);
+  }
+  std::optional<double> rate(Time now) const {
+    if (samples.empty() || samples.front().first + 100ms > now) return std::nullopt;
+    std::uint64_t count = 0;
+    for (const auto& [at, n] : samples) count += at + 100ms > now ? n : 0;
+    return static_cast<double>(count) / 0.1;
+  }
+  std::optional<double> phi(Time now) const {
+    monitor::PhiAccrual accrual;
+    for (const auto& [at, n] : samples) accrual.add(at, n);
+    return accrual.phi(now);
+  }
+  std::optional<double> signal(Time now) const {
+    if (readings.empty() || readings.back().first + 70ms <= now) return std::nullopt;
+    return readings.back().second;
+  }
+  std::vector<double> window(Time now) const {
+    std::vector<double> values;
+    for (const auto& [at, value] : readings) {
+      if (at + 50ms > now) values.push_back(value);
+    }
+    return values;
+  }
+  std::optional<double> mean(Time now) const {
+    const auto values = window(now);
+    double sum = 0;
+    for (const double v : values) sum += v;
+    return values.empty() ? std::nullopt : std::optional(sum / static_cast<double>(values.size()));
+  }
+  std::optional<double> max(Time now) const {
+    const auto values = window(now);
+    return values.empty() ? std::nullopt
+                          : std::optional(*std::max_element(values.begin(), values.end()));
+  }
+  std::optional<double> value(const Input& input, Time now) const {
+    switch (input.kind) {
+      case Input::Kind::kAge:
+        return age(now);
+      case Input::Kind::kRate:
+        return rate(now);
+      case Input::Kind::kPhi:
+        return phi(now);
+      case Input::Kind::kSignal:
+        return signal(now);
+      case Input::Kind::kMean:
+        return mean(now);
+      default:
+        return max(now);
+    }
+  }
+};
+
+// Every comparison that the rules make must come out as it would with the true value, at every
+// moment, although the monitor is only woken by observations and by its own deadlines.
+RC_GTEST_PROP(Monitor, KeepsEveryComparisonTrueWithoutPolling, ()) {
+  const Checked checked = check(Source("test.rules", kRules));
+  Knowledge knowledge(*checked.rules);
+  Monitor monitor(knowledge, Time{});
+  Oracle oracle;
+  Time now{};
+  for (int i = *rc::gen::inRange(5, 60); i > 0; --i) {
+    const Time until = now + std::chrono::milliseconds(*rc::gen::weightedElement<int>(
+                                 {{8, 10}, {4, 13}, {2, 35}, {1, 300}}));
+    for (; now < until; now += 1ms) {
+      while (monitor.next_deadline() <= now) monitor.advance(monitor.next_deadline());
+      for (std::size_t n = 0; n < checked.rules->inputs.size(); ++n) {
+        const Input& input = checked.rules->inputs[n];
+        const Slot& slot = knowledge.signals[InputId(n)];
+        const auto truth = oracle.value(input, now);
+        RC_ASSERT(slot.known == truth.has_value());
+        if (!truth) continue;
+        const double held = input.type == Type::kDuration ? seconds(Duration(slot.i)) : slot.d;
+        for (const double threshold : input.thresholds) {
+          // On an age's threshold itself `>=` may lag by the nanosecond that makes `>` right.
+          const bool is_age = input.kind == Input::Kind::kAge;
+          if (is_age && std::fabs(*truth - threshold) < 2e-9) continue;
+          RC_ASSERT((held < threshold) == (*truth < threshold));
+          RC_ASSERT((held > threshold) == (*truth > threshold));
+        }
+      }
+    }
+    if (*rc::gen::arbitrary<bool>()) {
+      const auto count = *rc::gen::inRange<std::uint32_t>(1, 3);
+      oracle.samples.push_back({now, count});
+      monitor.observe({now, SampleArrived{TopicId(0), count}}, now);
+    } else {
+      const double value = *rc::gen::element(0.0, 0.5, 1.5, 3.0);
+      oracle.readings.push_back({now, value});
+      monitor.observe({now, SignalRead{SignalId(0), Value(value)}}, now);
+    }
+  }
+}
+
+struct Watched {
+  explicit Watched(const std::string& text)
+      : rules(*check(Source("test.rules", text)).rules),
+        knowledge(rules),
+        monitor(knowledge, Time{}) {}
+  template <class What>
+  void observe(Duration at, What what) {
+    const Time time(at);
+    monitor.advance(time);
+    monitor.observe({time, std::move(what)}, time);
+  }
+  std::size_t touched() { return knowledge.signals.take_touched().size(); }
+  RuleSet rules;
+  Knowledge knowledge;
+  Monitor monitor;
+};
+
+std::string rule(const std::string& trigger) {
+  return "COMPONENT c NODE /c\nRULE R\nPOLICIES ERROR\nTRIGGER " + trigger +
+         "\nSTRATEGY s 50 10\nADAPTATION c restart 1\n";
+}
+
+TEST(Monitor, EvaluatesNothingWhileATopicIsHealthy) {
+  Watched watched(rule("age(/t) > 1s || rate(/t) < 5"));
+  for (int i = 0; i < 30; ++i) watched.observe(100ms * i, SampleArrived{TopicId(0), 1});
+  watched.touched();
+  for (int i = 30; i < 1000; ++i) watched.observe(100ms * i, SampleArrived{TopicId(0), 1});
+  EXPECT_EQ(watched.touched(), 0u);
+}
+
+TEST(Monitor, TakesATopicThatNeverSpokeForSilentOnceDiscoveryIsOver) {
+  Watched watched(rule("age(/t) > 1s"));
+  watched.monitor.advance(Time(4s));
+  EXPECT_FALSE(watched.knowledge.signals[InputId(0)].known);
+  watched.monitor.advance(Time(5s));
+  EXPECT_TRUE(watched.knowledge.signals[InputId(0)].known);
+}
+
+TEST(Monitor, CountsWhatWasLostOnTheWay) {
+  Watched watched(rule("rate(/t, 1s) < 5"));
+  for (int i = 0; i < 20; ++i) watched.observe(300ms * i, SampleArrived{TopicId(0), 3});
+  EXPECT_NEAR(watched.knowledge.signals[InputId(0)].d, 10, 2.1);
+}
+
+TEST(Monitor, ReadsDiagnosticsAsTheTypeThatTheRulesNeed) {
+  Watched watched(rule("flag && number > 1 && text == \"1.50\""));
+  const auto read = [&](std::size_t s) {
+    watched.observe(1s, SignalRead{SignalId(s), Value(std::string(s == 0 ? "True" : "1.50"))});
+  };
+  for (const std::size_t s : {0u, 1u, 2u}) read(s);
+  EXPECT_TRUE(evaluate(watched.rules.rules[0].trigger, watched.knowledge.signals.slots()).b);
+}
+
+TEST(Monitor, TakesAReadingThatMakesNoSenseForUnknown) {
+  Watched watched(rule("number > 1"));
+  watched.observe(1s, SignalRead{SignalId(0), Value(std::string("n/a"))});
+  EXPECT_FALSE(watched.knowledge.signals[InputId(0)].known);
+}
+
+TEST(Monitor, ChangedHoldsForOneCycle) {
+  Watched watched(rule("changed(x)"));
+  watched.observe(1s, SignalRead{SignalId(0), Value(1.0)});
+  EXPECT_FALSE(watched.knowledge.signals[InputId(0)].b) << "the first value is no change";
+  watched.observe(2s, SignalRead{SignalId(0), Value(2.0)});
+  EXPECT_TRUE(watched.knowledge.signals[InputId(0)].b);
+  watched.monitor.advance(Time(2200ms));
+  EXPECT_FALSE(watched.knowledge.signals[InputId(0)].b);
+}
+
+TEST(Monitor, KnowsWhetherAComponentIsAlive) {
+  Watched watched(rule("!alive(c)"));
+  const auto alive = [&] { return watched.knowledge.components[ComponentId(0)].alive; };
+  EXPECT_EQ(alive(), std::nullopt);
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  EXPECT_EQ(alive(), true);
+  watched.observe(2s, ProcessSeen{ComponentId(0), ProcessState::kStopped, 7, ""});
+  EXPECT_EQ(alive(), false) << "stopped";
+  watched.observe(3s, ProcessSeen{ComponentId(0), ProcessState::kRunning, 7, ""});
+  EXPECT_EQ(alive(), true);
+  watched.observe(4s, ProcessSeen{ComponentId(0), ProcessState::kGone, 7, "exit code 1"});
+  EXPECT_EQ(alive(), false);
+  watched.observe(5s, ProcessSeen{ComponentId(0), ProcessState::kRunning, 8, ""});
+  EXPECT_EQ(alive(), false) << "the process is there, its node is not";
+  watched.observe(6s, NodeAppeared{"/c", 8});
+  EXPECT_EQ(alive(), true);
+  watched.observe(7s, ProcessSeen{ComponentId(0), ProcessState::kGone, 7, "late news"});
+  EXPECT_EQ(alive(), true) << "the old process's end says nothing about the new one";
+}
+
+TEST(Monitor, LosesAComponentThatDoesNotAnswerProbes) {
+  Watched watched(rule("!alive(c)"));
+  watched.observe(1s, NodeAppeared{"/c", 0});
+  watched.observe(2s, Probed{ComponentId(0), false});
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, true) << "one answer may be lost";
+  watched.observe(3s, Probed{ComponentId(0), false});
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, false);
+  watched.observe(4s, Probed{ComponentId(0), true});
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, true);
+}
+
+TEST(Monitor, ForgetsTheStateOfAProcessThatIsGone) {
+  Watched watched(rule("lifecycle(c) == \"active\" || parameter(c, p) > 1"));
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  watched.observe(1s, ParameterRead{ParameterId(0), Value(2.0)});
+  EXPECT_TRUE(watched.knowledge.signals[InputId(0)].known &&
+              watched.knowledge.signals[InputId(1)].known);
+  watched.observe(2s, ProcessSeen{ComponentId(0), ProcessState::kGone, 7, ""});
+  EXPECT_FALSE(watched.knowledge.signals[InputId(0)].known ||
+               watched.knowledge.signals[InputId(1)].known);
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].intended_lifecycle, Lifecycle::kActive);
+}
+
+}  // namespace
+}  // namespace culprit

@@ -1,0 +1,54 @@
+// How suspicious is a topic's silence? The phi-accrual failure detector (Hayashibara et al., SRDS
+// 2004).
+//
+//     phi(t) = -log10 P(an interval longer than t),   intervals ~ Normal(mean, sd) of the last ones
+//
+// phi 1: one in ten intervals is as long as this silence; phi 8: one in a hundred million. It
+// adapts itself to the topic's rhythm, so one threshold fits a 100 Hz lidar and a 1 Hz battery
+// monitor alike.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "monitor/ring.h"
+#include "robot/time.h"
+
+namespace culprit::monitor {
+
+class PhiAccrual {
+ public:
+  static constexpr std::size_t kHistory = 128;
+  // With fewer intervals there is no rhythm to speak of, and phi is unknown.
+  static constexpr std::size_t kLeastIntervals = 5;
+  // A machine is never as regular as its clock: the standard deviation is at least this share of
+  // the mean.
+  static constexpr double kLeastDeviation = 0.25;
+  // A silence this suspicious is an outage and not part of the rhythm, unless it happens again and
+  // again.
+  static constexpr double kOutage = 8;
+  static constexpr int kNewRhythm = 3;
+
+  // `count` messages came at `at`, evenly spread since the last ones. Times never go back.
+  void add(Time at, std::uint32_t count);
+
+  // Nothing while the rhythm is unknown.
+  std::optional<double> phi(Time now) const;
+
+  // How many standard deviations beyond the mean an interval is whose phi is `phi`.
+  static double deviations(double phi);
+  // When the silence will be longer than that, if nothing comes. kNever while the rhythm is
+  // unknown.
+  Time exceeds(double deviations) const;
+
+ private:
+  double deviation() const;
+
+  Ring<double> intervals_{kHistory};  // seconds
+  double mean_ = 0;
+  double variance_ = 0;
+  std::optional<Time> last_;
+  int outages_ = 0;  // in a row
+};
+
+}  // namespace culprit::monitor

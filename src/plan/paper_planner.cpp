@@ -1,0 +1,126 @@
+#include "plan/paper_planner.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "plan/cost.h"
+#include "plan/validity.h"
+
+namespace culprit {
+
+std::vector<Verdict> PaperPlanner::plan(std::span<const RuleId> failures,
+                                        const Knowledge& knowledge) const {
+  std::vector<Verdict> verdicts;
+  std::vector<ComponentId> affected;
+  if (!switches_.criticality) {
+    select(failures, Criticality::kNonCritical, knowledge, affected, verdicts);
+    return verdicts;
+  }
+  for (const Criticality level :
+       {Criticality::kError, Criticality::kWarning, Criticality::kNonCritical}) {
+    std::vector<RuleId> of_level;
+    std::copy_if(failures.begin(), failures.end(), std::back_inserter(of_level),
+                 [&](RuleId id) { return knowledge.rules[id].policies.criticality == level; });
+    select(of_level, level, knowledge, affected, verdicts);
+  }
+  return verdicts;
+}
+
+double PaperPlanner::cost(const Strategy& strategy, StrategyId id,
+                          const Knowledge& knowledge) const {
+  const Probability success = knowledge.beliefs[id].mean();
+  return switches_.impact ? plan::cost(success, strategy.impact, knowledge.rules.heaviest)
+                          : plan::cost_without_impact(success);
+}
+
+void PaperPlanner::select(std::span<const RuleId> failures, Criticality level,
+                          const Knowledge& knowledge, std::vector<ComponentId>& affected,
+                          std::vector<Verdict>& verdicts) const {
+  const RuleSet& rules = knowledge.rules;
+  std::vector<Candidate> candidates;
+  for (const RuleId failure : failures) {
+    for (const StrategyId id : rules[failure].strategies)
+      candidates.push_back({id, cost(rules[id], id, knowledge), {}, {}, {}, {}});
+  }
+  std::sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
+    const auto key = [&](const Candidate& c) {
+      const Strategy& strategy = rules[c.strategy];
+      return std::tie(c.cost, rules[strategy.rule].name, strategy.name);
+    };
+    return key(a) < key(b);
+  });
+
+  std::vector<Verdict> found;
+  for (const RuleId failure : failures) found.push_back({failure, {}, true, {}});
+  const auto verdict_of = [&](RuleId rule) {
+    return std::lower_bound(found.begin(), found.end(), rule,
+                            [](const Verdict& v, RuleId r) { return v.rule < r; });
+  };
+  for (Candidate& candidate : candidates) {
+    const auto verdict = verdict_of(rules[candidate.strategy].rule);
+    examine(candidate, level, knowledge, affected);
+    // What is affected by the strategy chosen for the same failure is rather excluded by that
+    // choice itself.
+    const bool is_free = !candidate.excluded || candidate.excluded == Condition::kAffected;
+    if (is_free && verdict->chosen) candidate.excluded = Condition::kOneEach;
+    if (!candidate.excluded) {
+      verdict->chosen = candidate.strategy;
+      const auto& adapted = rules[candidate.strategy].components;
+      affected.insert(affected.end(), adapted.begin(), adapted.end());
+    }
+    const bool is_out =
+        candidate.excluded == Condition::kTried || candidate.excluded == Condition::kInvalid;
+    verdict->is_spent &= is_out;
+    verdict->candidates.push_back(std::move(candidate));
+  }
+  verdicts.insert(verdicts.end(), std::make_move_iterator(found.begin()),
+                  std::make_move_iterator(found.end()));
+}
+
+void PaperPlanner::examine(Candidate& candidate, Criticality level, const Knowledge& knowledge,
+                           const std::vector<ComponentId>& affected) const {
+  const Strategy& strategy = knowledge.rules[candidate.strategy];
+  const auto& siblings = knowledge.rules[strategy.rule].strategies;
+  const auto place =
+      std::find(siblings.begin(), siblings.end(), candidate.strategy) - siblings.begin();
+  if (knowledge.states[strategy.rule].tried[static_cast<std::size_t>(place)]) {
+    candidate.excluded = Condition::kTried;
+    return;
+  }
+  if (auto invalid = plan::invalidity(strategy, knowledge)) {
+    candidate.excluded = Condition::kInvalid;
+    candidate.component = invalid->component;
+    candidate.remark = std::move(invalid->reason);
+    return;
+  }
+  for (const ComponentId component : strategy.components) {
+    candidate.component = component;
+    if (knowledge.states.reservation(component) != nullptr) {
+      candidate.excluded = Condition::kAdapting;
+      return;
+    }
+    if (std::find(affected.begin(), affected.end(), component) != affected.end()) {
+      candidate.excluded = Condition::kAffected;
+      return;
+    }
+  }
+  if (switches_.dependencies && depends_on_cause(candidate, level, knowledge)) {
+    candidate.excluded = Condition::kDependency;
+  }
+}
+
+bool PaperPlanner::depends_on_cause(Candidate& candidate, Criticality level,
+                                    const Knowledge& knowledge) const {
+  const Strategy& strategy = knowledge.rules[candidate.strategy];
+  for (const ComponentId component : strategy.components) {
+    for (const ComponentId upstream : knowledge.graph.upstream(component)) {
+      if (!knowledge.states.is_sick(upstream, level, strategy.rule)) continue;
+      candidate.component = upstream;
+      candidate.because = knowledge.states.sickness(upstream, level, strategy.rule);
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace culprit

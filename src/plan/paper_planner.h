@@ -1,0 +1,53 @@
+// The paper's planner: Algorithm 1 with its five conditions and Equation 1.
+//
+// For each criticality level, from ERROR down, the strategies of all failures are sorted by cost,
+// and each is chosen that
+//   1. was not tried yet,
+//   2. is valid in the present state of the system,
+//   3. adapts no component that is being adapted already,
+//   4. adapts no component that a strategy chosen in this plan adapts,
+//   5. adapts no component that depends on another one that may be the cause of a failure of the
+//   same or a higher level;
+// and at most one for each failure. Where the printed algorithm slips (its inner `break` leaves
+// only the loop over the nodes, so that the strategy is chosen all the same) this follows the text:
+// a strategy that fails a condition is skipped. A failure does not exclude its own strategies by
+// condition 5: it is no other cause.
+//
+// The three factors can be switched off, as in the paper's ablation:
+//   D  dependencies: without, condition 5 does not exist;
+//   C  criticality:  without, all failures are of one level;
+//   S  impact:       without, the cost is only the chance to fail.
+//
+// Equal costs go by the names of rule and strategy, so that a decision does not depend on the order
+// of declarations.
+#pragma once
+
+#include "plan/planner.h"
+
+namespace culprit {
+
+struct PaperSwitches {
+  bool dependencies = true;
+  bool criticality = true;
+  bool impact = true;
+};
+
+class PaperPlanner : public Planner {
+ public:
+  explicit PaperPlanner(PaperSwitches switches = {}) : switches_(switches) {}
+
+  std::vector<Verdict> plan(std::span<const RuleId> failures,
+                            const Knowledge& knowledge) const override;
+
+ private:
+  double cost(const Strategy& strategy, StrategyId id, const Knowledge& knowledge) const;
+  void select(std::span<const RuleId> failures, Criticality level, const Knowledge& knowledge,
+              std::vector<ComponentId>& affected, std::vector<Verdict>& verdicts) const;
+  void examine(Candidate& candidate, Criticality level, const Knowledge& knowledge,
+               const std::vector<ComponentId>& affected) const;
+  bool depends_on_cause(Candidate& candidate, Criticality level, const Knowledge& knowledge) const;
+
+  PaperSwitches switches_;
+};
+
+}  // namespace culprit

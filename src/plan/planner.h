@@ -1,0 +1,31 @@
+// The port of planners: failures -> strategies.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+// What is to be done about one failure.
+struct Verdict {
+  RuleId rule;
+  std::optional<StrategyId> chosen;  // nothing: the failure has to wait, or nothing is left
+  bool is_spent = false;             // no untried strategy is valid now: the round is over
+  std::vector<Candidate>
+      candidates;  // every strategy of the rule, cheapest first, with what excluded it
+};
+
+class Planner {
+ public:
+  virtual ~Planner() = default;
+
+  // Decides about `failures`: failing rules without a strategy under way, ascending. One verdict
+  // for each, in the order of the decisions. The strategies chosen together do not interfere with
+  // each other or with those under way.
+  virtual std::vector<Verdict> plan(std::span<const RuleId> failures,
+                                    const Knowledge& knowledge) const = 0;
+};
+
+}  // namespace culprit

@@ -1,0 +1,75 @@
+#include "plan/validity.h"
+
+#include "language/evaluate.h"
+
+namespace culprit::plan {
+namespace {
+
+bool has_lifecycle(Lifecycle state) {
+  return state != Lifecycle::kUnknown && state != Lifecycle::kFinalized;
+}
+
+// Why `adaptation` is invalid; empty if it is not.
+std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[adaptation.component];
+  const bool is_alive = state.alive.value_or(false);
+  const bool can_launch = !knowledge.rules[adaptation.component].launch.empty();
+  switch (adaptation.type) {
+    case AdaptationType::kRedeploy:
+      return can_launch ? "" : "has no LAUNCH command";
+    case AdaptationType::kStart:
+      if (!can_launch) return "has no LAUNCH command";
+      return is_alive ? "is there already" : "";
+    case AdaptationType::kStop:
+      return is_alive || state.known_pid() != 0 ? "" : "is not there";
+    default:
+      break;
+  }
+  if (!is_alive) return "is not alive";
+  switch (adaptation.type) {
+    case AdaptationType::kActivate:
+      if (state.lifecycle == Lifecycle::kActive) return "is active already";
+      return has_lifecycle(state.lifecycle) ? "" : "has no known lifecycle state";
+    case AdaptationType::kDeactivate:
+      return state.lifecycle == Lifecycle::kActive ? "" : "is not active";
+    case AdaptationType::kRestart:
+      return has_lifecycle(state.lifecycle) ? "" : "has no known lifecycle state";
+    case AdaptationType::kChangeCommunication: {
+      const auto& value = knowledge.components[adaptation.parameter];
+      const bool is_set = value && *value == Value(adaptation.topic);
+      return is_set ? "uses " + adaptation.topic + " already" : "";
+    }
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge) {
+  if (!strategy.when.empty()) {
+    const Slot when = evaluate(strategy.when, knowledge.signals.slots());
+    if (!when.known)
+      return Invalid{strategy.adaptations.front().component, "its WHEN condition is unknown"};
+    if (!when.b)
+      return Invalid{strategy.adaptations.front().component, "its WHEN condition is false"};
+  }
+  for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
+    const Adaptation& adaptation = strategy.adaptations[i];
+    bool is_changed_before = false;
+    for (std::size_t before = 0; before < i; ++before) {
+      is_changed_before |= strategy.adaptations[before].component == adaptation.component;
+    }
+    // What an earlier adaptation of the same strategy brings about is not known yet: start, then
+    // set a parameter.
+    if (is_changed_before) continue;
+    const std::string reason = obstacle(adaptation, knowledge);
+    if (!reason.empty()) {
+      return Invalid{adaptation.component,
+                     knowledge.rules[adaptation.component].name + " " + reason};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace culprit::plan
