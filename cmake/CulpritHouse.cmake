@@ -17,13 +17,14 @@ if(CULPRIT_SANITIZE)
   target_link_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE})
 endif()
 
-# culprit_library(<folder> [USES <folder>...] [PACKAGES <target>...])
+# culprit_library(<folder> [USES <folder>...] [PACKAGES <target>...]
+#                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL])
 #
 # Builds src/<folder>/**.cpp but its tests and programs (*_main.cpp), and the test program <folder>_test of *_test.cpp and
 # of what only tests use (test_*.cpp).
 # USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
 function(culprit_library folder)
-  cmake_parse_arguments(ARG "" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES" ${ARGN})
+  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES" ${ARGN})
   set(dir ${CMAKE_SOURCE_DIR}/src/${folder})
   set(headers ${CMAKE_BINARY_DIR}/include/${folder})
   file(MAKE_DIRECTORY ${headers})
@@ -45,7 +46,11 @@ function(culprit_library folder)
   target_link_libraries(${folder} ${scope} ${ARG_USES} ${ARG_PACKAGES} culprit_options)
 
   if(CULPRIT_TESTS AND tests)
-    culprit_test(${folder}_test SOURCES ${tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES})
+    set(serial "")
+    if(ARG_TEST_SERIAL)
+      set(serial SERIAL)
+    endif()
+    culprit_test(${folder}_test SOURCES ${tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES} ${serial})
   endif()
 endfunction()
 

@@ -145,7 +145,8 @@ void Executor::note_change(Run& run, Time now) {
 // The component's lifecycle is now where it was brought on purpose.
 void Executor::note_lifecycle(const Pursuit& pursuit) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
-  if (lifecycle != nullptr) knowledge_.components[pursuit.component()].intended_lifecycle = lifecycle->target;
+  if (lifecycle != nullptr)
+    knowledge_.components[pursuit.component()].intended_lifecycle = lifecycle->target;
 }
 
 Attempt* Executor::attempt_of(const Run& run) {

@@ -179,6 +179,8 @@ std::optional<Pursuit::Request> Pursuit::pursue(const ServiceGoal& goal, Time no
 }
 
 std::optional<Pursuit::Request> Pursuit::pursue_gone(const ComponentState& state, Time now) {
+  if (state.in_graph && state.known_pid() == 0)
+    return give_up("its process is not known; is it on another machine?");
   if (!has_changed_anything()) return change(StopProcess{state.known_pid()}, now);
   const bool is_gone = !state.in_graph && state.process == ProcessState::kGone;
   if (answer_->outcome == Outcome::kDone || is_gone) return reach();

@@ -1,0 +1,217 @@
+#include "process/supervisor.h"
+
+#include <fstream>
+#include <optional>
+#include <signal.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+#include "process/spawn.h"
+
+namespace culprit::process {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Supervises component c with the given launch command and tells what came of it.
+class Supervised {
+ public:
+  explicit Supervised(const std::string& launch)
+      : folder_(std::filesystem::temp_directory_path() /
+                ("culprit-test-" + std::to_string(getpid()))),
+        rules_(*check(Source("test.rules", "COMPONENT c LAUNCH \"" + launch + "\"\n")).rules) {
+    supervisor.emplace(rules_, Supervisor::Options{folder_, {}}, inbox);
+  }
+  ~Supervised() {
+    supervisor->stop_all();
+    supervisor.reset();
+    std::filesystem::remove_all(folder_);
+  }
+
+  int start() {
+    supervisor->start({1}, ComponentId(0));
+    const Reply reply = reply_to({1});
+    EXPECT_EQ(reply.outcome, Outcome::kDone) << reply.text;
+    const auto* pid = std::get_if<Value>(&reply.value);
+    return pid == nullptr ? 0 : static_cast<int>(std::get<std::int64_t>(*pid));
+  }
+  void stop(int pid = 0) {
+    supervisor->stop({2}, ComponentId(0), pid);
+    EXPECT_EQ(reply_to({2}).outcome, Outcome::kDone);
+  }
+  Reply reply_to(CommandId command) {
+    return wait<Reply>([&](const Reply& r) { return r.command == command; });
+  }
+  ProcessSeen state(ProcessState state) {
+    return wait<ProcessSeen>([&](const ProcessSeen& s) { return s.state == state; });
+  }
+  std::string log_when(const std::string& part) {
+    std::string text;
+    for (int tries = 0; tries < 1000 && text.find(part) == std::string::npos; ++tries) {
+      std::this_thread::sleep_for(10ms);
+      std::ifstream file(folder_ / "c.log");
+      text.assign(std::istreambuf_iterator<char>(file), {});
+    }
+    return text;
+  }
+
+  Inbox inbox;
+  std::optional<Supervisor> supervisor;
+
+ private:
+  // The first observation of this kind that fits; waits up to half a minute, on any machine enough.
+  template <class What, class Fits>
+  What wait(Fits fits) {
+    const Time end = live_now() + 30s;
+    while (live_now() < end) {
+      for (std::size_t i = 0; i < seen_.size(); ++i) {
+        const auto* what = std::get_if<What>(&seen_[i].what);
+        if (what == nullptr || !fits(*what)) continue;
+        const What found = *what;
+        seen_.erase(seen_.begin(), seen_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        return found;
+      }
+      inbox.take(end, seen_);
+    }
+    ADD_FAILURE() << "nothing of the kind was observed";
+    return {};
+  }
+
+  std::filesystem::path folder_;
+  RuleSet rules_;
+  std::vector<Observation> seen_;
+};
+
+bool exists(int pid) { return kill(pid, 0) == 0; }
+
+TEST(Supervisor, StartsAndStopsPolitely) {
+  Supervised c("sleep 1000");
+  const int pid = c.start();
+  EXPECT_TRUE(exists(pid));
+  EXPECT_EQ(getpgid(pid), pid) << "it leads its own process group";
+  c.supervisor->stop({2}, ComponentId(0), pid);
+  EXPECT_EQ(c.state(ProcessState::kGone).remark, "killed by signal 2");
+  EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
+}
+
+TEST(Supervisor, TellsHowAProcessEnded) {
+  Supervised c("sh -c 'exit 3'");
+  c.start();
+  EXPECT_EQ(c.state(ProcessState::kGone).remark, "exit code 3");
+}
+
+TEST(Supervisor, TellsThatAProcessWasKilled) {
+  Supervised c("sleep 1000");
+  kill(c.start(), SIGKILL);
+  EXPECT_EQ(c.state(ProcessState::kGone).remark, "killed by signal 9");
+}
+
+TEST(Supervisor, KillsWhatDoesNotListen) {
+  Supervised c("sh -c 'trap \\\"\\\" INT TERM; echo ready; while true; do sleep 0.1; done'");
+  const int pid = c.start();
+  c.log_when("ready");
+  const Time begin = live_now();
+  c.stop();
+  EXPECT_FALSE(exists(pid));
+  EXPECT_GE(live_now() - begin, Supervisor::kPolite + Supervisor::kFirm) << "it had its chances";
+}
+
+TEST(Supervisor, KillsAStoppedProcessAtOnce) {
+  Supervised c("sleep 1000");
+  const int pid = c.start();
+  kill(pid, SIGSTOP);
+  EXPECT_EQ(c.state(ProcessState::kStopped).pid, pid);
+  c.stop();
+  EXPECT_FALSE(exists(pid));
+}
+
+TEST(Supervisor, NoticesThatAStoppedProcessGoesOn) {
+  Supervised c("sleep 1000");
+  const int pid = c.start();
+  kill(pid, SIGSTOP);
+  c.state(ProcessState::kStopped);
+  kill(pid, SIGCONT);
+  EXPECT_EQ(c.state(ProcessState::kRunning).pid, pid);
+}
+
+TEST(Supervisor, EndsWhatTheProcessHadStarted) {
+  Supervised c("sh -c 'sleep 1000 & echo child $!; wait'");
+  c.start();
+  const std::string log = c.log_when("child ");
+  const int child = std::stoi(log.substr(log.find("child ") + 6));
+  EXPECT_TRUE(exists(child));
+  c.stop();
+  for (int tries = 0; tries < 1000 && exists(child); ++tries) std::this_thread::sleep_for(10ms);
+  EXPECT_FALSE(exists(child));
+}
+
+TEST(Supervisor, CapturesOutput) {
+  Supervised c("sh -c 'echo out; echo err >&2'");
+  c.start();
+  const std::string log = c.log_when("err");
+  EXPECT_EQ(log, "out\nerr\n");
+}
+
+TEST(Supervisor, SaysWhenThereIsNoSuchProgram) {
+  Supervised c("no-such-program-anywhere");
+  c.supervisor->start({1}, ComponentId(0));
+  const Reply reply = c.reply_to({1});
+  EXPECT_EQ(reply.outcome, Outcome::kUnreachable);
+  EXPECT_EQ(reply.text, "there is no program 'no-such-program-anywhere' in PATH");
+}
+
+TEST(Supervisor, StartsNoSecondProcessBesideALivingOne) {
+  Supervised c("sleep 1000");
+  c.start();
+  c.supervisor->start({3}, ComponentId(0));
+  EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused);
+}
+
+TEST(Supervisor, AdoptsAndEndsAProcessThatWasThere) {
+  Supervised c("sleep 1000");
+  const auto foreign = spawn({{"sleep", "1000"}, {}, "/dev/null"});
+  ASSERT_TRUE(foreign);
+  c.supervisor->adopt(ComponentId(0), *foreign);
+  EXPECT_EQ(c.state(ProcessState::kRunning).pid, *foreign);
+  c.supervisor->stop({2}, ComponentId(0), *foreign);
+  // The process is a child of this test, which must reap it as its parent would.
+  EXPECT_EQ(waitpid(*foreign, nullptr, 0), *foreign);
+  EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
+}
+
+TEST(Supervisor, LeavesItsProcessesRunningWhenItEnds) {
+  int pid = 0;
+  {
+    const RuleSet rules = *check(Source("test.rules", "COMPONENT c LAUNCH \"sleep 1000\"\n")).rules;
+    Inbox inbox;
+    Supervisor supervisor(rules, {std::filesystem::temp_directory_path(), {}}, inbox);
+    supervisor.start({1}, ComponentId(0));
+    std::vector<Observation> seen;
+    inbox.take(live_now() + 10s, seen);
+    for (const Observation& o : seen) {
+      if (const auto* process = std::get_if<ProcessSeen>(&o.what)) pid = process->pid;
+    }
+  }
+  ASSERT_NE(pid, 0);
+  EXPECT_TRUE(exists(pid));
+  kill(pid, SIGKILL);
+  waitpid(pid, nullptr, 0);
+}
+
+TEST(Spawn, PassesArgumentsAsTheyAre) {
+  const auto log =
+      std::filesystem::temp_directory_path() / ("culprit-spawn-" + std::to_string(getpid()));
+  const auto pid = spawn({{"printf", "%s|", "a b", "$HOME", "; rm", "*"}, {}, log});
+  ASSERT_TRUE(pid) << pid.error();
+  waitpid(*pid, nullptr, 0);
+  std::ifstream file(log);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "a b|$HOME|; rm|*|");
+  std::filesystem::remove(log);
+}
+
+}  // namespace
+}  // namespace culprit::process

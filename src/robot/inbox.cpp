@@ -1,0 +1,63 @@
+#include "robot/inbox.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace culprit {
+namespace {
+
+using Steady = std::chrono::steady_clock;
+
+Steady::time_point as_steady(Time time) {
+  return Steady::time_point(std::chrono::duration_cast<Steady::duration>(time.time_since_epoch()));
+}
+
+}  // namespace
+
+Time live_now() {
+  return Time(std::chrono::duration_cast<Duration>(Steady::now().time_since_epoch()));
+}
+
+void Inbox::put(Observation observation) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.size() >= kMaxWaiting) {
+      const auto oldest = std::find_if(waiting_.begin(), waiting_.end(), [](const Observation& o) {
+        return !std::holds_alternative<Reply>(o.what);
+      });
+      if (oldest != waiting_.end()) waiting_.erase(oldest);
+      ++dropped_;
+    }
+    waiting_.push_back(std::move(observation));
+  }
+  something_came_.notify_one();
+}
+
+void Inbox::take(Time until, std::vector<Observation>& observations) {
+  std::unique_lock lock(mutex_);
+  const auto is_ready = [&] { return !waiting_.empty() || is_interrupted_; };
+  if (until == kNever) {
+    something_came_.wait(lock, is_ready);
+  } else {
+    something_came_.wait_until(lock, as_steady(until), is_ready);
+  }
+  is_interrupted_ = false;
+  observations.insert(observations.end(), std::make_move_iterator(waiting_.begin()),
+                      std::make_move_iterator(waiting_.end()));
+  waiting_.clear();
+}
+
+void Inbox::interrupt() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_interrupted_ = true;
+  }
+  something_came_.notify_all();
+}
+
+std::size_t Inbox::dropped() const {
+  const std::lock_guard lock(mutex_);
+  return dropped_;
+}
+
+}  // namespace culprit

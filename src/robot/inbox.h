@@ -1,0 +1,48 @@
+// Where the adapters of a live robot put what they observe, from any thread, and the runtime takes
+// it out.
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <vector>
+
+#include "robot/observation.h"
+
+namespace culprit {
+
+// The clock of a live robot: monotonic, so that no setting of the wall clock looks like a silence.
+Time live_now();
+
+// All members may be called from any thread.
+class Inbox {
+ public:
+  // Observations beyond this many that nobody took are dropped, oldest first: a flood must not eat
+  // the memory. Replies are never dropped.
+  static constexpr std::size_t kMaxWaiting = 1 << 16;
+
+  // Stamps what was observed with the present time.
+  template <class What>
+  void put(What what) {
+    put(Observation{live_now(), std::move(what)});
+  }
+  void put(Observation observation);
+
+  // Waits until something is there, `until` has come, or interrupt() was called, and appends what
+  // is there.
+  void take(Time until, std::vector<Observation>& observations);
+
+  // Lets the present or the next take() return at once.
+  void interrupt();
+
+  // How many observations were dropped so far.
+  std::size_t dropped() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable something_came_;
+  std::vector<Observation> waiting_;
+  std::size_t dropped_ = 0;
+  bool is_interrupted_ = false;
+};
+
+}  // namespace culprit
