@@ -146,7 +146,8 @@ void Analyzer::judge(RuleId id, Time now) {
 
 bool Analyzer::can_have_caused(RuleId id) const {
   const RuleState& state = knowledge_.states[id];
-  return knowledge_.rules[id].policies.on_change || state.trigger_since >= state.attempt->first_change;
+  return knowledge_.rules[id].policies.on_change ||
+         state.trigger_since >= state.attempt->first_change;
 }
 
 void Analyzer::succeed(RuleId id, Time now) {

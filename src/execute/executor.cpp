@@ -125,12 +125,16 @@ bool Executor::next_undo(Run& run, Time now) {
 }
 
 void Executor::finish_undo(Run& run, Time now) {
-  const std::string what =
-      knowledge_.rules[run.pursuit->component()].name + " " + describe(run.pursuit->goal());
-  const bool reached = run.pursuit->is_reached();
-  if (reached) note_lifecycle(*run.pursuit);
-  knowledge_.tell(
-      now, Undone{run.strategy, reached ? what : what + ": " + run.pursuit->remark(), reached});
+  const Pursuit& pursuit = *run.pursuit;
+  const bool reached = pursuit.is_reached();
+  if (reached) note_lifecycle(pursuit);
+  // What came back by itself was not undone.
+  if (!reached || pursuit.has_changed_anything()) {
+    const std::string what =
+        knowledge_.rules[pursuit.component()].name + ": " + describe(pursuit.goal());
+    knowledge_.tell(now,
+                    Undone{run.strategy, reached ? what : what + ": " + pursuit.remark(), reached});
+  }
   run.undo.pop_back();
   run.pursuit.reset();
 }

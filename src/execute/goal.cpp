@@ -102,7 +102,7 @@ std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& 
   if (const auto* parameter = std::get_if<ParameterGoal>(&goal)) {
     const auto* value = std::get_if<Value>(&before.value);
     if (value == nullptr) return std::nullopt;
-    return ParameterGoal{parameter->name, *value, ParameterGoal::Kind::kSet};
+    return ParameterGoal{parameter->name, *value, ParameterGoal::Kind::kRestore};
   }
   if (std::holds_alternative<ModeGoal>(goal)) {
     const auto* value = std::get_if<Value>(&before.value);

@@ -17,9 +17,10 @@ namespace culprit::execute {
 
 struct ParameterGoal {
   std::string name;
-  // The value to reach: `value` itself, or `value` more than the parameter is now.
+  // kSet: `value`, set even if the parameter has it already, because setting may start a routine.
+  // kAdd: `value` more than the parameter is now. kRestore: `value`, set only if it is another.
   Value value;
-  enum class Kind : std::uint8_t { kSet, kAdd } kind = Kind::kSet;
+  enum class Kind : std::uint8_t { kSet, kAdd, kRestore } kind = Kind::kSet;
 };
 struct LifecycleGoal {
   Lifecycle target = Lifecycle::kActive;

@@ -47,6 +47,12 @@ bool did_not_come(const Reply& reply) {
   return reply.outcome == Outcome::kTimedOut || reply.outcome == Outcome::kUnreachable;
 }
 
+// How long a goal that begins with a new process waits for it to come up.
+Duration grace(const Goal& goal) {
+  const auto* lifecycle = std::get_if<LifecycleGoal>(&goal);
+  return lifecycle != nullptr ? lifecycle->grace : Duration::zero();
+}
+
 std::string why(const Reply& reply) {
   if (!reply.text.empty()) return reply.text;
   switch (reply.outcome) {
@@ -119,8 +125,10 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   if (std::holds_alternative<PresentGoal>(goal_)) return pursue_present(state, now);
   if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return pursue(*service, now);
   if (did_not_come(*seen_)) {
-    // Before the change: nobody there to change. After it: the answer may just be late.
-    if (!has_changed_anything() || now >= deadline_) return give_up(why(*seen_));
+    // Before the change: nobody there to change, unless it is still coming up. After it: the answer
+    // may just be late.
+    if (now >= deadline_ || (!has_changed_anything() && now >= later(begun_, grace(goal_))))
+      return give_up(why(*seen_));
     return look_again(now);
   }
   if (seen_->outcome == Outcome::kRefused) return give_up(why(*seen_));
@@ -140,8 +148,11 @@ std::optional<Pursuit::Request> Pursuit::pursue(const ParameterGoal& goal, Time 
       return give_up(goal.name + " is " + to_string(*present) + " and cannot be increased");
     wanted_ = in_type_of(*target, *present);
   }
-  if (!has_changed_anything()) return change(SetParameter{goal.name, *wanted_}, now);
-  if (*present == *wanted_) return reach();
+  const bool is_there = *present == *wanted_;
+  if (!has_changed_anything() && !(is_there && goal.kind == ParameterGoal::Kind::kRestore)) {
+    return change(SetParameter{goal.name, *wanted_}, now);
+  }
+  if (is_there) return reach();
   if (answer_->outcome == Outcome::kRefused) return give_up(why(*answer_));
   // Some parameters start a routine and reset themselves. Whether it helped, the symptom tells.
   if (answer_->outcome == Outcome::kDone)

@@ -14,13 +14,10 @@ bool is_service(EndpointKind kind) {
   return kind == EndpointKind::kServer || kind == EndpointKind::kClient;
 }
 
-// "/namespace/camera" -> "camera"
-std::string own_name(const std::string& node) { return node.substr(node.rfind('/') + 1); }
-
 }  // namespace
 
 DependencyGraph::DependencyGraph(const RuleSet& rules)
-    : rules_(rules), nodes_of_components_(rules.components.size()) {
+    : binding_(rules), nodes_of_components_(rules.components.size()) {
   // Every node prints and announces parameters; none waits for another because of that.
   ignored_ = {"/rosout", "/parameter_events"};
   ignored_.insert(rules.ignored_topics.begin(), rules.ignored_topics.end());
@@ -47,17 +44,7 @@ std::optional<NodeId> DependencyGraph::intern_node(const std::string& name) {
   if (known != node_ids_.end()) return known->second;
   if (nodes_.size() >= kMaxNodes) return std::nullopt;
 
-  std::optional<ComponentId> component;
-  for (std::size_t c = 0; c < rules_.components.size() && !component; ++c) {
-    if (rules_.components[c].node == name) component = ComponentId(c);
-  }
-  for (std::size_t c = 0; c < rules_.components.size() && !component; ++c) {
-    const bool is_looked_up = rules_.components[c].node.empty();
-    const bool is_bound =
-        nodes_of_components_[c] && !nodes_[nodes_of_components_[c]->index].name.empty();
-    if (is_looked_up && !is_bound && rules_.components[c].name == own_name(name))
-      component = ComponentId(c);
-  }
+  const std::optional<ComponentId> component = binding_.bind(name);
   std::optional<NodeId> id;
   if (component) id = nodes_of_components_[component->index];
   if (!id) {
@@ -139,12 +126,6 @@ bool DependencyGraph::counts(const End& end, const Channel& channel, bool produc
 bool DependencyGraph::is_present(ComponentId component) const {
   const auto node = nodes_of_components_[component.index];
   return node && nodes_[node->index].is_present;
-}
-
-const std::string& DependencyGraph::node_name(ComponentId component) const {
-  static const std::string kNone;
-  const auto node = nodes_of_components_[component.index];
-  return node ? nodes_[node->index].name : kNone;
 }
 
 std::optional<ComponentId> DependencyGraph::component_of(const std::string& node) const {

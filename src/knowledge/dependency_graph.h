@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "language/rule_set.h"
+#include "robot/component_binding.h"
 #include "robot/observation.h"
 
 namespace culprit {
@@ -31,7 +32,6 @@ class DependencyGraph {
   static constexpr std::size_t kMaxNodes = 20000;
   static constexpr std::size_t kMaxChannels = 100000;
 
-  // `rules` must outlive the graph: components, declared dependencies, ignored topics.
   explicit DependencyGraph(const RuleSet& rules);
 
   // Each gives whether anything changed.
@@ -43,7 +43,7 @@ class DependencyGraph {
 
   bool is_present(ComponentId component) const;
   // The full name of the component's node; empty while an undeclared one was not seen.
-  const std::string& node_name(ComponentId component) const;
+  const std::string& node_name(ComponentId component) const { return binding_.node_of(component); }
   // The component that this node is, if it is one.
   std::optional<ComponentId> component_of(const std::string& node) const;
 
@@ -92,7 +92,7 @@ class DependencyGraph {
   bool counts(const End& end, const Channel& channel, bool producer) const;
   const std::vector<ComponentId>& reach(ComponentId from, Direction direction) const;
 
-  const RuleSet& rules_;
+  ComponentBinding binding_;
   std::vector<Node> nodes_;
   std::vector<Channel> channels_;
   std::unordered_map<std::string, NodeId> node_ids_;

@@ -1,5 +1,6 @@
 #include "knowledge/describe.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace culprit {
@@ -56,14 +57,14 @@ class Describer {
   }
   std::string operator()(const FailureHeldBack& e) const {
     if (e.candidates.empty()) return "";
-    // The first reason that is not "tried" is what it waits for.
-    const Candidate* shown = &e.candidates.front();
-    for (const Candidate& candidate : e.candidates) {
-      if (candidate.excluded == Condition::kTried) continue;
-      shown = &candidate;
-      break;
-    }
-    return rules_[e.rule].name + " waits: " + describe_exclusion(*shown, rules_);
+    // What it really waits for: a strategy that was tried or makes no sense would not be next in
+    // any case.
+    const auto is_out = [](const Candidate& c) {
+      return c.excluded == Condition::kTried || c.excluded == Condition::kInvalid;
+    };
+    const auto waiting = std::find_if_not(e.candidates.begin(), e.candidates.end(), is_out);
+    const Candidate& shown = waiting == e.candidates.end() ? e.candidates.front() : *waiting;
+    return rules_[e.rule].name + " waits: " + describe_exclusion(shown, rules_);
   }
   std::string operator()(const AdaptationDone& e) const {
     const Adaptation& adaptation = rules_[e.strategy].adaptations[e.adaptation];
@@ -78,7 +79,7 @@ class Describer {
     return strategy.name + " did not resolve " + rules_[strategy.rule].name + ": " + e.reason;
   }
   std::string operator()(const Undone& e) const {
-    return (e.succeeded ? "undone: " : "could not be undone: ") + e.what;
+    return e.succeeded ? e.what + " again" : "cannot be undone: " + e.what;
   }
   std::string operator()(const RoundSpent& e) const {
     return rules_[e.rule].name + ": nothing left to try; trying anew after a pause";

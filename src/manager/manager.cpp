@@ -22,15 +22,14 @@ bool is_news(const Observation& observation) {
 
 }  // namespace
 
-Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Autonomy autonomy,
-                 Time start)
+Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Options options)
     : knowledge_(rules),
-      monitor_(knowledge_, start),
+      monitor_(knowledge_, options.start, later(options.start, options.settling)),
       analyzer_(knowledge_),
       planner_(std::move(planner)),
       executor_(knowledge_),
-      autonomy_(autonomy),
-      now_(start),
+      autonomy_(options.autonomy),
+      now_(options.start),
       held_back_(rules.rules.size()) {}
 
 std::vector<Command> Manager::step(Time now, std::span<const Observation> observations) {

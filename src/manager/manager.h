@@ -28,9 +28,17 @@ enum class Autonomy : std::uint8_t {
 
 class Manager {
  public:
-  // `rules` must outlive the manager and keep its address. `start` is when watching begins.
-  Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Autonomy autonomy,
-          Time start);
+  // Discovery takes this long in the worst case: participants announce themselves every 3 s.
+  static constexpr Duration kDiscovery = std::chrono::seconds(5);
+
+  struct Options {
+    Autonomy autonomy = Autonomy::kAct;
+    Time start{};                    // when watching begins
+    Duration settling = kDiscovery;  // for so long nothing is called absent because it was not seen
+  };
+
+  // `rules` must outlive the manager and keep its address.
+  Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Options options);
 
   // Takes in what was observed, oldest first, and gives the requests that follow. Times never go
   // back; one that does is taken for the latest seen. Never throws, never blocks; allocates nothing

@@ -1,7 +1,8 @@
 // Drives a manager over a robot: waits, steps, carries out.
 //
-// The only loop there is. It steps the manager as soon as something was observed or one of its deadlines has passed;
-// there is no period. A simulated robot runs through the same loop in virtual time.
+// The only loop there is. It steps the manager as soon as something was observed or one of its
+// deadlines has passed; there is no period. A simulated robot runs through the same loop in virtual
+// time.
 #pragma once
 
 #include <atomic>
@@ -20,8 +21,8 @@ class Runtime {
   // Called after every step in which something happened, on the thread of run(). It must not block.
   std::function<void(const Manager&)> on_events;
 
-  // Runs until `stop` is set, or the robot's clock has come to `end`. Whoever sets `stop` also has to interrupt the
-  // robot's waiting.
+  // Runs until `stop` is set, or the robot's clock has come to `end`. Whoever sets `stop` also has
+  // to interrupt the robot's waiting.
   void run(const std::atomic<bool>& stop, Time end = kNever);
 
  private:

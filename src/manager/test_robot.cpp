@@ -13,8 +13,8 @@ TestRobot::TestRobot(const std::string& text, PaperSwitches switches, Autonomy a
     if (d.severity == Severity::kError) ADD_FAILURE() << render(d, source);
   }
   rules_ = std::make_unique<RuleSet>(checked.rules.value_or(RuleSet{}));
-  manager_ =
-      std::make_unique<Manager>(*rules_, std::make_unique<PaperPlanner>(switches), autonomy, now);
+  manager_ = std::make_unique<Manager>(*rules_, std::make_unique<PaperPlanner>(switches),
+                                       Manager::Options{autonomy, now});
 }
 
 TestRobot::Component& TestRobot::add(const std::string& name, std::vector<std::string> needs,

@@ -32,9 +32,10 @@ double as_number(const Slot& slot, Type type) {
 
 }  // namespace
 
-Monitor::Monitor(Knowledge& knowledge, Time start)
+Monitor::Monitor(Knowledge& knowledge, Time start, Time settled)
     : knowledge_(knowledge),
       start_(start),
+      settled_(settled),
       topics_(knowledge.rules.topics.size()),
       signals_(knowledge.rules.signals.size()),
       derived_(knowledge.rules.inputs.size()),
@@ -59,7 +60,7 @@ Monitor::Monitor(Knowledge& knowledge, Time start)
           if (input.kind == Kind::kPhi)
             derived_[i].deviations.push_back(monitor::PhiAccrual::deviations(threshold));
         }
-        deadlines_.set(i, later(start_, kWarmUp));
+        deadlines_.set(i, settled_);
         break;
       case Kind::kSignal:
       case Kind::kMean:
@@ -88,7 +89,7 @@ Monitor::Monitor(Knowledge& knowledge, Time start)
       parameter_signals_[parameter->index].push_back(SignalId(s));
     }
   }
-  deadlines_.set(rules.inputs.size(), later(start_, kWarmUp));
+  deadlines_.set(rules.inputs.size(), settled_);
 }
 
 void Monitor::observe(const Observation& observation, Time at) {
@@ -175,14 +176,14 @@ void Monitor::update(InputId id, Time now) {
 Slot Monitor::age(InputId id, Time now) const {
   const Topic& topic = topics_[knowledge_.rules[id].topic.index];
   if (topic.last) return Slot::of(now - *topic.last);
-  return is_warm(now) ? Slot::of(now - start_) : Slot();
+  return now >= settled_ ? Slot::of(now - start_) : Slot();
 }
 
 Slot Monitor::rate(InputId id, Time now) {
   const Input& input = knowledge_.rules[id];
   const Topic& topic = topics_[input.topic.index];
   const bool window_is_full = topic.first && later(*topic.first, input.window) <= now;
-  if (topic.first ? !window_is_full : !is_warm(now)) return {};
+  if (topic.first ? !window_is_full : now < settled_) return {};
   derived_[id.index].count.advance(now);
   return Slot::of(derived_[id.index].count.rate());
 }
@@ -196,7 +197,7 @@ Slot Monitor::phi(InputId id, Time now) const {
 Time Monitor::next_crossing(InputId id, Time now) const {
   const Input& input = knowledge_.rules[id];
   const Topic& topic = topics_[input.topic.index];
-  if (!topic.last && !is_warm(now)) return later(start_, kWarmUp);
+  if (!topic.last && now < settled_) return settled_;
   if (input.readers.empty()) return kNever;
   if (!input.only_compared && input.kind != Kind::kRate) return later(now, knowledge_.rules.cycle);
   switch (input.kind) {
@@ -401,7 +402,7 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   ComponentState& state = knowledge_.components[component];
   const bool is_alive = state.in_graph && state.process == ProcessState::kRunning &&
                         state.missed_probes < kMissedProbes;
-  if (!is_alive && !state.alive && !is_warm(at)) return;  // it may still be discovered
+  if (!is_alive && !state.alive && at < settled_) return;  // it may still be discovered
   if (state.alive == is_alive) return;
   const bool was_known = state.alive.has_value();
   state.alive = is_alive;

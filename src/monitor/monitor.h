@@ -21,15 +21,13 @@ namespace culprit {
 
 class Monitor {
  public:
-  // Discovery needs this long in the worst case (announcements come every 3 s). Until then, what
-  // was not seen is unknown; from then on it is absent: a component that is not there is not alive,
-  // a topic that never spoke is silent.
-  static constexpr Duration kWarmUp = std::chrono::seconds(5);
   // A component that is only known by probing is lost after this many unanswered ones.
   static constexpr int kMissedProbes = 2;
 
-  // `knowledge` must outlive the monitor. `start` is when watching begins.
-  Monitor(Knowledge& knowledge, Time start);
+  // `knowledge` must outlive the monitor. Watching begins at `start`. Until `settled`, what was not
+  // seen is unknown: it may still be discovered. From then on it is absent: a component that is not
+  // there is not alive, a topic that never spoke is silent.
+  Monitor(Knowledge& knowledge, Time start, Time settled);
 
   // Takes in an observation as of `at`, which never goes back.
   void observe(const Observation& observation, Time at);
@@ -91,10 +89,10 @@ class Monitor {
 
   void forget_process(ComponentId component, Time at);
   void update_alive(ComponentId component, Time at, const std::string& remark);
-  bool is_warm(Time now) const { return now >= later(start_, kWarmUp); }
 
   Knowledge& knowledge_;
   Time start_;
+  Time settled_;
   std::vector<Topic> topics_;
   std::vector<Signal> signals_;
   std::vector<Derived> derived_;
@@ -102,7 +100,7 @@ class Monitor {
   std::vector<std::vector<InputId>> parameter_inputs_;
   std::vector<std::vector<SignalId>> parameter_signals_;
   std::vector<std::vector<InputId>> diagnostic_inputs_;
-  Deadlines deadlines_;  // by InputId; one more for the end of the warm-up
+  Deadlines deadlines_;  // by InputId; one more for `settled`
 };
 
 }  // namespace culprit

@@ -86,7 +86,7 @@ struct Oracle {
 RC_GTEST_PROP(Monitor, KeepsEveryComparisonTrueWithoutPolling, ()) {
   const Checked checked = check(Source("test.rules", kRules));
   Knowledge knowledge(*checked.rules);
-  Monitor monitor(knowledge, Time{});
+  Monitor monitor(knowledge, Time{}, Time(5s));
   Oracle oracle;
   Time now{};
   for (int i = *rc::gen::inRange(5, 60); i > 0; --i) {
@@ -126,7 +126,7 @@ struct Watched {
   explicit Watched(const std::string& text)
       : rules(*check(Source("test.rules", text)).rules),
         knowledge(rules),
-        monitor(knowledge, Time{}) {}
+        monitor(knowledge, Time{}, Time(5s)) {}
   template <class What>
   void observe(Duration at, What what) {
     const Time time(at);

@@ -18,7 +18,8 @@ Time live_now() {
   return Time(std::chrono::duration_cast<Duration>(Steady::now().time_since_epoch()));
 }
 
-void Inbox::put(Observation observation) {
+void Inbox::put(Observation observation, Urgency urgency) {
+  bool wake = false;
   {
     const std::lock_guard lock(mutex_);
     if (waiting_.size() >= kMaxWaiting) {
@@ -28,20 +29,26 @@ void Inbox::put(Observation observation) {
       if (oldest != waiting_.end()) waiting_.erase(oldest);
       ++dropped_;
     }
+    // The first one that is not urgent wakes the reader too, who then waits a little for more.
+    wake = urgency == Urgency::kNow ? !is_urgent_ : waiting_.empty();
+    is_urgent_ |= urgency == Urgency::kNow;
     waiting_.push_back(std::move(observation));
   }
-  something_came_.notify_one();
+  if (wake) something_came_.notify_one();
 }
 
 void Inbox::take(Time until, std::vector<Observation>& observations) {
   std::unique_lock lock(mutex_);
-  const auto is_ready = [&] { return !waiting_.empty() || is_interrupted_; };
-  if (until == kNever) {
-    something_came_.wait(lock, is_ready);
-  } else {
-    something_came_.wait_until(lock, as_steady(until), is_ready);
+  while (!is_urgent_ && !is_interrupted_) {
+    const Time end = waiting_.empty() ? until : std::min(until, waiting_.front().at + kSoon);
+    if (end == kNever) {
+      something_came_.wait(lock);
+    } else if (something_came_.wait_until(lock, as_steady(end)) == std::cv_status::timeout) {
+      break;
+    }
   }
   is_interrupted_ = false;
+  is_urgent_ = false;
   observations.insert(observations.end(), std::make_move_iterator(waiting_.begin()),
                       std::make_move_iterator(waiting_.end()));
   waiting_.clear();

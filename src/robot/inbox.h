@@ -13,19 +13,27 @@ namespace culprit {
 // The clock of a live robot: monotonic, so that no setting of the wall clock looks like a silence.
 Time live_now();
 
+// Whether somebody should act on it at once. A sample of a topic that speaks anyway changes nothing
+// by itself: such observations are handed over together, a little later, so that thousands a second
+// do not wake a thread each.
+enum class Urgency : std::uint8_t { kNow, kSoon };
+
 // All members may be called from any thread.
 class Inbox {
  public:
+  // How long an observation that is not urgent may lie here.
+  static constexpr Duration kSoon = std::chrono::milliseconds(20);
+
   // Observations beyond this many that nobody took are dropped, oldest first: a flood must not eat
   // the memory. Replies are never dropped.
   static constexpr std::size_t kMaxWaiting = 1 << 16;
 
   // Stamps what was observed with the present time.
   template <class What>
-  void put(What what) {
-    put(Observation{live_now(), std::move(what)});
+  void put(What what, Urgency urgency = Urgency::kNow) {
+    put(Observation{live_now(), std::move(what)}, urgency);
   }
-  void put(Observation observation);
+  void put(Observation observation, Urgency urgency);
 
   // Waits until something is there, `until` has come, or interrupt() was called, and appends what
   // is there.
@@ -41,6 +49,7 @@ class Inbox {
   mutable std::mutex mutex_;
   std::condition_variable something_came_;
   std::vector<Observation> waiting_;
+  bool is_urgent_ = false;
   std::size_t dropped_ = 0;
   bool is_interrupted_ = false;
 };

@@ -1,0 +1,29 @@
+#include "robot/component_binding.h"
+
+namespace culprit {
+
+ComponentBinding::ComponentBinding(const RuleSet& rules) {
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    const Component& component = rules.components[c];
+    nodes_.push_back(component.node);
+    if (component.node.empty()) {
+      without_node_.emplace(component.name, ComponentId(c));
+    } else {
+      components_.emplace(component.node, ComponentId(c));
+    }
+  }
+}
+
+std::optional<ComponentId> ComponentBinding::bind(const std::string& node) {
+  const auto known = components_.find(node);
+  if (known != components_.end()) return known->second;
+  const auto fitting = without_node_.find(node.substr(node.rfind('/') + 1));
+  if (fitting == without_node_.end()) return std::nullopt;
+  const ComponentId component = fitting->second;
+  without_node_.erase(fitting);
+  components_.emplace(node, component);
+  nodes_[component.index] = node;
+  return component;
+}
+
+}  // namespace culprit
