@@ -23,6 +23,8 @@ endif()
 # Builds src/<folder>/**.cpp but its tests and programs (*_main.cpp), and the test program <folder>_test of *_test.cpp and
 # of what only tests use (test_*.cpp).
 # USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
+# *_live_test.cpp make a program of their own, <folder>_live_test: they start the processes of a robot, so they run alone
+# and carry the label "live".
 function(culprit_library folder)
   cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES" ${ARGN})
   set(dir ${CMAKE_SOURCE_DIR}/src/${folder})
@@ -34,6 +36,9 @@ function(culprit_library folder)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "(_test|_main|/test_[a-z_]+)\\.cpp$")
   list(FILTER tests INCLUDE REGEX "(_test|/test_[a-z_]+)\\.cpp$")
+  set(live_tests ${tests})
+  list(FILTER tests EXCLUDE REGEX "_live_test\\.cpp$")
+  list(FILTER live_tests INCLUDE REGEX "(_live_test|/test_[a-z_]+)\\.cpp$")
 
   if(sources)
     add_library(${folder} STATIC ${sources})
@@ -52,6 +57,10 @@ function(culprit_library folder)
     endif()
     culprit_test(${folder}_test SOURCES ${tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES} ${serial})
   endif()
+  if(CULPRIT_TESTS AND live_tests MATCHES "_live_test\\.cpp")
+    culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES}
+                 SERIAL LABELS live)
+  endif()
 endfunction()
 
 # culprit_program(<name> <source> USES <folder>...): lands in build/<preset>/bin.
@@ -62,16 +71,19 @@ function(culprit_program name source)
   install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
 
-# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL]): one CTest test for each TEST.
+# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LABELS ...]): one CTest test for each TEST.
 # SERIAL tests run alone: they start processes or measure how a live robot behaves.
 function(culprit_test name)
-  cmake_parse_arguments(ARG "SERIAL" "" "SOURCES;USES;PACKAGES" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL" "" "SOURCES;USES;PACKAGES;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PACKAGES} GTest::gtest_main GTest::gmock rapidcheck
                                         culprit_options)
   set(properties TIMEOUT 300)
   if(ARG_SERIAL)
     list(APPEND properties RUN_SERIAL TRUE)
+  endif()
+  if(ARG_LABELS)
+    list(APPEND properties LABELS "${ARG_LABELS}")
   endif()
   gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60
                        PROPERTIES ${properties})

@@ -1,0 +1,24 @@
+// Text of a .msg file: it is read, or refused with a message that names its line.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "ros2/message_definition.h"
+#include "ros2/names.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace culprit::ros2;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const auto definition = parse_message_definition(text, "a/msg/B", "B.msg");
+  if (!definition) {
+    if (!definition.error().starts_with("B.msg:")) std::abort();
+    return 0;
+  }
+  for (const FieldDefinition& field : definition->fields) {
+    const auto* nested = std::get_if<std::string>(&field.element);
+    if (nested != nullptr && !is_valid_type_name(*nested)) std::abort();
+    if (field.count == 0) std::abort();
+  }
+  return 0;
+}

@@ -1,0 +1,302 @@
+#include "ros2/component_link.h"
+
+#include "ros2/lifecycle.h"
+#include "ros2/parameter_store.h"
+#include "ros2/services.h"
+
+namespace culprit::ros2 {
+namespace {
+
+using namespace std::chrono_literals;
+
+// How long a node that was just seen may take until its services answer.
+constexpr Duration kJoining = 5s;
+constexpr Duration kProbe = 500ms;
+
+Lifecycle to_lifecycle(std::uint8_t id) {
+  switch (static_cast<LifecycleState>(id)) {
+    case LifecycleState::kUnconfigured:
+      return Lifecycle::kUnconfigured;
+    case LifecycleState::kInactive:
+      return Lifecycle::kInactive;
+    case LifecycleState::kActive:
+      return Lifecycle::kActive;
+    case LifecycleState::kFinalized:
+      return Lifecycle::kFinalized;
+    case LifecycleState::kConfiguring:
+    case LifecycleState::kCleaningUp:
+    case LifecycleState::kShuttingDown:
+    case LifecycleState::kActivating:
+    case LifecycleState::kDeactivating:
+    case LifecycleState::kErrorProcessing:
+      return Lifecycle::kTransition;
+    default:
+      return Lifecycle::kUnknown;
+  }
+}
+
+msg::Transition to_message(Transition transition) {
+  switch (transition) {
+    case Transition::kConfigure:
+      return {static_cast<std::uint8_t>(TransitionId::kConfigure), ""};
+    case Transition::kCleanup:
+      return {static_cast<std::uint8_t>(TransitionId::kCleanup), ""};
+    case Transition::kActivate:
+      return {static_cast<std::uint8_t>(TransitionId::kActivate), ""};
+    case Transition::kDeactivate:
+      return {static_cast<std::uint8_t>(TransitionId::kDeactivate), ""};
+  }
+  return {};
+}
+
+}  // namespace
+
+ComponentLink::ComponentLink(NodeEntry& self, ComponentId component, std::string node,
+                             const RuleSet& rules, Inbox& inbox)
+    : self_(self), component_(component), node_(std::move(node)), rules_(rules), inbox_(inbox) {}
+
+void ComponentLink::service_seen(const std::string& service, const std::string& type) {
+  {
+    const std::lock_guard lock(mutex_);
+    services_[service] = type;
+  }
+  if (service == node_ + "/change_state") {
+    watch_transitions();
+    read_lifecycle();
+  }
+  if (service == node_ + "/get_parameters") read_parameters();
+}
+
+// ---- clients
+
+ServiceClient* ComponentLink::make(std::unique_ptr<ServiceClient>& client,
+                                   const std::string& service, std::string_view type,
+                                   const Qos& qos, ServiceClient::Probe probe) {
+  const std::lock_guard lock(mutex_);
+  if (client) return client.get();
+  auto made = ServiceClient::create(self_, {service, std::string(type)}, qos, std::move(probe));
+  if (!made) {
+    inbox_.put(LinkTrouble{"cannot call " + service + ": " + made.error()});
+    return nullptr;
+  }
+  client = std::move(*made);
+  return client.get();
+}
+
+ServiceClient* ComponentLink::lifecycle() {
+  return make(lifecycle_, node_ + "/change_state", srv::ChangeState::kType, qos::kServices,
+              {{node_ + "/get_state", std::string(srv::GetState::kType)},
+               encode(srv::GetState::Request{})});
+}
+
+ServiceClient* ComponentLink::parameters() {
+  return make(parameters_, node_ + "/set_parameters", srv::SetParameters::kType,
+              qos::kParameterServices,
+              {{node_ + "/get_parameters", std::string(srv::GetParameters::kType)},
+               encode(srv::GetParameters::Request{})});
+}
+
+ServiceClient* ComponentLink::modes() {
+  return make(
+      modes_, node_ + "/change_mode", srv::ChangeMode::kType, qos::kServices,
+      {{node_ + "/get_mode", std::string(srv::GetMode::kType)}, encode(srv::GetMode::Request{})});
+}
+
+ServiceClient* ComponentLink::routine(const std::string& service, const std::string& type) {
+  std::unique_ptr<ServiceClient>* place = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    place = &routines_[service];
+  }
+  return make(*place, service, type, qos::kServices,
+              {{node_ + "/get_parameters", std::string(srv::GetParameters::kType)},
+               encode(srv::GetParameters::Request{})});
+}
+
+// ---- what is read without being commanded
+
+void ComponentLink::read_lifecycle() {
+  ServiceClient* client = lifecycle();
+  if (client == nullptr) return;
+  client->probe()->call(
+      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kJoining,
+      [this](const CallResult& result) {
+        if (result.outcome != CallOutcome::kAnswered) return;
+        const auto response = decode<srv::GetState::Response>(result.reply);
+        if (response)
+          inbox_.put(LifecycleRead{component_, to_lifecycle(response->current_state.id)});
+      });
+}
+
+void ComponentLink::watch_transitions() {
+  const std::lock_guard lock(mutex_);
+  if (transitions_) return;
+  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 10};
+  auto subscription = RawSubscription::create(
+      self_, node_ + "/transition_event", msg::TransitionEvent::kType, kQos, PayloadUse::kWhole,
+      [this](const Sample& sample) {
+        const auto event = decode<msg::TransitionEvent>(sample.payload);
+        if (event) inbox_.put(LifecycleRead{component_, to_lifecycle(event->goal_state.id)});
+      });
+  if (subscription) transitions_ = std::move(*subscription);
+}
+
+void ComponentLink::read_parameters() {
+  ServiceClient* client = parameters();
+  if (client == nullptr) return;
+  for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
+    if (rules_.parameters[p].component != component_) continue;
+    // One by one: a name that is not declared would leave all of them unanswered.
+    client->probe()->call(encode(srv::GetParameters::Request{{rules_.parameters[p].name}}),
+                          Repeat::kUntilAnswered, kJoining, [this, p](const CallResult& result) {
+                            if (result.outcome != CallOutcome::kAnswered) return;
+                            const auto response =
+                                decode<srv::GetParameters::Response>(result.reply);
+                            if (!response || response->values.size() != 1) return;
+                            if (auto value = to_value(response->values[0])) {
+                              inbox_.put(ParameterRead{ParameterId(p), std::move(*value)});
+                            }
+                          });
+  }
+}
+
+void ComponentLink::probe() {
+  ServiceClient* client = parameters();
+  if (client == nullptr) return;
+  client->probe()->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kProbe,
+                        [this](const CallResult& result) {
+                          inbox_.put(Probed{component_, result.outcome == CallOutcome::kAnswered});
+                        });
+}
+
+// ---- commands
+
+void ComponentLink::execute(const Command& command) {
+  std::visit([&](const auto& what) { run(command, what); }, command.what);
+}
+
+void ComponentLink::reply(const Command& command, Answer answer) {
+  inbox_.put(Reply{command.id, answer.outcome, std::move(answer.value), std::move(answer.text)});
+}
+
+template <class Service, class Understand>
+void ComponentLink::ask(ServiceClient* client, const typename Service::Request& request,
+                        Repeat repeat, const Command& command, Understand understand) {
+  if (client == nullptr)
+    return reply(command, {Outcome::kUnreachable, {}, "no client could be made"});
+  client->call(
+      encode(request), repeat, command.timeout,
+      [this, command, understand](const CallResult& result) {
+        switch (result.outcome) {
+          case CallOutcome::kUnreachable:
+            return reply(command,
+                         {Outcome::kUnreachable,
+                          {},
+                          node_ + " offers no " + std::string(Service::kType) + " that answers"});
+          case CallOutcome::kTimedOut:
+            return reply(
+                command,
+                {Outcome::kTimedOut, {}, "no answer within " + to_string(command.timeout)});
+          case CallOutcome::kAnswered:
+            break;
+        }
+        const auto response = decode<typename Service::Response>(result.reply);
+        if (!response) {
+          return reply(command, {Outcome::kRefused,
+                                 {},
+                                 "the answer is no " + std::string(Service::kType) + " response"});
+        }
+        reply(command, understand(*response));
+      });
+}
+
+void ComponentLink::run(const Command& command, const ChangeLifecycle& what) {
+  ask<srv::ChangeState>(
+      lifecycle(), {to_message(what.transition)}, Repeat::kNever, command,
+      [](const srv::ChangeState::Response& response) {
+        return Answer{response.success ? Outcome::kDone : Outcome::kRefused, {}, ""};
+      });
+}
+
+void ComponentLink::run(const Command& command, const ReadLifecycle&) {
+  ServiceClient* client = lifecycle();
+  ask<srv::GetState>(client == nullptr ? nullptr : client->probe(), {}, Repeat::kUntilAnswered,
+                     command, [this](const srv::GetState::Response& response) {
+                       const Lifecycle state = to_lifecycle(response.current_state.id);
+                       inbox_.put(LifecycleRead{component_, state});
+                       return Answer{Outcome::kDone, state, ""};
+                     });
+}
+
+void ComponentLink::run(const Command& command, const SetParameter& what) {
+  ask<srv::SetParameters>(
+      parameters(), {{{what.name, to_parameter_value(what.value)}}}, Repeat::kNever, command,
+      [name = what.name](const srv::SetParameters::Response& response) {
+        if (response.results.size() != 1) {
+          return Answer{Outcome::kRefused, {}, "there is no parameter " + name};
+        }
+        const auto& result = response.results[0];
+        return Answer{result.successful ? Outcome::kDone : Outcome::kRefused, {}, result.reason};
+      });
+}
+
+void ComponentLink::run(const Command& command, const ReadParameter& what) {
+  ServiceClient* client = parameters();
+  ask<srv::GetParameters>(
+      client == nullptr ? nullptr : client->probe(), {{what.name}}, Repeat::kUntilAnswered, command,
+      [name = what.name](const srv::GetParameters::Response& response) {
+        const bool is_there = response.values.size() == 1 && response.values[0].type != 0;
+        if (!is_there) return Answer{Outcome::kRefused, {}, "there is no parameter " + name};
+        auto value = to_value(response.values[0]);
+        if (!value) return Answer{Outcome::kRefused, {}, "parameter " + name + " is a list"};
+        return Answer{Outcome::kDone, std::move(*value), ""};
+      });
+}
+
+void ComponentLink::run(const Command& command, const CallService& what) {
+  std::string type;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = services_.find(what.service);
+    if (known != services_.end()) type = known->second;
+  }
+  if (type.empty())
+    return reply(command,
+                 {Outcome::kUnreachable, {}, node_ + " offers no service " + what.service});
+  if (type != srv::Trigger::kType) {
+    return reply(command, {Outcome::kRefused,
+                           {},
+                           what.service + " is a " + type + "; only " +
+                               std::string(srv::Trigger::kType) + " can be called"});
+  }
+  ask<srv::Trigger>(
+      routine(what.service, type), {}, Repeat::kNever, command,
+      [](const srv::Trigger::Response& response) {
+        return Answer{response.success ? Outcome::kDone : Outcome::kRefused, {}, response.message};
+      });
+}
+
+void ComponentLink::run(const Command& command, const ChangeMode& what) {
+  ask<srv::ChangeMode>(
+      modes(), {what.mode}, Repeat::kNever, command, [](const srv::ChangeMode::Response& response) {
+        return Answer{response.success ? Outcome::kDone : Outcome::kRefused, {}, ""};
+      });
+}
+
+void ComponentLink::run(const Command& command, const ReadMode&) {
+  ServiceClient* client = modes();
+  ask<srv::GetMode>(client == nullptr ? nullptr : client->probe(), {}, Repeat::kUntilAnswered,
+                    command, [](const srv::GetMode::Response& response) {
+                      return Answer{Outcome::kDone, Value(response.current_mode), ""};
+                    });
+}
+
+void ComponentLink::run(const Command& command, const StopProcess&) {
+  reply(command, {Outcome::kUnreachable, {}, "processes are not steered over DDS"});
+}
+
+void ComponentLink::run(const Command& command, const StartProcess&) {
+  reply(command, {Outcome::kUnreachable, {}, "processes are not steered over DDS"});
+}
+
+}  // namespace culprit::ros2

@@ -1,0 +1,89 @@
+// What culprit asks of one component's node: its lifecycle, its parameters, its modes, its
+// routines.
+//
+// Clients are made when the node is seen to offer a service, or at the first command that needs it,
+// and kept: a client that the server knows already needs no discovery when every millisecond
+// counts. Each changing service has a read of the same node as its probe (service_client.h), so
+// that a request is neither lost to discovery nor sent twice.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "language/rule_set.h"
+#include "robot/command.h"
+#include "robot/inbox.h"
+#include "ros2/service_client.h"
+#include "ros2/subscription.h"
+
+namespace culprit::ros2 {
+
+// All members may be called from any thread. What comes of them is put into the inbox: a Reply for
+// each command, and LifecycleRead, ParameterRead and Probed as they become known.
+class ComponentLink {
+ public:
+  // `self` is our own node, `node` the component's full name. All references must outlive the link.
+  ComponentLink(NodeEntry& self, ComponentId component, std::string node, const RuleSet& rules,
+                Inbox& inbox);
+
+  // The node was seen to offer a service: readies the client, reads the present state.
+  void service_seen(const std::string& service, const std::string& type);
+
+  // A cheap read that proves that the node answers.
+  void probe();
+
+  void execute(const Command& command);
+
+ private:
+  struct Answer {
+    Outcome outcome = Outcome::kDone;
+    decltype(Reply::value) value;
+    std::string text;
+  };
+
+  void run(const Command& command, const ChangeLifecycle& what);
+  void run(const Command& command, const ReadLifecycle& what);
+  void run(const Command& command, const SetParameter& what);
+  void run(const Command& command, const ReadParameter& what);
+  void run(const Command& command, const CallService& what);
+  void run(const Command& command, const ChangeMode& what);
+  void run(const Command& command, const ReadMode& what);
+  // Processes are not this link's.
+  void run(const Command& command, const StopProcess& what);
+  void run(const Command& command, const StartProcess& what);
+
+  // Calls and turns the response into the command's Reply by `understand`.
+  template <class Service, class Understand>
+  void ask(ServiceClient* client, const typename Service::Request& request, Repeat repeat,
+           const Command& command, Understand understand);
+  void reply(const Command& command, Answer answer);
+
+  void read_lifecycle();
+  void watch_transitions();
+  void read_parameters();
+
+  ServiceClient* lifecycle();
+  ServiceClient* parameters();
+  ServiceClient* modes();
+  ServiceClient* routine(const std::string& service, const std::string& type);
+  ServiceClient* make(std::unique_ptr<ServiceClient>& client, const std::string& service,
+                      std::string_view type, const Qos& qos, ServiceClient::Probe probe);
+
+  NodeEntry& self_;
+  const ComponentId component_;
+  const std::string node_;
+  const RuleSet& rules_;
+  Inbox& inbox_;
+
+  std::mutex mutex_;  // guards what follows; never held while calling
+  std::unique_ptr<ServiceClient> lifecycle_;
+  std::unique_ptr<ServiceClient> parameters_;
+  std::unique_ptr<ServiceClient> modes_;
+  std::map<std::string, std::unique_ptr<ServiceClient>> routines_;
+  std::map<std::string, std::string> services_;  // that the node offers: name -> type
+  std::unique_ptr<RawSubscription> transitions_;
+};
+
+}  // namespace culprit::ros2

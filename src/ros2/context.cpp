@@ -1,0 +1,199 @@
+#include "ros2/context.h"
+
+#include <chrono>
+#include <utility>
+
+namespace culprit::ros2 {
+namespace {
+
+// How long peers are given to show the size of their gids before ours is taken to be the old one.
+// Theirs comes within milliseconds of discovery, unless a packet is lost.
+constexpr std::chrono::milliseconds kPatience(250);
+
+}  // namespace
+
+Expected<std::unique_ptr<Context>> Context::create(Executor& executor,
+                                                   const ParticipantOptions& options,
+                                                   Graph::Options graph) {
+  std::unique_ptr<Context> context(new Context(executor, std::move(graph)));
+  if (auto opened = context->open(options); !opened) return Error{opened.error()};
+  return context;
+}
+
+Context::Context(Executor& executor, Graph::Options graph)
+    : executor_(executor), graph_(with_watches(std::move(graph))), tasks_(executor) {}
+
+Graph::Options Context::with_watches(Graph::Options options) {
+  options.listener = [this, listener = std::move(options.listener)](const GraphChange& change) {
+    const auto* left = std::get_if<EndpointLeft>(&change);
+    if (left != nullptr && left->kind == EndpointKind::kServer) on_server_left(left->name);
+    if (listener) listener(change);
+  };
+  return options;
+}
+
+Expected<void> Context::open(const ParticipantOptions& options) {
+  gid_size_ = options.gid_size;
+  auto participant = Participant::create(options, [this](DiscoveryEvent event) {
+    tasks_.post([this, event = std::move(event)] { on_discovery(event); });
+  });
+  if (!participant) return Error{participant.error()};
+  participant_ = std::move(*participant);
+
+  auto writer = participant_->create_writer({.topic = std::string(kDiscoveryInfoTopic),
+                                             .type = std::string(kDiscoveryInfoType),
+                                             .qos = qos::kDiscoveryInfoWriter,
+                                             .user_data = {},
+                                             .on_match = {}});
+  if (!writer) return Error{writer.error()};
+  info_writer_ = std::move(*writer);
+
+  auto reader = participant_->create_reader(
+      {.topic = std::string(kDiscoveryInfoTopic),
+       .type = std::string(kDiscoveryInfoType),
+       .qos = qos::kDiscoveryInfoReader,
+       .user_data = {},
+       .on_match = {}},
+      [this](const Sample& sample) {
+        tasks_.post([this, payload = Bytes(sample.payload.begin(), sample.payload.end()),
+                     sender = sample.identity.writer.prefix()] { on_info(payload, sender); });
+      });
+  if (!reader) return Error{reader.error()};
+  info_reader_ = std::move(*reader);
+  {
+    const std::lock_guard lock(mutex_);
+    is_open_ = true;
+  }
+  schedule_announcement();  // the first peer may have come meanwhile
+  return {};
+}
+
+Context::~Context() { tasks_.close(); }
+
+std::string Context::unique_id() {
+  std::uint32_t number = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    number = next_id_++;
+  }
+  Guid id = participant_->guid();
+  for (std::size_t i = 15; i >= 12; --i, number >>= 8)
+    id.bytes[i] = static_cast<std::uint8_t>(number);
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : id.bytes) {  // as rmw_cyclonedds writes its own: "1.f.a3.0"
+    if (!text.empty()) text += '.';
+    if (byte >= 16) text += kDigits[byte / 16];
+    text += kDigits[byte % 16];
+  }
+  return text;
+}
+
+void Context::forget_process(int pid) {
+  tasks_.post([this, pid] { graph_.forget_process(pid); });
+}
+
+void Context::watch_servers(const void* owner, std::string service, std::function<void()> on_left) {
+  const std::lock_guard lock(mutex_);
+  watches_.insert_or_assign(owner, ServerWatch{std::move(service), std::move(on_left)});
+}
+
+void Context::unwatch_servers(const void* owner) {
+  const std::lock_guard lock(mutex_);
+  watches_.erase(owner);
+}
+
+// With the mutex, so that nobody is called whose unwatch_servers has returned.
+void Context::on_server_left(const std::string& service) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [owner, watch] : watches_) {
+    if (watch.service == service) watch.on_left();
+  }
+}
+
+void Context::on_discovery(const DiscoveryEvent& event) {
+  graph_.apply(event);
+  const auto* endpoint = std::get_if<EndpointInfo>(&event);
+  if (endpoint == nullptr || gid_size_) return;
+  // Iron and newer put the hash of the type into the user data of every endpoint.
+  if (endpoint->user_data.find("typehash=") != std::string::npos)
+    return decide(GidSize::kIronAndNewer);
+  if (endpoint->topic != kDiscoveryInfoTopic || std::exchange(is_deciding_, true)) return;
+  tasks_.post_at(Executor::Clock::now() + kPatience, [this] {
+    if (!gid_size_) decide(GidSize::kHumbleAndOlder);
+  });
+}
+
+void Context::on_info(const Bytes& payload, const GuidPrefix& sender) {
+  if (sender == participant_->guid().prefix()) return;
+  const auto info = decode_discovery_info(payload);
+  if (!info || info->participant.prefix() != sender)
+    return;  // nobody speaks for another participant
+  if (!gid_size_) decide(gid_size_of(payload));
+  graph_.apply(*info);
+}
+
+void Context::decide(GidSize size) {
+  gid_size_ = size;
+  announce();
+}
+
+void Context::schedule_announcement() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(is_scheduled_, true)) return;
+  }
+  tasks_.post([this] { announce(); });
+}
+
+void Context::announce() {
+  DiscoveryInfo info;
+  {
+    const std::lock_guard lock(mutex_);
+    is_scheduled_ = false;
+    if (!is_open_ || !gid_size_) return;  // without a peer there is nobody to read it
+    info.participant = participant_->guid();
+    for (const NodeEntry* node : nodes_) {
+      NodeEntities& entities =
+          info.nodes.emplace_back(NodeEntities{node->name_.name_space, node->name_.name, {}, {}});
+      for (const Guid& endpoint : node->endpoints_) {
+        (endpoint.is_reader() ? entities.readers : entities.writers).push_back(endpoint);
+      }
+    }
+  }
+  info_writer_->write(encode_discovery_info(info, *gid_size_));
+}
+
+NodeEntry::NodeEntry(Context& context, NodeName name) : context_(context), name_(std::move(name)) {
+  {
+    const std::lock_guard lock(context_.mutex_);
+    context_.nodes_.insert(this);
+  }
+  context_.schedule_announcement();
+}
+
+NodeEntry::~NodeEntry() {
+  {
+    const std::lock_guard lock(context_.mutex_);
+    context_.nodes_.erase(this);
+  }
+  context_.schedule_announcement();
+}
+
+void NodeEntry::add(const Guid& endpoint) {
+  {
+    const std::lock_guard lock(context_.mutex_);
+    endpoints_.insert(endpoint);
+  }
+  context_.schedule_announcement();
+}
+
+void NodeEntry::remove(const Guid& endpoint) {
+  {
+    const std::lock_guard lock(context_.mutex_);
+    endpoints_.erase(endpoint);
+  }
+  context_.schedule_announcement();
+}
+
+}  // namespace culprit::ros2

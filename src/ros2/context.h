@@ -1,0 +1,122 @@
+// A ROS 2 participant: a DDS participant, the live graph that it sees, and the nodes of this
+// process that it announces.
+//
+// Discovery and `ros_discovery_info` are brought to the executor's thread, in order; there the
+// graph is updated and its listener called, so a listener may create and destroy what it likes. The
+// graph belongs to that thread.
+//
+// Own nodes are announced after each change, once for all changes made in one go. With which size
+// of gid: as the options say, or as the first peer does; 24 bytes when there are peers that say
+// nothing about it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "language/expected.h"
+#include "ros2/discovery_info.h"
+#include "ros2/executor.h"
+#include "ros2/graph.h"
+#include "ros2/names.h"
+#include "ros2/options.h"
+#include "ros2/participant.h"
+
+namespace culprit::ros2 {
+
+class NodeEntry;
+
+class Context {
+ public:
+  // The executor outlives the context.
+  static Expected<std::unique_ptr<Context>> create(Executor& executor,
+                                                   const ParticipantOptions& options,
+                                                   Graph::Options graph = {});
+  ~Context();  // @pre no NodeEntry left
+
+  Executor& executor() { return executor_; }
+  Participant& participant() { return *participant_; }
+  // On the executor's thread only.
+  const Graph& graph() const { return graph_; }
+
+  // A text that no other has: Cyclone's services find the two endpoints of a client by it.
+  std::string unique_id();
+
+  // A process of this machine has ended. Its nodes leave the graph now, not when their leases end.
+  // From any thread.
+  void forget_process(int pid);
+
+  // Calls `on_left` on the executor's thread, before the graph's listener hears of it, whenever a
+  // server of `service` leaves the graph, until it is told to stop. `on_left` must not call back
+  // into the context.
+  void watch_servers(const void* owner, std::string service, std::function<void()> on_left);
+  void unwatch_servers(const void* owner);
+
+ private:
+  friend class NodeEntry;
+
+  struct ServerWatch {
+    std::string service;
+    std::function<void()> on_left;
+  };
+
+  Context(Executor& executor, Graph::Options graph);
+  Graph::Options with_watches(Graph::Options options);
+  Expected<void> open(const ParticipantOptions& options);
+
+  // On the executor's thread.
+  void on_discovery(const DiscoveryEvent& event);
+  void on_info(const Bytes& payload, const GuidPrefix& sender);
+  void decide(GidSize size);
+  void announce();
+  void on_server_left(const std::string& service);
+
+  // From any thread.
+  void schedule_announcement();
+
+  Executor& executor_;
+  Graph graph_;
+  std::optional<GidSize> gid_size_;
+  bool is_deciding_ = false;
+
+  std::mutex mutex_;      // guards the rest of this block
+  bool is_open_ = false;  // the members below are set, and stay as they are
+  std::set<NodeEntry*> nodes_;
+  std::map<const void*, ServerWatch> watches_;
+  bool is_scheduled_ = false;
+  std::uint32_t next_id_ = 1;
+
+  TaskGroup tasks_;  // outlives those that post to it
+  std::unique_ptr<Participant> participant_;
+  std::unique_ptr<Writer> info_writer_;
+  std::unique_ptr<Reader> info_reader_;
+};
+
+// One of our nodes, as others see it: a name, and the endpoints that are its. Thread-safe.
+class NodeEntry {
+ public:
+  NodeEntry(Context& context, NodeName name);
+  ~NodeEntry();
+  NodeEntry(const NodeEntry&) = delete;
+  NodeEntry& operator=(const NodeEntry&) = delete;
+
+  Context& context() const { return context_; }
+  const NodeName& name() const { return name_; }
+
+  void add(const Guid& endpoint);
+  void remove(const Guid& endpoint);
+
+ private:
+  friend class Context;
+
+  Context& context_;
+  const NodeName name_;
+  std::set<Guid> endpoints_;  // guarded by the context's mutex
+};
+
+}  // namespace culprit::ros2

@@ -1,0 +1,336 @@
+// Everything that differs between the generations of Fast DDS; participant.cpp is its only user.
+//
+// Written for 2.9 (Debian 12). What 2.6, 2.14 and 3.x want instead is in docs and would be decided
+// here, and only here: names of headers and namespaces, the shape of a TopicDataType, the discovery
+// callbacks, a few members of QoS.
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/TopicDataType.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+#include <fastdds/rtps/common/WriteParams.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include "ros2/participant.h"
+
+namespace culprit::ros2::fast_dds {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+namespace transport = eprosima::fastdds::rtps;
+using DdsDuration = eprosima::fastrtps::Duration_t;
+
+inline bool ok(const eprosima::fastrtps::types::ReturnCode_t& code) {
+  return code == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+}
+
+inline Guid to_guid(const rtps::GUID_t& guid) {
+  Guid out;
+  std::memcpy(out.bytes.data(), guid.guidPrefix.value, 12);
+  std::memcpy(out.bytes.data() + 12, guid.entityId.value, 4);
+  return out;
+}
+
+inline rtps::GUID_t from_guid(const Guid& guid) {
+  rtps::GUID_t out;
+  std::memcpy(out.guidPrefix.value, guid.bytes.data(), 12);
+  std::memcpy(out.entityId.value, guid.bytes.data() + 12, 4);
+  return out;
+}
+
+inline std::int64_t to_sequence(const rtps::SequenceNumber_t& number) {
+  if (number == rtps::SequenceNumber_t::unknown()) return 0;
+  return (static_cast<std::int64_t>(number.high) << 32) | number.low;
+}
+
+inline SampleIdentity to_identity(const rtps::SampleIdentity& identity) {
+  return {to_guid(identity.writer_guid()), to_sequence(identity.sequence_number())};
+}
+
+inline rtps::SampleIdentity from_identity(const SampleIdentity& identity) {
+  rtps::SampleIdentity out;  // unknown by default, which is what is sent for "none"
+  if (identity == SampleIdentity{}) return out;
+  out.writer_guid(from_guid(identity.writer));
+  if (identity.sequence != 0) {
+    out.sequence_number(rtps::SequenceNumber_t(static_cast<std::int32_t>(identity.sequence >> 32),
+                                               static_cast<std::uint32_t>(identity.sequence)));
+  }
+  return out;
+}
+
+inline SystemTime to_time(const rtps::Time_t& time) {
+  return SystemTime(std::chrono::nanoseconds(time.to_ns()));
+}
+
+inline std::string cut(std::string_view text) {
+  constexpr std::size_t kLongest = 1024;  // what a hostile peer can make us keep for each string
+  return std::string(text.substr(0, kLongest));
+}
+
+// What a DataReader fills in.
+struct Incoming {
+  PayloadUse use = PayloadUse::kWhole;
+  Bytes bytes;
+  std::size_t size = 0;
+};
+
+// What a DataWriter sends.
+struct Outgoing {
+  ByteView payload;
+};
+
+// A keyless type of which only the name is known; its samples are payloads, passed on as they are.
+class RawType final : public dds::TopicDataType {
+ public:
+  explicit RawType(const std::string& name) {
+    setName(name.c_str());
+    m_typeSize = 256;  // of the first allocation only; the memory policy grows it
+    m_isGetKeyDefined = false;
+    auto_fill_type_object(false);
+    auto_fill_type_information(false);
+  }
+
+  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
+    const ByteView bytes = static_cast<const Outgoing*>(data)->payload;
+    if (bytes.size() < kEncapsulationSize || payload->max_size < bytes.size()) return false;
+    std::memcpy(payload->data, bytes.data(), bytes.size());
+    payload->length = static_cast<std::uint32_t>(bytes.size());
+    payload->encapsulation = bytes[1] == 0 ? CDR_BE : CDR_LE;
+    return true;
+  }
+
+  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
+    auto& incoming = *static_cast<Incoming*>(data);
+    incoming.size = payload->length;
+    if (incoming.use == PayloadUse::kWhole)
+      incoming.bytes.assign(payload->data, payload->data + payload->length);
+    return true;
+  }
+
+  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
+    const auto size =
+        static_cast<std::uint32_t>(static_cast<const Outgoing*>(data)->payload.size());
+    return [size] { return size; };
+  }
+
+  void* createData() override { return new Incoming; }
+  void deleteData(void* data) override { delete static_cast<Incoming*>(data); }
+  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
+  bool is_bounded() const override { return false; }
+};
+
+inline std::optional<std::int64_t> write(dds::DataWriter& writer, ByteView payload,
+                                         const SampleIdentity& related) {
+  Outgoing outgoing{payload};
+  rtps::WriteParams params;
+  params.related_sample_identity(from_identity(related));
+  if (!writer.write(&outgoing, params)) return std::nullopt;
+  return to_sequence(params.sample_identity().sequence_number());
+}
+
+inline void forget_unacknowledged(dds::DataWriter& writer) {
+  std::size_t removed = 0;
+  writer.clear_history(&removed);
+}
+
+inline DdsDuration to_duration(Duration d) {
+  if (d == kInfinite) return eprosima::fastrtps::c_TimeInfinite;
+  return {static_cast<std::int32_t>(d.count() / 1'000'000'000),
+          static_cast<std::uint32_t>(d.count() % 1'000'000'000)};
+}
+
+inline Duration from_duration(const DdsDuration& d) {
+  if (d == eprosima::fastrtps::c_TimeInfinite) return kInfinite;
+  return std::chrono::seconds(d.seconds) + std::chrono::nanoseconds(d.nanosec);
+}
+
+// What readers and writers have in common. They are built up from nothing rather than from the
+// factory's defaults, which an XML file named by FASTRTPS_DEFAULT_PROFILES_FILE could have changed.
+template <class EntityQos>
+void apply(EntityQos& entity, const Qos& qos, const std::string& user_data) {
+  entity.reliability().kind = qos.reliability == Reliability::kReliable
+                                  ? dds::RELIABLE_RELIABILITY_QOS
+                                  : dds::BEST_EFFORT_RELIABILITY_QOS;
+  entity.durability().kind = qos.durability == Durability::kTransientLocal
+                                 ? dds::TRANSIENT_LOCAL_DURABILITY_QOS
+                                 : dds::VOLATILE_DURABILITY_QOS;
+  const bool keeps_all = qos.history == History::kKeepAll;
+  entity.history().kind = keeps_all ? dds::KEEP_ALL_HISTORY_QOS : dds::KEEP_LAST_HISTORY_QOS;
+  const auto depth = static_cast<std::int32_t>(qos.depth);
+  entity.history().depth = depth;
+  entity.resource_limits().max_instances = 1;                                    // no keys
+  entity.resource_limits().max_samples = keeps_all ? 0 : std::max(5000, depth);  // 0: no limit
+  entity.resource_limits().max_samples_per_instance = entity.resource_limits().max_samples;
+  entity.resource_limits().allocated_samples = std::min(10, depth);
+  entity.deadline().period = to_duration(qos.deadline);
+  entity.lifespan().duration = to_duration(qos.lifespan);
+  entity.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  entity.data_sharing().off();
+  entity.user_data().setValue({user_data.begin(), user_data.end()});
+}
+
+inline dds::DataReaderQos reader_qos(const Qos& qos, const std::string& user_data) {
+  dds::DataReaderQos out;
+  apply(out, qos, user_data);
+  // How often a reader that has not heard of a writer's history asks for it; 70 ms by default.
+  out.reliable_reader_qos().times.initialAcknackDelay = {0, 10'000'000};
+  return out;
+}
+
+inline dds::DataWriterQos writer_qos(const Qos& qos, const std::string& user_data) {
+  dds::DataWriterQos out;
+  apply(out, qos, user_data);
+  out.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
+  // 3 s by default; a late joiner that missed the first heartbeat waits that long for transient
+  // local samples.
+  out.reliable_writer_qos().times.heartbeatPeriod = {0, 20'000'000};
+  return out;
+}
+
+inline rtps::Locator_t locator(const std::string& ip, std::uint32_t port) {
+  rtps::Locator_t out;
+  out.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(out, ip);
+  out.port = port;
+  return out;
+}
+
+// `peers` are IPv4 addresses.
+inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& options,
+                                                 const std::vector<std::string>& peers) {
+  dds::DomainParticipantQos out;
+  out.name(options.enclave);
+  const std::string user_data = "enclave=" + options.enclave + ";";
+  out.user_data().setValue({user_data.begin(), user_data.end()});
+
+  auto& builtin = out.wire_protocol().builtin;
+  // Many nodes in one process make discovery data larger than the default of 5 kB.
+  builtin.readerHistoryMemoryPolicy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  builtin.writerHistoryMemoryPolicy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  builtin.discovery_config.leaseDuration_announcementperiod = {
+      1, 0};  // 3 s by default: how long we may stay unseen
+
+  // A list of peers replaces the multicast announcement, so that is part of it; its port must be
+  // explicit, for 0 means the unicast ports. This machine is always a peer: Cyclone does not listen
+  // to multicast on a loopback interface without that flag.
+  auto& announce_to = builtin.initialPeersList;
+  announce_to.push_back(locator("239.255.0.1", 7400 + 250 * options.domain));
+  announce_to.push_back(locator("127.0.0.1", 0));
+  for (const std::string& peer : peers) announce_to.push_back(locator(peer, 0));
+
+  auto udp = std::make_shared<transport::UDPv4TransportDescriptor>();
+  if (options.reach == Reach::kLocalhost) udp->interfaceWhiteList.emplace_back("127.0.0.1");
+  udp->receiveBufferSize = options.socket_buffer_bytes;
+  udp->sendBufferSize = options.socket_buffer_bytes;
+  udp->maxInitialPeersRange =
+      32;  // participants of one machine that are announced to, as ROS 2 Iron and newer
+  out.transport().use_builtin_transports = false;
+  out.transport().user_transports.push_back(std::move(udp));
+  return out;
+}
+
+inline Vendor to_vendor(const rtps::VendorId_t& id) {
+  if (id[0] != 0x01) return Vendor::kOther;
+  if (id[1] == 0x0f) return Vendor::kFastDds;
+  return id[1] == 0x10 ? Vendor::kCyclone : Vendor::kOther;
+}
+
+inline ParticipantInfo to_info(const rtps::ParticipantProxyData& data) {
+  ParticipantInfo out;
+  out.guid = to_guid(data.m_guid);
+  out.vendor = to_vendor(data.m_VendorId);
+  for (const auto& property : data.m_properties) {
+    const std::string name = property.first();
+    const std::string value = property.second();
+    if (name == "fastdds.physical_data.host") {
+      out.host = cut(value.substr(0, value.find(':')));  // "<host>:<number>"
+    } else if (name == "__Hostname") {
+      out.host = cut(value);
+    } else if (name == "fastdds.physical_data.process" || name == "__Pid") {
+      std::from_chars(value.data(), value.data() + value.size(), out.pid);
+    }
+  }
+  for (const rtps::Locator_t& at : data.metatraffic_locators.unicast) {
+    if (at.kind != LOCATOR_KIND_UDPv4) continue;
+    UdpAddress address;
+    std::memcpy(address.ip.data(), at.address + 12, address.ip.size());
+    address.port = static_cast<std::uint16_t>(at.port);
+    out.metatraffic.push_back(address);
+  }
+  return out;
+}
+
+// Of a reader or of a writer.
+template <class ProxyData>
+EndpointInfo to_info(const ProxyData& data) {
+  EndpointInfo out;
+  out.guid = to_guid(data.guid());
+  out.topic = cut(data.topicName().to_string());
+  out.type = cut(data.typeName().to_string());
+  const auto& user_data = data.m_qos.m_userData.getValue();
+  out.user_data = cut({reinterpret_cast<const char*>(user_data.data()), user_data.size()});
+  const auto& qos = data.m_qos;
+  out.qos.reliability = qos.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS
+                            ? Reliability::kReliable
+                            : Reliability::kBestEffort;
+  out.qos.durability = qos.m_durability.kind >= dds::TRANSIENT_LOCAL_DURABILITY_QOS
+                           ? Durability::kTransientLocal
+                           : Durability::kVolatile;
+  out.qos.deadline = from_duration(qos.m_deadline.period);
+  out.qos.lifespan = from_duration(qos.m_lifespan.duration);
+  return out;
+}
+
+// Translates the callbacks of a DomainParticipant. Two receive threads can be in here at once.
+class DiscoveryListener final : public dds::DomainParticipantListener {
+ public:
+  explicit DiscoveryListener(DiscoveryCallback callback) : callback_(std::move(callback)) {}
+
+  void on_participant_discovery(dds::DomainParticipant*,
+                                rtps::ParticipantDiscoveryInfo&& found) noexcept override {
+    using Found = rtps::ParticipantDiscoveryInfo;
+    if (found.status == Found::REMOVED_PARTICIPANT || found.status == Found::DROPPED_PARTICIPANT) {
+      callback_(ParticipantGone{to_guid(found.info.m_guid)});
+    } else {
+      callback_(to_info(found.info));
+    }
+  }
+  void on_subscriber_discovery(dds::DomainParticipant*,
+                               rtps::ReaderDiscoveryInfo&& found) noexcept override {
+    if (found.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) {
+      callback_(EndpointGone{to_guid(found.info.guid())});
+    } else {
+      callback_(to_info(found.info));
+    }
+  }
+  void on_publisher_discovery(dds::DomainParticipant*,
+                              rtps::WriterDiscoveryInfo&& found) noexcept override {
+    if (found.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
+      callback_(EndpointGone{to_guid(found.info.guid())});
+    } else {
+      callback_(to_info(found.info));
+    }
+  }
+
+ private:
+  const DiscoveryCallback callback_;
+};
+
+}  // namespace culprit::ros2::fast_dds

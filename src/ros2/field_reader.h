@@ -1,0 +1,60 @@
+// Reads one value out of a message, without decoding the rest of it.
+//
+// A path such as `pose.pose.position.x`, `ranges[3]` or `status[0].level` is compiled once, against
+// the definition of the message type, into a flat plan: what to pass over, then what to read.
+// Nothing is allocated while reading, but for a string. Payloads are hostile: reading one takes
+// time proportional to its size, whatever it claims.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "language/expected.h"
+#include "language/value.h"
+#include "ros2/cdr.h"
+#include "ros2/message_library.h"
+
+namespace culprit::ros2 {
+
+enum class FieldStatus : std::uint8_t {
+  kRead,
+  kAbsent,    // the array is too short for the index
+  kMalformed  // the payload is not a message of that type
+};
+
+class FieldReader {
+ public:
+  // A path ends at a primitive or a string. Errors say what there is instead.
+  static Expected<FieldReader> compile(MessageLibrary& library, std::string_view type,
+                                       std::string_view path);
+
+  // Sets `value` if and only if kRead. Every integer type becomes int64 (uint64 saturates), both
+  // floating-point types double.
+  FieldStatus read(ByteView payload, Value& value) const;
+
+ private:
+  enum class Op : std::uint8_t {
+    kSkip,           // `count` primitives of `size` bytes
+    kSkipSequence,   // a count n, then n primitives of `size` bytes
+    kSkipString,     // a string
+    kRepeat,         // the next `length` steps, `count` times
+    kRepeatCounted,  // a count n, then the next `length` steps, n times
+    kBound,          // a count n; the field is absent unless n > `count`
+    kRead            // the value, a `primitive`
+  };
+  struct Step {
+    Op op;
+    Primitive primitive = Primitive::kBool;
+    std::uint8_t size = 0;
+    std::uint32_t length = 0;
+    std::uint32_t count = 0;
+  };
+  class Compiler;
+
+  FieldStatus run(CdrReader& reader, std::size_t begin, std::size_t end, Value& value) const;
+
+  std::vector<Step> plan_;
+};
+
+}  // namespace culprit::ros2

@@ -1,0 +1,210 @@
+#include "ros2/field_reader.h"
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "ros2/messages.h"
+
+namespace culprit::ros2 {
+namespace {
+
+FieldReader reader_of(std::string_view type, std::string_view path) {
+  MessageLibrary library;
+  auto reader = FieldReader::compile(library, type, path);
+  if (!reader) {
+    ADD_FAILURE() << reader.error();
+    return {};
+  }
+  return *reader;
+}
+
+std::string compile_error(std::string_view type, std::string_view path) {
+  MessageLibrary library;
+  const auto reader = FieldReader::compile(library, type, path);
+  return reader ? "none" : reader.error();
+}
+
+// The value, or the status in words.
+Value read(std::string_view type, std::string_view path, ByteView payload) {
+  Value value = std::string("untouched");
+  switch (reader_of(type, path).read(payload, value)) {
+    case FieldStatus::kRead:
+      return value;
+    case FieldStatus::kAbsent:
+      return std::string("absent");
+    case FieldStatus::kMalformed:
+      return std::string("malformed");
+  }
+  return value;
+}
+
+Value text(std::string_view t) { return std::string(t); }
+
+msg::DiagnosticArray two_statuses() {
+  msg::DiagnosticArray array;
+  array.header.frame_id = "frame";
+  for (const char* name : {"first", "second"}) {
+    msg::DiagnosticStatus& status = array.status.emplace_back();
+    status.name = name;
+    status.level = static_cast<std::uint8_t>(array.status.size());
+    status.values.push_back({"a", name});
+    status.values.push_back({"b", "2"});
+  }
+  return array;
+}
+
+TEST(FieldReader, ReadsAPlainField) {
+  EXPECT_EQ(read("std_msgs/msg/Float64", "data", encode(msg::Float64{2.5})), Value(2.5));
+  EXPECT_EQ(read("std_msgs/msg/Bool", "data", encode(msg::Bool{true})), Value(true));
+  EXPECT_EQ(read("std_msgs/msg/Float32", "data", encode(msg::Float32{0.5f})), Value(0.5));
+  EXPECT_EQ(read("std_msgs/msg/Int32", "data", encode(msg::Int32{-7})), Value(std::int64_t{-7}));
+  EXPECT_EQ(read("std_msgs/msg/String", "data", encode(msg::String{"hello"})), text("hello"));
+}
+
+TEST(FieldReader, ReadsThroughNestedMessagesAndArrays) {
+  for (const Endianness endianness : {Endianness::kLittle, Endianness::kBig}) {
+    const Bytes payload = encode(two_statuses(), endianness);
+    constexpr std::string_view kType = "diagnostic_msgs/msg/DiagnosticArray";
+    EXPECT_EQ(read(kType, "header.frame_id", payload), text("frame"));
+    EXPECT_EQ(read(kType, "status[0].name", payload), text("first"));
+    EXPECT_EQ(read(kType, "status[1].level", payload), Value(std::int64_t{2}));
+    EXPECT_EQ(read(kType, "status[1].values[0].value", payload), text("second"));
+    EXPECT_EQ(read(kType, "status[1].values[1].value", payload), text("2"));
+  }
+}
+
+TEST(FieldReader, AnIndexBehindTheEndIsAbsent) {
+  const Bytes payload = encode(two_statuses());
+  EXPECT_EQ(read("diagnostic_msgs/msg/DiagnosticArray", "status[2].name", payload), text("absent"));
+  EXPECT_EQ(read("diagnostic_msgs/msg/DiagnosticArray", "status[1].values[2].key", payload),
+            text("absent"));
+}
+
+// nav_msgs/Odometry by hand: a header, a frame, pose (7 doubles), covariance (36), twist (6),
+// covariance (36).
+TEST(FieldReader, ReadsFarIntoOdometry) {
+  CdrWriter writer;
+  writer(std::int32_t{1}, std::uint32_t{2}, std::string("odom"), std::string("base"));
+  for (int i = 0; i < 7 + 36 + 6 + 36; ++i) writer.write(static_cast<double>(i));
+  const Bytes payload = writer.take();
+  constexpr std::string_view kType = "nav_msgs/msg/Odometry";
+  EXPECT_EQ(read(kType, "child_frame_id", payload), text("base"));
+  EXPECT_EQ(read(kType, "pose.pose.position.x", payload), Value(0.0));
+  EXPECT_EQ(read(kType, "pose.pose.orientation.w", payload), Value(6.0));
+  EXPECT_EQ(read(kType, "pose.covariance[35]", payload), Value(42.0));
+  EXPECT_EQ(read(kType, "twist.twist.angular.z", payload), Value(48.0));
+  EXPECT_EQ(read(kType, "twist.covariance[0]", payload), Value(49.0));
+}
+
+TEST(FieldReader, ReadsBehindSequencesOfPrimitives) {
+  CdrWriter writer;  // sensor_msgs/JointState
+  writer(std::int32_t{1}, std::uint32_t{2}, std::string("f"),
+         std::vector<std::string>{"left", "right"}, std::vector<double>{1, 2},
+         std::vector<double>{}, std::vector<double>{5});
+  const Bytes payload = writer.take();
+  EXPECT_EQ(read("sensor_msgs/msg/JointState", "name[1]", payload), text("right"));
+  EXPECT_EQ(read("sensor_msgs/msg/JointState", "position[1]", payload), Value(2.0));
+  EXPECT_EQ(read("sensor_msgs/msg/JointState", "velocity[0]", payload), text("absent"));
+  EXPECT_EQ(read("sensor_msgs/msg/JointState", "effort[0]", payload), Value(5.0));
+}
+
+TEST(FieldReader, Uint64Saturates) {
+  CdrWriter writer;
+  writer.write(std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(read("std_msgs/msg/UInt64", "data", writer.take()),
+            Value(std::numeric_limits<std::int64_t>::max()));
+}
+
+TEST(FieldReader, FalseCountsAreMalformed) {
+  const Bytes payload{0,    1,    0,    0,                                        //
+                      0,    0,    0,    0,   0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0,  // header
+                      0xff, 0xff, 0xff, 0xff};  // four billion statuses
+  EXPECT_EQ(read("diagnostic_msgs/msg/DiagnosticArray", "status[5].name", payload),
+            text("malformed"));
+  EXPECT_EQ(read("diagnostic_msgs/msg/DiagnosticArray", "status[4000000000].name", payload),
+            text("malformed"));
+}
+
+TEST(FieldReader, ErrorsSayWhatThereIs) {
+  EXPECT_EQ(compile_error("std_msgs/msg/Float64", "value"),
+            "std_msgs/msg/Float64 has no field 'value'; its fields are data");
+  EXPECT_EQ(compile_error("geometry_msgs/msg/PoseStamped", "pose.position"),
+            "'pose.position' is a whole geometry_msgs/msg/Point; go on to one of its fields");
+  EXPECT_EQ(compile_error("sensor_msgs/msg/LaserScan", "ranges"),
+            "'ranges' is an array; write ranges[0] for its first element");
+  EXPECT_EQ(compile_error("std_msgs/msg/Float64", "data[0]"), "'data' is not an array");
+  EXPECT_EQ(compile_error("std_msgs/msg/Float64", "data.x"),
+            "'data' is a value and has no field 'x'");
+  EXPECT_EQ(compile_error("geometry_msgs/msg/PoseWithCovariance", "covariance[36]"),
+            "'covariance' has 36 elements, the last is covariance[35]");
+  for (const char* path : {"", ".", "data.", "data[", "data[]", "data[x]", "data[1", "data]",
+                           "a..b", "[0]", "data[-1]", "data[99999999999]"}) {
+    EXPECT_NE(compile_error("std_msgs/msg/Float64", path), "none") << path;
+  }
+}
+
+TEST(FieldReader, EmptyMessagesTakeAByte) {
+  const auto directory =
+      std::filesystem::temp_directory_path() / ("culprit-fields-" + std::to_string(getpid()));
+  std::filesystem::create_directories(directory / "my_msgs/msg");
+  std::ofstream(directory / "my_msgs/msg/Holder.msg") << "std_msgs/Empty nothing\nuint8 after\n";
+  std::ofstream(directory / "my_msgs/msg/Loop.msg") << "Loop again\nuint8 after\n";
+  std::ofstream(directory / "my_msgs/msg/Wide.msg") << "wstring wide\nuint8 after\n";
+  MessageLibrary library({directory});
+  const auto reader = FieldReader::compile(library, "my_msgs/msg/Holder", "after");
+  const auto loop = FieldReader::compile(library, "my_msgs/msg/Loop", "after");
+  const auto wide = FieldReader::compile(library, "my_msgs/msg/Wide", "after");
+  std::filesystem::remove_all(directory);
+
+  ASSERT_TRUE(reader);
+  Value value;
+  EXPECT_EQ(reader->read(Bytes{0, 1, 0, 0, 0, 9}, value), FieldStatus::kRead);
+  EXPECT_EQ(value, Value(std::int64_t{9}));
+  EXPECT_EQ(loop.error(), "the message type nests too deep, or is defined by itself");
+  EXPECT_FALSE(wide);
+}
+
+RC_GTEST_PROP(FieldReader, AgreesWithTheFullDecoder, ()) {
+  msg::DiagnosticArray array;
+  const auto count = *rc::gen::inRange(0, 4);
+  for (int i = 0; i < count; ++i) {
+    msg::DiagnosticStatus& status = array.status.emplace_back();
+    status.level = *rc::gen::arbitrary<std::uint8_t>();
+    status.name = *rc::gen::string<std::string>();
+    const auto values = *rc::gen::inRange(0, 3);
+    for (int j = 0; j < values; ++j) {
+      msg::KeyValue& pair = status.values.emplace_back();
+      pair.key = *rc::gen::string<std::string>();
+      pair.value = *rc::gen::string<std::string>();
+    }
+  }
+  const Bytes payload = encode(array, *rc::gen::element(Endianness::kLittle, Endianness::kBig));
+  constexpr std::string_view kType = "diagnostic_msgs/msg/DiagnosticArray";
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::string at = "status[" + std::to_string(i) + "]";
+    const bool is_there = i < array.status.size();
+    RC_ASSERT(read(kType, at + ".name", payload) ==
+              (is_there ? text(array.status[i].name) : text("absent")));
+    for (std::size_t j = 0; is_there && j < 3; ++j) {
+      const auto& values = array.status[i].values;
+      RC_ASSERT(read(kType, at + ".values[" + std::to_string(j) + "].value", payload) ==
+                (j < values.size() ? text(values[j].value) : text("absent")));
+    }
+  }
+}
+
+RC_GTEST_PROP(FieldReader, AnyBytesAreReadOrRefused, (Bytes bytes)) {
+  static const FieldReader reader =
+      reader_of("diagnostic_msgs/msg/DiagnosticArray", "status[2].values[1].value");
+  bytes.insert(bytes.begin(), {0, 1, 0, 0});
+  Value value;
+  reader.read(bytes, value);
+}
+
+}  // namespace
+}  // namespace culprit::ros2

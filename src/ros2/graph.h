@@ -1,0 +1,170 @@
+// The live graph: which nodes there are, and which topics and services each of them offers or uses.
+//
+// DDS says which endpoints exist; `ros_discovery_info` says which of them belong to which node. The
+// graph is the join of both, and tells its listener every change, edge by edge, in an order that
+// makes sense: a node before its endpoints, and its endpoints away before the node.
+//
+// - A service server is its reader of requests, a client its writer of requests. Two endpoints of
+// one node, kind and
+//   name are one edge: it appears with the first and vanishes with the last.
+// - Two nodes of one name: the one that came last is the node, for a restarted process comes while
+// its killed
+//   predecessor's lease still runs (20 s). The change is told as a vanishing and an appearing, and
+//   as trouble unless the predecessor's process is known to be gone.
+// - Names come from the network. Nodes whose names break the grammar are left out and told as
+// trouble once for each
+//   participant; endpoints that are not ROS 2's are left out silently. Tables are capped.
+//
+// A pure data structure: fed by one thread, no I/O, no clock.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "robot/observation.h"
+#include "ros2/discovery_info.h"
+#include "ros2/names.h"
+#include "ros2/participant.h"
+
+namespace culprit::ros2 {
+
+struct GraphEndpoint {
+  EndpointKind kind = EndpointKind::kPublisher;
+  std::string name;  // of the topic or service, absolute
+  std::string type;  // "package/msg/Type" or "package/srv/Type"
+  Qos qos;           // as announced, without depth
+};
+
+struct GraphNode {
+  std::string name;  // full: "/namespace/name"
+  Vendor vendor = Vendor::kOther;
+  std::string host;  // empty where the participant does not say
+  int pid = 0;       // on this machine; 0 where it is not known
+};
+
+struct NodeJoined {
+  GraphNode node;
+};
+struct NodeLeft {
+  std::string node;
+};
+struct EndpointJoined {
+  std::string node;
+  GraphEndpoint endpoint;
+};
+struct EndpointLeft {
+  std::string node;
+  EndpointKind kind;
+  std::string name;
+};
+struct GraphTrouble {
+  std::string text;
+};
+using GraphChange = std::variant<NodeJoined, NodeLeft, EndpointJoined, EndpointLeft, GraphTrouble>;
+
+class Graph {
+ public:
+  struct Limits {
+    std::size_t participants = 1000;
+    std::size_t nodes = 10'000;
+    std::size_t endpoints = 100'000;  // discovered, and as many again claimed
+  };
+  // Finds the process of a participant on this machine, 0 if it cannot. Asked once for each.
+  using FindProcess = std::function<int(const ParticipantInfo&)>;
+  using IsRunning = std::function<bool(int pid)>;
+  using Listener = std::function<void(const GraphChange&)>;  // must not call back into the graph
+
+  struct Options {
+    Listener listener;
+    FindProcess find_process;  // may be empty
+    IsRunning is_running;      // may be empty
+    Limits limits;
+  };
+
+  explicit Graph(Options options);
+
+  void apply(const DiscoveryEvent& event);
+  // What `info.participant` said of its nodes; replaces what it said before.
+  void apply(const DiscoveryInfo& info);
+  // A process of this machine has ended: whoever it was is gone, though leases may still run.
+  void forget_process(int pid);
+
+  // Null when they are not known (any more).
+  const ParticipantInfo* participant(const GuidPrefix& prefix) const;
+  const EndpointInfo* endpoint(const Guid& guid) const;
+
+  // Every node, by name, with its endpoints.
+  struct NodeView {
+    GraphNode node;
+    std::vector<GraphEndpoint> endpoints;
+  };
+  std::vector<NodeView> nodes() const;
+
+ private:
+  struct Endpoint {
+    EndpointInfo info;
+    std::optional<GraphEndpoint>
+        ros;  // what it means; nothing where it is no ROS 2 endpoint, or its other half
+  };
+  using Claims = std::map<std::string, std::set<Guid>>;  // node -> its endpoints
+  struct Peer {
+    ParticipantInfo info;
+    int pid = 0;
+    bool pid_is_known = false;
+    bool told_of_invalid_name = false;
+    bool told_of_duplicate = false;
+    Claims claims;
+    std::unordered_map<Guid, Endpoint> endpoints;
+  };
+  using EdgeKey = std::pair<EndpointKind, std::string>;
+  struct Edge {
+    GraphEndpoint endpoint;
+    int count = 0;  // of the endpoints that make it
+  };
+  struct Node {
+    std::vector<GuidPrefix> claimants;  // who says it holds this node; the last one counts
+    std::optional<GuidPrefix> told;     // whose node the listener knows
+    std::map<EdgeKey, Edge> edges;      // that the listener knows
+  };
+
+  void add(const ParticipantInfo& info);
+  void add(const EndpointInfo& info);
+  void remove_participant(const GuidPrefix& prefix);
+  void remove_endpoint(const Guid& guid);
+
+  Claims read_claims(const DiscoveryInfo& info, Peer& peer);
+  void claim(const GuidPrefix& prefix, const std::string& name);
+  void disclaim(const GuidPrefix& prefix, const std::string& name);
+  // The edge that an endpoint makes, if it is discovered, and claimed by a node that counts.
+  void show(const Guid& guid);
+  void hide(const Guid& guid);
+  Node* holder_of(const Guid& guid);
+  void tell_joined(const std::string& name, Node& node);
+  void tell_left(const std::string& name, Node& node);
+
+  const Endpoint* find(const Guid& guid) const;
+  int pid_of(Peer& peer);
+  GraphNode describe(const std::string& name, const Peer& peer) const;
+  void warn_of_duplicate(const std::string& name, const Node& node);
+  void warn_of_limit(const char* what);
+  void tell(const GraphChange& change) const;
+
+  Options options_;
+  std::unordered_map<GuidPrefix, Peer> peers_;
+  std::size_t endpoint_count_ = 0;                // discovered, of all peers
+  std::size_t claim_count_ = 0;                   // claimed, of all peers
+  std::unordered_map<Guid, std::string> owners_;  // endpoint -> the node that claims it
+  std::map<std::string, Node> nodes_;
+  std::set<const char*> exceeded_;  // limits that trouble was told of
+};
+
+}  // namespace culprit::ros2

@@ -1,0 +1,404 @@
+#include "ros2/graph.h"
+
+#include <algorithm>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace culprit::ros2 {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+// Endpoint ids: the last byte says reader (4) or writer (3).
+Guid guid_of(std::uint8_t participant, std::uint8_t entity, bool is_reader) {
+  Guid guid;
+  guid.bytes[0] = participant;
+  guid.bytes[12] = entity;
+  guid.bytes[15] = is_reader ? 4 : 3;
+  return guid;
+}
+Guid reader(std::uint8_t participant, std::uint8_t entity) {
+  return guid_of(participant, entity, true);
+}
+Guid writer(std::uint8_t participant, std::uint8_t entity) {
+  return guid_of(participant, entity, false);
+}
+
+EndpointInfo endpoint(const Guid& guid, std::string topic, std::string type) {
+  return {
+      .guid = guid, .topic = std::move(topic), .type = std::move(type), .user_data = {}, .qos = {}};
+}
+
+EndpointInfo publishes(const Guid& guid, const std::string& topic) {
+  return endpoint(guid, "rt" + topic, "std_msgs::msg::dds_::String_");
+}
+
+NodeEntities node(std::string name_space, std::string name, std::vector<Guid> endpoints = {}) {
+  NodeEntities entities{std::move(name_space), std::move(name), {}, {}};
+  for (const Guid& guid : endpoints)
+    (guid.is_reader() ? entities.readers : entities.writers).push_back(guid);
+  return entities;
+}
+
+// A graph, and everything that it told, as short texts.
+class Watched {
+ public:
+  explicit Watched(Graph::Options options = {}) : graph_(with_listener(std::move(options))) {}
+
+  Watched& joins(std::uint8_t participant, int pid = 0) {
+    ParticipantInfo info;
+    info.guid = guid_of(participant, 0, false);
+    info.pid = pid;
+    info.vendor = Vendor::kFastDds;
+    graph_.apply(info);
+    return *this;
+  }
+  Watched& leaves(std::uint8_t participant) {
+    graph_.apply(ParticipantGone{guid_of(participant, 0, false)});
+    return *this;
+  }
+  Watched& ends(int pid) {
+    graph_.forget_process(pid);
+    return *this;
+  }
+  Watched& has(const EndpointInfo& info) {
+    graph_.apply(info);
+    return *this;
+  }
+  Watched& loses(const Guid& guid) {
+    graph_.apply(EndpointGone{guid});
+    return *this;
+  }
+  Watched& says(std::uint8_t participant, std::vector<NodeEntities> nodes) {
+    graph_.apply(DiscoveryInfo{guid_of(participant, 0, false), std::move(nodes)});
+    return *this;
+  }
+
+  std::vector<std::string> told() { return std::exchange(told_, {}); }
+  const Graph& graph() const { return graph_; }
+
+ private:
+  Graph::Options with_listener(Graph::Options options) {
+    options.listener = [this](const GraphChange& change) { told_.push_back(in_words(change)); };
+    return options;
+  }
+
+  static std::string kind(EndpointKind k) {
+    switch (k) {
+      case EndpointKind::kPublisher:
+        return "publishes ";
+      case EndpointKind::kSubscriber:
+        return "subscribes ";
+      case EndpointKind::kServer:
+        return "serves ";
+      case EndpointKind::kClient:
+        return "calls ";
+    }
+    return "?";
+  }
+
+  static std::string in_words(const GraphChange& change) {
+    if (const auto* c = std::get_if<NodeJoined>(&change)) {
+      return "+" + c->node.name + (c->node.pid == 0 ? "" : " in " + std::to_string(c->node.pid));
+    }
+    if (const auto* c = std::get_if<NodeLeft>(&change)) return "-" + c->node;
+    if (const auto* c = std::get_if<EndpointJoined>(&change)) {
+      return "+" + c->node + " " + kind(c->endpoint.kind) + c->endpoint.name;
+    }
+    if (const auto* c = std::get_if<EndpointLeft>(&change))
+      return "-" + c->node + " " + kind(c->kind) + c->name;
+    return "!" + std::get<GraphTrouble>(change).text;
+  }
+
+  std::vector<std::string> told_;
+  Graph graph_;
+};
+
+TEST(Graph, JoinsNamesAndEndpointsWhicheverComesFirst) {
+  Watched names_first;
+  names_first.joins(1).says(1, {node("/", "a", {writer(1, 1)})}).has(publishes(writer(1, 1), "/t"));
+  EXPECT_THAT(names_first.told(), ElementsAre("+/a", "+/a publishes /t"));
+
+  Watched endpoints_first;
+  endpoints_first.joins(1)
+      .has(publishes(writer(1, 1), "/t"))
+      .says(1, {node("/", "a", {writer(1, 1)})});
+  EXPECT_THAT(endpoints_first.told(), ElementsAre("+/a", "+/a publishes /t"));
+}
+
+TEST(Graph, KnowsTheFourKindsOfEndpoints) {
+  Watched watched;
+  watched.joins(1)
+      .has(publishes(writer(1, 1), "/t"))
+      .has(publishes(reader(1, 2), "/t"))
+      .has(endpoint(reader(1, 3), "rq/sRequest", "std_srvs::srv::dds_::Trigger_Request_"))
+      .has(endpoint(writer(1, 4), "rr/sReply", "std_srvs::srv::dds_::Trigger_Response_"))
+      .has(endpoint(writer(1, 5), "rq/otherRequest", "std_srvs::srv::dds_::Trigger_Request_"))
+      .has(endpoint(reader(1, 6), "rr/otherReply", "std_srvs::srv::dds_::Trigger_Response_"))
+      .says(1, {node("/ns", "a",
+                     {writer(1, 1), reader(1, 2), reader(1, 3), writer(1, 4), writer(1, 5),
+                      reader(1, 6)})});
+  EXPECT_THAT(watched.told(), ElementsAre("+/ns/a", "+/ns/a publishes /t", "+/ns/a subscribes /t",
+                                          "+/ns/a serves /s", "+/ns/a calls /other"));
+}
+
+TEST(Graph, EndpointsVanishBeforeTheirNode) {
+  Watched watched;
+  watched.joins(1)
+      .has(publishes(writer(1, 1), "/t"))
+      .says(1, {node("/", "a", {writer(1, 1)})})
+      .told();
+  watched.leaves(1);
+  EXPECT_THAT(watched.told(), ElementsAre("-/a publishes /t", "-/a"));
+  EXPECT_THAT(watched.graph().nodes(), IsEmpty());
+}
+
+TEST(Graph, AMessageReplacesWhatWasSaidBefore) {
+  Watched watched;
+  watched.joins(1)
+      .has(publishes(writer(1, 1), "/t"))
+      .has(publishes(writer(1, 2), "/u"))
+      .says(1, {node("/", "a", {writer(1, 1)}), node("/", "b")})
+      .told();
+  watched.says(1, {node("/", "a", {writer(1, 2)}), node("/", "c")});
+  EXPECT_THAT(watched.told(), ElementsAre("-/a publishes /t", "-/b", "+/a publishes /u", "+/c"));
+  watched.says(1, {node("/", "a", {writer(1, 2)}), node("/", "c")});
+  EXPECT_THAT(watched.told(), IsEmpty());
+}
+
+TEST(Graph, AnEndpointMovesFromNodeToNode) {
+  Watched watched;
+  watched.joins(1)
+      .has(publishes(writer(1, 1), "/t"))
+      .says(1, {node("/", "a", {writer(1, 1)}), node("/", "b")})
+      .told();
+  watched.says(1, {node("/", "a"), node("/", "b", {writer(1, 1)})});
+  EXPECT_THAT(watched.told(), ElementsAre("-/a publishes /t", "+/b publishes /t"));
+}
+
+TEST(Graph, TwoEndpointsOfOneNameAreOneEdge) {
+  Watched watched;
+  watched.joins(1)
+      .has(publishes(writer(1, 1), "/t"))
+      .has(publishes(writer(1, 2), "/t"))
+      .says(1, {node("/", "a", {writer(1, 1), writer(1, 2)})});
+  EXPECT_THAT(watched.told(), ElementsAre("+/a", "+/a publishes /t"));
+  watched.loses(writer(1, 1));
+  EXPECT_THAT(watched.told(), IsEmpty());
+  watched.loses(writer(1, 2));
+  EXPECT_THAT(watched.told(), ElementsAre("-/a publishes /t"));
+}
+
+TEST(Graph, EndpointsThatAreNotRosAreLeftOut) {
+  Watched watched;
+  watched.joins(1)
+      .has(endpoint(writer(1, 1), "ros_discovery_info",
+                    "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"))
+      .has(endpoint(writer(1, 2), "plain", "Plain"))
+      .has(endpoint(writer(1, 3), "rt/a b", "std_msgs::msg::dds_::String_"))
+      .has(endpoint(writer(1, 4), "rt/t", "not a type"))
+      .says(1, {node("/", "a", {writer(1, 1), writer(1, 2), writer(1, 3), writer(1, 4)})});
+  EXPECT_THAT(watched.told(), ElementsAre("+/a"));
+}
+
+TEST(Graph, InvalidNamesAreLeftOutAndToldOnce) {
+  Watched watched;
+  watched.joins(1).says(1, {node("/", "a b\n"), node("x", "y"), node("/", "good")});
+  watched.says(1, {node("/", "a b\n"), node("/", "good")});
+  EXPECT_THAT(
+      watched.told(),
+      ElementsAre("!a node is left out because its name is not valid: namespace '/', name 'a b?'",
+                  "+/good"));
+}
+
+TEST(Graph, NobodySpeaksForAnother) {
+  Watched watched;
+  watched.joins(1)
+      .joins(2)
+      .has(publishes(writer(2, 1), "/t"))
+      .says(1, {node("/", "a", {writer(2, 1)})});
+  EXPECT_THAT(watched.told(), ElementsAre("+/a"));
+}
+
+TEST(Graph, WhoIsNotThereSaysNothing) {
+  Watched watched;
+  watched.says(1, {node("/", "a")})
+      .has(publishes(writer(1, 1), "/t"))
+      .loses(writer(1, 1))
+      .leaves(1);
+  EXPECT_THAT(watched.told(), IsEmpty());
+}
+
+TEST(Graph, ARestartedNodeReplacesItsDeadPredecessor) {
+  std::set<int> running = {10, 20};
+  Graph::Options options;
+  options.find_process = [](const ParticipantInfo& info) { return info.pid; };
+  options.is_running = [&](int pid) { return running.contains(pid); };
+  Watched watched(options);
+  watched.joins(1, 10).has(publishes(writer(1, 1), "/t")).says(1, {node("/", "a", {writer(1, 1)})});
+  EXPECT_THAT(watched.told(), ElementsAre("+/a in 10", "+/a publishes /t"));
+
+  running.erase(10);
+  watched.joins(2, 20).says(2, {node("/", "a", {writer(2, 1)})}).has(publishes(writer(2, 1), "/t"));
+  EXPECT_THAT(watched.told(),
+              ElementsAre("-/a publishes /t", "-/a", "+/a in 20", "+/a publishes /t"));
+
+  watched.leaves(1);  // the lease of the dead one has run out
+  EXPECT_THAT(watched.told(), IsEmpty());
+  EXPECT_EQ(watched.graph().nodes().size(), 1u);
+}
+
+TEST(Graph, TwoLivingNodesOfOneNameAreTrouble) {
+  Graph::Options options;
+  options.find_process = [](const ParticipantInfo& info) { return info.pid; };
+  options.is_running = [](int) { return true; };
+  Watched watched(options);
+  watched.joins(1, 10)
+      .has(publishes(writer(1, 1), "/t"))
+      .says(1, {node("/", "a", {writer(1, 1)})})
+      .told();
+  watched.joins(2, 20).says(2, {node("/", "a")});
+  EXPECT_THAT(
+      watched.told(),
+      ElementsAre(
+          "!two nodes have the name /a: one in process 10, one in process 20; the latter counts",
+          "-/a publishes /t", "-/a", "+/a in 20"));
+  watched.leaves(2);
+  EXPECT_THAT(watched.told(), ElementsAre("-/a", "+/a in 10", "+/a publishes /t"));
+}
+
+TEST(Graph, AnEndedProcessIsGoneAtOnce) {
+  Graph::Options options;
+  options.find_process = [](const ParticipantInfo& info) { return info.pid; };
+  Watched watched(options);
+  watched.joins(1, 10).joins(2, 20).joins(3);
+  watched.says(1, {node("/", "a")}).says(2, {node("/", "b")}).says(3, {node("/", "c")}).told();
+  watched.ends(10);
+  EXPECT_THAT(watched.told(), ElementsAre("-/a"));
+  watched.ends(0);  // nobody's
+  EXPECT_THAT(watched.told(), IsEmpty());
+  watched.leaves(1);  // its lease
+  EXPECT_THAT(watched.told(), IsEmpty());
+}
+
+TEST(Graph, OneProcessWithTwoNodesOfOneNameIsTroubleOnce) {
+  Watched watched;
+  watched.joins(1)
+      .says(1, {node("/", "a"), node("/", "a")})
+      .says(1, {node("/", "a"), node("/", "a")});
+  EXPECT_THAT(watched.told(), ElementsAre("!one process holds two nodes with the name /a", "+/a"));
+}
+
+TEST(Graph, KeepsTrackOfALimitedNumber) {
+  Graph::Options options;
+  options.limits = {.participants = 2, .nodes = 2, .endpoints = 2};
+  Watched watched(options);
+  watched.joins(1).joins(2).joins(3).joins(4);
+  EXPECT_THAT(
+      watched.told(),
+      ElementsAre("!there are too many participants to keep track of; further ones are left out"));
+  watched.says(1, {node("/", "a"), node("/", "b"), node("/", "c"), node("/", "d")});
+  EXPECT_THAT(watched.told(),
+              ElementsAre("!there are too many nodes to keep track of; further ones are left out",
+                          "+/a", "+/b"));
+  watched.says(1, {node("/", "a", {writer(1, 1), writer(1, 2), writer(1, 3)})});
+  for (const std::uint8_t entity : {1, 2, 3, 4}) watched.has(publishes(writer(1, entity), "/t"));
+  EXPECT_THAT(
+      watched.told(),
+      ElementsAre("!there are too many endpoints to keep track of; further ones are left out",
+                  "-/b", "+/a publishes /t"));
+  watched.leaves(1)
+      .joins(5)
+      .says(5, {node("/", "e", {writer(5, 1)})})
+      .has(publishes(writer(5, 1), "/t"));
+  EXPECT_THAT(watched.told(), ElementsAre("-/a publishes /t", "-/a", "+/e", "+/e publishes /t"));
+}
+
+TEST(Graph, ShowsAllNodesWithTheirEndpoints) {
+  Watched watched;
+  watched.joins(1).has(publishes(writer(1, 1), "/t")).says(1, {node("/", "a", {writer(1, 1)})});
+  const auto nodes = watched.graph().nodes();
+  ASSERT_EQ(nodes.size(), 1u);
+  EXPECT_EQ(nodes[0].node.name, "/a");
+  EXPECT_EQ(nodes[0].node.vendor, Vendor::kFastDds);
+  ASSERT_EQ(nodes[0].endpoints.size(), 1u);
+  EXPECT_EQ(nodes[0].endpoints[0].type, "std_msgs/msg/String");
+}
+
+// Whatever comes in whatever order: what was told, taken together, is what the graph shows.
+RC_GTEST_PROP(Graph, WhatItTellsAddsUpToWhatItShows, ()) {
+  std::set<std::string> nodes, edges;
+  Graph::Options options;
+  options.limits = {.participants = 2, .nodes = 3, .endpoints = 6};
+  options.listener = [&](const GraphChange& change) {
+    const auto edge = [](const std::string& n, EndpointKind kind, const std::string& name) {
+      return n + "|" + std::to_string(static_cast<int>(kind)) + "|" + name;
+    };
+    if (const auto* c = std::get_if<NodeJoined>(&change)) {
+      RC_ASSERT(nodes.insert(c->node.name).second);
+    } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
+      RC_ASSERT(nodes.erase(left->node) == 1u);
+      RC_ASSERT(std::ranges::none_of(
+          edges, [&](const auto& e) { return e.starts_with(left->node + "|"); }));
+    } else if (const auto* joined = std::get_if<EndpointJoined>(&change)) {
+      RC_ASSERT(nodes.contains(joined->node));
+      RC_ASSERT(
+          edges.insert(edge(joined->node, joined->endpoint.kind, joined->endpoint.name)).second);
+    } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
+      RC_ASSERT(edges.erase(edge(gone->node, gone->kind, gone->name)) == 1u);
+    }
+  };
+  Graph graph(options);
+  const auto participant = [] { return *rc::gen::inRange<std::uint8_t>(1, 4); };
+  const auto any_endpoint = [&](std::uint8_t p) {
+    return guid_of(p, *rc::gen::inRange<std::uint8_t>(1, 4), *rc::gen::arbitrary<bool>());
+  };
+  const int steps = *rc::gen::inRange(0, 60);
+  for (int i = 0; i < steps; ++i) {
+    const std::uint8_t p = participant();
+    switch (*rc::gen::inRange(0, 5)) {
+      case 0: {
+        ParticipantInfo info;
+        info.guid = guid_of(p, 0, false);
+        graph.apply(info);
+        break;
+      }
+      case 1:
+        graph.apply(ParticipantGone{guid_of(p, 0, false)});
+        break;
+      case 2:
+        graph.apply(publishes(any_endpoint(p), *rc::gen::element<std::string>("/t", "/u", "bad")));
+        break;
+      case 3:
+        graph.apply(EndpointGone{any_endpoint(p)});
+        break;
+      default: {
+        DiscoveryInfo info{guid_of(p, 0, false), {}};
+        const int count = *rc::gen::inRange(0, 4);
+        for (int n = 0; n < count; ++n) {
+          std::vector<Guid> endpoints;
+          const int claimed = *rc::gen::inRange(0, 4);
+          for (int e = 0; e < claimed; ++e) endpoints.push_back(any_endpoint(p));
+          info.nodes.push_back(
+              node("/", *rc::gen::element<std::string>("a", "b", "c", "d", "no good"), endpoints));
+        }
+        graph.apply(info);
+      }
+    }
+  }
+  std::set<std::string> shown;
+  std::size_t shown_edges = 0;
+  for (const auto& view : graph.nodes()) {
+    shown.insert(view.node.name);
+    shown_edges += view.endpoints.size();
+  }
+  RC_ASSERT(shown == nodes);
+  RC_ASSERT(shown_edges == edges.size());
+}
+
+}  // namespace
+}  // namespace culprit::ros2

@@ -1,0 +1,234 @@
+#include "ros2/link.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <signal.h>
+
+#include "ros2/process_finder.h"
+
+namespace culprit::ros2 {
+namespace {
+
+constexpr Duration kProbePeriod = std::chrono::milliseconds(400);
+constexpr Duration kPublishPeriod = std::chrono::seconds(1);
+
+// Services that managers and tools use, of every node or of every managed node: who uses them
+// depends on nobody.
+bool is_for_management(std::string_view service) {
+  constexpr std::array<std::string_view, 14> kNames = {
+      "get_parameters",       "get_parameter_types",
+      "set_parameters",       "set_parameters_atomically",
+      "describe_parameters",  "list_parameters",
+      "change_state",         "get_state",
+      "get_available_states", "get_available_transitions",
+      "get_transition_graph", "get_type_description",
+      "get_logger_levels",    "set_logger_levels"};
+  const std::string_view last = service.substr(service.rfind('/') + 1);
+  return std::find(kNames.begin(), kNames.end(), last) != kNames.end();
+}
+
+bool is_service(EndpointKind kind) {
+  return kind == EndpointKind::kServer || kind == EndpointKind::kClient;
+}
+
+bool is_running(int pid) { return kill(pid, 0) == 0 || errno == EPERM; }
+
+}  // namespace
+
+Expected<std::unique_ptr<Link>> Link::open(const RuleSet& rules, Options options, Inbox& inbox) {
+  std::unique_ptr<Link> link(new Link(rules, std::move(options), inbox));
+  if (auto started = link->start(); !started) return Error{started.error()};
+  return link;
+}
+
+Link::Link(const RuleSet& rules, Options options, Inbox& inbox)
+    : rules_(rules),
+      options_(std::move(options)),
+      inbox_(inbox),
+      binding_(rules),
+      library_(options_.message_path),
+      links_(rules.components.size()) {}
+
+Link::~Link() {
+  executor_.stop();
+  if (thread_.joinable()) thread_.join();
+  // Clients and readers go before the node that they belong to.
+  probing_.reset();
+  publishing_.reset();
+  parameter_events_.reset();
+  diagnostics_watch_.reset();
+  watches_.clear();
+  links_.clear();
+  diagnostics_.reset();
+  node_.reset();
+  context_.reset();
+}
+
+Expected<void> Link::start() {
+  Graph::Options graph;
+  graph.listener = [this](const GraphChange& change) { on_change(change); };
+  graph.find_process = [finder = ProcessFinder()](const ParticipantInfo& participant) {
+    return finder.find(participant);
+  };
+  graph.is_running = is_running;
+  auto context = Context::create(executor_, options_.participant, std::move(graph));
+  if (!context) return Error{context.error()};
+  context_ = std::move(*context);
+  auto node = Node::create(*context_, options_.name);
+  if (!node) return Error{node.error()};
+  node_ = std::move(*node);
+  auto publisher = node_->create_publisher<msg::DiagnosticArray>("/diagnostics");
+  if (!publisher) return Error{publisher.error()};
+  diagnostics_.emplace(std::move(*publisher));
+  if (auto declared = declare_parameters(); !declared) return declared;
+
+  for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
+    watches_.emplace(rules_.topics[t].name,
+                     std::make_unique<TopicWatch>(node_->entry(), TopicId(t), rules_, inbox_));
+  }
+  auto watch = DiagnosticsWatch::create(node_->entry(), rules_, inbox_);
+  if (!watch) return Error{watch.error()};
+  diagnostics_watch_ = std::move(*watch);
+  if (auto watched = watch_parameter_events(); !watched) return watched;
+  publishing_ = std::make_unique<Timer>(executor_, kPublishPeriod, [this] { publish_again(); });
+  probing_ = std::make_unique<Timer>(executor_, kProbePeriod, [this] { probe(); });
+  thread_ = std::thread([this] { executor_.run(); });
+  return {};
+}
+
+Expected<void> Link::declare_parameters() {
+  for (const auto& [name, value] : options_.parameters) {
+    msg::ParameterDescriptor descriptor;
+    descriptor.read_only = true;
+    if (auto declared = node_->parameters().declare(name, value, descriptor); !declared)
+      return declared;
+  }
+  return {};
+}
+
+Expected<void> Link::watch_parameter_events() {
+  if (rules_.parameters.empty()) return {};
+  // Best effort and deep: many nodes announce at once when a robot starts.
+  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 100};
+  auto subscription = node_->create_subscription<msg::ParameterEvent>(
+      "/parameter_events", kQos,
+      [this](const msg::ParameterEvent& event) { on_parameter_event(event); });
+  if (!subscription) return Error{subscription.error()};
+  parameter_events_ = std::move(*subscription);
+  return {};
+}
+
+// ---- observations
+
+void Link::on_change(const GraphChange& change) {
+  if (const auto* joined = std::get_if<NodeJoined>(&change)) {
+    on_joined(joined->node);
+  } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
+    probed_.erase(left->node);
+    inbox_.put(NodeVanished{left->node});
+  } else if (const auto* endpoint = std::get_if<EndpointJoined>(&change)) {
+    on_endpoint(endpoint->node, endpoint->endpoint);
+  } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
+    if (is_service(gone->kind) && is_for_management(gone->name)) return;
+    inbox_.put(EndpointVanished{gone->node, gone->kind, gone->name});
+  } else if (const auto* trouble = std::get_if<GraphTrouble>(&change)) {
+    inbox_.put(LinkTrouble{trouble->text});
+  }
+}
+
+void Link::on_joined(const GraphNode& node) {
+  inbox_.put(NodeAppeared{node.name, node.pid});
+  const auto component = binding_.bind(node.name);
+  if (!component) return;
+  make_link(*component, node.name);
+  if (node.pid == 0) {
+    probed_[node.name] = *component;
+  } else {
+    probed_.erase(node.name);
+  }
+}
+
+void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
+  if (endpoint.kind == EndpointKind::kServer) {
+    const auto component = binding_.bind(node);
+    if (component) make_link(*component, node)->service_seen(endpoint.name, endpoint.type);
+  }
+  if (endpoint.kind == EndpointKind::kPublisher) {
+    const auto watch = watches_.find(endpoint.name);
+    if (watch != watches_.end()) watch->second->publisher_seen(endpoint.type, library_);
+  }
+  if (is_service(endpoint.kind) && is_for_management(endpoint.name)) return;
+  inbox_.put(EndpointAppeared{node, endpoint.kind, endpoint.name});
+}
+
+void Link::on_parameter_event(const msg::ParameterEvent& event) {
+  const auto component = binding_.bind(event.node);
+  if (!component) return;
+  for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
+    for (const msg::Parameter& changed : *changes) {
+      for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
+        const Parameter& wanted = rules_.parameters[p];
+        if (wanted.component != *component || wanted.name != changed.name) continue;
+        if (auto value = to_value(changed.value))
+          inbox_.put(ParameterRead{ParameterId(p), std::move(*value)});
+      }
+    }
+  }
+}
+
+void Link::probe() {
+  for (const auto& [node, component] : probed_) make_link(component, node)->probe();
+}
+
+// ---- commands
+
+ComponentLink* Link::link_of(ComponentId component) {
+  const std::lock_guard lock(mutex_);
+  return links_[component.index].get();
+}
+
+ComponentLink* Link::make_link(ComponentId component, const std::string& node) {
+  const std::lock_guard lock(mutex_);
+  auto& link = links_[component.index];
+  if (!link)
+    link = std::make_unique<ComponentLink>(node_->entry(), component, node, rules_, inbox_);
+  return link.get();
+}
+
+void Link::execute(const Command& command) {
+  const Component& component = rules_[command.component];
+  ComponentLink* link = link_of(command.component);
+  // Asked for before it was ever seen: a declared node's name is known all the same.
+  if (link == nullptr && !component.node.empty())
+    link = make_link(command.component, component.node);
+  if (link != nullptr) return link->execute(command);
+  inbox_.put(Reply{
+      command.id, Outcome::kUnreachable, {}, "no node called " + component.name + " was seen"});
+}
+
+void Link::publish(std::vector<Health> health) {
+  {
+    const std::lock_guard lock(mutex_);
+    health_ = std::move(health);
+  }
+  publish_again();
+}
+
+void Link::publish_again() {
+  msg::DiagnosticArray message;
+  message.header.stamp = msg::to_time(std::chrono::system_clock::now());
+  {
+    const std::lock_guard lock(mutex_);
+    for (const Health& h : health_) {
+      msg::DiagnosticStatus status{h.level, h.name, h.message, "culprit", {}};
+      for (const auto& [key, value] : h.values) status.values.push_back({key, value});
+      message.status.push_back(std::move(status));
+    }
+  }
+  if (!message.status.empty()) diagnostics_->publish(message);
+}
+
+void Link::log(Severity severity, std::string text) { node_->log(severity, std::move(text)); }
+
+}  // namespace culprit::ros2

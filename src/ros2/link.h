@@ -1,0 +1,100 @@
+// The adapter: a live ROS 2 robot, spoken to directly over DDS.
+//
+// It joins as the node /culprit, tells the manager what it observes (nodes and who depends on whom,
+// the rhythm of topics, values of fields, diagnostics and parameters, lifecycle states), carries
+// out what is asked of nodes, and publishes what culprit has to say on /diagnostics and /rosout.
+//
+// It does no harm: its readers are best effort and keep one sample, it subscribes only to what the
+// rules read, and it uses no shared memory.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "robot/command.h"
+#include "robot/component_binding.h"
+#include "robot/inbox.h"
+#include "ros2/component_link.h"
+#include "ros2/diagnostics_watch.h"
+#include "ros2/node.h"
+#include "ros2/timer.h"
+#include "ros2/topic_watch.h"
+
+namespace culprit::ros2 {
+
+// One status on /diagnostics. `level` as in diagnostic_msgs: 0 OK, 1 WARN, 2 ERROR.
+struct Health {
+  std::string name;
+  std::uint8_t level = 0;
+  std::string message;
+  std::vector<std::pair<std::string, std::string>> values;
+};
+
+// execute(), publish() and log() may be called from any thread; what comes of commands goes to the
+// inbox.
+class Link {
+ public:
+  struct Options {
+    ParticipantOptions participant;
+    NodeName name{"/", "culprit"};
+    std::vector<std::filesystem::path> message_path;  // where to find .msg files
+    std::vector<std::pair<std::string, Value>>
+        parameters;  // what the node shows of itself, read-only
+  };
+
+  // `rules` and `inbox` must outlive the link. Errors: the domain cannot be joined.
+  static Expected<std::unique_ptr<Link>> open(const RuleSet& rules, Options options, Inbox& inbox);
+  ~Link();
+
+  void execute(const Command& command);
+  // Publishes at once, and again every second until there is something new to say.
+  void publish(std::vector<Health> health);
+  void log(Severity severity, std::string text);
+
+ private:
+  Link(const RuleSet& rules, Options options, Inbox& inbox);
+  Expected<void> start();
+  Expected<void> declare_parameters();
+  Expected<void> watch_parameter_events();
+
+  // On the executor's thread.
+  void on_change(const GraphChange& change);
+  void on_joined(const GraphNode& node);
+  void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
+  void on_parameter_event(const msg::ParameterEvent& event);
+  void probe();
+  void publish_again();
+
+  ComponentLink* link_of(ComponentId component);
+  ComponentLink* make_link(ComponentId component, const std::string& node);
+
+  const RuleSet& rules_;
+  Options options_;
+  Inbox& inbox_;
+  ComponentBinding binding_;
+  MessageLibrary library_;
+
+  Executor executor_;
+  std::unique_ptr<Context> context_;
+  std::unique_ptr<Node> node_;
+  std::optional<Publisher<msg::DiagnosticArray>> diagnostics_;
+  std::map<std::string, std::unique_ptr<TopicWatch>> watches_;  // by topic
+  std::unique_ptr<DiagnosticsWatch> diagnostics_watch_;
+  std::unique_ptr<Subscription> parameter_events_;
+  std::map<std::string, ComponentId> probed_;  // nodes whose process is not known
+  std::unique_ptr<Timer> probing_;
+  std::unique_ptr<Timer> publishing_;
+
+  std::mutex mutex_;  // guards what follows; a link that is made stays
+  std::vector<Health> health_;
+  std::vector<std::unique_ptr<ComponentLink>> links_;  // by component
+
+  std::thread thread_;
+};
+
+}  // namespace culprit::ros2

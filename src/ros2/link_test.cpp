@@ -1,0 +1,324 @@
+#include "ros2/link.h"
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+#include "ros2/lifecycle_node.h"
+#include "ros2/live_test.h"
+#include "ros2/services.h"
+
+namespace culprit::ros2 {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* kRules = R"(
+COMPONENT robot NODE /robot
+COMPONENT absent NODE /absent
+SIGNAL temperature DIAGNOSTIC motor KEY temperature
+SIGNAL visibility  TOPIC /visibility FIELD data
+SIGNAL wrong       TOPIC /visibility FIELD no.such.field
+RULE R
+  POLICIES ERROR
+  TRIGGER temperature > 50 || visibility < 1 || wrong > 1 || robot_speed > 1 || rate(/visibility) < 1 || level(motor) > 1 || parameter(robot, gain) > 2 || lifecycle(robot) == "x"
+    STRATEGY s 50 10
+      ADAPTATION robot restart 5
+)";
+
+// A link to whatever the test puts on the domain, and what it observes.
+class Linked {
+ public:
+  explicit Linked(const TestDomain& domain) : rules(*check(Source("test.rules", kRules)).rules) {
+    Link::Options options;
+    options.participant = domain.options();
+    options.parameters = {{"rules", Value(std::string("test.rules"))}};
+    auto opened = Link::open(rules, std::move(options), inbox_);
+    if (!opened) throw std::runtime_error(opened.error());
+    link = std::move(*opened);
+  }
+
+  // The first observation of this kind that fits, now or later.
+  template <class What, class Fits>
+  std::optional<What> wait(Fits fits) {
+    const Time end = live_now() + kPatience;
+    for (std::size_t i = 0;; ++i) {
+      while (i == seen_.size()) {
+        if (live_now() >= end) return std::nullopt;
+        inbox_.take(end, seen_);
+      }
+      const auto* what = std::get_if<What>(&seen_[i].what);
+      if (what != nullptr && fits(*what)) return *what;
+    }
+  }
+  Reply ask(decltype(Command::what) what, Duration timeout = 5s,
+            ComponentId component = ComponentId(0)) {
+    const CommandId id{++last_};
+    link->execute({id, component, std::move(what), timeout});
+    const auto reply = wait<Reply>([&](const Reply& r) { return r.command == id; });
+    EXPECT_TRUE(reply) << "a command must always be answered";
+    return reply.value_or(Reply{});
+  }
+  bool sees(const std::string& node) {
+    return wait<NodeAppeared>([&](const NodeAppeared& n) { return n.node == node; }).has_value();
+  }
+  std::optional<Value> reads(const std::string& signal) {
+    const auto read =
+        wait<SignalRead>([&](const SignalRead& r) { return rules[r.signal].name == signal; });
+    return read ? std::optional(read->value) : std::nullopt;
+  }
+
+  RuleSet rules;
+
+ private:
+  Inbox inbox_;  // outlives the link
+  std::vector<Observation> seen_;
+  std::uint64_t last_ = 0;
+
+ public:
+  std::unique_ptr<Link> link;
+};
+
+struct Robot {
+  explicit Robot(const TestDomain& domain) : context(domain.options()) {
+    context.run([&] {
+      managed = std::move(*LifecycleNode::create(*context, {"/", "robot"}, {}));
+      ParameterStore& parameters = managed->node().parameters();
+      EXPECT_TRUE(parameters.declare("gain", Value(1.5)));
+      msg::ParameterValue names;
+      names.type = 9;
+      EXPECT_TRUE(parameters.declare("names", names));
+    });
+  }
+  template <class Message>
+  Publisher<Message> publisher(const std::string& topic) {
+    return std::move(*managed->node().create_publisher<Message>(topic));
+  }
+  LiveContext context;
+  std::unique_ptr<LifecycleNode> managed;
+};
+
+TEST(Link, SeesNodesWithTheirProcessAndTheirState) {
+  const TestDomain domain;
+  Robot robot(domain);
+  Linked linked(domain);
+  const auto node =
+      linked.wait<NodeAppeared>([](const NodeAppeared& n) { return n.node == "/robot"; });
+  ASSERT_TRUE(node);
+  EXPECT_EQ(node->pid, getpid());
+  EXPECT_TRUE(linked.wait<LifecycleRead>(
+      [](const LifecycleRead& r) { return r.state == Lifecycle::kUnconfigured; }));
+  EXPECT_TRUE(
+      linked.wait<ParameterRead>([](const ParameterRead& r) { return r.value == Value(1.5); }));
+}
+
+TEST(Link, IsANodeThatOthersSee) {
+  const TestDomain domain;
+  LiveContext other(domain.options());
+  Linked linked(domain);
+  EXPECT_TRUE(other.sees_node("/culprit"));
+  EXPECT_TRUE(other.sees_endpoint("/culprit", EndpointKind::kPublisher, "/diagnostics"));
+  EXPECT_TRUE(other.sees_endpoint("/culprit", EndpointKind::kPublisher, "/rosout"));
+  EXPECT_TRUE(other.sees_endpoint("/culprit", EndpointKind::kServer, "/culprit/get_parameters"));
+}
+
+TEST(Link, PublishesWhatItIsToldAgainAndAgain) {
+  const TestDomain domain;
+  LiveContext other(domain.options());
+  NodeEntry listener(*other, {"/", "listener"});
+  EventLog<msg::DiagnosticArray> heard;
+  auto subscription = Subscription::create(listener, "/diagnostics", msg::DiagnosticArray::kType,
+                                           qos::kDefault, [&](ByteView payload) {
+                                             if (auto array = decode<msg::DiagnosticArray>(payload))
+                                               heard.add(*array);
+                                           });
+  ASSERT_TRUE(subscription);
+  Linked linked(domain);
+  linked.link->publish({{"culprit: R", 2, "a person must look", {{"attempts", "6"}}}});
+  ASSERT_TRUE(heard.wait_for_count(2)) << "a late listener must hear it too";
+  const msg::DiagnosticStatus status = heard.all()[0].status.at(0);
+  EXPECT_EQ(status.level, 2);
+  EXPECT_EQ(status.name, "culprit: R");
+  EXPECT_EQ(status.values.at(0).value, "6");
+}
+
+TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
+  const TestDomain domain;
+  Robot robot(domain);
+  auto visibility = robot.publisher<msg::Float64>("/visibility");
+  auto diagnostics = robot.publisher<msg::DiagnosticArray>("/diagnostics");
+  Linked linked(domain);
+  ASSERT_TRUE(linked.sees("/robot"));
+  // Volatile data: published until it is heard.
+  Timer timer(robot.context->executor(), 20ms, [&] {
+    visibility.publish({2.5});
+    msg::DiagnosticStatus motor{1, "motor", "", "m1", {{"temperature", "60.5"}}};
+    msg::DiagnosticStatus base{0, "base", "", "robot", {{"speed", "1"}}};
+    msg::DiagnosticArray array;
+    array.status = {motor, base};
+    diagnostics.publish(array);
+  });
+  EXPECT_EQ(linked.reads("visibility"), Value(2.5));
+  EXPECT_EQ(linked.reads("temperature"), Value(std::string("60.5"))) << "by the status's name";
+  EXPECT_EQ(linked.reads("robot_speed"), Value(std::string("1")))
+      << "not declared: hardware id and key";
+  EXPECT_TRUE(linked.wait<SampleArrived>([](const SampleArrived&) { return true; }));
+  EXPECT_TRUE(linked.wait<DiagnosticRead>([](const DiagnosticRead& d) { return d.level == 1; }));
+  const auto trouble = linked.wait<LinkTrouble>(
+      [](const LinkTrouble& t) { return t.text.find("signal wrong") != std::string::npos; });
+  EXPECT_TRUE(trouble) << "a field that is not there must be said";
+}
+
+TEST(Link, SurvivesHostileMessages) {
+  const TestDomain domain;
+  Robot robot(domain);
+  auto& entry = robot.managed->node().entry();
+  auto diagnostics = std::move(
+      *RawPublisher::create(entry, "/diagnostics", msg::DiagnosticArray::kType, qos::kDefault));
+  auto visibility =
+      std::move(*RawPublisher::create(entry, "/visibility", msg::Float64::kType, qos::kDefault));
+  auto honest = robot.publisher<msg::Float64>("/visibility");
+  Linked linked(domain);
+  ASSERT_TRUE(linked.sees("/robot"));
+  const Bytes cut = {0, 1, 0, 0, 0xff};
+  const Bytes huge = {0, 1, 0, 0, 0, 0, 0, 0, 0,    0,    0,    0,
+                      1, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff};
+  Timer timer(robot.context->executor(), 20ms, [&] {
+    for (const Bytes& payload : {cut, huge}) {
+      diagnostics->publish(payload);
+      visibility->publish(payload);
+    }
+    honest.publish({0.5});
+  });
+  EXPECT_TRUE(linked.wait<SignalRead>([](const SignalRead& r) { return r.value == Value(0.5); }));
+}
+
+TEST(Link, SteersLifecycleAndParameters) {
+  const TestDomain domain;
+  Robot robot(domain);
+  Linked linked(domain);
+  EXPECT_EQ(linked.ask(ChangeLifecycle{Transition::kConfigure}).outcome, Outcome::kDone);
+  EXPECT_EQ(linked.ask(ChangeLifecycle{Transition::kActivate}).outcome, Outcome::kDone);
+  const Reply state = linked.ask(ReadLifecycle{});
+  EXPECT_EQ(std::get<Lifecycle>(state.value), Lifecycle::kActive);
+  EXPECT_EQ(linked.ask(ChangeLifecycle{Transition::kConfigure}).outcome, Outcome::kRefused);
+
+  EXPECT_EQ(linked.ask(SetParameter{"gain", Value(3.0)}).outcome, Outcome::kDone);
+  EXPECT_EQ(std::get<Value>(linked.ask(ReadParameter{"gain"}).value), Value(3.0));
+  EXPECT_TRUE(linked.wait<ParameterRead>([](const ParameterRead& r) {
+    return r.value == Value(3.0);
+  })) << "announced";
+}
+
+TEST(Link, SaysWhyAParameterCannotBe) {
+  const TestDomain domain;
+  Robot robot(domain);
+  Linked linked(domain);
+  const Reply none = linked.ask(ReadParameter{"volume"});
+  EXPECT_EQ(none.outcome, Outcome::kRefused);
+  EXPECT_EQ(none.text, "there is no parameter volume");
+  EXPECT_EQ(linked.ask(ReadParameter{"names"}).text, "parameter names is a list");
+  EXPECT_EQ(linked.ask(SetParameter{"volume", Value(1.0)}).outcome, Outcome::kRefused);
+  EXPECT_EQ(linked.ask(SetParameter{"gain", Value(std::string("x"))}).outcome, Outcome::kRefused);
+}
+
+TEST(Link, CallsRoutines) {
+  const TestDomain domain;
+  Robot robot(domain);
+  std::vector<std::unique_ptr<ServiceServer>> services;
+  int calls = 0;
+  robot.context.run([&] {
+    Node& node = robot.managed->node();
+    services.push_back(std::move(
+        *node.create_service<srv::Trigger>("~/calibrate", [&](const srv::Trigger::Request&) {
+          ++calls;
+          return srv::Trigger::Response{calls == 1, "call " + std::to_string(calls)};
+        })));
+    services.push_back(
+        std::move(*node.create_service<srv::SetBool>("~/light", [](const srv::SetBool::Request&) {
+          return srv::SetBool::Response{true, ""};
+        })));
+  });
+  Linked linked(domain);
+  for (const char* name : {"/robot/calibrate", "/robot/light"}) {
+    EXPECT_TRUE(
+        linked.wait<EndpointAppeared>([&](const EndpointAppeared& e) { return e.name == name; }));
+  }
+  EXPECT_EQ(linked.ask(CallService{"/robot/calibrate"}).outcome, Outcome::kDone);
+  const Reply second = linked.ask(CallService{"/robot/calibrate"});
+  EXPECT_EQ(second.outcome, Outcome::kRefused);
+  EXPECT_EQ(second.text, "call 2");
+  EXPECT_EQ(linked.ask(CallService{"/robot/light"}).outcome, Outcome::kRefused) << "not a Trigger";
+  EXPECT_EQ(linked.ask(CallService{"/robot/nothing"}).outcome, Outcome::kUnreachable);
+}
+
+TEST(Link, ChangesModes) {
+  const TestDomain domain;
+  Robot robot(domain);
+  std::vector<std::unique_ptr<ServiceServer>> services;
+  std::string mode = "slow";
+  robot.context.run([&] {
+    Node& node = robot.managed->node();
+    services.push_back(std::move(*node.create_service<srv::ChangeMode>(
+        "~/change_mode", [&](const srv::ChangeMode::Request& r) {
+          mode = r.mode_name;
+          return srv::ChangeMode::Response{true};
+        })));
+    services.push_back(std::move(*node.create_service<srv::GetMode>(
+        "~/get_mode", [&](const srv::GetMode::Request&) { return srv::GetMode::Response{mode}; })));
+  });
+  Linked linked(domain);
+  EXPECT_EQ(linked.ask(ChangeMode{"fast"}).outcome, Outcome::kDone);
+  EXPECT_EQ(std::get<Value>(linked.ask(ReadMode{}).value), Value(std::string("fast")));
+}
+
+TEST(Link, AnswersForNodesThatAreNotThere) {
+  const TestDomain domain;
+  Linked linked(domain);
+  const Reply reply = linked.ask(ReadLifecycle{}, 300ms, ComponentId(1));
+  EXPECT_EQ(reply.outcome, Outcome::kUnreachable);
+  EXPECT_EQ(reply.text, "/absent offers no lifecycle_msgs/srv/GetState that answers");
+}
+
+TEST(Link, AnswersForServicesThatNeverAnswer) {
+  const TestDomain domain;
+  Robot robot(domain);
+  Linked linked(domain);
+  EXPECT_EQ(linked.ask(ReadLifecycle{}).outcome, Outcome::kDone);
+  EXPECT_EQ(linked.ask(ChangeLifecycle{Transition::kConfigure}).outcome, Outcome::kDone);
+  std::promise<void> hang;
+  TaskGroup tasks(robot.context->executor());
+  tasks.post([&] { hang.get_future().wait(); });  // the node's only thread
+  EXPECT_EQ(linked.ask(ReadLifecycle{}, 300ms).outcome, Outcome::kTimedOut);
+  EXPECT_EQ(linked.ask(ChangeLifecycle{Transition::kActivate}, 300ms).outcome, Outcome::kTimedOut);
+  hang.set_value();
+}
+
+TEST(Link, AnswersForRepliesOfTheWrongType) {
+  const TestDomain domain;
+  LiveContext liar(domain.options());
+  NodeEntry entry(*liar, {"/", "robot"});
+  // Named and typed as the real service, but it answers with what is none of its responses.
+  auto server = ServiceServer::create(
+      entry, {"/robot/get_state", std::string(srv::GetState::kType)}, qos::kServices,
+      [](ByteView) { return Bytes{0, 1, 0, 0, 1, 0, 0, 0, 0xff, 0xff, 0xff, 0x7f}; });
+  ASSERT_TRUE(server);
+  Linked linked(domain);
+  const Reply reply = linked.ask(ReadLifecycle{});
+  EXPECT_EQ(reply.outcome, Outcome::kRefused);
+  EXPECT_EQ(reply.text, "the answer is no lifecycle_msgs/srv/GetState response");
+}
+
+TEST(Link, LosesSightOfANodeThatLeaves) {
+  const TestDomain domain;
+  Linked linked(domain);
+  {
+    Robot robot(domain);
+    ASSERT_TRUE(linked.sees("/robot"));
+  }
+  EXPECT_TRUE(linked.wait<NodeVanished>([](const NodeVanished& n) { return n.node == "/robot"; }));
+}
+
+}  // namespace
+}  // namespace culprit::ros2

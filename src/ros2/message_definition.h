@@ -1,0 +1,59 @@
+// What a message type looks like, read from the text of its `.msg` file
+// (design.ros2.org/articles/legacy_interface_definition.html).
+//
+// Kept is what the wire needs: the fields, in order, with their types. Constants, default values,
+// bounds and comments are checked for form and dropped, for nothing of them is sent.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "language/expected.h"
+
+namespace culprit::ros2 {
+
+enum class Primitive : std::uint8_t {
+  kBool,
+  kByte,
+  kChar,
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kInt64,
+  kUint64,
+  kFloat32,
+  kFloat64,
+  kString,
+  kWString
+};
+
+enum class Shape : std::uint8_t {
+  kSingle,
+  kArray,    // `count` elements, bare
+  kSequence  // a count, then so many elements; bounded or not, it looks the same
+};
+
+struct FieldDefinition {
+  std::string name;
+  std::variant<Primitive, std::string>
+      element;  // or the full name of a message, "package/msg/Type"
+  Shape shape = Shape::kSingle;
+  std::uint32_t count = 1;  // of a kArray
+};
+
+struct MessageDefinition {
+  std::string type;  // "package/msg/Type"
+  std::vector<FieldDefinition> fields;
+};
+
+// `text` defines `type`, a valid "package/msg/Type". Errors begin with "<file>:<line>: ".
+Expected<MessageDefinition> parse_message_definition(std::string_view text, std::string_view type,
+                                                     std::string_view file);
+
+}  // namespace culprit::ros2

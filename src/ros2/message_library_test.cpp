@@ -1,0 +1,97 @@
+#include "ros2/message_library.h"
+
+#include <fstream>
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "ros2/standard_messages.h"
+
+namespace culprit::ros2 {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// A directory of message definitions that is gone after the test.
+class MessageDirectory {
+ public:
+  MessageDirectory()
+      : path_(fs::temp_directory_path() / ("culprit-messages-" + std::to_string(getpid()))) {
+    fs::create_directories(path_);
+  }
+  ~MessageDirectory() { fs::remove_all(path_); }
+
+  MessageDirectory& with(const std::string& file, const std::string& text) {
+    fs::create_directories((path_ / file).parent_path());
+    std::ofstream(path_ / file) << text;
+    return *this;
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+TEST(MessageLibrary, KnowsTheStandardTypesAndAllThatTheyNest) {
+  MessageLibrary library;
+  for (const StandardMessage& message : standard_messages()) {
+    const auto definition = library.find(message.type);
+    ASSERT_TRUE(definition) << definition.error();
+    for (const FieldDefinition& field : (*definition)->fields) {
+      if (const auto* nested = std::get_if<std::string>(&field.element)) {
+        EXPECT_TRUE(library.find(*nested)) << message.type << " has a " << *nested;
+      }
+    }
+  }
+}
+
+TEST(MessageLibrary, FindsFilesInBothLayouts) {
+  MessageDirectory directory;
+  directory.with("my_msgs/msg/A.msg", "int32 a\n").with("share/my_msgs/msg/B.msg", "int32 b\n");
+  MessageLibrary library({directory.path()});
+  EXPECT_EQ((*library.find("my_msgs/msg/A"))->fields.front().name, "a");
+  EXPECT_EQ((*library.find("my_msgs/msg/B"))->fields.front().name, "b");
+}
+
+TEST(MessageLibrary, PrefersFilesToWhatIsBuiltIn) {
+  MessageDirectory directory;
+  directory.with("std_msgs/msg/String.msg", "string other\n");
+  MessageLibrary library({directory.path()});
+  EXPECT_EQ((*library.find("std_msgs/msg/String"))->fields.front().name, "other");
+}
+
+TEST(MessageLibrary, GivesTheSameDefinitionAgain) {
+  MessageLibrary library;
+  EXPECT_EQ(*library.find("std_msgs/msg/String"), *library.find("std_msgs/msg/String"));
+}
+
+TEST(MessageLibrary, SaysWhatToDoAboutAnUnknownType) {
+  MessageLibrary library;
+  EXPECT_EQ(library.find("my_msgs/msg/Thing").error(),
+            "the message type my_msgs/msg/Thing is not known; give the directory that holds "
+            "my_msgs/msg/Thing.msg with --message-path");
+}
+
+TEST(MessageLibrary, ReportsTheFileOfASyntaxError) {
+  MessageDirectory directory;
+  directory.with("my_msgs/msg/Bad.msg", "int32 a\nint32\n");
+  MessageLibrary library({directory.path()});
+  EXPECT_THAT(library.find("my_msgs/msg/Bad").error(), HasSubstr("my_msgs/msg/Bad.msg:2: "));
+}
+
+TEST(MessageLibrary, NeverLooksOutsideItsDirectories) {
+  MessageLibrary library({"/"});
+  EXPECT_FALSE(library.find("../msg/X"));
+  EXPECT_FALSE(library.find("etc/msg/../../etc/passwd"));
+}
+
+TEST(MessageLibrary, SearchesTheGivenDirectoriesBeforeThePrefixPath) {
+  EXPECT_THAT(message_directories({"/mine"}, "/a:/b::"), ElementsAre("/mine", "/a", "/b"));
+  EXPECT_THAT(message_directories({}, ""), ElementsAre());
+}
+
+}  // namespace
+}  // namespace culprit::ros2

@@ -1,0 +1,62 @@
+// How ROS 2 names appear on DDS, and which of them are well-formed.
+//
+//     topic   /a/b             ->  rt/a/b           pkg/msg/Type  ->  pkg::msg::dds_::Type_
+//     request of service /a/s  ->  rq/a/sRequest    pkg/srv/Type  ->  pkg::srv::dds_::Type_Request_
+//     reply of service /a/s    ->  rr/a/sReply      pkg/srv/Type  -> pkg::srv::dds_::Type_Response_
+//
+// Every name that comes from the network is data: the demangling functions give nothing for what
+// breaks the grammar of design.ros2.org/articles/topic_and_service_names.html, so whatever they
+// give is safe to print and to compare.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "language/expected.h"
+
+namespace culprit::ros2 {
+
+// What a DDS topic carries. Actions are made of these.
+enum class Channel : std::uint8_t { kTopic, kRequest, kReply };
+
+struct RosChannel {
+  Channel channel;
+  std::string name;  // of the topic or service, absolute
+  bool operator==(const RosChannel&) const = default;
+};
+
+// "/a/b_1": absolute, tokens of letters, digits and underscores that do not start with a digit.
+bool is_valid_topic_name(std::string_view name);
+bool is_valid_node_name(std::string_view name);  // one token
+bool is_valid_namespace(std::string_view name);  // "/" or like a topic
+bool is_valid_type_name(std::string_view type);  // "package/msg/Type", also srv and action
+
+struct NodeName {
+  std::string name_space = "/";  // "/" or "/a/b", no slash at the end
+  std::string name;
+
+  std::string full() const { return name_space == "/" ? "/" + name : name_space + "/" + name; }
+  bool operator==(const NodeName&) const = default;
+};
+
+// "/a/b/node" -> {"/a/b", "node"}.
+Expected<NodeName> parse_node_name(std::string_view full_name);
+
+// What a node means by a topic or service name: "/x" as it is, "x" below its namespace, "~/x" below
+// itself.
+Expected<std::string> resolve_name(std::string_view name, const NodeName& node);
+
+// @pre is_valid_topic_name(name), is_valid_type_name(type)
+std::string mangle_topic(Channel channel, std::string_view name);
+std::string mangle_type(Channel channel, std::string_view type);
+
+std::optional<RosChannel> demangle_topic(std::string_view dds_topic);
+std::optional<std::string> demangle_type(Channel channel, std::string_view dds_type);
+
+// What a stranger said, made safe for a message to people: printable ASCII only, cut at 80
+// characters.
+std::string printable(std::string_view text);
+
+}  // namespace culprit::ros2

@@ -1,0 +1,97 @@
+#include "ros2/options.h"
+
+#include <algorithm>
+#include <arpa/inet.h>
+#include <charconv>
+#include <cstdlib>
+#include <memory>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <string_view>
+
+#include "ros2/names.h"
+
+namespace culprit::ros2 {
+namespace {
+
+constexpr std::uint32_t kLastDomain =
+    232;  // the last one whose ports are below 65536 (RTPS 2.3 §9.6.1.1)
+
+std::string_view value_of(const Environment& get, const char* name) {
+  const char* value = get(name);
+  return value == nullptr ? std::string_view() : std::string_view(value);
+}
+
+Error bad_value(const char* name, std::string_view value, const std::string& what) {
+  return Error{std::string(name) + " is '" + printable(value) + "'; " + what};
+}
+
+Expected<std::uint32_t> read_domain(std::string_view text) {
+  std::uint32_t domain = 0;
+  if (text.empty()) return domain;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, domain);
+  if (error != std::errc() || rest != end || domain > kLastDomain) {
+    return bad_value("ROS_DOMAIN_ID", text,
+                     "a domain is a number from 0 to 232, better not above 101");
+  }
+  return domain;
+}
+
+Expected<Reach> read_reach(const Environment& get) {
+  constexpr const char* kLocalhostOnly = "ROS_LOCALHOST_ONLY";
+  constexpr const char* kRange = "ROS_AUTOMATIC_DISCOVERY_RANGE";
+  const auto localhost_only = value_of(get, kLocalhostOnly);
+  if (localhost_only == "1") return Reach::kLocalhost;
+  if (!localhost_only.empty() && localhost_only != "0") {
+    return bad_value(kLocalhostOnly, localhost_only, "it is either 0 or 1");
+  }
+  const auto range = value_of(get, kRange);
+  if (range == "LOCALHOST") return Reach::kLocalhost;
+  if (range.empty() || range == "SUBNET" || range == "SYSTEM_DEFAULT") return Reach::kSubnet;
+  if (range == "OFF")
+    return bad_value(kRange, range, "nothing can be discovered; use SUBNET or LOCALHOST");
+  return bad_value(kRange, range, "it is SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT");
+}
+
+}  // namespace
+
+Expected<ParticipantOptions> options_from_environment(const Environment& get) {
+  ParticipantOptions options;
+  const auto domain = read_domain(value_of(get, "ROS_DOMAIN_ID"));
+  if (!domain) return Error{domain.error()};
+  options.domain = *domain;
+  const auto reach = read_reach(get);
+  if (!reach) return Error{reach.error()};
+  options.reach = *reach;
+
+  std::string_view peers = value_of(get, "ROS_STATIC_PEERS");
+  while (!peers.empty()) {
+    const auto end = std::min(peers.find(';'), peers.size());
+    if (end > 0) options.peers.emplace_back(peers.substr(0, end));
+    peers.remove_prefix(std::min(end + 1, peers.size()));
+  }
+  return options;
+}
+
+Expected<ParticipantOptions> options_from_environment() {
+  return options_from_environment(
+      [](const char* name) -> const char* { return std::getenv(name); });
+}
+
+Expected<std::string> resolve_peer(const std::string& host) {
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  if (const int error = getaddrinfo(host.c_str(), nullptr, &hints, &found); error != 0) {
+    return Error{"the peer '" + printable(host) + "' cannot be found: " + gai_strerror(error)};
+  }
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(found, &freeaddrinfo);
+  std::array<char, INET_ADDRSTRLEN> text{};
+  const auto* address = reinterpret_cast<const sockaddr_in*>(found->ai_addr);
+  inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size());
+  return std::string(text.data());
+}
+
+}  // namespace culprit::ros2

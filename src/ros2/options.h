@@ -1,0 +1,43 @@
+// How a participant joins: which domain, how far it reaches, what it says of itself. The
+// environment variables are those that the robot's own nodes obey, so that culprit started in the
+// same shell meets the same robot.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "language/expected.h"
+#include "ros2/discovery_info.h"
+
+namespace culprit::ros2 {
+
+enum class Reach : std::uint8_t { kLocalhost, kSubnet };
+
+struct ParticipantOptions {
+  std::uint32_t domain = 0;  // 0..232; above 101 the ports collide with those that Linux hands out
+  Reach reach = Reach::kSubnet;
+  std::string enclave = "/";
+  std::vector<std::string>
+      peers;  // further IPv4 addresses or host names to announce to, where multicast does not reach
+  // What ros_discovery_info is written with. Nothing: as the first peer does.
+  std::optional<GidSize> gid_size;
+  // Of the UDP sockets; the system's default of 208 kB loses large best effort samples.
+  // net.core.rmem_max caps it.
+  std::uint32_t socket_buffer_bytes = 4 * 1024 * 1024;
+};
+
+// The value of a variable, or null.
+using Environment = std::function<const char*(const char* name)>;
+
+// ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS. An error
+// names the variable.
+Expected<ParticipantOptions> options_from_environment(const Environment& get);
+Expected<ParticipantOptions> options_from_environment();
+
+// The IPv4 address of a host, in dots. Asks the resolver for names.
+Expected<std::string> resolve_peer(const std::string& host);
+
+}  // namespace culprit::ros2

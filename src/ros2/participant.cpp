@@ -1,0 +1,306 @@
+#include "ros2/participant.h"
+
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "ros2/fast_dds.h"
+#include "ros2/names.h"
+
+namespace culprit::ros2 {
+
+namespace dds = fast_dds::dds;
+namespace rtps = fast_dds::rtps;
+
+namespace {
+
+// The topics of a participant. Fast DDS has one object for each name, with one type; readers and
+// writers share it.
+class Topics {
+ public:
+  explicit Topics(dds::DomainParticipant& participant) : participant_(participant) {}
+
+  Expected<dds::Topic*> acquire(const std::string& name, const std::string& type) {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = topics_.find(name); found != topics_.end()) {
+      if (found->second.topic->get_type_name() != type) {
+        return Error{"the topic " + printable(name) + " is in use with the type " +
+                     printable(found->second.topic->get_type_name()) + ", not " + printable(type)};
+      }
+      ++found->second.users;
+      return found->second.topic;
+    }
+    if (!participant_.find_type(type)) {
+      dds::TypeSupport(new fast_dds::RawType(type)).register_type(&participant_);
+    }
+    dds::Topic* topic = participant_.create_topic(name, type, dds::TopicQos());
+    if (topic == nullptr) return Error{"the topic " + printable(name) + " cannot be created"};
+    topics_.emplace(name, Entry{topic, 1});
+    return topic;
+  }
+
+  void release(const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    const auto found = topics_.find(name);
+    if (--found->second.users > 0) return;
+    participant_.delete_topic(found->second.topic);
+    topics_.erase(found);
+  }
+
+ private:
+  struct Entry {
+    dds::Topic* topic;
+    int users;
+  };
+  dds::DomainParticipant& participant_;
+  std::mutex mutex_;
+  std::map<std::string, Entry> topics_;
+};
+
+// The middleware fetches its listener without holding it back, so a callback could still come in
+// while its entity is being deleted. Every callback goes through this gate, one at a time, and
+// close() waits for the one inside.
+class Gate {
+ public:
+  template <class Callback>
+  void pass(Callback&& callback) {
+    const std::lock_guard lock(mutex_);
+    if (open_) callback();
+  }
+  void close() {
+    const std::lock_guard lock(mutex_);
+    open_ = false;
+  }
+
+ private:
+  std::mutex mutex_;
+  bool open_ = true;
+};
+
+template <class Status>
+Match match_of(const Status& status) {
+  return status.current_count_change > 0 ? Match::kMade : Match::kLost;
+}
+
+}  // namespace
+
+class Reader::Impl final : public dds::DataReaderListener {
+ public:
+  Impl(dds::Subscriber& subscriber, Topics& topics, ReaderOptions options, SampleCallback on_sample)
+      : subscriber_(subscriber),
+        topics_(topics),
+        options_(std::move(options)),
+        on_sample_(std::move(on_sample)) {
+    incoming_.use = options_.payload;
+  }
+
+  // The destructor undoes whatever of this succeeded.
+  Expected<void> open() {
+    const auto topic = topics_.acquire(options_.topic, options_.type);
+    if (!topic) return Error{topic.error()};
+    has_topic_ = true;
+    // With the listener from the start: known writers match, and may send, before this returns.
+    reader_ = subscriber_.create_datareader(
+        *topic, fast_dds::reader_qos(options_.qos, options_.user_data), this,
+        dds::StatusMask::data_available() << dds::StatusMask::subscription_matched());
+    if (reader_ == nullptr)
+      return Error{"no reader of " + printable(options_.topic) + " can be created"};
+    guid_ = fast_dds::to_guid(reader_->guid());
+    return {};
+  }
+
+  ~Impl() override {
+    gate_.close();
+    if (reader_ != nullptr) {
+      reader_->set_listener(nullptr);
+      subscriber_.delete_datareader(reader_);
+    }
+    if (has_topic_) topics_.release(options_.topic);
+  }
+
+  void on_data_available(dds::DataReader* reader) noexcept override {
+    gate_.pass([&] {
+      dds::SampleInfo info;
+      while (fast_dds::ok(reader->take_next_sample(&incoming_, &info))) {
+        if (info.valid_data) deliver(info);
+      }
+    });
+  }
+
+  void on_subscription_matched(dds::DataReader*,
+                               const dds::SubscriptionMatchedStatus& status) noexcept override {
+    if (!options_.on_match) return;
+    const Guid writer = fast_dds::to_guid(rtps::iHandle2GUID(status.last_publication_handle));
+    gate_.pass([&] { options_.on_match(writer, match_of(status)); });
+  }
+
+  const Guid& guid() const { return guid_; }
+
+ private:
+  void deliver(const dds::SampleInfo& info) {
+    on_sample_(
+        {.payload = options_.payload == PayloadUse::kWhole ? ByteView(incoming_.bytes) : ByteView(),
+         .size = incoming_.size,
+         .sent = fast_dds::to_time(info.source_timestamp),
+         .received = fast_dds::to_time(info.reception_timestamp),
+         .identity = fast_dds::to_identity(info.sample_identity),
+         .related = fast_dds::to_identity(info.related_sample_identity)});
+  }
+
+  dds::Subscriber& subscriber_;
+  Topics& topics_;
+  const ReaderOptions options_;
+  const SampleCallback on_sample_;
+  Gate gate_;
+  fast_dds::Incoming incoming_;  // inside the gate; keeps its capacity from sample to sample
+  bool has_topic_ = false;
+  dds::DataReader* reader_ = nullptr;
+  Guid guid_;
+};
+
+Reader::Reader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Reader::~Reader() = default;
+const Guid& Reader::guid() const { return impl_->guid(); }
+
+class Writer::Impl final : public dds::DataWriterListener {
+ public:
+  Impl(dds::Publisher& publisher, Topics& topics, WriterOptions options)
+      : publisher_(publisher), topics_(topics), options_(std::move(options)) {}
+
+  Expected<void> open() {
+    const auto topic = topics_.acquire(options_.topic, options_.type);
+    if (!topic) return Error{topic.error()};
+    has_topic_ = true;
+    writer_ =
+        publisher_.create_datawriter(*topic, fast_dds::writer_qos(options_.qos, options_.user_data),
+                                     this, dds::StatusMask::publication_matched());
+    if (writer_ == nullptr)
+      return Error{"no writer of " + printable(options_.topic) + " can be created"};
+    guid_ = fast_dds::to_guid(writer_->guid());
+    return {};
+  }
+
+  ~Impl() override {
+    gate_.close();
+    if (writer_ != nullptr) {
+      writer_->set_listener(nullptr);
+      publisher_.delete_datawriter(writer_);
+    }
+    if (has_topic_) topics_.release(options_.topic);
+  }
+
+  void on_publication_matched(dds::DataWriter*,
+                              const dds::PublicationMatchedStatus& status) noexcept override {
+    if (!options_.on_match) return;
+    const Guid reader = fast_dds::to_guid(rtps::iHandle2GUID(status.last_subscription_handle));
+    gate_.pass([&] { options_.on_match(reader, match_of(status)); });
+  }
+
+  std::optional<std::int64_t> write(ByteView payload, const SampleIdentity& related) {
+    return fast_dds::write(*writer_, payload, related);
+  }
+
+  void forget_unacknowledged() { fast_dds::forget_unacknowledged(*writer_); }
+
+  const Guid& guid() const { return guid_; }
+
+ private:
+  dds::Publisher& publisher_;
+  Topics& topics_;
+  const WriterOptions options_;
+  Gate gate_;
+  bool has_topic_ = false;
+  dds::DataWriter* writer_ = nullptr;
+  Guid guid_;
+};
+
+Writer::Writer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Writer::~Writer() = default;
+const Guid& Writer::guid() const { return impl_->guid(); }
+std::optional<std::int64_t> Writer::write(ByteView payload, const SampleIdentity& related) {
+  return impl_->write(payload, related);
+}
+void Writer::forget_unacknowledged() { impl_->forget_unacknowledged(); }
+
+class Participant::Impl {
+ public:
+  explicit Impl(DiscoveryCallback on_discovery)
+      : listener_([this, callback = std::move(on_discovery)](DiscoveryEvent event) {
+          gate_.pass([&] { callback(std::move(event)); });
+        }) {}
+
+  Expected<void> open(const ParticipantOptions& options) {
+    std::vector<std::string> peers;
+    for (const std::string& peer : options.peers) {
+      auto address = resolve_peer(peer);
+      if (!address) return Error{address.error()};
+      peers.push_back(std::move(*address));
+    }
+    participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
+        options.domain, fast_dds::participant_qos(options, peers), &listener_,
+        dds::StatusMask::none());
+    if (participant_ == nullptr) {
+      return Error{"cannot join DDS domain " + std::to_string(options.domain) +
+                   "; is there a network interface, and a free UDP port for it?"};
+    }
+    guid_ = fast_dds::to_guid(participant_->guid());
+    publisher_ = participant_->create_publisher(dds::PublisherQos());
+    subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
+    topics_.emplace(*participant_);
+    return {};
+  }
+
+  ~Impl() {
+    gate_.close();
+    if (participant_ == nullptr) return;
+    participant_->set_listener(nullptr);
+    participant_->delete_contained_entities();
+    dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+  }
+
+  Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample) {
+    auto reader = std::make_unique<Reader::Impl>(*subscriber_, *topics_, std::move(options),
+                                                 std::move(on_sample));
+    if (auto opened = reader->open(); !opened) return Error{opened.error()};
+    return std::make_unique<Reader>(std::move(reader));
+  }
+
+  Expected<std::unique_ptr<Writer>> create_writer(WriterOptions options) {
+    auto writer = std::make_unique<Writer::Impl>(*publisher_, *topics_, std::move(options));
+    if (auto opened = writer->open(); !opened) return Error{opened.error()};
+    return std::make_unique<Writer>(std::move(writer));
+  }
+
+  const Guid& guid() const { return guid_; }
+
+ private:
+  Gate gate_;
+  fast_dds::DiscoveryListener listener_;
+  dds::DomainParticipant* participant_ = nullptr;
+  dds::Publisher* publisher_ = nullptr;
+  dds::Subscriber* subscriber_ = nullptr;
+  std::optional<Topics> topics_;
+  Guid guid_;
+};
+
+Participant::Participant(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Participant::~Participant() = default;
+const Guid& Participant::guid() const { return impl_->guid(); }
+
+Expected<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,
+                                                           DiscoveryCallback on_discovery) {
+  auto impl = std::make_unique<Impl>(std::move(on_discovery));
+  if (auto opened = impl->open(options); !opened) return Error{opened.error()};
+  return std::make_unique<Participant>(std::move(impl));
+}
+
+Expected<std::unique_ptr<Reader>> Participant::create_reader(ReaderOptions options,
+                                                             SampleCallback on_sample) {
+  return impl_->create_reader(std::move(options), std::move(on_sample));
+}
+
+Expected<std::unique_ptr<Writer>> Participant::create_writer(WriterOptions options) {
+  return impl_->create_writer(std::move(options));
+}
+
+}  // namespace culprit::ros2

@@ -1,0 +1,157 @@
+// A participant on DDS: it discovers the others, reads and writes payloads as bytes, and knows
+// nothing of ROS but its quality of service. context.h makes a ROS 2 participant of it.
+//
+// Threads. Callbacks run on receive threads of the middleware, with its locks held, one at a time
+// for each reader, writer or participant. They copy what they need and leave: they must not create
+// or destroy readers and writers, write, or wait. Everything else here may be called from any
+// thread. Destroying a reader, writer or participant waits for its running callback; so do not do
+// it while holding a mutex which that callback takes, nor from the callback.
+//
+// Transport is UDP. Shared memory is off: segments of different Fast DDS versions are incompatible,
+// and meeting an older one there can abort the process; UDP costs a few microseconds more.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "language/expected.h"
+#include "ros2/cdr.h"
+#include "ros2/guid.h"
+#include "ros2/options.h"
+#include "ros2/qos.h"
+
+namespace culprit::ros2 {
+
+// By the vendor id that the participant announces (RTPS 2.3 §9.3.1.3).
+enum class Vendor : std::uint8_t { kFastDds, kCyclone, kOther };
+
+struct UdpAddress {
+  std::array<std::uint8_t, 4> ip{};
+  std::uint16_t port = 0;
+  bool operator==(const UdpAddress&) const = default;
+};
+
+// What a remote participant says of itself. Strings are as sent, cut at 1024 bytes.
+struct ParticipantInfo {
+  Guid guid;
+  Vendor vendor = Vendor::kOther;
+  std::string host;  // its machine; empty when it does not say
+  int pid = 0;       // its process there, as seen by itself; 0 when it does not say
+  std::vector<UdpAddress> metatraffic;  // where it listens for discovery
+};
+
+// What a remote reader or writer says of itself. DDS names; strings as above. History depth is not
+// announced.
+struct EndpointInfo {
+  Guid guid;
+  std::string topic;
+  std::string type;
+  std::string user_data;
+  Qos qos;
+};
+
+struct ParticipantGone {
+  Guid guid;
+};
+struct EndpointGone {
+  Guid guid;
+};
+
+// Also sent again when what is known changes.
+using DiscoveryEvent = std::variant<ParticipantInfo, EndpointInfo, ParticipantGone, EndpointGone>;
+using DiscoveryCallback = std::function<void(DiscoveryEvent)>;
+
+using SystemTime = std::chrono::sys_time<std::chrono::nanoseconds>;
+
+// A sample as it came. `payload` is gone when the callback returns.
+struct Sample {
+  ByteView payload;      // with its encapsulation; empty for a reader of headers
+  std::size_t size = 0;  // of the payload, in bytes, also where it was not copied
+  SystemTime sent;       // by the writer's clock
+  SystemTime received;
+  SampleIdentity
+      identity;  // differences of its sequence number count what was written, whatever was lost
+  SampleIdentity related;  // which request a reply answers, or where the reply to a request goes
+};
+using SampleCallback = std::function<void(const Sample&)>;
+
+enum class Match : std::uint8_t { kMade, kLost };
+using MatchCallback = std::function<void(const Guid& remote, Match)>;
+
+// kHeader: for topics whose rate matters and whose size hurts; no payload is copied.
+enum class PayloadUse : std::uint8_t { kWhole, kHeader };
+
+struct ReaderOptions {
+  std::string topic;  // DDS names
+  std::string type;
+  Qos qos;
+  PayloadUse payload = PayloadUse::kWhole;
+  std::string user_data;
+  MatchCallback on_match;  // may be empty
+};
+
+struct WriterOptions {
+  std::string topic;
+  std::string type;
+  Qos qos;
+  std::string user_data;
+  MatchCallback on_match;
+};
+
+class Reader {
+ public:
+  class Impl;
+  explicit Reader(std::unique_ptr<Impl> impl);
+  ~Reader();
+
+  const Guid& guid() const;
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+class Writer {
+ public:
+  class Impl;
+  explicit Writer(std::unique_ptr<Impl> impl);
+  ~Writer();
+
+  const Guid& guid() const;
+
+  // The sequence number of the sample, or nothing when the middleware refused it. `payload` starts
+  // with its encapsulation. The sample may have been answered when this returns.
+  std::optional<std::int64_t> write(ByteView payload, const SampleIdentity& related = {});
+
+  // Gives up on what is not acknowledged yet: it is not sent again.
+  void forget_unacknowledged();
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+// Outlives its readers and writers.
+class Participant {
+ public:
+  class Impl;
+  static Expected<std::unique_ptr<Participant>> create(const ParticipantOptions& options,
+                                                       DiscoveryCallback on_discovery);
+  explicit Participant(std::unique_ptr<Impl> impl);
+  ~Participant();
+
+  const Guid& guid() const;
+
+  // An error when the middleware refuses: one participant cannot have a topic with two types.
+  Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample);
+  Expected<std::unique_ptr<Writer>> create_writer(WriterOptions options);
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace culprit::ros2

@@ -1,0 +1,279 @@
+#include "ros2/participant.h"
+
+#include <atomic>
+#include <numeric>
+#include <thread>
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "ros2/live_test.h"
+
+namespace culprit::ros2 {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::unique_ptr<Participant> join(
+    const TestDomain& domain, DiscoveryCallback on_discovery = [](DiscoveryEvent) {}) {
+  auto participant = Participant::create(domain.options(), std::move(on_discovery));
+  if (!participant) throw std::runtime_error(participant.error());
+  return std::move(*participant);
+}
+
+struct Received {
+  Bytes payload;
+  std::size_t size;
+  SystemTime sent;
+  SystemTime received;
+  SampleIdentity identity;
+  SampleIdentity related;
+};
+
+SampleCallback into(EventLog<Received>& log) {
+  return [&log](const Sample& sample) {
+    log.add({{sample.payload.begin(), sample.payload.end()},
+             sample.size,
+             sample.sent,
+             sample.received,
+             sample.identity,
+             sample.related});
+  };
+}
+
+struct MatchEvent {
+  Guid remote;
+  Match match;
+};
+
+// A writer and a reader in two participants, matched in both directions.
+struct Pair {
+  explicit Pair(const Qos& qos = {}, PayloadUse use = PayloadUse::kWhole) {
+    auto w = sender->create_writer({"t", "T", qos, "w", [this](const Guid& remote, Match match) {
+                                      writer_matches.add({remote, match});
+                                    }});
+    writer = std::move(*w);
+    auto r = receiver->create_reader({"t", "T", qos, use, "r",
+                                      [this](const Guid& remote, Match match) {
+                                        reader_matches.add({remote, match});
+                                      }},
+                                     into(received));
+    reader = std::move(*r);
+    EXPECT_TRUE(writer_matches.wait_for_count(1));
+    EXPECT_TRUE(reader_matches.wait_for_count(1));
+  }
+
+  EventLog<Received> received;
+  EventLog<MatchEvent> writer_matches, reader_matches;
+  TestDomain domain;
+  std::unique_ptr<Participant> sender = join(domain);
+  std::unique_ptr<Participant> receiver = join(domain);
+  std::unique_ptr<Writer> writer;
+  std::unique_ptr<Reader> reader;
+};
+
+const Bytes kSmall{0, 1, 0, 0, 1, 2, 3, 4};
+
+TEST(Participant, BytesArriveAsTheyWereWritten) {
+  Pair pair;
+  const auto sequence = pair.writer->write(kSmall);
+  ASSERT_TRUE(sequence);
+  ASSERT_TRUE(pair.received.wait_for_count(1));
+  const Received sample = pair.received.all().front();
+  EXPECT_EQ(sample.payload, kSmall);
+  EXPECT_EQ(sample.size, kSmall.size());
+  EXPECT_EQ(sample.identity, (SampleIdentity{pair.writer->guid(), *sequence}));
+  EXPECT_EQ(sample.related, SampleIdentity{});
+  EXPECT_LE(sample.sent, sample.received);
+  const auto now =
+      std::chrono::time_point_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now());
+  EXPECT_LT(now - sample.sent, kPatience);
+}
+
+TEST(Participant, TheRelatedIdentityTravelsAlong) {
+  Pair pair;
+  const SampleIdentity related{pair.reader->guid(), (std::int64_t{5} << 32) | 7};
+  pair.writer->write(kSmall, related);
+  ASSERT_TRUE(pair.received.wait_for_count(1));
+  EXPECT_EQ(pair.received.all().front().related, related);
+}
+
+TEST(Participant, SequenceNumbersCountWhatWasWritten) {
+  Pair pair;
+  for (int i = 0; i < 5; ++i) pair.writer->write(kSmall);
+  ASSERT_TRUE(pair.received.wait_for_count(5));
+  const auto samples = pair.received.all();
+  EXPECT_EQ(samples.back().identity.sequence - samples.front().identity.sequence, 4);
+}
+
+TEST(Participant, AReaderOfHeadersCopiesNoPayload) {
+  Pair pair({}, PayloadUse::kHeader);
+  pair.writer->write(kSmall);
+  ASSERT_TRUE(pair.received.wait_for_count(1));
+  EXPECT_TRUE(pair.received.all().front().payload.empty());
+  EXPECT_EQ(pair.received.all().front().size, kSmall.size());
+}
+
+TEST(Participant, LargePayloadsArriveWhole) {
+  Pair pair;
+  Bytes large(4'000'000);
+  std::iota(large.begin(), large.end(), std::uint8_t{0});
+  large[0] = 0, large[1] = 1;
+  pair.writer->write(large);
+  pair.writer->write(kSmall);  // a reader's buffer that has grown does not show
+  ASSERT_TRUE(pair.received.wait_for_count(2));
+  EXPECT_EQ(pair.received.all()[0].payload, large);
+  EXPECT_EQ(pair.received.all()[1].payload, kSmall);
+}
+
+TEST(Participant, APayloadWithoutEncapsulationIsRefused) {
+  Pair pair;
+  EXPECT_FALSE(pair.writer->write(Bytes{0, 1}));
+}
+
+TEST(Participant, ABestEffortReaderMatchesAReliableWriter) {
+  Pair pair;
+  EventLog<Received> received;
+  EventLog<MatchEvent> matches;
+  auto watcher = pair.receiver->create_reader({"t", "T", qos::kSensorData, PayloadUse::kWhole, "",
+                                               [&](const Guid& remote, Match match) {
+                                                 matches.add({remote, match});
+                                               }},
+                                              into(received));
+  ASSERT_TRUE(watcher);
+  ASSERT_TRUE(matches.wait_for_count(1));
+  ASSERT_TRUE(pair.writer_matches.wait_for_count(2));
+  pair.writer->write(kSmall);
+  EXPECT_TRUE(received.wait_for_count(1));
+}
+
+TEST(Participant, TransientLocalSamplesReachLateReaders) {
+  const TestDomain domain;
+  const auto sender = join(domain);
+  const auto writer = sender->create_writer({"t", "T", qos::kDiscoveryInfoWriter, "", {}});
+  ASSERT_TRUE(writer);
+  (*writer)->write(kSmall);
+  const auto receiver = join(domain);
+  EventLog<Received> received;
+  const auto reader = receiver->create_reader(
+      {"t", "T", qos::kDiscoveryInfoReader, PayloadUse::kWhole, "", {}}, into(received));
+  ASSERT_TRUE(reader);
+  EXPECT_TRUE(received.wait_for_count(1));
+}
+
+TEST(Participant, MatchesAreToldAndLost) {
+  Pair pair;
+  EXPECT_EQ(pair.writer_matches.all().front().remote, pair.reader->guid());
+  EXPECT_EQ(pair.reader_matches.all().front().remote, pair.writer->guid());
+  pair.reader.reset();
+  ASSERT_TRUE(pair.writer_matches.wait_for_count(2));
+  EXPECT_EQ(pair.writer_matches.all().back().match, Match::kLost);
+}
+
+TEST(Participant, ATopicHasOneType) {
+  const TestDomain domain;
+  const auto participant = join(domain);
+  const auto first = participant->create_writer({"t", "T", {}, "", {}});
+  ASSERT_TRUE(first);
+  const auto second = participant->create_writer({"t", "Other", {}, "", {}});
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error(), HasSubstr("the topic t is in use with the type T, not Other"));
+}
+
+TEST(Participant, ATopicIsFreeAgainWhenItsLastUserIsGone) {
+  const TestDomain domain;
+  const auto participant = join(domain);
+  for (const char* type : {"T", "Other", "T"}) {
+    const auto writer = participant->create_writer({"t", type, {}, "", {}});
+    const auto reader = participant->create_reader({"t", type, {}, PayloadUse::kWhole, "", {}},
+                                                   [](const Sample&) {});
+    EXPECT_TRUE(writer);
+    EXPECT_TRUE(reader);
+  }
+}
+
+TEST(Participant, DiscoversOthersTheirEndpointsAndTheirEnd) {
+  const TestDomain domain;
+  EventLog<DiscoveryEvent> events;
+  const auto watcher = join(domain, [&](DiscoveryEvent event) { events.add(std::move(event)); });
+  auto other = join(domain);
+  const Qos qos{.durability = Durability::kTransientLocal, .lifespan = std::chrono::seconds(10)};
+  auto writer = other->create_writer({"t", "T", qos, "key=value;", {}});
+  ASSERT_TRUE(writer);
+  const Guid guid = (*writer)->guid();
+  ASSERT_TRUE(events.wait_for_one([&](const DiscoveryEvent& event) {
+    const auto* info = std::get_if<EndpointInfo>(&event);
+    return info != nullptr && info->guid == guid;
+  }));
+  for (const DiscoveryEvent& event : events.all()) {
+    if (const auto* info = std::get_if<EndpointInfo>(&event)) {
+      EXPECT_EQ(info->topic, "t");
+      EXPECT_EQ(info->type, "T");
+      EXPECT_EQ(info->user_data, "key=value;");
+      EXPECT_EQ(info->qos.durability, Durability::kTransientLocal);
+      EXPECT_EQ(info->qos.reliability, Reliability::kReliable);
+      EXPECT_EQ(info->qos.lifespan, std::chrono::seconds(10));
+      EXPECT_EQ(info->qos.deadline, kInfinite);
+    }
+    if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
+      EXPECT_EQ(info->vendor, Vendor::kFastDds);
+      EXPECT_EQ(info->pid, getpid());
+      EXPECT_FALSE(info->host.empty());
+      ASSERT_FALSE(info->metatraffic.empty());
+      EXPECT_EQ(info->metatraffic.front().ip, (std::array<std::uint8_t, 4>{127, 0, 0, 1}));
+    }
+  }
+  writer = Error{"gone"};
+  EXPECT_TRUE(events.wait_for_one([&](const DiscoveryEvent& event) {
+    const auto* gone = std::get_if<EndpointGone>(&event);
+    return gone != nullptr && gone->guid == guid;
+  }));
+  const Guid participant = other->guid();
+  other.reset();
+  EXPECT_TRUE(events.wait_for_one([&](const DiscoveryEvent& event) {
+    const auto* gone = std::get_if<ParticipantGone>(&event);
+    return gone != nullptr && gone->guid == participant;
+  }));
+}
+
+TEST(Participant, DomainsDoNotHearEachOther) {
+  const TestDomain one, other;
+  EventLog<DiscoveryEvent> events;
+  const auto watcher = join(one, [&](DiscoveryEvent event) { events.add(std::move(event)); });
+  const auto stranger = join(other);
+  const auto friendly = join(one);
+  ASSERT_TRUE(events.wait_for_count(1));
+  for (const DiscoveryEvent& event : events.all()) {
+    if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
+      EXPECT_EQ(info->guid, friendly->guid());
+    }
+  }
+}
+
+TEST(Participant, AnUnknownPeerIsAnError) {
+  const TestDomain domain;
+  ParticipantOptions options = domain.options();
+  options.peers = {"no such host"};
+  EXPECT_FALSE(Participant::create(options, [](DiscoveryEvent) {}));
+}
+
+TEST(Participant, ReadersComeAndGoWhileSamplesFlow) {
+  Pair pair;
+  std::atomic<bool> stop = false;
+  std::thread writing([&] {
+    while (!stop) pair.writer->write(kSmall);
+  });
+  for (int i = 0; i < 20; ++i) {
+    EventLog<Received> received;
+    const auto reader =
+        pair.receiver->create_reader({"t", "T", {}, PayloadUse::kWhole, "", {}}, into(received));
+    ASSERT_TRUE(reader);
+    EXPECT_TRUE(received.wait_for_count(1));
+  }
+  stop = true;
+  writing.join();
+}
+
+}  // namespace
+}  // namespace culprit::ros2

@@ -1,0 +1,46 @@
+// Quality of service, as far as ROS 2 uses it, and the profiles that its built-in endpoints have
+// (design.ros2.org/articles/qos.html; rmw/qos_profiles.h).
+//
+// A reader matches a writer that offers at least what it requests. So a best effort, volatile
+// reader matches every writer, and holds none of them back; one that asks for transient local must
+// know that it is offered.
+#pragma once
+
+#include <cstdint>
+
+#include "language/units.h"
+
+namespace culprit::ros2 {
+
+enum class Reliability : std::uint8_t { kBestEffort, kReliable };
+enum class Durability : std::uint8_t { kVolatile, kTransientLocal };
+enum class History : std::uint8_t { kKeepLast, kKeepAll };
+
+inline constexpr Duration kInfinite = Duration::max();
+
+struct Qos {
+  Reliability reliability = Reliability::kReliable;
+  Durability durability = Durability::kVolatile;
+  History history = History::kKeepLast;
+  std::uint32_t depth = 10;  // with kKeepLast, >= 1; of a discovered endpoint it is not known
+  Duration deadline = kInfinite;
+  Duration lifespan = kInfinite;
+  bool operator==(const Qos&) const = default;
+};
+
+namespace qos {
+
+inline constexpr Qos kDefault{};
+inline constexpr Qos kServices{};
+inline constexpr Qos kParameterServices{.depth = 1000};
+inline constexpr Qos kParameterEvents{.depth = 1000};
+inline constexpr Qos kSensorData{.reliability = Reliability::kBestEffort, .depth = 5};
+inline constexpr Qos kRosout{
+    .durability = Durability::kTransientLocal, .depth = 1000, .lifespan = std::chrono::seconds(10)};
+inline constexpr Qos kDiscoveryInfoWriter{.durability = Durability::kTransientLocal, .depth = 1};
+inline constexpr Qos kDiscoveryInfoReader{.durability = Durability::kTransientLocal,
+                                          .history = History::kKeepAll};
+
+}  // namespace qos
+
+}  // namespace culprit::ros2

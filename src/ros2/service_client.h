@@ -1,0 +1,160 @@
+// Calls a service of another node, without ever blocking.
+//
+// Speaks to servers on Fast DDS and on Cyclone DDS, each in its own mapping (service_mapping.h).
+// What DDS promises is not enough to call safely: "matched" here does not mean matched there, and a
+// request or reply that is sent before the other side has matched is lost. Hence two kinds of
+// request:
+//
+// - one that may run twice (a read) is sent again every 200 ms until it is answered;
+// - one that must not (a transition) is sent exactly once, and never before the server has proven
+// that it knows this
+//   client. Discovery data is ordered for each participant, so the proof is an answer to a probe: a
+//   request that may be repeated, to another service of the same node, through a client that was
+//   created later. Give a Probe to have it; the client then probes each new server as soon as it
+//   sees one, so that a call need not wait for it.
+//
+// A killed server stays matched until its lease ends (20 s), next to its restarted successor:
+// requests go to both, and the newest server, or the one that has proven to be alive, decides the
+// mapping. A proof is good until another server comes, or the graph says that one has left; so
+// whoever hears from the graph that a node is there can call it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "language/expected.h"
+#include "language/units.h"
+#include "ros2/cdr.h"
+#include "ros2/context.h"
+#include "ros2/executor.h"
+#include "ros2/guid.h"
+#include "ros2/participant.h"
+#include "ros2/service_mapping.h"
+
+namespace culprit::ros2 {
+
+struct ServiceName {
+  std::string name;  // absolute: "/camera/change_state"
+  std::string type;  // "lifecycle_msgs/srv/ChangeState"
+};
+
+enum class Repeat : std::uint8_t { kUntilAnswered, kNever };
+
+enum class CallOutcome : std::uint8_t {
+  kAnswered,
+  kUnreachable,  // never sent: no server, or none that proved that it knows us
+  kTimedOut      // sent, not answered; it may have been carried out
+};
+
+struct CallResult {
+  CallOutcome outcome = CallOutcome::kUnreachable;
+  ByteView reply;     // a payload with its encapsulation; gone when the callback returns
+  GuidPrefix server;  // who answered
+};
+
+// Thread-safe. The callback of a call comes once: an answer on a receive thread (participant.h says
+// what is not allowed there), its absence on the executor's thread. When the client is destroyed,
+// calls under way are forgotten.
+class ServiceClient {
+ public:
+  using Callback = std::function<void(const CallResult&)>;
+
+  struct Probe {
+    ServiceName service;
+    Bytes request;
+  };
+
+  // The node entry outlives the client.
+  static Expected<std::unique_ptr<ServiceClient>> create(NodeEntry& node,
+                                                         const ServiceName& service,
+                                                         const Qos& qos = qos::kServices);
+  static Expected<std::unique_ptr<ServiceClient>> create(NodeEntry& node,
+                                                         const ServiceName& service, const Qos& qos,
+                                                         Probe probe);
+  ~ServiceClient();
+
+  // Sends in the calling thread if a server is ready, otherwise as soon as one is. `request` is a
+  // whole payload.
+  void call(Bytes request, Repeat repeat, Duration timeout, Callback callback);
+
+  // A request with Repeat::kNever would be sent at once.
+  bool is_ready() const;
+
+  // The client of the probe, for reads of one's own. Null without one.
+  ServiceClient* probe() { return probe_.get(); }
+
+ private:
+  struct Server {
+    GuidPrefix participant;
+    Mapping mapping = Mapping::kInline;
+  };
+  struct Call {
+    Bytes request;
+    Repeat repeat = Repeat::kNever;
+    Callback callback;
+    bool is_sent = false;
+    TaskGroup::TimerId deadline;
+    TaskGroup::TimerId next_send;
+  };
+  using CallNumber = std::uint64_t;
+  using RequestId = std::pair<Mapping, std::int64_t>;  // of one sending of a call
+
+  explicit ServiceClient(NodeEntry& node);
+  Expected<void> open(const ServiceName& service, const Qos& qos);
+  Expected<void> open_probe(Probe probe);
+
+  // On a receive thread.
+  void on_reply(const Sample& sample);
+  // On the executor's thread.
+  void on_request_reader(const Guid& reader, Match match);
+  void on_reply_writer(const Guid& writer, Match match);
+  void update_servers();
+  void on_server_left();
+  bool is_pair(const Guid& reader, const Guid& writer) const;
+  void send_waiting();
+  void start_probe();
+  void on_probe(std::uint64_t round, CallOutcome outcome, const GuidPrefix& participant);
+  void on_send_again(CallNumber number);
+  void on_deadline(CallNumber number);
+
+  // With mutex_.
+  const Server* server_for(Repeat repeat) const;
+  void lose_proof();
+  void send(CallNumber number, Call& call);
+  std::optional<Call> take(CallNumber number);
+
+  NodeEntry& node_;
+  std::uint64_t header_id_ = 0;  // what Cyclone knows us by
+
+  // Of the executor's thread: the matched endpoints, with the order in which they came.
+  std::map<Guid, std::uint64_t> request_readers_;
+  std::map<Guid, std::uint64_t> reply_writers_;
+  std::uint64_t matches_ = 0;
+  bool is_probing_ = false;
+
+  mutable std::mutex mutex_;       // guards the rest of this block
+  std::vector<Server> servers_;    // both endpoints matched; the newest last
+  std::optional<Server> proven_;   // with a probe: the one that knows us
+  std::uint64_t proof_round_ = 0;  // counts the times that a proof was lost
+  std::map<CallNumber, Call> calls_;
+  std::map<RequestId, CallNumber> requests_;
+  CallNumber last_call_ = 0;
+  std::int64_t header_sequence_ = 0;
+
+  TaskGroup tasks_;  // outlives those that post to it
+
+  // Set once, with the mutex.
+  std::unique_ptr<Reader> reply_reader_;
+  std::unique_ptr<Writer> request_writer_;
+  Bytes probe_request_;
+  std::unique_ptr<ServiceClient> probe_;
+};
+
+}  // namespace culprit::ros2

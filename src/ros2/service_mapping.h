@@ -1,0 +1,55 @@
+// The two ways in which ROS 2 pairs a reply with its request on DDS.
+//
+// - In line (rmw_fastrtps): both payloads are just the messages. The request carries in its inline
+// QoS the GUID of the
+//   client's reply reader as related identity; the request's own sequence number is its name; the
+//   reply carries both.
+// - Header (rmw_cyclonedds): both payloads begin, after the encapsulation, with a number unique to
+// the client and the
+//   client's own count of requests. Sixteen bytes, so that the alignment of the message stays as it
+//   was.
+//
+// What a node speaks follows from its vendor. One server can serve both kinds of client at once.
+//
+// Where Fast DDS meets Cyclone there is one more trap. As long as a sample of ours is not
+// acknowledged by everybody (and a killed peer does not acknowledge, until its lease ends), Fast
+// DDS lets the first sample to a new reader follow a heartbeat that announces it. Cyclone takes
+// what the first heartbeat announces for history, in which a volatile reader has no interest, and
+// drops the sample. So a client gives up on its old requests when a new server comes, and a server
+// lets a reply to nobody precede its first one to a client on Cyclone.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "ros2/cdr.h"
+#include "ros2/participant.h"
+
+namespace culprit::ros2 {
+
+enum class Mapping : std::uint8_t { kInline, kHeader };
+
+// `participant` may be null: one of our own, or one that is not known.
+Mapping mapping_of(const ParticipantInfo* participant);
+
+struct ServiceHeader {
+  std::uint64_t client = 0;
+  std::int64_t sequence = 0;
+  bool operator==(const ServiceHeader&) const = default;
+};
+
+Bytes with_header(ByteView payload, const ServiceHeader& header);
+
+struct SplitPayload {
+  ServiceHeader header;
+  Bytes payload;
+};
+std::optional<SplitPayload> split_header(ByteView payload);
+
+// The value of `key` in an endpoint's user data, "key=value;key=value;". Empty when it is not
+// there. Cyclone marks the two endpoints of a client with one `clientid`, and those of a server
+// with one `serviceid`.
+std::string_view user_data_value(std::string_view user_data, std::string_view key);
+
+}  // namespace culprit::ros2

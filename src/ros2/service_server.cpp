@@ -1,0 +1,156 @@
+#include "ros2/service_server.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "ros2/names.h"
+
+namespace culprit::ros2 {
+namespace {
+
+constexpr std::chrono::milliseconds kLongestWait(100);
+
+}  // namespace
+
+Expected<std::unique_ptr<ServiceServer>> ServiceServer::create(NodeEntry& node,
+                                                               const ServiceName& service,
+                                                               const Qos& qos, Handler handler) {
+  std::unique_ptr<ServiceServer> server(new ServiceServer(node, std::move(handler), qos.depth));
+  if (auto opened = server->open(service, qos); !opened) return Error{opened.error()};
+  return server;
+}
+
+ServiceServer::ServiceServer(NodeEntry& node, Handler handler, std::size_t depth)
+    : node_(node), handler_(std::move(handler)), depth_(depth), tasks_(node.context().executor()) {}
+
+Expected<void> ServiceServer::open(const ServiceName& service, const Qos& qos) {
+  if (!is_valid_topic_name(service.name))
+    return Error{"'" + printable(service.name) + "' is not the name of a service"};
+  if (!is_valid_type_name(service.type))
+    return Error{"'" + printable(service.type) + "' is not the type of a service"};
+  Participant& participant = node_.context().participant();
+  const std::string user_data = "serviceid=" + node_.context().unique_id() + ";";
+
+  auto writer =
+      participant.create_writer({.topic = mangle_topic(Channel::kReply, service.name),
+                                 .type = mangle_type(Channel::kReply, service.type),
+                                 .qos = qos,
+                                 .user_data = user_data,
+                                 .on_match = [this](const Guid& reader, Match match) {
+                                   tasks_.post([this, reader, match] { on_match(reader, match); });
+                                 }});
+  if (!writer) return Error{writer.error()};
+  reply_writer_ = std::move(*writer);
+  node_.add(reply_writer_->guid());
+
+  auto reader = participant.create_reader(
+      {.topic = mangle_topic(Channel::kRequest, service.name),
+       .type = mangle_type(Channel::kRequest, service.type),
+       .qos = qos,
+       .user_data = user_data,
+       .on_match = {}},
+      [this](const Sample& sample) {
+        {
+          const std::lock_guard lock(mutex_);
+          if (requests_.size() >= depth_) requests_.pop_front();  // as a history of that depth does
+          requests_.push_back(
+              {{sample.payload.begin(), sample.payload.end()}, sample.identity, sample.related});
+        }
+        tasks_.post([this] { handle_next(); });
+      });
+  if (!reader) return Error{reader.error()};
+  request_reader_ = std::move(*reader);
+  node_.add(request_reader_->guid());
+  return {};
+}
+
+ServiceServer::~ServiceServer() {
+  tasks_.close();
+  if (request_reader_) node_.remove(request_reader_->guid());
+  if (reply_writer_) node_.remove(reply_writer_->guid());
+  request_reader_.reset();
+  reply_writer_.reset();
+}
+
+void ServiceServer::handle_next() {
+  Request request;
+  {
+    const std::lock_guard lock(mutex_);
+    if (requests_.empty()) return;
+    request = std::move(requests_.front());
+    requests_.pop_front();
+  }
+  const auto* client = node_.context().graph().participant(request.identity.writer.prefix());
+  Reply reply =
+      mapping_of(client) == Mapping::kHeader ? answer_header(request) : answer_inline(request);
+  if (reply.payload.empty()) return;
+  if (is_expected(reply)) return send(reply);
+  const std::uint64_t number = next_waiting_++;
+  waiting_.emplace(number, std::move(reply));
+  // Then the client has gone, or will never hear of it; nothing is to be done about either.
+  tasks_.post_at(Executor::Clock::now() + kLongestWait, [this, number] { waiting_.erase(number); });
+}
+
+ServiceServer::Reply ServiceServer::answer_inline(const Request& request) const {
+  Reply reply{.payload = handler_(request.payload), .related = {}, .header = {}, .reader = {}};
+  const bool names_reader = request.related.writer != Guid{};
+  const Guid client = names_reader ? request.related.writer : request.identity.writer;
+  reply.related = {client, request.identity.sequence};
+  if (client.is_reader()) reply.reader = client;
+  return reply;
+}
+
+ServiceServer::Reply ServiceServer::answer_header(const Request& request) const {
+  Reply reply;
+  const auto split = split_header(request.payload);
+  if (!split) return reply;
+  reply.payload = handler_(split->payload);
+  reply.header = split->header;
+  const EndpointInfo* writer = node_.context().graph().endpoint(request.identity.writer);
+  const auto id =
+      writer == nullptr ? std::string_view() : user_data_value(writer->user_data, "clientid");
+  if (!id.empty()) reply.reader = std::string(id);
+  return reply;
+}
+
+// Whether the reader that the reply is for has matched, as far as the client said which one that
+// is.
+bool ServiceServer::is_expected(const Reply& reply) const {
+  if (const auto* guid = std::get_if<Guid>(&reply.reader)) return reply_readers_.contains(*guid);
+  const auto* id = std::get_if<std::string>(&reply.reader);
+  if (id == nullptr) return true;
+  const Graph& graph = node_.context().graph();
+  return std::ranges::any_of(reply_readers_, [&](const Guid& guid) {
+    const EndpointInfo* reader = graph.endpoint(guid);
+    return reader != nullptr && user_data_value(reader->user_data, "clientid") == *id;
+  });
+}
+
+void ServiceServer::send(const Reply& reply) {
+  if (!reply.header) {
+    reply_writer_->write(reply.payload, reply.related);
+  } else {
+    // The first sample to a reader on Cyclone may be lost (service_mapping.h): let it be one for
+    // nobody.
+    if (has_fresh_reader_) reply_writer_->write(with_header(reply.payload, ServiceHeader{}));
+    reply_writer_->write(with_header(reply.payload, *reply.header));
+  }
+  has_fresh_reader_ = false;
+}
+
+void ServiceServer::on_match(const Guid& reader, Match match) {
+  if (match == Match::kLost) {
+    reply_readers_.erase(reader);
+    return;
+  }
+  reply_readers_.insert(reader);
+  has_fresh_reader_ = true;
+  std::erase_if(waiting_, [this](const auto& waiting) {
+    if (!is_expected(waiting.second)) return false;
+    send(waiting.second);
+    return true;
+  });
+}
+
+}  // namespace culprit::ros2

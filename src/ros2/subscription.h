@@ -1,0 +1,65 @@
+// What a node subscribes to, in two ways: at once on the receive thread, or in turn on the
+// executor's.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string_view>
+#include <utility>
+
+#include "language/expected.h"
+#include "ros2/cdr.h"
+#include "ros2/context.h"
+#include "ros2/executor.h"
+#include "ros2/participant.h"
+
+namespace culprit::ros2 {
+
+// The shortest way from the wire to a callback: called on a receive thread, under the rules of
+// participant.h.
+class RawSubscription {
+ public:
+  // `topic` as resolve_name takes it; `type` is "package/msg/Type". The node entry outlives the
+  // subscription.
+  static Expected<std::unique_ptr<RawSubscription>> create(NodeEntry& node, std::string_view topic,
+                                                           std::string_view type, const Qos& qos,
+                                                           PayloadUse use,
+                                                           SampleCallback on_sample);
+  RawSubscription(NodeEntry& node, std::unique_ptr<Reader> reader);
+  ~RawSubscription();
+  RawSubscription(const RawSubscription&) = delete;
+  RawSubscription& operator=(const RawSubscription&) = delete;
+
+ private:
+  NodeEntry& node_;
+  std::unique_ptr<Reader> reader_;
+};
+
+// Calls back on the executor's thread, where anything is allowed but to destroy the subscription.
+// Keeps as many payloads as its QoS is deep, while that thread is busy; then the oldest is dropped.
+class Subscription {
+ public:
+  using Callback = std::function<void(ByteView payload)>;
+
+  static Expected<std::unique_ptr<Subscription>> create(NodeEntry& node, std::string_view topic,
+                                                        std::string_view type, const Qos& qos,
+                                                        Callback callback);
+  ~Subscription();
+
+ private:
+  Subscription(Executor& executor, std::size_t depth, Callback callback);
+
+  void on_sample(const Sample& sample);
+  void deliver_next();
+
+  const std::size_t depth_;
+  const Callback callback_;
+  std::mutex mutex_;  // guards the payloads
+  std::deque<Bytes> payloads_;
+  TaskGroup tasks_;  // outlives the one that posts to it
+  std::unique_ptr<RawSubscription> raw_;
+};
+
+}  // namespace culprit::ros2

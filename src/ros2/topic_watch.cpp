@@ -1,0 +1,72 @@
+#include "ros2/topic_watch.h"
+
+#include <algorithm>
+
+namespace culprit::ros2 {
+
+TopicWatch::TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inbox& inbox)
+    : self_(self), topic_(topic), rules_(rules), inbox_(inbox) {
+  counts_ = std::any_of(rules.inputs.begin(), rules.inputs.end(), [&](const Input& input) {
+    using enum Input::Kind;
+    return (input.kind == kRate || input.kind == kAge || input.kind == kPhi) &&
+           input.topic == topic;
+  });
+}
+
+void TopicWatch::publisher_seen(const std::string& type, MessageLibrary& library) {
+  const std::string& name = rules_[topic_].name;
+  if (subscription_) {
+    if (type != type_) {
+      inbox_.put(LinkTrouble{name + " is published as " + type + " too; only its " + type_ +
+                             " messages are watched"});
+    }
+    return;
+  }
+  for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
+    const auto* field = std::get_if<TopicField>(&rules_.signals[s].source);
+    if (field == nullptr || field->topic != topic_) continue;
+    auto reader = FieldReader::compile(library, type, field->field);
+    if (reader) {
+      fields_.push_back({SignalId(s), std::move(*reader), {}});
+    } else {
+      inbox_.put(LinkTrouble{"signal " + rules_.signals[s].name + ": " + reader.error()});
+    }
+  }
+  if (fields_.empty() && !counts_) return;
+  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
+  auto subscription = RawSubscription::create(
+      self_, name, type, kQos, fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
+      [this](const Sample& sample) { on_sample(sample); });
+  if (!subscription) {
+    fields_.clear();
+    inbox_.put(LinkTrouble{"cannot watch " + name + ": " + subscription.error()});
+    return;
+  }
+  type_ = type;
+  subscription_ = std::move(*subscription);
+}
+
+void TopicWatch::on_sample(const Sample& sample) {
+  if (counts_) inbox_.put(SampleArrived{topic_, published_since(sample.identity)}, Urgency::kSoon);
+  for (Field& field : fields_) {
+    Value value;
+    if (field.reader.read(sample.payload, value) != FieldStatus::kRead) continue;
+    // The same value again changes no trigger; it only proves that the signal is not stale.
+    const Urgency urgency = field.last == value ? Urgency::kSoon : Urgency::kNow;
+    field.last = value;
+    inbox_.put(SignalRead{field.signal, std::move(value)}, urgency);
+  }
+}
+
+// How many samples the writer wrote since the last one that came here, this one included.
+std::uint32_t TopicWatch::published_since(const SampleIdentity& identity) {
+  constexpr std::size_t kMaxWriters = 1000;  // the network decides how many there are
+  constexpr std::int64_t kMaxGap = 1000;     // a larger one is a restart or a lie
+  if (last_sequence_.size() >= kMaxWriters) last_sequence_.clear();
+  const auto [last, is_new] = last_sequence_.try_emplace(identity.writer, identity.sequence);
+  const std::int64_t gap = is_new ? 1 : identity.sequence - last->second;
+  last->second = identity.sequence;
+  return gap < 1 || gap > kMaxGap ? 1 : static_cast<std::uint32_t>(gap);
+}
+
+}  // namespace culprit::ros2

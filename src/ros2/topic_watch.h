@@ -1,0 +1,52 @@
+// Watches one topic for the rules: its rhythm, and the values of its fields.
+//
+// One best effort reader that keeps one sample, so that it can hold no writer back. If the rules
+// read no field, payloads are not even copied: watching a camera costs what receiving it costs.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "robot/inbox.h"
+#include "ros2/field_reader.h"
+#include "ros2/subscription.h"
+
+namespace culprit::ros2 {
+
+class TopicWatch {
+ public:
+  // All references must outlive the watch.
+  TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inbox& inbox);
+
+  // A publisher of the topic was discovered: subscribes with its type, unless that is done already.
+  // On one thread.
+  void publisher_seen(const std::string& type, MessageLibrary& library);
+
+ private:
+  struct Field {
+    SignalId signal;
+    FieldReader reader;
+    std::optional<Value> last;
+  };
+  void on_sample(const Sample& sample);
+  std::uint32_t published_since(const SampleIdentity& identity);
+
+  NodeEntry& self_;
+  const TopicId topic_;
+  const RuleSet& rules_;
+  Inbox& inbox_;
+  bool counts_ = false;  // the rules read the topic's rhythm
+  std::string type_;
+
+  // Of the receive thread, once the subscription exists.
+  std::vector<Field> fields_;
+  std::unordered_map<Guid, std::int64_t> last_sequence_;  // by writer
+
+  std::unique_ptr<RawSubscription> subscription_;
+};
+
+}  // namespace culprit::ros2
