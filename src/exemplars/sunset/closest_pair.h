@@ -1,0 +1,53 @@
+// Which two pictures of two streams belong together: those whose stamps are closest.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "language/units.h"
+#include "ros2/messages.h"
+
+namespace culprit::sunset {
+
+using Pictures = std::deque<ros2::msg::Image>;  // oldest first
+
+constexpr Duration stamp_of(const ros2::msg::Image& picture) {
+  return std::chrono::seconds(picture.header.stamp.sec) +
+         std::chrono::nanoseconds(picture.header.stamp.nanosec);
+}
+
+struct PairIndex {
+  std::size_t first = 0;
+  std::size_t second = 0;
+};
+
+// Of all pairs at most `tolerance` apart for which `allowed(first, second)` is true, the closest;
+// of equally close ones the first, in the order of the first stream, then of the second. Nothing if
+// there is none.
+template <class Allowed>
+std::optional<PairIndex> closest_pair(const Pictures& first, const Pictures& second,
+                                      Duration tolerance, Allowed allowed) {
+  std::optional<PairIndex> best;
+  Duration best_apart{};
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    for (std::size_t j = 0; j < second.size(); ++j) {
+      const Duration difference = stamp_of(first[i]) - stamp_of(second[j]);
+      const Duration apart = difference < Duration::zero() ? -difference : difference;
+      if (apart > tolerance || (best && apart >= best_apart)) continue;
+      if (!allowed(first[i], second[j])) continue;
+      best = {i, j};
+      best_apart = apart;
+    }
+  }
+  return best;
+}
+
+// Adds the newest picture and drops the oldest beyond `keep`.
+inline void push(Pictures& pictures, ros2::msg::Image picture, std::size_t keep) {
+  pictures.push_back(std::move(picture));
+  if (pictures.size() > keep) pictures.pop_front();
+}
+
+}  // namespace culprit::sunset

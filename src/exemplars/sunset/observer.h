@@ -1,0 +1,69 @@
+// What the experimenter sees of the live robot, and the figures that it makes of it.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "exemplars/sunset/downtime.h"
+#include "exemplars/sunset/health_watch.h"
+#include "exemplars/sunset/members.h"
+#include "language/expected.h"
+#include "ros2/node.h"
+
+namespace culprit::sunset {
+
+// Of what began with the last Observer::restart(), one scenario as a rule. Times in robot seconds.
+struct Measurements {
+  double elapsed_sec = 0;
+  int judged_frames = 0;
+  std::optional<double> mean_iou;  // of the judged frames, as the exemplar has it; nothing if none
+  // Of the evaluator's output, by downtime.h: the exemplar's figure, and the honest one.
+  double downtime_between_outputs_sec = 0;
+  double downtime_sec = 0;
+  double segmentation_downtime_sec = 0;  // of the segmentation's own output, the honest figure
+  std::optional<double> entropy;         // last heard of, as the manager hears it
+  std::string complaint;  // why the robot is not well (health_watch.h); empty if it is
+};
+
+class Observer {
+ public:
+  // Listens through `node`, which outlives it. A robot second lasts `robot_second`.
+  static Expected<std::unique_ptr<Observer>> create(ros2::Node& node, Duration robot_second);
+
+  // From any thread.
+  void restart();
+  Measurements measure() const;
+  void on_state(Member member, std::optional<ros2::LifecycleState> state);
+
+ private:
+  struct Figures {
+    Time begin;
+    Downtime evaluator;
+    Downtime segmentation;
+    int judged_frames = 0;
+    double iou_sum = 0;
+  };
+
+  explicit Observer(Duration robot_second);
+  Expected<void> open(ros2::Node& node);
+  Figures fresh(Time now) const;
+
+  void on_segmentation();
+  void on_iou(double iou);
+  void on_diagnostics(const ros2::msg::DiagnosticArray& array);
+  void on_value(const std::string& hardware_id, const ros2::msg::KeyValue& value);
+
+  const Duration robot_second_;
+  mutable std::mutex mutex_;  // guards the rest of this block
+  HealthWatch health_;
+  Figures figures_;
+  std::optional<double> entropy_;
+
+  std::unique_ptr<ros2::RawSubscription> segmentations_;
+  std::unique_ptr<ros2::Subscription> ious_;
+  std::unique_ptr<ros2::Subscription> diagnostics_;
+};
+
+}  // namespace culprit::sunset

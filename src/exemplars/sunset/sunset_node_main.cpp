@@ -1,0 +1,93 @@
+// sunset-node <name>: one process of the live SUNSET robot (members.h).
+//
+// Which robot it joins is told by the environment, as to every ROS 2 node: ROS_DOMAIN_ID,
+// ROS_LOCALHOST_ONLY and so on (ros2/options.h).
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "exemplars/sunset/camera_node.h"
+#include "exemplars/sunset/crash_at_start.h"
+#include "exemplars/sunset/depth_node.h"
+#include "exemplars/sunset/evaluator_node.h"
+#include "exemplars/sunset/image_enhancement_node.h"
+#include "exemplars/sunset/segmentation_node.h"
+#include "exemplars/sunset/sensor_fusion_node.h"
+#include "exemplars/sunset/world_node.h"
+
+namespace culprit::sunset {
+namespace {
+
+int fail(const std::string& why) {
+  std::fprintf(stderr, "sunset-node: %s\n", why.c_str());
+  return 1;
+}
+
+template <class Node>
+int run(ros2::Executor& executor, ros2::Context& context, const NodeOptions& options) {
+  Node node(options);
+  if (auto opened = node.open(context); !opened) return fail(opened.error());
+  executor.run();
+  return 0;
+}
+
+int run(Member member, const NodeOptions& options) {
+  ros2::Executor executor;
+  if (auto stops = executor.stop_on({SIGINT, SIGTERM}); !stops) return fail(stops.error());
+  const auto participant = ros2::options_from_environment();
+  if (!participant) return fail(participant.error());
+  const auto context = ros2::Context::create(executor, *participant);
+  if (!context) return fail(context.error());
+  switch (member) {
+    case Member::kWorld:
+      return run<WorldNode>(executor, **context, options);
+    case Member::kCamera:
+      return run<CameraNode>(executor, **context, options);
+    case Member::kDepth:
+      return run<DepthNode>(executor, **context, options);
+    case Member::kImageEnhancement:
+      return run<ImageEnhancementNode>(executor, **context, options);
+    case Member::kSensorFusion:
+      return run<SensorFusionNode>(executor, **context, options);
+    case Member::kSegmentation:
+      return run<SegmentationNode>(executor, **context, options);
+    case Member::kEvaluator:
+      return run<EvaluatorNode>(executor, **context, options);
+  }
+  return 1;
+}
+
+int main(int argc, char** argv) {
+  std::map<std::string, Member> members;
+  for (const Member member : kMembers) members.emplace(name_of(member), member);
+
+  CLI::App app("One process of the SUNSET exemplar's robot.");
+  std::string name;
+  NodeOptions options;
+  app.add_option("name", name, "Which one")->required()->check(CLI::IsMember(members));
+  app.add_option("--speed", options.speed, "Robot seconds in a second, 1 unless given")
+      ->envname("SUNSET_SPEED")
+      ->check(CLI::Range(0.01, 100.0));
+  app.add_option("--seed", options.seed, "Of the flight, 1 unless given")->envname("SUNSET_SEED");
+  app.add_option("--state", options.state,
+                 "Folder where parameters outlive the process; without it they do not")
+      ->envname("SUNSET_STATE");
+  CLI11_PARSE(app, argc, argv);
+
+  if (take_crash(options.state, name)) return fail(name + " crashes at its start, as it was told");
+  return run(members.at(name), options);
+}
+
+}  // namespace
+}  // namespace culprit::sunset
+
+int main(int argc, char** argv) {
+  const int code = culprit::sunset::main(argc, argv);
+  std::fflush(nullptr);
+  // Everything is closed by now; Fast DDS's static objects would sleep for another 100 ms.
+  std::_Exit(code);
+}

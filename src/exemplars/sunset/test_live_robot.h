@@ -1,0 +1,101 @@
+// The live robot for tests: the seven processes on a DDS domain of their own, somebody who watches
+// them, and somebody who adapts them through their services.
+#pragma once
+
+#include <array>
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "exemplars/sunset/members.h"
+#include "exemplars/sunset/node_control.h"
+#include "ros2/domain_lock.h"
+#include "ros2/node.h"
+
+namespace culprit::sunset {
+
+// Counts messages, and follows what the heartbeats say.
+class Watcher {
+ public:
+  explicit Watcher(const ros2::ParticipantOptions& participant);
+  ~Watcher();
+
+  NodeControl& control(Member member) { return *controls_[static_cast<std::size_t>(member)]; }
+
+  // Each waits for an event, up to 30 s, and says whether it came.
+  //
+  // `messages` more on this topic.
+  bool flows(std::string_view topic, int messages = 10);
+  // No message on this topic while the world shows 10 more frames.
+  bool falls_silent(std::string_view topic);
+  // 30 more entropies in a row on one side of the limit.
+  bool becomes_sure() { return has_in_a_row(sure_); }
+  bool becomes_unsure() { return has_in_a_row(unsure_); }
+  // The camera says so.
+  bool says_autofocus(std::string_view text);
+
+  // Whether a message came on this topic while the world showed 20 more frames.
+  bool speaks_now(std::string_view topic);
+
+ private:
+  bool wait(const std::function<bool()>& condition);
+  bool has_in_a_row(int& count);
+  void on_diagnostics(const ros2::msg::DiagnosticArray& array);
+
+  ros2::Executor executor_;
+  std::unique_ptr<ros2::Context> context_;
+  std::unique_ptr<ros2::Node> node_;
+  std::array<std::unique_ptr<NodeControl>, kMembers.size()> controls_;
+  std::mutex mutex_;  // guards the rest of this block
+  std::condition_variable something_came_;
+  std::map<std::string_view, int> messages_;
+  int sure_ = 0;  // in a row
+  int unsure_ = 0;
+  std::string autofocus_;
+  std::vector<std::unique_ptr<ros2::RawSubscription>> subscriptions_;
+  std::unique_ptr<ros2::Subscription> diagnostics_;
+  std::thread thread_;
+};
+
+class LiveRobot {
+ public:
+  static constexpr double kSpeed = 2;
+
+  // All processes are started; they end with this object, or with this process.
+  LiveRobot();
+  ~LiveRobot();
+
+  const ros2::ParticipantOptions& participant() const { return participant_; }
+  const std::filesystem::path& state() const { return state_; }
+  Watcher& watcher() { return *watcher_; }
+
+  int start(Member member);                        // its pid
+  int end(Member member, int signal);              // its wait status, when it has ended
+  std::optional<int> wait_for_end(Member member);  // nothing if it goes on for 30 s
+
+  // Adaptations. An empty text: done; otherwise what went wrong.
+  std::string set(Member member, const std::string& parameter, const Value& value);
+  std::string change(Member member, ros2::TransitionId transition);
+  std::string restart(Member member);
+  void redeploy(Member member);
+
+  std::optional<Value> get(Member member, const std::string& parameter);
+  bool becomes(Member member, ros2::LifecycleState state);  // within 30 s
+
+ private:
+  ros2::DomainLock domain_;
+  std::filesystem::path state_;
+  ros2::ParticipantOptions participant_;
+  std::map<Member, int> pids_;
+  std::optional<Watcher> watcher_;
+};
+
+}  // namespace culprit::sunset

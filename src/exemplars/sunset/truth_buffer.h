@@ -1,0 +1,47 @@
+// Which segmentation the evaluator judges by which ground truth: of the last 20 of each, the
+// closest in time, at most 10 ms apart; both are used up (facts 5.2). So the second of the two
+// segmentations that the fusion causes for each frame is not judged again.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "exemplars/sunset/closest_pair.h"
+
+namespace culprit::sunset {
+
+class TruthBuffer {
+ public:
+  static constexpr std::size_t kKeep = 20;
+  static constexpr Duration kTolerance = std::chrono::milliseconds(10);
+
+  void add_truth(ros2::msg::Image truth) { push(truths_, std::move(truth), kKeep); }
+  void add_prediction(ros2::msg::Image prediction) {
+    push(predictions_, std::move(prediction), kKeep);
+  }
+
+  struct Judgeable {
+    ros2::msg::Image truth;
+    ros2::msg::Image prediction;
+  };
+  std::optional<Judgeable> take_pair() {
+    const auto found = closest_pair(truths_, predictions_, kTolerance,
+                                    [](const auto&, const auto&) { return true; });
+    if (!found) return std::nullopt;
+    return Judgeable{take(truths_, found->first), take(predictions_, found->second)};
+  }
+
+ private:
+  static ros2::msg::Image take(Pictures& pictures, std::size_t index) {
+    const auto place = pictures.begin() + static_cast<std::ptrdiff_t>(index);
+    ros2::msg::Image picture = std::move(*place);
+    pictures.erase(place);
+    return picture;
+  }
+
+  Pictures truths_;
+  Pictures predictions_;
+};
+
+}  // namespace culprit::sunset
