@@ -1,0 +1,19 @@
+// The subcommands of culprit. Each adds itself to the command line, and gives its exit code when it
+// was chosen: 0 = all is well, 1 = what was asked for did not succeed, 2 = it was asked for
+// wrongly.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace culprit::cli {
+
+constexpr int kOk = 0;
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+void add_run(CLI::App& app, int& exit_code);
+void add_check(CLI::App& app, int& exit_code);
+void add_graph(CLI::App& app, int& exit_code);
+void add_demo(CLI::App& app, int& exit_code);
+
+}  // namespace culprit::cli

@@ -1,0 +1,88 @@
+#include "cli/console.h"
+
+#include <cstdlib>
+#include <mutex>
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <fmt/core.h>
+
+#include "knowledge/describe.h"
+
+namespace culprit::cli {
+namespace {
+
+struct Label {
+  std::string_view text;
+  std::string_view colour;
+};
+
+struct Labels {
+  Label operator()(const FailureDetected&) const { return {"detected", "\033[1;31m"}; }
+  Label operator()(const FailureResolved&) const { return {"resolved", "\033[1;32m"}; }
+  Label operator()(const FailureLost&) const { return {"lost sight", "\033[33m"}; }
+  Label operator()(const StrategyChosen&) const { return {"decided", "\033[1;36m"}; }
+  Label operator()(const FailureHeldBack&) const { return {"waiting", "\033[2m"}; }
+  Label operator()(const AdaptationDone&) const { return {"done", "\033[36m"}; }
+  Label operator()(const AdaptationFailed&) const { return {"failed", "\033[33m"}; }
+  Label operator()(const StrategyFailed&) const { return {"no help", "\033[33m"}; }
+  Label operator()(const Undone&) const { return {"undone", "\033[36m"}; }
+  Label operator()(const RoundSpent&) const { return {"pause", "\033[33m"}; }
+  Label operator()(const RuleExhausted&) const { return {"EXHAUSTED", "\033[1;31m"}; }
+  Label operator()(const ComponentLost&) const { return {"lost", "\033[31m"}; }
+  Label operator()(const ComponentFound&) const { return {"found", "\033[32m"}; }
+  Label operator()(const Trouble&) const { return {"trouble", "\033[33m"}; }
+};
+
+}  // namespace
+
+Colour colour_of(int descriptor) {
+  const bool wanted = std::getenv("NO_COLOR") == nullptr;
+  return wanted && isatty(descriptor) != 0 ? Colour::kOn : Colour::kOff;
+}
+
+std::string line(const Event& event, const RuleSet& rules, Time start, Colour colour) {
+  const std::string text = describe(event, rules);
+  if (text.empty()) return "";
+  const Label label = std::visit(Labels{}, event.what);
+  const bool is_coloured = colour == Colour::kOn;
+  return fmt::format("{:8.3f}  {}{:<10}{}  {}", seconds(event.at - start),
+                     is_coloured ? label.colour : "", label.text, is_coloured ? "\033[0m" : "",
+                     text);
+}
+
+StopSignals::StopSignals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&signals, signal);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  thread_ = std::thread([this] { wait(); });
+}
+
+StopSignals::~StopSignals() {
+  pthread_kill(thread_.native_handle(), SIGUSR1);
+  thread_.join();
+}
+
+void StopSignals::on_stop(std::function<void()> stop) {
+  const std::lock_guard lock(mutex_);
+  stop_ = std::move(stop);
+  if (stopped_ && stop_) stop_();
+}
+
+void StopSignals::wait() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&signals, signal);
+  while (true) {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    if (signal == SIGUSR1) return;
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    if (stop_) stop_();
+  }
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,43 @@
+// What culprit prints while it works, and how it is asked to stop.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "knowledge/event.h"
+#include "language/diagnostic.h"
+
+namespace culprit::cli {
+
+// Colour where a person reads, plain text where a program does.
+Colour colour_of(int descriptor);
+
+// One event as a line with its time since `start`: "   3.214  detected   RGBDead (ERROR)". Empty
+// for events that are not worth one.
+std::string line(const Event& event, const RuleSet& rules, Time start, Colour colour);
+
+// Waits for SIGINT and SIGTERM on a thread of its own and then calls `stop`, once. Blocks both
+// signals in this thread and in all that it creates from now on: make one first of all.
+class StopSignals {
+ public:
+  StopSignals();
+  ~StopSignals();
+  StopSignals(const StopSignals&) = delete;
+
+  // What to do when a signal comes; called on another thread. Called at once if one came already.
+  void on_stop(std::function<void()> stop);
+  const std::atomic<bool>& stopped() const { return stopped_; }
+
+ private:
+  void wait();
+
+  std::atomic<bool> stopped_ = false;
+  std::mutex mutex_;
+  std::function<void()> stop_;
+  std::thread thread_;
+};
+
+}  // namespace culprit::cli

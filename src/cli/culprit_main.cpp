@@ -1,0 +1,25 @@
+#include "cli/commands.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "culprit keeps ROS 2 robots working: it finds the component that is responsible when many "
+      "things fail at once,\n"
+      "and applies the fewest, cheapest adaptations that bring the robot back."};
+  app.name("culprit");
+  app.set_version_flag("--version", "culprit " CULPRIT_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "A first look:  culprit demo\nYour robot:    culprit graph; culprit check my.rules; culprit "
+      "run --dry-run my.rules");
+  int exit_code = culprit::cli::kOk;
+  culprit::cli::add_run(app, exit_code);
+  culprit::cli::add_check(app, exit_code);
+  culprit::cli::add_graph(app, exit_code);
+  culprit::cli::add_demo(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? culprit::cli::kOk : culprit::cli::kUsage;
+  }
+  return exit_code;
+}

@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <fstream>
+#include <numeric>
+#include <random>
+#include <unistd.h>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/sunset_demo.h"
+
+namespace culprit::cli {
+namespace {
+
+struct DemoOptions {
+  std::string scenario;
+  std::uint64_t seed = 1;
+  double speed = 1;
+  std::string json;
+};
+
+Expected<std::vector<Play>> plays_for(const DemoOptions& options) {
+  if (options.scenario.empty()) return default_plays();
+  if (options.scenario == "random") {
+    const auto all = sunset::scenarios();
+    std::mt19937_64 random(options.seed);
+    // Not std::uniform_int_distribution: its results differ between standard libraries.
+    auto play = find_play(all[random() % all.size()].label());
+    if (!play) return Error{play.error()};
+    return std::vector<Play>{*play};
+  }
+  auto play = find_play(options.scenario);
+  if (!play) return Error{play.error()};
+  return std::vector<Play>{*play};
+}
+
+std::string joined(const std::vector<std::string>& items) {
+  std::string out;
+  for (const std::string& item : items) out += (out.empty() ? "" : ", ") + item;
+  return out.empty() ? "none" : out;
+}
+
+nlohmann::json to_json(const std::vector<PlayOutcome>& outcomes) {
+  nlohmann::json document{{"scenarios", nlohmann::json::array()}};
+  std::size_t resolved = 0;
+  std::size_t unresolved = 0;
+  for (const PlayOutcome& o : outcomes) {
+    nlohmann::json entry{{"name", o.name},
+                         {"faults", o.faults},
+                         {"failures", o.failures},
+                         {"strategies_executed", o.strategies_executed},
+                         {"strategies_succeeded", o.strategies_succeeded},
+                         {"unnecessary_redeployments", o.unnecessary_redeployments},
+                         {"reaction_time_s", o.reaction_times},
+                         {"downtime_s", o.downtime},
+                         {"mean_iou", nullptr},
+                         {"resolved", o.is_resolved()}};
+    if (o.mean_iou) entry["mean_iou"] = *o.mean_iou;
+    document["scenarios"].push_back(std::move(entry));
+    resolved += o.reaction_times.size();
+    unresolved += o.unresolved;
+  }
+  document["resolved"] = resolved;
+  document["unresolved"] = unresolved;
+  return document;
+}
+
+void print_outcome(const PlayOutcome& o) {
+  std::string reactions;
+  for (const double t : o.reaction_times)
+    reactions += fmt::format("{}{:.2f}", reactions.empty() ? "" : ", ", t);
+  fmt::print("\n  faults                     {}\n", joined(o.faults));
+  fmt::print("  failures                   {}\n", joined(o.failures));
+  fmt::print("  strategies executed        {} ({} resolved a failure)\n", o.strategies_executed,
+             o.strategies_succeeded);
+  fmt::print("  unnecessary redeployments  {}\n", o.unnecessary_redeployments);
+  fmt::print("  reaction times             {} s\n", reactions.empty() ? "-" : reactions);
+  fmt::print("  downtime                   {:.2f} s\n", o.downtime);
+  if (o.mean_iou) fmt::print("  mean IoU                   {:.2f}\n", *o.mean_iou);
+  if (!o.is_resolved()) fmt::print("  NOT RESOLVED               {}\n", o.complaint);
+}
+
+void print_summary(const std::vector<PlayOutcome>& outcomes) {
+  fmt::print("\n{:<42} {:>8} {:>10} {:>9} {:>9} {:>8} {:>5}\n", "scenario", "failures",
+             "strategies", "redeploys", "reaction", "downtime", "IoU");
+  for (const PlayOutcome& o : outcomes) {
+    const double mean = o.reaction_times.empty() ? 0
+                                                 : std::accumulate(o.reaction_times.begin(),
+                                                                   o.reaction_times.end(), 0.0) /
+                                                       static_cast<double>(o.reaction_times.size());
+    fmt::print("{:<42} {:>8} {:>10} {:>9} {:>7.2f} s {:>6.2f} s {:>5}  {}\n", o.name,
+               o.failures.size(), o.strategies_executed, o.unnecessary_redeployments, mean,
+               o.downtime, o.mean_iou ? fmt::format("{:.2f}", *o.mean_iou) : "-",
+               o.is_resolved() ? "healed" : "NOT HEALED");
+  }
+  fmt::print(
+      "redeploys: those that were not necessary. reaction: mean, from detection to resolution.\n");
+}
+
+int demo(const DemoOptions& options) {
+  const auto plays = plays_for(options);
+  if (!plays) {
+    fmt::print(stderr, "culprit: {}\n", plays.error());
+    return kUsage;
+  }
+  StopSignals signals;
+  const Colour colour = colour_of(STDOUT_FILENO);
+  fmt::print("Starting SUNSET: camera, depth, image_enhancement, sensor_fusion, segmentation\n");
+  std::fflush(stdout);
+  SunsetDemo::Options setup;
+  setup.speed = options.speed;
+  setup.seed = options.seed;
+  setup.on_event = [colour](const Event& event, const RuleSet& rules, Time start) {
+    const std::string text = line(event, rules, start, colour);
+    if (!text.empty()) fmt::print("{}\n", text);
+    std::fflush(stdout);
+  };
+  auto demo = SunsetDemo::start(std::move(setup), signals.stopped());
+  if (!demo) {
+    fmt::print(stderr, "culprit: {}\n", demo.error());
+    return kFailed;
+  }
+  std::vector<PlayOutcome> outcomes;
+  for (std::size_t i = 0; i < plays->size(); ++i) {
+    const Play& play = (*plays)[i];
+    fmt::print("\nScenario {} of {}: {}\nInjecting {}\n", i + 1, plays->size(), play.name,
+               joined(play.fault_names()));
+    std::fflush(stdout);
+    auto outcome = (*demo)->play(play);
+    if (!outcome) {
+      fmt::print(stderr, "culprit: {}\n", outcome.error());
+      return kFailed;
+    }
+    print_outcome(*outcome);
+    outcomes.push_back(std::move(*outcome));
+  }
+  print_summary(outcomes);
+  const bool all_healed = std::all_of(outcomes.begin(), outcomes.end(),
+                                      [](const PlayOutcome& o) { return o.is_resolved(); });
+  if (!all_healed)
+    fmt::print("The logs of the nodes are in {}\n", ((*demo)->keep_state() / "log").string());
+  if (!options.json.empty()) {
+    std::ofstream file(options.json);
+    file << to_json(outcomes).dump(2) << "\n";
+    if (!file) {
+      fmt::print(stderr, "culprit: cannot write {}\n", options.json);
+      return kFailed;
+    }
+  }
+  return all_healed ? kOk : kFailed;
+}
+
+}  // namespace
+
+void add_demo(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DemoOptions>();
+  CLI::App* command = app.add_subcommand(
+      "demo",
+      "Let culprit heal a live robot: SUNSET, a drone's segmentation pipeline of real processes.\n"
+      "Plays three scenarios, each with an ERROR, a WARNING and a NON_CRITICAL fault at once.");
+  command->add_option(
+      "--scenario", options->scenario,
+      "One scenario instead: 001 to 018, a name such as image_shift+gpu_failure, 'random', or what "
+      "happens to "
+      "processes: kill:camera, stop:depth, crash:segmentation, kill:camera+segmentation");
+  command->add_option("--seed", options->seed, "Of the drone's flight, and of 'random'")
+      ->capture_default_str();
+  command->add_option("--speed", options->speed, "How much faster than real time the robot lives")
+      ->check(CLI::Range(0.1, 20.0))
+      ->capture_default_str();
+  command->add_option("--json", options->json,
+                      "Also write the outcome to this file, as one JSON object");
+  command->callback([options, &exit_code] { exit_code = demo(*options); });
+}
+
+}  // namespace culprit::cli

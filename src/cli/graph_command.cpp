@@ -1,0 +1,138 @@
+#include <map>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/live_robot.h"
+#include "knowledge/dependency_graph.h"
+
+namespace culprit::cli {
+namespace {
+
+struct GraphOptions {
+  double wait_seconds = 3;
+  bool json = false;
+  bool dot = false;
+};
+
+using Edges = std::vector<DependencyGraph::Edge>;
+
+struct Picture {
+  std::map<std::string, int> nodes;  // name -> process, 0 = not known
+  Edges edges;
+};
+
+Expected<Picture> look(Duration wait) {
+  auto participant = ros2::options_from_environment();
+  if (!participant) return Error{participant.error()};
+  const RuleSet no_rules;
+  LiveRobot::Options options;
+  options.link.participant = *participant;
+  options.link.name = {"/", "_culprit_graph"};  // hidden, as tools are
+  auto robot = LiveRobot::open(no_rules, std::move(options));
+  if (!robot) return Error{robot.error()};
+
+  DependencyGraph graph(no_rules);
+  std::map<std::string, int> processes;
+  const Time end = live_now() + wait;
+  while (live_now() < end) {
+    std::vector<Observation> observations;
+    (*robot)->observe(end, observations);
+    for (const Observation& o : observations) {
+      if (const auto* node = std::get_if<NodeAppeared>(&o.what)) {
+        graph.node_appeared(node->node);
+        processes[node->node] = node->pid;
+      } else if (const auto* gone = std::get_if<NodeVanished>(&o.what)) {
+        graph.node_vanished(gone->node);
+      } else if (const auto* endpoint = std::get_if<EndpointAppeared>(&o.what)) {
+        graph.endpoint_appeared(endpoint->node, endpoint->kind, endpoint->name);
+      } else if (const auto* lost = std::get_if<EndpointVanished>(&o.what)) {
+        graph.endpoint_vanished(lost->node, lost->kind, lost->name);
+      } else if (const auto* trouble = std::get_if<LinkTrouble>(&o.what)) {
+        fmt::print(stderr, "culprit: {}\n", trouble->text);
+      }
+    }
+  }
+  Picture picture;
+  for (const std::string& node : graph.nodes()) picture.nodes[node] = processes[node];
+  picture.edges = graph.edges();
+  return picture;
+}
+
+void print_text(const Picture& picture) {
+  if (picture.nodes.empty()) {
+    fmt::print("no nodes; is ROS_DOMAIN_ID the robot's?\n");
+    return;
+  }
+  for (const auto& [node, pid] : picture.nodes) {
+    fmt::print("{}{}\n", node, pid == 0 ? "" : fmt::format("  (process {})", pid));
+    std::map<std::string, std::string> needs;
+    for (const auto& edge : picture.edges) {
+      if (edge.consumer != node) continue;
+      std::string& channels = needs[edge.producer];
+      channels += (channels.empty() ? "" : ", ") + edge.channel;
+    }
+    for (const auto& [producer, channels] : needs)
+      fmt::print("  needs {}  through {}\n", producer, channels);
+  }
+}
+
+void print_json(const Picture& picture) {
+  nlohmann::json document{{"nodes", nlohmann::json::array()},
+                          {"dependencies", nlohmann::json::array()}};
+  for (const auto& [node, pid] : picture.nodes) {
+    nlohmann::json entry{{"name", node}};
+    if (pid != 0) entry["pid"] = pid;
+    document["nodes"].push_back(std::move(entry));
+  }
+  for (const auto& edge : picture.edges) {
+    document["dependencies"].push_back(
+        {{"consumer", edge.consumer}, {"producer", edge.producer}, {"channel", edge.channel}});
+  }
+  fmt::print("{}\n", document.dump(2));
+}
+
+// Names were checked against the ROS grammar when they came in, so nothing in them needs escaping.
+void print_dot(const Picture& picture) {
+  fmt::print("digraph robot {{\n  rankdir=LR;\n  node [shape=box];\n");
+  for (const auto& [node, pid] : picture.nodes) fmt::print("  \"{}\";\n", node);
+  for (const auto& edge : picture.edges) {
+    fmt::print("  \"{}\" -> \"{}\" [label=\"{}\"];\n", edge.producer, edge.consumer, edge.channel);
+  }
+  fmt::print("}}\n");
+}
+
+int show_graph(const GraphOptions& options) {
+  const auto picture = look(from_seconds(options.wait_seconds));
+  if (!picture) {
+    fmt::print(stderr, "culprit: {}\n", picture.error());
+    return kFailed;
+  }
+  if (options.json) {
+    print_json(*picture);
+  } else if (options.dot) {
+    print_dot(*picture);
+  } else {
+    print_text(*picture);
+  }
+  return kOk;
+}
+
+}  // namespace
+
+void add_graph(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<GraphOptions>();
+  CLI::App* command =
+      app.add_subcommand("graph", "Show the live robot: its nodes, and who depends on whom");
+  auto* json = command->add_flag("--json", options->json, "As one JSON object");
+  command
+      ->add_flag("--dot", options->dot, "For Graphviz: culprit graph --dot | dot -Tsvg > robot.svg")
+      ->excludes(json);
+  command->add_option("--wait", options->wait_seconds, "How long to look, in seconds")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  command->callback([options, &exit_code] { exit_code = show_graph(*options); });
+}
+
+}  // namespace culprit::cli

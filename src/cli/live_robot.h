@@ -1,0 +1,42 @@
+// A live robot as one Robot: its nodes over DDS, its processes through the operating system.
+#pragma once
+
+#include <memory>
+
+#include "process/supervisor.h"
+#include "robot/inbox.h"
+#include "robot/robot.h"
+#include "ros2/link.h"
+
+namespace culprit::cli {
+
+class LiveRobot : public Robot {
+ public:
+  struct Options {
+    ros2::Link::Options link;
+    process::Supervisor::Options supervisor;
+  };
+
+  // `rules` must outlive the robot. Errors: the DDS domain cannot be joined.
+  static Expected<std::unique_ptr<LiveRobot>> open(const RuleSet& rules, Options options);
+
+  Time now() const override { return live_now(); }
+  void observe(Time until, std::vector<Observation>& observations) override;
+  void execute(const Command& command) override;
+
+  // Lets a waiting observe() return. From any thread.
+  void interrupt() { inbox_.interrupt(); }
+
+  ros2::Link& link() { return *link_; }
+  process::Supervisor& supervisor() { return *supervisor_; }
+
+ private:
+  explicit LiveRobot(const RuleSet& rules) : binding_(rules) {}
+
+  Inbox inbox_;
+  ComponentBinding binding_;
+  std::unique_ptr<process::Supervisor> supervisor_;
+  std::unique_ptr<ros2::Link> link_;
+};
+
+}  // namespace culprit::cli

@@ -1,0 +1,169 @@
+#include <filesystem>
+#include <unistd.h>
+
+#include <fmt/core.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/health.h"
+#include "cli/live_robot.h"
+#include "cli/paths.h"
+#include "cli/rule_file.h"
+#include "knowledge/describe.h"
+#include "manager/runtime.h"
+#include "plan/paper_planner.h"
+
+namespace culprit::cli {
+namespace {
+
+struct RunOptions {
+  std::string rules;
+  bool dry_run = false;
+  bool launch = false;
+  bool no_dependencies = false;
+  bool no_criticality = false;
+  bool no_impact = false;
+  double settle_seconds = seconds(Manager::kDiscovery);
+  std::string state_folder;
+  std::vector<std::filesystem::path> message_path;
+};
+
+ros2::Severity severity_of(const Event& event) {
+  if (std::holds_alternative<RuleExhausted>(event.what)) return ros2::Severity::kError;
+  const bool is_bad = std::holds_alternative<FailureDetected>(event.what) ||
+                      std::holds_alternative<StrategyFailed>(event.what) ||
+                      std::holds_alternative<ComponentLost>(event.what) ||
+                      std::holds_alternative<AdaptationFailed>(event.what) ||
+                      std::holds_alternative<Trouble>(event.what);
+  return is_bad ? ros2::Severity::kWarn : ros2::Severity::kInfo;
+}
+
+Expected<LiveRobot::Options> robot_options(const RunOptions& options) {
+  auto participant = ros2::options_from_environment();
+  if (!participant) return Error{participant.error()};
+  const auto state = options.state_folder.empty() ? default_state_folder()
+                                                  : std::filesystem::path(options.state_folder);
+  LiveRobot::Options out;
+  out.link.participant = *participant;
+  out.link.message_path =
+      ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH"));
+  out.link.parameters = {{"rules", Value(options.rules)},
+                         {"planner", Value(std::string("paper"))},
+                         {"dry_run", Value(options.dry_run)}};
+  out.supervisor = {state / "log", {own_folder()}};
+  return out;
+}
+
+// Looks at what is there, so that what runs already is not started again.
+std::vector<Observation> discover(LiveRobot& robot, const std::atomic<bool>& stop) {
+  constexpr Duration kLook = std::chrono::seconds(3);
+  std::vector<Observation> seen;
+  for (const Time end = robot.now() + kLook; robot.now() < end && !stop;) robot.observe(end, seen);
+  return seen;
+}
+
+void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Observation>& seen) {
+  ComponentBinding binding(rules);
+  std::vector<bool> is_there(rules.components.size());
+  for (const Observation& o : seen) {
+    if (const auto* node = std::get_if<NodeAppeared>(&o.what)) {
+      if (const auto component = binding.bind(node->node)) is_there[component->index] = true;
+    }
+  }
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    if (is_there[c] || rules.components[c].launch.empty()) continue;
+    fmt::print("starting {}\n", rules.components[c].name);
+    robot.supervisor().start({}, ComponentId(c));
+  }
+}
+
+int run(const RunOptions& options) {
+  const auto rules = load_rules(options.rules);
+  if (rules == nullptr) return kFailed;
+  auto robot_setup = robot_options(options);
+  if (!robot_setup) {
+    fmt::print(stderr, "culprit: {}\n", robot_setup.error());
+    return kUsage;
+  }
+  StopSignals signals;
+  auto robot = LiveRobot::open(*rules, std::move(*robot_setup));
+  if (!robot) {
+    fmt::print(stderr, "culprit: {}\n", robot.error());
+    return kFailed;
+  }
+  signals.on_stop([&] { (*robot)->interrupt(); });
+  fmt::print("culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot as it is\n",
+             rules->robot.empty() ? "the robot" : rules->robot, rules->rules.size(),
+             options.dry_run ? " (dry run)" : "");
+  std::fflush(stdout);
+
+  std::vector<Observation> seen;
+  if (options.launch) {
+    seen = discover(**robot, signals.stopped());
+    launch_missing(**robot, *rules, seen);
+  }
+  const PaperSwitches switches{!options.no_dependencies, !options.no_criticality,
+                               !options.no_impact};
+  Manager::Options manager_options;
+  manager_options.autonomy = options.dry_run ? Autonomy::kAdvise : Autonomy::kAct;
+  manager_options.start = (*robot)->now();
+  manager_options.settling = from_seconds(options.settle_seconds);
+  Manager manager(*rules, std::make_unique<PaperPlanner>(switches), manager_options);
+
+  const Colour colour = colour_of(STDOUT_FILENO);
+  Runtime runtime(manager, **robot);
+  runtime.on_events = [&](const Manager& m) {
+    for (const Event& event : m.events()) {
+      const std::string text = line(event, *rules, manager_options.start, colour);
+      if (text.empty()) continue;
+      fmt::print("{}\n", text);
+      (*robot)->link().log(severity_of(event), describe(event, *rules));
+    }
+    std::fflush(stdout);
+    (*robot)->link().publish(health(m.knowledge()));
+  };
+  (*robot)->link().publish(health(manager.knowledge()));
+  for (const Command& command : manager.step((*robot)->now(), seen)) (*robot)->execute(command);
+  if (!manager.events().empty()) runtime.on_events(manager);
+  runtime.run(signals.stopped());
+  signals.on_stop({});
+  fmt::print("culprit: stopped; the robot goes on as it is\n");
+  return kOk;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command =
+      app.add_subcommand("run",
+                         "Watch a live robot and heal it until Ctrl-C.\nJoins the DDS domain that "
+                         "ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY name.");
+  command->add_option("RULES", options->rules, "The rule file")->required();
+  command->add_flag("--dry-run", options->dry_run, "Say what would be done, and do nothing");
+  command->add_flag("--launch", options->launch,
+                    "Start components that are missing, by their LAUNCH commands");
+  command
+      ->add_option("--settle", options->settle_seconds,
+                   "For so many seconds, nothing is called missing because it was not seen")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  command->add_option("--state-dir", options->state_folder, "Where logs of started components go")
+      ->default_str("~/.local/state/culprit");
+  command->add_option("--message-path", options->message_path,
+                      "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
+  const std::string kFactors = "The paper's factors";
+  command
+      ->add_flag("--no-dependencies", options->no_dependencies,
+                 "Do not look for root causes in the dependency graph")
+      ->group(kFactors);
+  command
+      ->add_flag("--no-criticality", options->no_criticality,
+                 "Treat all failures as equally critical")
+      ->group(kFactors);
+  command->add_flag("--no-impact", options->no_impact, "Do not count a strategy's impact as cost")
+      ->group(kFactors);
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace culprit::cli
