@@ -1,0 +1,26 @@
+# The two commands of this project are `make demo` and `make test`. Each installs what is missing first.
+.PHONY: build demo test bench format clean dependencies
+
+build: dependencies
+	cmake --preset release
+	cmake --build --preset release
+
+demo: build
+	build/release/bin/culprit demo
+
+test: dependencies
+	scripts/test
+
+bench: build
+	cmake --preset release -DCULPRIT_BENCH=ON
+	cmake --build --preset release --target culprit-bench
+	build/release/bin/culprit-bench
+
+format:
+	git ls-files '*.h' '*.cpp' | xargs clang-format -i
+
+clean:
+	rm -rf build
+
+dependencies:
+	@scripts/install-dependencies
