@@ -64,12 +64,13 @@ class Checker {
     if (names_a_signal(constant.value)) return std::nullopt;
     const auto typed = type_expression(constant.value, symbols_, diagnostics_);
     if (!typed) return std::nullopt;
-    const Slot slot = evaluate(compile(*typed), {});
     if (reads_inputs(*typed)) {
       report(Code::kNotConstant, constant.value.span, "this changes at run time",
              "a constant is made of constants");
       return std::nullopt;
     }
+    const Program program = compile(*typed);  // the slot borrows its text
+    const Slot slot = evaluate(program, {});
     if (!slot.known) {
       report(Code::kNoValue, constant.value.span, "this has no value",
              "it divides by zero or overflows");

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "language/evaluate.h"
+
 namespace culprit {
 namespace {
 
@@ -247,6 +249,24 @@ TEST(Checker, SaysWhatTheGoldenFilesSay) {
     EXPECT_EQ(said, read(expected)) << entry.path();
   }
   EXPECT_GT(files, 0);
+}
+
+TEST(Checker, KeepsConstantsThatAreText) {
+  const RuleSet rules = rules_of(
+      "CONST long_enough_to_be_allocated = \"rgb_camera_image_of_the_left_side\"\n"
+      "COMPONENT c\n"
+      "RULE r\n  POLICIES ERROR\n  TRIGGER age(/t) > 1s\n"
+      "    STRATEGY s 50 10\n"
+      "      ADAPTATION c set_parameter p long_enough_to_be_allocated 2\n");
+  const Program& value = rules.strategies.at(0).adaptations.at(0).value;
+  EXPECT_EQ(evaluate(value, {}).s, "rgb_camera_image_of_the_left_side");
+}
+
+TEST(Checker, RefusesRunTimeValuesWhereConstantsBelong) {
+  EXPECT_EQ(codes_of("CONST a = age(/t)\n"), std::vector<std::string>{"R023"});
+  EXPECT_EQ(codes_of("COMPONENT c\nRULE r\n  POLICIES ERROR\n  TRIGGER rate(/t, age(/t)) < 1\n"
+                     "    STRATEGY s 50 10\n      ADAPTATION c restart 5\n"),
+            std::vector<std::string>{"R020"});
 }
 
 TEST(Checker, SurvivesHostileNesting) {

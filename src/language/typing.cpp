@@ -372,9 +372,10 @@ class Typer {
   std::optional<Duration> window_argument(const Expression& e) {
     auto typed = type(e);
     if (!typed) return std::nullopt;
-    const Slot slot = typed->type == Type::kDuration ? evaluate(compile(*typed), {}) : Slot();
+    const bool constant = typed->type == Type::kDuration && !reads_inputs(*typed);
+    const Slot slot = constant ? evaluate(compile(*typed), {}) : Slot();
     constexpr Duration kLongest = std::chrono::hours(24);
-    if (reads_inputs(*typed) || !slot.known) {
+    if (!slot.known) {
       return fail(Code::kTypeMismatch, e.span, "a window is a constant duration",
                   "write for example 2s");
     }
