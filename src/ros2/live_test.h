@@ -54,10 +54,9 @@ template <class Event>
 class EventLog {
  public:
   void add(Event event) {
-    {
-      const std::lock_guard lock(mutex_);
-      events_.push_back(std::move(event));
-    }
+    // Notified under the lock: whoever waits may destroy the log as soon as it sees the event.
+    const std::lock_guard lock(mutex_);
+    events_.push_back(std::move(event));
     added_.notify_all();
   }
 

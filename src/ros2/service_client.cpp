@@ -75,6 +75,8 @@ Expected<void> ServiceClient::open(const ServiceName& service, const Qos& qos) {
   {
     const std::lock_guard lock(mutex_);  // from now on a server may match, and a task of ours send
     request_writer_ = std::move(*writer);
+    reader_id_ = reply_reader_->guid();
+    writer_id_ = guid;
     header_id_ = std::hash<Guid>()(guid);
   }
   node_.context().watch_servers(this, service.name, [this] { on_server_left(); });
@@ -137,8 +139,7 @@ void ServiceClient::send(CallNumber number, Call& call) {
     const ServiceHeader header{header_id_, ++header_sequence_};
     if (request_writer_->write(with_header(call.request, header))) sequence = header.sequence;
   } else {
-    sequence =
-        request_writer_->write(call.request, {.writer = reply_reader_->guid(), .sequence = 0});
+    sequence = request_writer_->write(call.request, {.writer = reader_id_, .sequence = 0});
   }
   if (!sequence) return;
   call.is_sent = true;
@@ -170,10 +171,9 @@ void ServiceClient::on_reply(const Sample& sample) {
   std::optional<Call> call;
   {
     const std::lock_guard lock(mutex_);
-    if (!request_writer_) return;  // not open yet, so it is for somebody else
-    const bool is_ours = split ? split->header.client == header_id_
-                               : sample.related.writer == reply_reader_->guid() ||
-                                     sample.related.writer == request_writer_->guid();
+    const bool is_ours =
+        split ? split->header.client == header_id_
+              : sample.related.writer == reader_id_ || sample.related.writer == writer_id_;
     const auto request = requests_.find(id);
     if (!is_ours || request == requests_.end()) return;
     call = take(request->second);

@@ -131,6 +131,9 @@ class ServiceClient {
   std::optional<Call> take(CallNumber number);
 
   NodeEntry& node_;
+  // What replies name us by. Copies: a reply may come while reader and writer are being destroyed.
+  Guid reader_id_;
+  Guid writer_id_;
   std::uint64_t header_id_ = 0;  // what Cyclone knows us by
 
   // Of the executor's thread: the matched endpoints, with the order in which they came.
