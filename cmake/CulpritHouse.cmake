@@ -18,15 +18,16 @@ if(CULPRIT_SANITIZE)
 endif()
 
 # culprit_library(<folder> [USES <folder>...] [PACKAGES <target>...]
-#                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL])
+#                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL]
+#                 [TEST_LABELS <label>...])
 #
 # Builds src/<folder>/**.cpp but its tests and programs (*_main.cpp), and the test program <folder>_test of *_test.cpp and
 # of what only tests use (test_*.cpp).
 # USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
 # *_live_test.cpp make a program of their own, <folder>_live_test: they start the processes of a robot, so they run alone
-# and carry the label "live".
+# and carry the label "live". The label "threads" is for tests that the thread sanitizer repeats.
 function(culprit_library folder)
-  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES" ${ARGN})
+  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS" ${ARGN})
   set(dir ${CMAKE_SOURCE_DIR}/src/${folder})
   set(headers ${CMAKE_BINARY_DIR}/include/${folder})
   file(MAKE_DIRECTORY ${headers})
@@ -55,7 +56,8 @@ function(culprit_library folder)
     if(ARG_TEST_SERIAL)
       set(serial SERIAL)
     endif()
-    culprit_test(${folder}_test SOURCES ${tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES} ${serial})
+    culprit_test(${folder}_test SOURCES ${tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES}
+                 LABELS ${ARG_TEST_LABELS} ${serial})
   endif()
   if(CULPRIT_TESTS AND live_tests MATCHES "_live_test\\.cpp")
     culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES}
