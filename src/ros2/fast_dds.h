@@ -29,6 +29,7 @@
 #include <fastrtps/utils/IPLocator.h>
 
 #include "ros2/participant.h"
+#include "ros2/quiet_start.h"
 
 namespace culprit::ros2::fast_dds {
 
@@ -212,9 +213,10 @@ inline rtps::Locator_t locator(const std::string& ip, std::uint32_t port) {
   return out;
 }
 
-// `peers` are IPv4 addresses.
+// `peers` are IPv4 addresses. Nothing is sent before `listens`.
 inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& options,
-                                                 const std::vector<std::string>& peers) {
+                                                 const std::vector<std::string>& peers,
+                                                 Listens listens) {
   dds::DomainParticipantQos out;
   out.name(options.enclave);
   const std::string user_data = "enclave=" + options.enclave + ";";
@@ -224,6 +226,8 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
   // Many nodes in one process make discovery data larger than the default of 5 kB.
   builtin.readerHistoryMemoryPolicy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   builtin.writerHistoryMemoryPolicy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  // The first announcements come in quick succession, for those that had not opened their ports.
+  builtin.discovery_config.initial_announcements = {6, {0, 20'000'000}};
   builtin.discovery_config.leaseDuration_announcementperiod = {
       1, 0};  // 3 s by default: how long we may stay unseen
 
@@ -242,7 +246,8 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
   udp->maxInitialPeersRange =
       32;  // participants of one machine that are announced to, as ROS 2 Iron and newer
   out.transport().use_builtin_transports = false;
-  out.transport().user_transports.push_back(std::move(udp));
+  out.transport().user_transports.push_back(
+      std::make_shared<QuietStartDescriptor>(std::move(udp), std::move(listens)));
   return out;
 }
 

@@ -236,13 +236,15 @@ class Participant::Impl {
       if (!address) return Error{address.error()};
       peers.push_back(std::move(*address));
     }
+    const auto listens = std::make_shared<std::atomic<bool>>(false);
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
-        options.domain, fast_dds::participant_qos(options, peers), &listener_,
+        options.domain, fast_dds::participant_qos(options, peers, listens), &listener_,
         dds::StatusMask::none());
     if (participant_ == nullptr) {
       return Error{"cannot join DDS domain " + std::to_string(options.domain) +
                    "; is there a network interface, and a free UDP port for it?"};
     }
+    *listens = true;
     guid_ = fast_dds::to_guid(participant_->guid());
     publisher_ = participant_->create_publisher(dds::PublisherQos());
     subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
