@@ -47,16 +47,17 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       if (!slot.known) return Error{"the new value of " + adaptation.subject + " is unknown now"};
       const Value value = to_value(slot, adaptation.value.type);
       if (adaptation.type == AdaptationType::kSetParameter) {
-        return std::vector<Goal>{
-            ParameterGoal{adaptation.subject, value, ParameterGoal::Kind::kSet}};
+        return std::vector<Goal>{ParameterGoal{adaptation.subject, value, ParameterGoal::Kind::kSet,
+                                               knowledge.components[adaptation.parameter]}};
       }
       const bool up = adaptation.type == AdaptationType::kIncreaseParameter;
       return std::vector<Goal>{ParameterGoal{adaptation.subject, up ? value : negated(value),
                                              ParameterGoal::Kind::kAdd}};
     }
     case AdaptationType::kChangeCommunication:
-      return std::vector<Goal>{
-          ParameterGoal{adaptation.subject, adaptation.topic, ParameterGoal::Kind::kSet}};
+      return std::vector<Goal>{ParameterGoal{adaptation.subject, adaptation.topic,
+                                             ParameterGoal::Kind::kSet,
+                                             knowledge.components[adaptation.parameter]}};
     case AdaptationType::kActivate:
       return std::vector<Goal>{LifecycleGoal{Lifecycle::kActive, {}}};
     case AdaptationType::kDeactivate:

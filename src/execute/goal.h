@@ -21,6 +21,8 @@ struct ParameterGoal {
   // kAdd: `value` more than the parameter is now. kRestore: `value`, set only if it is another.
   Value value;
   enum class Kind : std::uint8_t { kSet, kAdd, kRestore } kind = Kind::kSet;
+  // Of kSet: what the parameter is known to be. It saves the look before the change, a round trip.
+  std::optional<Value> present{};
 };
 struct LifecycleGoal {
   Lifecycle target = Lifecycle::kActive;

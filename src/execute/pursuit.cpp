@@ -107,6 +107,11 @@ std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Tim
     answered({{}, Outcome::kTimedOut, {}, ""}, now);
   }
   if (step_ == Step::kPausing && (wake_ <= now || !look_for(goal_))) step_ = Step::kLook;
+  if (const auto* parameter = std::get_if<ParameterGoal>(&goal_);
+      step_ == Step::kLook && sent_.empty() && parameter != nullptr && parameter->present) {
+    seen_ = {{}, Outcome::kDone, *parameter->present, ""};
+    step_ = Step::kDecide;
+  }
   if (step_ == Step::kLook) {
     const auto look = look_for(goal_);
     step_ = look ? Step::kLooking : Step::kDecide;
@@ -124,6 +129,8 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   if (std::holds_alternative<GoneGoal>(goal_)) return pursue_gone(state, now);
   if (std::holds_alternative<PresentGoal>(goal_)) return pursue_present(state, now);
   if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return pursue(*service, now);
+  // The change was not sent, for there was nobody to send it to.
+  if (answer_ && answer_->outcome == Outcome::kUnreachable) return give_up(why(*answer_));
   if (did_not_come(*seen_)) {
     // Before the change: nobody there to change, unless it is still coming up. After it: the answer
     // may just be late.

@@ -1,0 +1,15 @@
+// What the project promises about speed, beside what was measured: the table that `make bench` ends
+// with.
+#pragma once
+
+#include <string>
+
+namespace culprit::bench {
+
+// `measured` may not exceed `limit`. From any thread.
+void claim(std::string what, double measured, double limit, std::string unit);
+
+// Prints the table. Whether all claims held.
+bool print_claims();
+
+}  // namespace culprit::bench
