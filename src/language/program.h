@@ -3,11 +3,10 @@
 // Types are settled at check time, so every instruction knows what it works on, and evaluation can
 // neither fail nor allocate. Unknown values take the place of errors:
 //   - logic is three-valued (Kleene): unknown && false is false, unknown || true is true, otherwise
-//   unknown stays unknown;
+//     unknown stays unknown;
 //   - arithmetic and comparison with an unknown operand is unknown;
 //   - a result that does not exist is unknown: division by zero, remainder by zero, an integer or
-//   duration that
-//     overflows, a double that is not finite;
+//     duration that overflows, a double that is not finite;
 //   - a conditional with an unknown condition is unknown.
 #pragma once
 

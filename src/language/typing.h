@@ -1,10 +1,9 @@
 // Expressions get their types: syntax tree -> typed tree, in two passes.
 //
 // Constants, literals and functions have types of their own; signals and parameters get theirs from
-// how they are used
-// (`x > 0.5` makes x a number, `x == "dock"` a text, `x` alone true or false). So all expressions
-// of a file are first walked to learn (`infer_types`), until nothing new is learned, and then typed
-// one by one (`type_expression`).
+// how they are used (`x > 0.5` makes x a number, `x == "dock"` a text, `x` alone true or false). So
+// all expressions of a file are first walked to learn (`infer_types`), until nothing new is
+// learned, and then typed one by one (`type_expression`).
 #pragma once
 
 #include <optional>

@@ -46,11 +46,18 @@ void DiagnosticsWatch::read(const msg::DiagnosticStatus& status) {
 
 void DiagnosticsWatch::read_named(const std::string& name, const msg::DiagnosticStatus& status) {
   const auto level = levels_.find(name);
-  if (level != levels_.end()) inbox_.put(DiagnosticRead{level->second, status.level});
+  if (level != levels_.end()) read(level->second, status.level);
   for (const msg::KeyValue& pair : status.values) {
     read(name + "\n" + pair.key, pair.value);
     read(name + "_" + pair.key, pair.value);
   }
+}
+
+void DiagnosticsWatch::read(DiagnosticId diagnostic, std::uint8_t level) {
+  const auto [last, is_new] = last_level_.try_emplace(diagnostic.index, level);
+  const Urgency urgency = !is_new && last->second == level ? Urgency::kSoon : Urgency::kNow;
+  last->second = level;
+  inbox_.put(DiagnosticRead{diagnostic, level}, urgency);
 }
 
 void DiagnosticsWatch::read(const std::string& name, const std::string& text) {

@@ -28,13 +28,16 @@ class DiagnosticsWatch {
   void on_sample(const Sample& sample);
   void read(const msg::DiagnosticStatus& status);
   void read_named(const std::string& name, const msg::DiagnosticStatus& status);
+  void read(DiagnosticId diagnostic, std::uint8_t level);
   void read(const std::string& name, const std::string& text);
 
   NodeEntry& self_;
   Inbox& inbox_;
   std::unordered_map<std::string, SignalId> signals_;     // by "status\nkey", or by the bare name
   std::unordered_map<std::string, DiagnosticId> levels_;  // by name or hardware id
-  std::unordered_map<std::uint32_t, std::string> last_;   // by signal: the text that was read last
+  // What was read last, by signal and by diagnostic.
+  std::unordered_map<std::uint32_t, std::string> last_;
+  std::unordered_map<std::uint32_t, std::uint8_t> last_level_;
   std::unique_ptr<RawSubscription> subscription_;
 };
 

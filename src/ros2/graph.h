@@ -5,15 +5,13 @@
 // makes sense: a node before its endpoints, and its endpoints away before the node.
 //
 // - A service server is its reader of requests, a client its writer of requests. Two endpoints of
-// one node, kind and
-//   name are one edge: it appears with the first and vanishes with the last.
+//   one node, kind and name are one edge: it appears with the first and vanishes with the last.
 // - Two nodes of one name: the one that came last is the node, for a restarted process comes while
-// its killed
-//   predecessor's lease still runs (20 s). The change is told as a vanishing and an appearing, and
-//   as trouble unless the predecessor's process is known to be gone.
+//   its killed predecessor's lease still runs (20 s). The change is told as a vanishing and an
+//   appearing, and as trouble unless the predecessor's process is known to be gone.
 // - Names come from the network. Nodes whose names break the grammar are left out and told as
-// trouble once for each
-//   participant; endpoints that are not ROS 2's are left out silently. Tables are capped.
+//   trouble once for each participant; endpoints that are not ROS 2's are left out silently. Tables
+//   are capped.
 //
 // A pure data structure: fed by one thread, no I/O, no clock.
 #pragma once

@@ -2,12 +2,10 @@
 //
 // - It starts unconfigured. Transitions are asked for through ~/change_state, or by trigger().
 // - The callback of a transition does its work on the executor's thread and says how it went;
-// during it the node is in
-//   the transition state, and nothing else of the process runs, as with rclcpp's single-threaded
-//   executor.
+//   during it the node is in the transition state, and nothing else of the process runs, as with
+//   rclcpp's single-threaded executor.
 // - Failure returns to the state before, an error calls on_error, whose success leads to
-// unconfigured and whose failure
-//   to finalized.
+//   unconfigured and whose failure to finalized.
 #pragma once
 
 #include <functional>

@@ -7,11 +7,10 @@
 //
 // - one that may run twice (a read) is sent again every 200 ms until it is answered;
 // - one that must not (a transition) is sent exactly once, and never before the server has proven
-// that it knows this
-//   client. Discovery data is ordered for each participant, so the proof is an answer to a probe: a
-//   request that may be repeated, to another service of the same node, through a client that was
-//   created later. Give a Probe to have it; the client then probes each new server as soon as it
-//   sees one, so that a call need not wait for it.
+//   that it knows this client. Discovery data is ordered for each participant, so the proof is an
+//   answer to a probe: a request that may be repeated, to another service of the same node, through
+//   a client that was created later. Give a Probe to have it; the client then probes each new
+//   server as soon as it sees one, so that a call need not wait for it.
 //
 // A killed server stays matched until its lease ends (20 s), next to its restarted successor:
 // requests go to both, and the newest server, or the one that has proven to be alive, decides the

@@ -1,13 +1,11 @@
 // The two ways in which ROS 2 pairs a reply with its request on DDS.
 //
 // - In line (rmw_fastrtps): both payloads are just the messages. The request carries in its inline
-// QoS the GUID of the
-//   client's reply reader as related identity; the request's own sequence number is its name; the
-//   reply carries both.
+//   QoS the GUID of the client's reply reader as related identity; the request's own sequence
+//   number is its name; the reply carries both.
 // - Header (rmw_cyclonedds): both payloads begin, after the encapsulation, with a number unique to
-// the client and the
-//   client's own count of requests. Sixteen bytes, so that the alignment of the message stays as it
-//   was.
+//   the client and the client's own count of requests. Sixteen bytes, so that the alignment of the
+//   message stays as it was.
 //
 // What a node speaks follows from its vendor. One server can serve both kinds of client at once.
 //

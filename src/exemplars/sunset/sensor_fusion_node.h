@@ -2,8 +2,8 @@
 // sensors_fused with the stamp of the picture (facts 1.2).
 //
 // - Which pictures go together: fusion_buffer.h; delta_t_threshold, in seconds, is how far apart
-// they
-//   may be. With modality 1 or 2 (rgb or depth alone) the newest picture goes out at every arrival.
+//   they may be. With modality 1 or 2 (rgb or depth alone) the newest picture goes out at every
+//   arrival.
 // - sync_issue, memory_leakage: nothing is published (F2).
 // - image_shift n > 0: the picture is shifted, not the depth (F4).
 // - do_recalibration: at the next publication clears image_shift and itself.

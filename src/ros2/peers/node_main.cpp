@@ -3,8 +3,8 @@
 //     ros2_peer_node <domain> <full name>
 //
 // It has the parameters gain (0..10), count (not negative), label and serial (read-only), the
-// service ~/trigger,
-// ~/value at 10 Hz while it is active, and one status on /diagnostics each second.
+// service ~/trigger, ~/value at 10 Hz while it is active, and one status on /diagnostics each
+// second.
 #include <charconv>
 #include <chrono>
 #include <csignal>
