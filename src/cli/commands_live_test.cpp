@@ -1,0 +1,156 @@
+// The commands as a user runs them: programs, their output and exit codes, on a live robot.
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/test_program.h"
+
+namespace culprit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+// Two nodes of SUNSET, whose silence is a failure.
+constexpr const char* kRules = R"(
+ROBOT two_cameras
+COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
+COMPONENT depth  NODE /managed_subsystem/depth  LAUNCH "sunset-node depth"
+RULE CameraGone
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera redeploy 5
+RULE DepthGone
+  POLICIES ERROR
+  TRIGGER alive(depth) == false
+    STRATEGY depth_redeploy 90 10
+      ADAPTATION depth redeploy 5
+)";
+
+// The process that culprit says `component` to be.
+int pid_in(const std::string& output, const std::string& component) {
+  const std::string what = component + " is there (process ";
+  const std::size_t at = output.rfind(what);
+  return at == std::string::npos ? 0 : std::atoi(output.c_str() + at + what.size());
+}
+
+struct Commands : testing::Test {
+  TestProgram culprit(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "culprit");
+    return TestProgram(world, std::move(arguments));
+  }
+  std::string state() const { return (world.folder() / "state").string(); }
+
+  TestWorld world;
+};
+
+TEST_F(Commands, VersionAndHelp) {
+  auto version = culprit({"--version"});
+  EXPECT_EQ(version.wait(), 0);
+  EXPECT_THAT(version.output(), HasSubstr("culprit "));
+  auto help = culprit({"run", "--help"});
+  EXPECT_EQ(help.wait(), 0);
+  EXPECT_THAT(help.output(), HasSubstr("--dry-run"));
+  auto nonsense = culprit({"mend"});
+  EXPECT_NE(nonsense.wait(), 0);
+}
+
+TEST_F(Commands, CheckShowsEveryMistake) {
+  auto good = culprit({"check", world.write("good.rules", kRules)});
+  EXPECT_EQ(good.wait(), 0) << good.output();
+  EXPECT_THAT(good.output(), HasSubstr("2 rules"));
+
+  auto bad = culprit({"check", world.write("bad.rules",
+                                           "COMPONENT c NODE /c\nRULE r\n  POLICIES EROR\n"
+                                           "  TRIGGER rate(/t < 3\n    STRATEGY s 150 10\n"
+                                           "      ADAPTATION c restart 1\n")});
+  EXPECT_EQ(bad.wait(), 1);
+  EXPECT_THAT(bad.output(), HasSubstr("bad.rules:3:"));
+  EXPECT_THAT(bad.output(), HasSubstr("bad.rules:4:"));
+  EXPECT_THAT(bad.output(), HasSubstr("bad.rules:5:"));
+  EXPECT_THAT(bad.output(), HasSubstr("ERROR"));  // what EROR was meant to be
+
+  auto missing = culprit({"check", (world.folder() / "nowhere.rules").string()});
+  EXPECT_EQ(missing.wait(), 1);
+  EXPECT_THAT(missing.output(), HasSubstr("nowhere.rules"));
+}
+
+TEST_F(Commands, GraphShowsTheRobot) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  auto graph = culprit({"graph", "--json"});
+  ASSERT_EQ(graph.wait(), 0) << graph.output();
+  const auto json = nlohmann::json::parse(graph.output());
+  EXPECT_THAT(json.dump(), HasSubstr("/managed_subsystem/camera"));
+  EXPECT_THAT(json.dump(), HasSubstr(std::to_string(camera.pid())));
+  auto dot = culprit({"graph", "--dot"});
+  ASSERT_EQ(dot.wait(), 0);
+  EXPECT_THAT(dot.output(), HasSubstr("digraph"));
+}
+
+TEST_F(Commands, RunAdoptsWhatRunsStartsWhatIsMissingAndLeavesTheRobotAsItIs) {
+  TestProgram camera(world, {"sunset-node", "camera"});
+  auto run = culprit({"run", world.write("two.rules", kRules), "--launch", "--state-dir", state()});
+  ASSERT_TRUE(run.prints("starting depth")) << run.output();
+  ASSERT_TRUE(run.prints("depth is there (process ")) << run.output();
+  ASSERT_TRUE(run.prints("camera is there (process ")) << run.output();
+  EXPECT_THAT(run.output(), Not(HasSubstr("starting camera")));
+  EXPECT_EQ(pid_in(run.output(), "camera"), camera.pid());
+
+  // The adopted one is relaunched as well as its own.
+  camera.signal(SIGKILL);
+  ASSERT_EQ(camera.wait(), -SIGKILL);
+  ASSERT_TRUE(run.prints("CameraGone resolved by camera_redeploy")) << run.output();
+  const int relaunched = pid_in(run.output(), "camera");
+  const int depth = pid_in(run.output(), "depth");
+  EXPECT_NE(relaunched, camera.pid());
+
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(), 0);
+  EXPECT_THAT(run.output(), HasSubstr("the robot goes on as it is"));
+  EXPECT_EQ(kill(relaunched, SIGKILL), 0) << "the camera did not outlive culprit";
+  EXPECT_EQ(kill(depth, SIGKILL), 0) << "the depth camera did not outlive culprit";
+}
+
+TEST_F(Commands, RunSaysWhatItWouldDoAndDoesNothing) {
+  TestProgram camera(world, {"sunset-node", "camera"});
+  const TestProgram depth(world, {"sunset-node", "depth"});
+  auto run =
+      culprit({"run", world.write("two.rules", kRules), "--dry-run", "--state-dir", state()});
+  ASSERT_TRUE(run.prints("camera is there")) << run.output();
+  ASSERT_TRUE(run.prints("depth is there")) << run.output();
+  camera.signal(SIGKILL);
+  camera.wait();
+  ASSERT_TRUE(run.prints("would redeploy camera")) << run.output();
+  run.signal(SIGTERM);
+  EXPECT_EQ(run.wait(), 0);
+  EXPECT_EQ(pid_in(run.output(), "camera"), camera.pid()) << run.output();
+}
+
+TEST_F(Commands, RunSaysWhyAComponentCannotBeStarted) {
+  auto run = culprit({"run", world.write("none.rules", R"(
+COMPONENT ghost NODE /ghost LAUNCH "no-such-program --at all"
+RULE GhostGone
+  POLICIES ERROR ATTEMPTS 1
+  TRIGGER alive(ghost) == false
+    STRATEGY ghost_start 90 10
+      ADAPTATION ghost start 5
+)"),
+                      "--settle", "0", "--state-dir", state()});
+  EXPECT_TRUE(run.prints("no-such-program")) << run.output();
+  EXPECT_TRUE(run.prints("exhausted")) << run.output();
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(), 0);
+}
+
+TEST_F(Commands, ABadEnvironmentIsAnError) {
+  setenv("ROS_DOMAIN_ID", "many", 1);
+  auto graph = culprit({"graph"});
+  EXPECT_NE(graph.wait(), 0);
+  EXPECT_THAT(graph.output(), HasSubstr("ROS_DOMAIN_ID"));
+}
+
+}  // namespace
+}  // namespace culprit::cli

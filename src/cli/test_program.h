@@ -1,0 +1,53 @@
+// For tests of the programs as users run them: a world of their own, and programs in it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ros2/domain_lock.h"
+
+namespace culprit::cli {
+
+// A DDS domain on loopback and a folder for state, both gone with it. Sets the environment that
+// programs started meanwhile obey.
+class TestWorld {
+ public:
+  TestWorld();
+  ~TestWorld();
+
+  const std::filesystem::path& folder() const { return folder_; }
+  std::string write(const std::string& name, const std::string& text) const;
+
+ private:
+  ros2::DomainLock domain_;
+  std::filesystem::path folder_;
+};
+
+// A program of the project that runs, or has run. What is left of it is killed with the object.
+class TestProgram {
+ public:
+  TestProgram(const TestWorld& world, std::vector<std::string> arguments);
+  ~TestProgram();
+  TestProgram(const TestProgram&) = delete;
+  TestProgram& operator=(const TestProgram&) = delete;
+
+  int pid() const { return pid_; }
+  void signal(int number) const;
+  // Waits for its end. Gives the exit code; minus the signal that ended it; nothing if it does not
+  // end.
+  std::optional<int> wait();
+
+  // All that it has printed so far.
+  std::string output() const;
+  // Waits until it has printed `text`. False if it does not.
+  bool prints(const std::string& text) const;
+
+ private:
+  std::filesystem::path log_;
+  int pid_ = 0;
+  std::optional<int> exit_;
+};
+
+}  // namespace culprit::cli
