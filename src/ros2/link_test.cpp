@@ -1,5 +1,7 @@
 #include "ros2/link.h"
 
+#include <filesystem>
+#include <fstream>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
@@ -20,9 +22,10 @@ COMPONENT absent NODE /absent
 SIGNAL temperature DIAGNOSTIC motor KEY temperature
 SIGNAL visibility  TOPIC /visibility FIELD data
 SIGNAL wrong       TOPIC /visibility FIELD no.such.field
+SIGNAL charge      TOPIC /battery FIELD cells[1].charge
 RULE R
   POLICIES ERROR
-  TRIGGER temperature > 50 || visibility < 1 || wrong > 1 || robot_speed > 1 || rate(/visibility) < 1 || level(motor) > 1 || parameter(robot, gain) > 2 || lifecycle(robot) == "x"
+  TRIGGER temperature > 50 || visibility < 1 || wrong > 1 || robot_speed > 1 || rate(/visibility) < 1 || level(motor) > 1 || parameter(robot, gain) > 2 || charge > 2 || lifecycle(robot) == "x"
     STRATEGY s 50 10
       ADAPTATION robot restart 5
 )";
@@ -30,8 +33,10 @@ RULE R
 // A link to whatever the test puts on the domain, and what it observes.
 class Linked {
  public:
-  explicit Linked(const TestDomain& domain) : rules(*check(Source("test.rules", kRules)).rules) {
+  explicit Linked(const TestDomain& domain, const std::filesystem::path& message_path = {})
+      : rules(*check(Source("test.rules", kRules)).rules) {
     Link::Options options;
+    if (!message_path.empty()) options.message_path = {message_path};
     options.participant = domain.options();
     options.parameters = {{"rules", Value(std::string("test.rules"))}};
     auto opened = Link::open(rules, std::move(options), inbox_);
@@ -141,6 +146,29 @@ TEST(Link, PublishesWhatItIsToldAgainAndAgain) {
   EXPECT_EQ(status.level, 2);
   EXPECT_EQ(status.name, "culprit: R");
   EXPECT_EQ(status.values.at(0).value, "6");
+}
+
+// A type that nobody compiled in: two .msg files, one of which names the other.
+TEST(Link, ReadsFieldsOfMessagesThatFilesDefine) {
+  const std::filesystem::path folder = testing::TempDir() + "culprit_messages";
+  std::filesystem::create_directories(folder / "my_msgs/msg");
+  std::ofstream(folder / "my_msgs/msg/Cell.msg") << "string name\nfloat32 charge\n";
+  std::ofstream(folder / "my_msgs/msg/Battery.msg") << "std_msgs/Header header\nCell[] cells\n";
+  CdrWriter payload;
+  payload(msg::Header{{1, 2}, "base"}, std::uint32_t{2}, std::string("left"), 0.25F,
+          std::string("right"), 0.75F);
+  const Bytes bytes = payload.take();
+
+  const TestDomain domain;
+  Robot robot(domain);
+  const auto publisher =
+      RawPublisher::create(robot.managed->node().entry(), "/battery", "my_msgs/msg/Battery", {});
+  ASSERT_TRUE(publisher);
+  Linked linked(domain, folder);
+  ASSERT_TRUE(linked.sees("/robot"));
+  Timer timer(robot.context->executor(), 20ms, [&] { (*publisher)->publish(bytes); });
+  EXPECT_EQ(linked.reads("charge"), Value(0.75));
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
