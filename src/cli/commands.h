@@ -3,6 +3,8 @@
 // wrongly.
 #pragma once
 
+#include <string>
+
 #include <CLI/CLI.hpp>
 
 namespace culprit::cli {
@@ -15,5 +17,6 @@ void add_run(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_graph(CLI::App& app, int& exit_code);
 void add_demo(CLI::App& app, int& exit_code);
+void add_lsp(CLI::App& app, const std::string& version, int& exit_code);
 
 }  // namespace culprit::cli

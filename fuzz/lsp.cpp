@@ -1,0 +1,19 @@
+// A client's bytes: every message is answered or refused, and what is sent back can be written.
+#include <cstddef>
+#include <cstdint>
+#include <sstream>
+#include <string>
+
+#include "lsp/message_stream.h"
+#include "lsp/server.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace culprit::lsp;
+  std::istringstream in(std::string(reinterpret_cast<const char*>(data), size));
+  std::ostringstream out;
+  Server server("fuzz", [&out](const nlohmann::json& message) { write_message(out, message); });
+  while (true) {
+    const auto message = read_message(in);
+    if (!message || !*message || !server.handle(**message)) return 0;
+  }
+}

@@ -1,0 +1,81 @@
+#include "lsp/hover.h"
+
+#include <algorithm>
+
+#include "language/functions.h"
+
+namespace culprit::lsp {
+namespace {
+
+using Kind = Occurrence::Kind;
+
+std::string code(std::string_view text) { return "```\n" + std::string(text) + "\n```"; }
+
+// The line on which `thing` is declared; empty if none does.
+std::string declaration(const Document& document, const Occurrence& thing) {
+  for (const Occurrence& o : document.names) {
+    if (!o.declares || !o.same_as(thing)) continue;
+    const std::uint32_t line = document.source.position(o.span.begin).line;
+    return code(document.source.text(document.source.line(line)));
+  }
+  return "";
+}
+
+template <class Table>
+auto find_named(const Table& table, const std::string& name) {
+  return std::find_if(table.begin(), table.end(), [&](const auto& t) { return t.name == name; });
+}
+
+std::string of_signal(const Document& document, const Occurrence& thing) {
+  std::string text = declaration(document, thing);
+  if (text.empty())
+    text = "`" + thing.name + "`: not declared; looked up among the keys of diagnostics";
+  if (!document.checked.rules) return text;
+  const auto& signals = document.checked.rules->signals;
+  const auto signal = find_named(signals, thing.name);
+  if (signal == signals.end()) return text;
+  text += "\n\nA " + std::string(to_string(signal->type)) + ".";
+  if (signal->stale) text += " Unknown when older than " + to_string(*signal->stale) + ".";
+  return text;
+}
+
+std::string of_component(const Document& document, const Occurrence& thing) {
+  std::string text = declaration(document, thing);
+  if (text.empty()) text = "`" + thing.name + "`: not declared; the node of this name";
+  if (!document.checked.rules) return text;
+  const RuleSet& rules = *document.checked.rules;
+  std::string strategies;
+  for (const Strategy& strategy : rules.strategies) {
+    const bool adapts =
+        std::any_of(strategy.components.begin(), strategy.components.end(),
+                    [&](ComponentId component) { return rules[component].name == thing.name; });
+    if (adapts) strategies += (strategies.empty() ? "" : ", ") + strategy.name;
+  }
+  return strategies.empty() ? text : text + "\n\nAdapted by " + strategies + ".";
+}
+
+}  // namespace
+
+std::string hover(const Document& document, const Occurrence& thing) {
+  switch (thing.kind) {
+    case Kind::kFunction: {
+      const FunctionInfo* function = find_function(thing.name);
+      return function == nullptr ? "" : code(function->usage);
+    }
+    case Kind::kSignal:
+      return of_signal(document, thing);
+    case Kind::kComponent:
+      return of_component(document, thing);
+    case Kind::kConstant:
+    case Kind::kRule:
+    case Kind::kStrategy:
+      return declaration(document, thing);
+    case Kind::kTopic:
+      return "Topic `" + thing.name + "`";
+    case Kind::kParameter:
+      return "Parameter `" + thing.name + "` of `" + thing.scope + "`";
+  }
+  return "";
+}
+
+}  // namespace culprit::lsp

@@ -1,0 +1,123 @@
+#include "lsp/occurrences.h"
+
+#include <algorithm>
+#include <set>
+
+#include "language/functions.h"
+
+namespace culprit::lsp {
+namespace {
+
+using Kind = Occurrence::Kind;
+
+class Collector {
+ public:
+  explicit Collector(const syntax::File& file) : file_(file) {
+    for (const syntax::Constant& constant : file.constants) constants_.insert(constant.name.text);
+  }
+
+  std::vector<Occurrence> collect() {
+    for (const syntax::Constant& c : file_.constants) {
+      add(Kind::kConstant, c.name, true);
+      expression(c.value);
+    }
+    for (const syntax::Component& c : file_.components) add(Kind::kComponent, c.name, true);
+    for (const syntax::Dependency& d : file_.dependencies) {
+      add(Kind::kComponent, d.consumer);
+      for (const syntax::Name& producer : d.producers) add(Kind::kComponent, producer);
+    }
+    for (const syntax::Name& topic : file_.ignored_topics) add(Kind::kTopic, topic);
+    for (const syntax::Signal& s : file_.signals) signal(s);
+    for (const syntax::Rule& r : file_.rules) rule(r);
+    std::stable_sort(all_.begin(), all_.end(), [](const Occurrence& a, const Occurrence& b) {
+      return a.span.begin < b.span.begin;
+    });
+    return std::move(all_);
+  }
+
+ private:
+  void add(Kind kind, const syntax::Name& name, bool declares = false, std::string scope = "") {
+    if (!name.text.empty())
+      all_.push_back({kind, name.text, std::move(scope), name.span, declares});
+  }
+
+  void signal(const syntax::Signal& s) {
+    add(Kind::kSignal, s.name, true);
+    if (const auto* topic = std::get_if<syntax::TopicSource>(&s.source)) {
+      add(Kind::kTopic, topic->topic);
+    } else if (const auto* parameter = std::get_if<syntax::ParameterSource>(&s.source)) {
+      add(Kind::kComponent, parameter->component);
+      add(Kind::kParameter, parameter->parameter, false, parameter->component.text);
+    }
+  }
+
+  void rule(const syntax::Rule& r) {
+    add(Kind::kRule, r.name, true);
+    if (r.trigger) expression(*r.trigger);
+    for (const syntax::Strategy& s : r.strategies) {
+      add(Kind::kStrategy, s.name, true, r.name.text);
+      if (s.when) expression(*s.when);
+      for (const syntax::Adaptation& a : s.adaptations) adaptation(a);
+    }
+  }
+
+  void adaptation(const syntax::Adaptation& a) {
+    using enum syntax::AdaptationType;
+    add(Kind::kComponent, a.component);
+    const bool has_parameter = a.type == kSetParameter || a.type == kIncreaseParameter ||
+                               a.type == kDecreaseParameter || a.type == kChangeCommunication;
+    if (has_parameter) add(Kind::kParameter, a.subject, false, a.component.text);
+    add(Kind::kTopic, a.topic);
+    if (a.value) expression(*a.value);
+  }
+
+  void expression(const syntax::Expression& e) {
+    if (e.kind == syntax::Expression::Kind::kName) {
+      const bool is_constant = constants_.contains(e.name.text);
+      add(is_constant ? Kind::kConstant : Kind::kSignal, e.name);
+      return;
+    }
+    const FunctionInfo* function = nullptr;
+    if (e.kind == syntax::Expression::Kind::kCall) {
+      add(Kind::kFunction, e.name);
+      function = find_function(e.name.text);
+    }
+    for (std::size_t i = 0; i < e.children.size(); ++i) {
+      const bool has_place = function != nullptr && i < function->arguments.size();
+      argument(e, i, has_place ? function->arguments[i] : Argument::kExpression);
+    }
+  }
+
+  void argument(const syntax::Expression& call, std::size_t i, Argument place) {
+    const syntax::Expression& e = call.children[i];
+    switch (place) {
+      case Argument::kTopic:
+        return add(Kind::kTopic, e.name);
+      case Argument::kComponent:
+        return add(Kind::kComponent, e.name);
+      case Argument::kParameter:
+        return add(Kind::kParameter, e.name, false, call.children[0].name.text);
+      case Argument::kDiagnostic:
+        return;
+      case Argument::kExpression:
+        return expression(e);
+    }
+  }
+
+  const syntax::File& file_;
+  std::set<std::string> constants_;
+  std::vector<Occurrence> all_;
+};
+
+}  // namespace
+
+std::vector<Occurrence> occurrences(const syntax::File& file) { return Collector(file).collect(); }
+
+const Occurrence* occurrence_at(const std::vector<Occurrence>& all, std::uint32_t offset) {
+  const auto found = std::find_if(all.begin(), all.end(), [offset](const Occurrence& o) {
+    return o.span.begin <= offset && offset <= o.span.end;
+  });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace culprit::lsp

@@ -1,0 +1,41 @@
+// Every place where a rule file names something: for going to a definition, finding uses, renaming.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "language/syntax.h"
+
+namespace culprit::lsp {
+
+struct Occurrence {
+  enum class Kind : std::uint8_t {
+    kConstant,
+    kComponent,
+    kSignal,
+    kTopic,
+    kParameter,  // its scope is the component
+    kRule,
+    kStrategy,  // its scope is the rule
+    kFunction
+  };
+  Kind kind = Kind::kConstant;
+  std::string name;
+  std::string scope;
+  Span span;
+  bool declares = false;
+
+  // Whether both name the same thing.
+  bool same_as(const Occurrence& other) const {
+    return kind == other.kind && name == other.name && scope == other.scope;
+  }
+};
+
+// In the order of the text. A name in an expression that the file declares as a constant is that
+// constant, any other one is a signal.
+std::vector<Occurrence> occurrences(const syntax::File& file);
+
+// The one that holds the byte `offset` or ends there; null if there is none.
+const Occurrence* occurrence_at(const std::vector<Occurrence>& all, std::uint32_t offset);
+
+}  // namespace culprit::lsp

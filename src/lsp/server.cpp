@@ -1,0 +1,338 @@
+#include "lsp/server.h"
+
+#include <algorithm>
+#include <array>
+
+#include "lsp/completion.h"
+#include "lsp/hover.h"
+#include "lsp/text_position.h"
+
+namespace culprit::lsp {
+namespace {
+
+using Json = nlohmann::json;
+using Kind = Occurrence::Kind;
+
+// JSON-RPC 2.0 and LSP error codes.
+constexpr int kParseError = -32700;
+constexpr int kInvalidRequest = -32600;
+constexpr int kMethodNotFound = -32601;
+constexpr int kRequestFailed = -32803;
+
+// The value at a path of members; null if it is not there. What a client sends is not trusted to
+// have any shape.
+const Json* at(const Json& value, std::initializer_list<const char*> path) {
+  const Json* here = &value;
+  for (const char* member : path) {
+    const auto found = here->find(member);
+    if (!here->is_object() || found == here->end()) return nullptr;
+    here = &*found;
+  }
+  return here;
+}
+
+std::string text_at(const Json& value, std::initializer_list<const char*> path) {
+  const Json* found = at(value, path);
+  return found != nullptr && found->is_string() ? found->get<std::string>() : "";
+}
+
+std::uint32_t number_at(const Json& value, std::initializer_list<const char*> path) {
+  const Json* found = at(value, path);
+  return found != nullptr && found->is_number_unsigned() ? found->get<std::uint32_t>() : 0;
+}
+
+std::uint32_t place_in(const Document& document, const Json& params) {
+  return offset_of(document.source, {number_at(params, {"position", "line"}),
+                                     number_at(params, {"position", "character"})});
+}
+
+Json to_json(TextPosition position) {
+  return {{"line", position.line}, {"character", position.character}};
+}
+
+Json to_json(const Source& source, Span span) {
+  return {{"start", to_json(text_position(source, span.begin))},
+          {"end", to_json(text_position(source, span.end))}};
+}
+
+Json to_json(const Diagnostic& diagnostic, const Source& source) {
+  const std::string remedy = diagnostic.remedy.empty() ? "" : "\n" + diagnostic.remedy;
+  return {{"range", to_json(source, diagnostic.span)},
+          {"severity", diagnostic.severity == Severity::kError ? 1 : 2},
+          {"code", to_string(diagnostic.code)},
+          {"source", "culprit"},
+          {"message", diagnostic.cause + remedy}};
+}
+
+Json succeeded(Json result) { return {{"result", std::move(result)}}; }
+
+Json failed(int code, const std::string& message) {
+  return {{"error", {{"code", code}, {"message", message}}}};
+}
+
+// CompletionItemKind
+int item_kind(Proposal::Kind kind) {
+  switch (kind) {
+    case Proposal::Kind::kKeyword:
+      return 14;
+    case Proposal::Kind::kFunction:
+      return 3;
+    case Proposal::Kind::kConstant:
+      return 21;
+    case Proposal::Kind::kSignal:
+      return 6;
+    case Proposal::Kind::kComponent:
+      return 7;
+    case Proposal::Kind::kTopic:
+      return 12;
+  }
+  return 1;
+}
+
+// What editors colour names by; the order is that of Occurrence::Kind.
+constexpr std::array kTokenTypes = {"enumMember", "class",     "variable", "string",
+                                    "property",   "namespace", "method",   "function"};
+
+// SymbolKind, for things that a file declares.
+int symbol_kind(Kind kind) {
+  switch (kind) {
+    case Kind::kConstant:
+      return 14;
+    case Kind::kComponent:
+      return 5;
+    case Kind::kRule:
+      return 3;
+    case Kind::kStrategy:
+      return 6;
+    default:
+      return 13;
+  }
+}
+
+Span line_of(const Source& source, Span span) {
+  return source.line(source.position(span.begin).line);
+}
+
+Json symbol(const Document& document, const Occurrence& thing) {
+  return {{"name", thing.name},
+          {"kind", symbol_kind(thing.kind)},
+          {"range", to_json(document.source, line_of(document.source, thing.span))},
+          {"selectionRange", to_json(document.source, thing.span)}};
+}
+
+// A name that the language takes for one, so that a rename leaves a file that can be read.
+bool is_name(const std::string& text) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  return !text.empty() && is_letter(text[0]) && std::all_of(text.begin(), text.end(), [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9');
+  });
+}
+
+}  // namespace
+
+bool Server::handle(const Json& message) {
+  if (message.is_discarded()) {
+    Json reply{{"jsonrpc", "2.0"}, {"id", nullptr}};
+    reply.update(failed(kParseError, "this is no JSON"));
+    send_(reply);
+    return true;
+  }
+  const std::string method = text_at(message, {"method"});
+  if (method == "exit") return false;
+  const Json* id = at(message, {"id"});
+  const Json* params = at(message, {"params"});
+  static const Json kNone = Json::object();
+  if (id == nullptr) {
+    notice(method, params != nullptr ? *params : kNone);
+    return true;
+  }
+  if (method.empty()) return true;  // an answer to what we never asked
+  // Nothing else may be an id, and it is sent back.
+  const bool is_id = id->is_number() || id->is_string();
+  Json reply{{"jsonrpc", "2.0"}, {"id", is_id ? *id : Json(nullptr)}};
+  reply.update(answer(method, params != nullptr ? *params : kNone));
+  send_(reply);
+  return true;
+}
+
+void Server::notice(const std::string& method, const Json& params) {
+  const std::string uri = text_at(params, {"textDocument", "uri"});
+  if (method == "textDocument/didOpen") {
+    open(uri, text_at(params, {"textDocument", "text"}));
+  } else if (method == "textDocument/didChange") {
+    // Whole texts, as the capabilities say; the last one counts.
+    const Json* changes = at(params, {"contentChanges"});
+    if (changes != nullptr && changes->is_array() && !changes->empty())
+      open(uri, text_at(changes->back(), {"text"}));
+  } else if (method == "textDocument/didClose") {
+    documents_.erase(uri);
+    send_({{"jsonrpc", "2.0"},
+           {"method", "textDocument/publishDiagnostics"},
+           {"params", {{"uri", uri}, {"diagnostics", Json::array()}}}});
+  }
+}
+
+void Server::open(const std::string& uri, std::string text) {
+  documents_.insert_or_assign(uri, Document(std::move(text)));
+  publish(uri);
+}
+
+void Server::publish(const std::string& uri) {
+  const Document& document = documents_.at(uri);
+  Json diagnostics = Json::array();
+  for (const Diagnostic& d : document.checked.diagnostics)
+    diagnostics.push_back(to_json(d, document.source));
+  send_({{"jsonrpc", "2.0"},
+         {"method", "textDocument/publishDiagnostics"},
+         {"params", {{"uri", uri}, {"diagnostics", std::move(diagnostics)}}}});
+}
+
+Json Server::answer(const std::string& method, const Json& params) {
+  if (is_shut_down_) return failed(kInvalidRequest, "the server was shut down");
+  if (method == "initialize") {
+    return succeeded({{"capabilities", capabilities()},
+                      {"serverInfo", {{"name", "culprit"}, {"version", version_}}}});
+  }
+  if (method == "shutdown") {
+    is_shut_down_ = true;
+    return succeeded(nullptr);
+  }
+  const std::string uri = text_at(params, {"textDocument", "uri"});
+  const auto found = documents_.find(uri);
+  if (method.starts_with("textDocument/") && found == documents_.end())
+    return failed(kRequestFailed, "the document '" + uri + "' is not open");
+  if (method == "textDocument/completion") return succeeded(completion(found->second, params));
+  if (method == "textDocument/hover") return succeeded(hover_at(found->second, params));
+  if (method == "textDocument/definition") return succeeded(definition(uri, found->second, params));
+  if (method == "textDocument/references") return succeeded(references(uri, found->second, params));
+  if (method == "textDocument/documentSymbol") return succeeded(symbols(found->second));
+  if (method == "textDocument/semanticTokens/full")
+    return succeeded(semantic_tokens(found->second));
+  if (method == "textDocument/rename") {
+    auto edit = rename(uri, found->second, params);
+    return edit ? succeeded(std::move(*edit)) : failed(kRequestFailed, edit.error());
+  }
+  return failed(kMethodNotFound, "there is no method '" + method + "'");
+}
+
+Json Server::capabilities() const {
+  constexpr int kWholeText = 1;
+  Json legend{{"tokenTypes", kTokenTypes}, {"tokenModifiers", {"declaration"}}};
+  return {{"textDocumentSync", {{"openClose", true}, {"change", kWholeText}}},
+          {"completionProvider", {{"triggerCharacters", {" ", "("}}}},
+          {"hoverProvider", true},
+          {"definitionProvider", true},
+          {"referencesProvider", true},
+          {"renameProvider", true},
+          {"documentSymbolProvider", true},
+          {"semanticTokensProvider", {{"legend", std::move(legend)}, {"full", true}}}};
+}
+
+const Occurrence* Server::pointed_at(const Document& document, const Json& params) const {
+  return occurrence_at(document.names, place_in(document, params));
+}
+
+Json Server::completion(const Document& document, const Json& params) const {
+  Json items = Json::array();
+  for (const Proposal& p : proposals(document, place_in(document, params))) {
+    Json item{{"label", p.text}, {"kind", item_kind(p.kind)}};
+    if (!p.detail.empty()) item["detail"] = p.detail;
+    items.push_back(std::move(item));
+  }
+  return items;
+}
+
+Json Server::hover_at(const Document& document, const Json& params) const {
+  const Occurrence* thing = pointed_at(document, params);
+  const std::string text = thing == nullptr ? "" : hover(document, *thing);
+  if (text.empty()) return nullptr;
+  return {{"contents", {{"kind", "markdown"}, {"value", text}}},
+          {"range", to_json(document.source, thing->span)}};
+}
+
+Json Server::definition(const std::string& uri, const Document& document,
+                        const Json& params) const {
+  const Occurrence* thing = pointed_at(document, params);
+  if (thing == nullptr) return nullptr;
+  for (const Occurrence& o : document.names) {
+    if (o.declares && o.same_as(*thing))
+      return {{"uri", uri}, {"range", to_json(document.source, o.span)}};
+  }
+  return nullptr;
+}
+
+Json Server::references(const std::string& uri, const Document& document,
+                        const Json& params) const {
+  const Occurrence* thing = pointed_at(document, params);
+  if (thing == nullptr) return nullptr;
+  const Json* wanted = at(params, {"context", "includeDeclaration"});
+  const bool with_declaration = wanted == nullptr || !wanted->is_boolean() || wanted->get<bool>();
+  Json places = Json::array();
+  for (const Occurrence& o : document.names) {
+    if (o.same_as(*thing) && (with_declaration || !o.declares))
+      places.push_back({{"uri", uri}, {"range", to_json(document.source, o.span)}});
+  }
+  return places;
+}
+
+Expected<Json> Server::rename(const std::string& uri, const Document& document,
+                              const Json& params) const {
+  const Occurrence* thing = pointed_at(document, params);
+  if (thing == nullptr) return Error{"there is no name here"};
+  const bool is_ours = std::any_of(document.names.begin(), document.names.end(),
+                                   [&](const auto& o) { return o.declares && o.same_as(*thing); });
+  if (!is_ours) return Error{"'" + thing->name + "' is not declared in this file"};
+  const std::string name = text_at(params, {"newName"});
+  if (!is_name(name))
+    return Error{"a name begins with a letter and has letters, digits and underscores"};
+  const bool is_taken =
+      std::any_of(document.names.begin(), document.names.end(), [&](const Occurrence& o) {
+        return o.declares && o.name == name && o.scope == thing->scope && !o.same_as(*thing);
+      });
+  if (is_taken) return Error{"'" + name + "' is declared already"};
+  Json edits = Json::array();
+  for (const Occurrence& o : document.names) {
+    if (o.same_as(*thing))
+      edits.push_back({{"range", to_json(document.source, o.span)}, {"newText", name}});
+  }
+  return Json{{"changes", {{uri, std::move(edits)}}}};
+}
+
+// Rules hold their strategies; everything else that is declared stands beside them.
+Json Server::symbols(const Document& document) const {
+  Json all = Json::array();
+  for (const Occurrence& o : document.names) {
+    if (!o.declares) continue;
+    Json entry = symbol(document, o);
+    if (o.kind == Kind::kStrategy && !all.empty() && all.back().contains("children")) {
+      all.back()["range"]["end"] = entry["range"]["end"];
+      all.back()["children"].push_back(std::move(entry));
+      continue;
+    }
+    if (o.kind == Kind::kRule) entry["children"] = Json::array();
+    all.push_back(std::move(entry));
+  }
+  return all;
+}
+
+// Five numbers for each: line and start relative to the one before, length, type, modifiers.
+Json Server::semantic_tokens(const Document& document) const {
+  Json data = Json::array();
+  TextPosition last;
+  for (const Occurrence& o : document.names) {
+    const TextPosition begin = text_position(document.source, o.span.begin);
+    const TextPosition end = text_position(document.source, o.span.end);
+    const bool same_line = begin.line == last.line;
+    data.push_back(begin.line - last.line);
+    data.push_back(same_line ? begin.character - last.character : begin.character);
+    data.push_back(end.character - begin.character);
+    data.push_back(static_cast<int>(o.kind));
+    data.push_back(o.declares ? 1 : 0);
+    last = begin;
+  }
+  return {{"data", std::move(data)}};
+}
+
+}  // namespace culprit::lsp

@@ -1,0 +1,55 @@
+// The language server: what editors ask about rule files (LSP 3.17). It does no I/O of its own.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "lsp/document.h"
+
+namespace culprit::lsp {
+
+class Server {
+ public:
+  using Send = std::function<void(const nlohmann::json& message)>;
+
+  // `version` is what the server says of itself.
+  Server(std::string version, Send send) : version_(std::move(version)), send_(std::move(send)) {}
+
+  // One message of the client, of any content; answers and diagnostics go through Send. False when
+  // the client said that the server has to end.
+  bool handle(const nlohmann::json& message);
+
+  // 0 if the client asked for the shutdown first, as it has to.
+  int exit_code() const { return is_shut_down_ ? 0 : 1; }
+
+ private:
+  using Json = nlohmann::json;
+
+  // An object with the member "result" or the member "error".
+  Json answer(const std::string& method, const Json& params);
+  void notice(const std::string& method, const Json& params);
+
+  Json capabilities() const;
+  Json completion(const Document& document, const Json& params) const;
+  Json hover_at(const Document& document, const Json& params) const;
+  Json definition(const std::string& uri, const Document& document, const Json& params) const;
+  Json references(const std::string& uri, const Document& document, const Json& params) const;
+  Expected<Json> rename(const std::string& uri, const Document& document, const Json& params) const;
+  Json symbols(const Document& document) const;
+  Json semantic_tokens(const Document& document) const;
+
+  void open(const std::string& uri, std::string text);
+  void publish(const std::string& uri);
+  // The thing that the request's position points at; null if at none.
+  const Occurrence* pointed_at(const Document& document, const Json& params) const;
+
+  const std::string version_;
+  const Send send_;
+  std::map<std::string, Document> documents_;  // by URI
+  bool is_shut_down_ = false;
+};
+
+}  // namespace culprit::lsp

@@ -1,0 +1,239 @@
+#include "lsp/server.h"
+
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lsp/message_stream.h"
+#include "lsp/text_position.h"
+
+namespace culprit::lsp {
+namespace {
+
+using Json = nlohmann::json;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kUri = "file:///robot.rules";
+
+// Lines are counted from 0. The umlauts and the emoji make bytes and UTF-16 units differ.
+constexpr const char* kText = R"(CONST limit = 0.06
+COMPONENT camera NODE /camera LAUNCH "driver"
+SIGNAL entropy DIAGNOSTIC segmentation KEY entropy STALE 1s
+# Bäume 🌳
+RULE Blurred
+  POLICIES WARNING
+  TRIGGER entropy > limit && age(/image) < 1s
+    STRATEGY focus 80 50
+      ADAPTATION camera set_parameter autofocus true 2
+    STRATEGY relaunch 10 50
+      ADAPTATION camera redeploy 5
+)";
+
+// An editor with one file open.
+class Session {
+ public:
+  explicit Session(const std::string& text = kText) {
+    request("initialize", {{"capabilities", Json::object()}});
+    notify("initialized", Json::object());
+    notify("textDocument/didOpen",
+           {{"textDocument", {{"uri", kUri}, {"version", 1}, {"text", text}}}});
+  }
+
+  Json request(const std::string& method, Json params) {
+    const int id = ++last_id_;
+    server.handle(
+        {{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", std::move(params)}});
+    EXPECT_FALSE(sent.empty());
+    EXPECT_EQ(sent.back()["id"], id);
+    return sent.back();
+  }
+  void notify(const std::string& method, Json params) {
+    server.handle({{"jsonrpc", "2.0"}, {"method", method}, {"params", std::move(params)}});
+  }
+  Json ask(const std::string& what, std::uint32_t line, std::uint32_t character, Json more = {}) {
+    Json params{{"textDocument", {{"uri", kUri}}},
+                {"position", {{"line", line}, {"character", character}}}};
+    if (more.is_object()) params.update(more);
+    return request("textDocument/" + what, params);
+  }
+  Json diagnostics() const {
+    Json last;
+    for (const Json& message : sent) {
+      if (message.value("method", "") == "textDocument/publishDiagnostics")
+        last = message["params"]["diagnostics"];
+    }
+    return last;
+  }
+  void change(const std::string& text) {
+    notify("textDocument/didChange",
+           {{"textDocument", {{"uri", kUri}}}, {"contentChanges", {{{"text", text}}}}});
+  }
+
+  std::vector<Json> sent;
+  Server server{"1.0", [this](const Json& message) { sent.push_back(message); }};
+
+ private:
+  int last_id_ = 0;
+};
+
+std::vector<std::string> labels(const Json& reply) {
+  std::vector<std::string> out;
+  for (const Json& item : reply["result"]) out.push_back(item["label"]);
+  return out;
+}
+
+TEST(LspServer, SaysWhatItCanDo) {
+  Session session;
+  const Json reply = session.request("initialize", Json::object());
+  EXPECT_EQ(reply["result"]["serverInfo"]["name"], "culprit");
+  EXPECT_TRUE(reply["result"]["capabilities"]["hoverProvider"]);
+}
+
+TEST(LspServer, ReportsMistakesAsTheyAreTypedAndTakesThemBack) {
+  Session session;
+  EXPECT_EQ(session.diagnostics(), Json::array());
+  session.change("COMPONENT camera NODE /camera\nRULE r\n  POLICIES EROR\n");
+  const Json mistakes = session.diagnostics();
+  ASSERT_FALSE(mistakes.empty());
+  EXPECT_EQ(mistakes[0]["range"]["start"]["line"], 2);
+  EXPECT_EQ(mistakes[0]["range"]["start"]["character"], 11);
+  EXPECT_THAT(mistakes[0]["message"].get<std::string>(), HasSubstr("ERROR"));
+  session.change(kText);
+  EXPECT_EQ(session.diagnostics(), Json::array());
+}
+
+TEST(LspServer, GoesToDefinitionsAndFindsUses) {
+  Session session;
+  const Json definition = session.ask("definition", 6, 12);  // entropy in the trigger
+  EXPECT_EQ(definition["result"]["range"]["start"], (Json{{"line", 2}, {"character", 7}}));
+  const Json uses = session.ask("references", 1, 12);  // camera
+  EXPECT_EQ(uses["result"].size(), 3u);
+  const Json others =
+      session.ask("references", 1, 12, {{"context", {{"includeDeclaration", false}}}});
+  EXPECT_EQ(others["result"].size(), 2u);
+  EXPECT_TRUE(session.ask("definition", 3, 0)["result"].is_null()) << "a comment";
+}
+
+TEST(LspServer, RenamesEveryUse) {
+  Session session;
+  const Json reply = session.ask("rename", 0, 6, {{"newName", "threshold"}});
+  const Json edits = reply["result"]["changes"][kUri];
+  ASSERT_EQ(edits.size(), 2u);
+  EXPECT_EQ(edits[1]["range"]["start"], (Json{{"line", 6}, {"character", 20}}));
+  EXPECT_EQ(edits[1]["newText"], "threshold");
+
+  EXPECT_TRUE(session.ask("rename", 0, 6, {{"newName", "two words"}}).contains("error"));
+  EXPECT_TRUE(session.ask("rename", 0, 6, {{"newName", "camera"}}).contains("error"));
+  EXPECT_TRUE(session.ask("rename", 6, 35, {{"newName", "x"}}).contains("error")) << "a topic";
+}
+
+TEST(LspServer, ShowsWhatThingsAre) {
+  Session session;
+  const auto hover = [&](std::uint32_t line, std::uint32_t character) {
+    return session.ask("hover", line, character)["result"]["contents"]["value"].get<std::string>();
+  };
+  EXPECT_THAT(hover(6, 12), HasSubstr("Unknown when older than 1s"));
+  EXPECT_THAT(hover(6, 30), HasSubstr("age(topic)"));
+  EXPECT_THAT(hover(8, 18), HasSubstr("Adapted by focus, relaunch"));
+  EXPECT_THAT(hover(6, 22), HasSubstr("CONST limit = 0.06"));
+}
+
+TEST(LspServer, ProposesWhatFitsThePlace) {
+  Session session(std::string(kText) +
+                  "\n  TRIGGER \n      ADAPTATION \n      ADAPTATION camera \n"
+                  "  POLICIES \n  TRIGGER age(\n  TRIGGER alive(\n");
+  EXPECT_THAT(labels(session.ask("completion", 11, 0)), Contains("RULE"));
+  EXPECT_THAT(labels(session.ask("completion", 12, 10)), Contains("entropy"));
+  EXPECT_THAT(labels(session.ask("completion", 12, 10)), Contains("phi"));
+  EXPECT_THAT(labels(session.ask("completion", 13, 17)), testing::ElementsAre("camera"));
+  EXPECT_THAT(labels(session.ask("completion", 14, 24)), Contains("redeploy"));
+  EXPECT_THAT(labels(session.ask("completion", 15, 11)), Contains("WARNING"));
+  EXPECT_THAT(labels(session.ask("completion", 16, 14)), testing::ElementsAre("/image"));
+  EXPECT_THAT(labels(session.ask("completion", 17, 16)), testing::ElementsAre("camera"));
+}
+
+TEST(LspServer, OutlinesTheFile) {
+  Session session;
+  const Json symbols =
+      session.request("textDocument/documentSymbol", {{"textDocument", {{"uri", kUri}}}})["result"];
+  ASSERT_EQ(symbols.size(), 4u);
+  EXPECT_EQ(symbols[3]["name"], "Blurred");
+  ASSERT_EQ(symbols[3]["children"].size(), 2u);
+  EXPECT_EQ(symbols[3]["children"][1]["name"], "relaunch");
+  EXPECT_EQ(symbols[3]["range"]["end"]["line"], 9);
+}
+
+TEST(LspServer, ColoursNames) {
+  Session session;
+  const Json data = session.request("textDocument/semanticTokens/full",
+                                    {{"textDocument", {{"uri", kUri}}}})["result"]["data"];
+  ASSERT_EQ(data.size() % 5, 0u);
+  // `limit` is declared on the first line at 6, five characters long.
+  EXPECT_EQ(Json(data.begin(), data.begin() + 5), Json({0, 6, 5, 0, 1}));
+}
+
+TEST(LspServer, AnswersEveryRequestWhateverItIs) {
+  Session session;
+  EXPECT_EQ(session.request("textDocument/nonsense",
+                            {{"textDocument", {{"uri", kUri}}}})["error"]["code"],
+            -32601);
+  EXPECT_TRUE(session.request("textDocument/hover", Json::array({1, 2}))["error"].is_object());
+  EXPECT_TRUE(
+      session.request("textDocument/hover", {{"textDocument", {{"uri", 7}}}})["error"].is_object());
+  EXPECT_TRUE(session.ask("hover", 4'000'000'000u, 4'000'000'000u)["result"].is_null());
+  EXPECT_TRUE(session.server.handle(Json(Json::value_t::discarded)));
+  EXPECT_EQ(session.sent.back()["error"]["code"], -32700);
+  EXPECT_TRUE(session.server.handle(Json::array()));
+}
+
+TEST(LspServer, EndsAsTheProtocolWantsIt) {
+  Session session;
+  EXPECT_EQ(session.server.exit_code(), 1) << "an exit without a shutdown";
+  EXPECT_TRUE(session.request("shutdown", nullptr)["result"].is_null());
+  EXPECT_TRUE(session.request("textDocument/hover", nullptr).contains("error"));
+  EXPECT_FALSE(session.server.handle({{"jsonrpc", "2.0"}, {"method", "exit"}}));
+  EXPECT_EQ(session.server.exit_code(), 0);
+}
+
+TEST(LspMessages, ComeBackAsTheyWereWritten) {
+  std::stringstream stream;
+  write_message(stream, {{"text", "Bäume 🌳"}});
+  write_message(stream, {{"second", 2}});
+  EXPECT_EQ((**read_message(stream))["text"], "Bäume 🌳");
+  EXPECT_EQ((**read_message(stream))["second"], 2);
+  const auto end = read_message(stream);
+  ASSERT_TRUE(end);
+  EXPECT_FALSE(*end);
+}
+
+TEST(LspMessages, RefuseWhatIsNone) {
+  const auto reads = [](const std::string& text) {
+    std::istringstream stream(text);
+    return static_cast<bool>(read_message(stream));
+  };
+  EXPECT_FALSE(reads("hello\r\n\r\n{}"));
+  EXPECT_FALSE(reads("Content-Length: 10\r\n\r\n{}"));
+  EXPECT_FALSE(reads("Content-Length: 99999999999999999999\r\n\r\n{}"));
+  EXPECT_FALSE(reads("Content-Length: 999999999999\r\n\r\n{}"));
+  EXPECT_FALSE(reads("Content-Length: -1\r\n\r\n{}"));
+  EXPECT_TRUE(reads("Content-Type: x\r\nContent-Length: 2\r\n\r\n{}"));
+  std::istringstream broken("Content-Length: 2\r\n\r\n{]");
+  EXPECT_TRUE((*read_message(broken))->is_discarded());
+}
+
+TEST(LspPositions, CountInUtf16Units) {
+  const Source source("", "aä🌳b\nx");
+  EXPECT_EQ(text_position(source, 7), (TextPosition{0, 4}));
+  EXPECT_EQ(offset_of(source, {0, 4}), 7u);
+  EXPECT_EQ(offset_of(source, {0, 99}), 8u);
+  EXPECT_EQ(offset_of(source, {1, 0}), 9u);
+  EXPECT_EQ(offset_of(source, {99, 0}), 10u);
+  for (const std::uint32_t offset : {0u, 1u, 3u, 7u, 8u, 9u, 10u})
+    EXPECT_EQ(offset_of(source, text_position(source, offset)), offset);
+}
+
+}  // namespace
+}  // namespace culprit::lsp
