@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "language/line_reader.h"
 #include "language/scanner.h"
@@ -234,6 +235,8 @@ class Parser {
 
   bool rule(Scanner& s) {
     file_.rules.emplace_back();
+    // A part that stands before the rule may be the one that the rule then lacks.
+    file_.rules.back().has_broken_part = std::exchange(stray_part_, false);
     auto name = read_.declared_name(s, "the rule's name");
     if (!name) return false;
     file_.rules.back().name = std::move(*name);
@@ -409,6 +412,7 @@ class Parser {
 
   bool inside_rule(const std::string& keyword) {
     if (!file_.rules.empty()) return true;
+    stray_part_ = true;
     return read_.fail(Code::kOutOfPlace, keyword_, keyword + " belongs to a RULE",
                       "put a RULE line before it");
   }
@@ -429,7 +433,8 @@ class Parser {
   const Source& source_;
   LineReader read_;
   syntax::File file_;
-  Span keyword_;  // of the line at hand
+  Span keyword_;             // of the line at hand
+  bool stray_part_ = false;  // a part of a rule stood before any RULE line
 };
 
 }  // namespace
