@@ -235,6 +235,11 @@ class Checker {
              written.probability.value == 0 ? "a strategy that never helps need not be written down"
                                             : "");
     }
+    if (written.probability.value > 0 && written.probability.value < 1) {
+      diagnostics_.push_back({Code::kProbabilityRange, Severity::kWarning, written.probability.span,
+                              "this success probability is less than one percent",
+                              "probabilities are in percent: write 90 for 0.9"});
+    }
     if (!in_percent(written.confidence)) {
       report(Code::kConfidenceRange, written.confidence.span,
              "a confidence is above 0 and at most 100", "it counts as that many past attempts");
