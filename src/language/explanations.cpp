@@ -233,6 +233,75 @@ std::vector<Explanation> rule_explanations() {
   };
 }
 
+std::string lights(std::string_view off_above) {
+  return "RULE TooDark\n  POLICIES WARNING\n  TRIGGER brightness < 0.3\n    STRATEGY light 90 10\n"
+         "      ADAPTATION lamp activate 5\nRULE TooBright\n  POLICIES WARNING\n"
+         "  TRIGGER brightness > " +
+         std::string(off_above) + "\n    STRATEGY dark 90 10\n      ADAPTATION lamp deactivate 5\n";
+}
+
+std::string escalation(std::string_view first, std::string_view second) {
+  return rule_with("age(/robot/image) > 500ms", first) + "RULE CameraFailsForLong\n  POLICIES " +
+         std::string(second) +
+         "\n  TRIGGER age(/robot/image) > 2s\n    STRATEGY activate 50 10\n"
+         "      ADAPTATION camera activate 5\n";
+}
+
+std::vector<Explanation> meaning_explanations() {
+  const std::string battery = "SIGNAL battery TOPIC /battery FIELD percentage RANGE 0..1\n";
+  const std::string camera = "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\"\n";
+  return {
+      {Code::kOscillation, "strategies of two rules undo one another",
+       "One rule's strategy sets what the other's resets, and nothing keeps them from taking "
+       "turns: "
+       "both triggers can be true together, or one of them always is. The robot could flip between "
+       "the two for ever. Leave a band between the triggers, as a thermostat does, or make both "
+       "strategies alternatives of one rule, which remembers what it tried.",
+       lights("0.2"), lights("0.7")},
+      {Code::kAlwaysTrueInRange, "a condition is always true",
+       "For every value that its inputs can have, by their RANGE or by what they are, this "
+       "condition "
+       "holds. A trigger made of it would report a failure from the first value on and never "
+       "resolve it; in an && it has no say.",
+       battery + rule_with("battery < 20"), battery + rule_with("battery < 0.2")},
+      {Code::kNeverTrueInRange, "a condition is never true",
+       "For no value that its inputs can have, by their RANGE or by what they are, does this "
+       "condition hold, or its parts exclude one another. A trigger made of it would never detect "
+       "the failure.",
+       rule_with("entropy > 0.8 && entropy < 0.2"), rule_with("entropy > 0.8 || entropy < 0.2")},
+      {Code::kCovered, "a rule is covered by another one",
+       "Whenever this rule's trigger is true, the other one's is too; it adapts the same "
+       "components, "
+       "is at least as critical, and detects no later. This rule can only get in its way. Where it "
+       "was meant as an escalation it has to be more critical.",
+       escalation("ERROR", "WARNING"), escalation("WARNING", "ERROR")},
+      {Code::kWhenNeverTrue, "a strategy's WHEN is never true",
+       "For no value that its inputs can have does the condition hold, so the strategy is never "
+       "chosen. Often a state or a limit is misspelt.",
+       rule_with("rate(/robot/image) < 1", "ERROR",
+                 "STRATEGY restart 50 10 WHEN lifecycle(camera) == \"Active\""),
+       rule_with("rate(/robot/image) < 1", "ERROR",
+                 "STRATEGY restart 50 10 WHEN lifecycle(camera) == \"active\"")},
+      {Code::kWhenContradictsTrigger, "a strategy's WHEN contradicts the rule's trigger",
+       "The strategies of a rule are chosen while its trigger is true, and then this WHEN is "
+       "false. "
+       "The strategy waits for a situation in which it is not needed.",
+       rule_with("rate(/robot/image) < 1", "ERROR",
+                 "STRATEGY restart 50 10 WHEN rate(/robot/image) > 5"),
+       rule_with("rate(/robot/image) < 1", "ERROR",
+                 "STRATEGY restart 50 10 WHEN rate(/robot/image) > 0.1")},
+      {Code::kNoLastResort, "no strategy helps if the process hangs",
+       "The rule fires when something falls silent, and a hung process is silent. It answers no "
+       "lifecycle request and no parameter call, so all of the rule's strategies would fail, "
+       "though "
+       "a LAUNCH command is there. A strategy that redeploys is the last resort; it costs nothing "
+       "while cheaper ones help.",
+       camera + rule_with("age(/robot/image) > 500ms"),
+       camera + rule_with("age(/robot/image) > 500ms") +
+           "    STRATEGY redeploy 90 10\n      ADAPTATION camera redeploy 10\n"},
+  };
+}
+
 std::string indented(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -261,8 +330,8 @@ std::string wrapped(std::string_view text, std::size_t width) {
 const std::vector<Explanation>& explanations() {
   static const std::vector<Explanation> kAll = [] {
     std::vector<Explanation> all;
-    for (const auto& part :
-         {syntax_explanations(), name_explanations(), value_explanations(), rule_explanations()}) {
+    for (const auto& part : {syntax_explanations(), name_explanations(), value_explanations(),
+                             rule_explanations(), meaning_explanations()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     std::sort(all.begin(), all.end(),

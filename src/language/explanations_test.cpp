@@ -45,6 +45,13 @@ bool exists(Code code) {
     case Code::kAlwaysTrue:
     case Code::kNeverTrue:
     case Code::kCircularDependency:
+    case Code::kOscillation:
+    case Code::kAlwaysTrueInRange:
+    case Code::kNeverTrueInRange:
+    case Code::kCovered:
+    case Code::kWhenNeverTrue:
+    case Code::kWhenContradictsTrigger:
+    case Code::kNoLastResort:
       return true;
   }
   return false;

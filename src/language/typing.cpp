@@ -77,6 +77,17 @@ class Typer {
       : symbols_(symbols), diagnostics_(diagnostics) {}
 
   std::optional<Typed> type(const Expression& e) {
+    auto typed = type_of(e);
+    if (!typed) return typed;
+    typed->span = e.span;
+    // a != b is !(a == b) in one place.
+    if (typed->op == Op::kNot && typed->children[0].span == Span{})
+      typed->children[0].span = e.span;
+    return typed;
+  }
+
+ private:
+  std::optional<Typed> type_of(const Expression& e) {
     switch (e.kind) {
       case Kind::kLiteral:
         return literal(e.literal);
@@ -94,7 +105,6 @@ class Typer {
     return std::nullopt;
   }
 
- private:
   std::optional<Typed> name(const Expression& e) {
     if (const auto* constant = symbols_.constant(e.name.text)) {
       if (constant->broken) return std::nullopt;  // reported where it is defined
