@@ -146,13 +146,13 @@ void check_covered_rules(const std::vector<RuleConditions>& conditions, const Ru
 void check_oscillation(const std::vector<RuleConditions>& conditions, const RuleSet& rules,
                        std::vector<Diagnostic>& diagnostics) {
   std::map<std::string, std::vector<Doing>> by_thing;
-  std::set<std::pair<RuleId, RuleId>> reported;
+  std::set<std::pair<RuleId, std::string>> reported;  // a rule and a thing: once is enough
   const auto compare = [&](const Doing& later, std::size_t adaptation, const Adaptation& a) {
     for (const Doing& earlier : by_thing[later.effect.thing]) {
       const bool undoes = earlier.rule->rule != later.rule->rule &&
                           earlier.effect.state != later.effect.state &&
                           take_turns(earlier, later, rules);
-      if (!undoes || !reported.emplace(earlier.rule->rule, later.rule->rule).second) continue;
+      if (!undoes || !reported.emplace(later.rule->rule, later.effect.thing).second) continue;
       diagnostics.push_back(
           {Code::kOscillation, Severity::kWarning, span_of(later, adaptation, rules),
            "rules '" + rules[earlier.rule->rule].name + "' and '" + rules[later.rule->rule].name +

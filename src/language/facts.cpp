@@ -3,11 +3,16 @@
 namespace culprit {
 namespace {
 
-constexpr std::size_t kMaxNodes = 250;
+// Far above what a person writes: ten comparisons are about 40 nodes.
+constexpr std::size_t kMaxNodes = 120;
 
-std::size_t node_count(const Typed& e) {
+// How many nodes `e` has; some number above `limit` if there are more than that.
+std::size_t node_count(const Typed& e, std::size_t limit) {
   std::size_t count = 1;
-  for (const Typed& child : e.children) count += node_count(child);
+  for (const Typed& child : e.children) {
+    if (count > limit) break;
+    count += node_count(child, limit - count);
+  }
   return count;
 }
 
@@ -220,7 +225,9 @@ ValueSet Facts::values_of(const Typed& e) const {
                e.children.size() > 1 ? interval_of(e.children[1]) : Interval{});
 }
 
-bool is_small_enough(const Typed& expression) { return node_count(expression) <= kMaxNodes; }
+bool is_small_enough(const Typed& expression) {
+  return node_count(expression, kMaxNodes) <= kMaxNodes;
+}
 
 bool is_never(bool truth, const Typed& condition, const RuleSet& rules) {
   if (!is_small_enough(condition)) return false;

@@ -70,15 +70,14 @@ void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnost
 void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
                     std::vector<Diagnostic>& diagnostics) {
   std::vector<Diagnostic> impossible;
+  auto written = rule.strategies.begin();  // in the same order, but for those without a name
   for (const StrategyId s : rules[id].strategies) {
     const Strategy& strategy = rules[s];
+    while (written->name.text != strategy.name) ++written;
     const auto missing = std::find_if(
         strategy.adaptations.begin(), strategy.adaptations.end(),
         [&](const auto& a) { return needs_launch(a.type) && rules[a.component].launch.empty(); });
     if (missing == strategy.adaptations.end()) continue;
-    const auto written =
-        std::find_if(rule.strategies.begin(), rule.strategies.end(),
-                     [&](const syntax::Strategy& w) { return w.name.text == strategy.name; });
     const auto place = static_cast<std::size_t>(missing - strategy.adaptations.begin());
     impossible.push_back({Code::kNoLaunch, Severity::kWarning, written->adaptations[place].span,
                           "strategy '" + strategy.name + "' can never run: component '" +
