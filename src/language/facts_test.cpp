@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kSignals =
     "SIGNAL x TOPIC /x FIELD data RANGE 0..1\n"
-    "SIGNAL y TOPIC /y FIELD data RANGE -2..3\n";
+    "SIGNAL y TOPIC /y FIELD data RANGE -3..2\n";
 
 std::string rule(const std::string& trigger) {
   return kSignals + ("RULE r\n  POLICIES ERROR\n  TRIGGER " + trigger +
@@ -40,7 +40,7 @@ TEST(Facts, KnowWhatCannotBe) {
                             "x < 0",
                             "2 < x",
                             "x == 7",
-                            "y < -2",
+                            "y < -3",
                             "x * 2 > 2.5",
                             "x + y > 4.5",
                             "abs(y) > 3",
@@ -101,8 +101,8 @@ TEST(Facts, SayNothingWithoutBeingCertain) {
 rc::Gen<std::string> condition(int depth) {
   const auto number = rc::gen::element<std::string>(
       "x", "y", "rate(/t)", "0.5", "1", "-1.5", "3", "x + y", "y * 2", "abs(y)", "min(x, y)",
-      "y / x", "-x", "x * rate(/t)", "(x > 0.5 ? y : 2)", "max(y, 0.25)", "sqrt(y)", "level(d)",
-      "level(d) / 2", "level(d) % 2");
+      "y / x", "x / y", "-x", "x * rate(/t)", "(x > 0.5 ? y : 2)", "max(y, 0.25)", "sqrt(y)",
+      "level(d)", "level(d) / 2", "level(d) % 2");
   const auto order = rc::gen::element<std::string>("<", "<=", ">", ">=", "==", "!=");
   const auto comparison =
       rc::gen::apply([](const std::string& a, const std::string& op,
@@ -138,21 +138,28 @@ Slot value_of(const Input& input, const RuleSet& rules) {
   }
 }
 
-RC_GTEST_PROP(Facts, AreNeverMistaken, ()) {
-  const Source source("test.rules", rule(*condition(2)));
+void expect_evaluation_to_agree(const std::string& trigger) {
+  const Source source("test.rules", rule(trigger));
   const Checked whole = check(source);
-  RC_PRE(whole.rules.has_value());  // a trigger of constants is an error of its own
+  if (!whole.rules) return;  // a trigger of constants is an error of its own
   for (const Diagnostic& d : whole.diagnostics) {
     RC_ASSERT(d.code == Code::kNeverTrueInRange || d.code == Code::kAlwaysTrueInRange);
-    const Checked part = check(Source("part.rules", rule(std::string(source.text(d.span)))));
+    const std::string text(source.text(d.span));
+    const Checked part = check(Source("part.rules", rule(text)));
     RC_ASSERT(part.rules.has_value());
     for (int i = 0; i < 50; ++i) {
       std::vector<Slot> inputs;
       for (const Input& input : part.rules->inputs) inputs.push_back(value_of(input, *part.rules));
       const Slot result = evaluate(part.rules->rules[0].trigger, inputs);
-      RC_ASSERT(!result.known || result.b == (d.code == Code::kAlwaysTrueInRange));
+      if (result.known && result.b != (d.code == Code::kAlwaysTrueInRange))
+        RC_FAIL(to_string(d.code) + " is said of " + text);
     }
   }
+}
+
+// Most conditions are neither always nor never true, so it takes many.
+RC_GTEST_PROP(Facts, AreNeverMistaken, ()) {
+  for (int i = 0; i < 30; ++i) expect_evaluation_to_agree(*condition(i % 3));
 }
 
 }  // namespace
