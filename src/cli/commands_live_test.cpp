@@ -78,6 +78,33 @@ TEST_F(Commands, CheckShowsEveryMistake) {
   EXPECT_THAT(missing.output(), HasSubstr("nowhere.rules"));
 }
 
+TEST_F(Commands, CheckPrintsNothingButTheDocumentForPrograms) {
+  const std::string good = world.write("good.rules", kRules);
+  const std::string bad = world.write("bad.rules", "robot x\n");
+  auto json = culprit({"check", "--format", "json", good, bad});
+  EXPECT_EQ(json.wait(), 1);
+  const auto found = nlohmann::json::parse(json.output());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0]["code"], "R001");
+  auto sarif = culprit({"check", "--format", "sarif", good});
+  EXPECT_EQ(sarif.wait(), 0);
+  EXPECT_TRUE(nlohmann::json::parse(sarif.output())["runs"][0]["results"].empty());
+  auto nonsense = culprit({"check", "--format", "xml", good});
+  EXPECT_EQ(nonsense.wait(), 2);
+}
+
+TEST_F(Commands, ExplainShowsThePageOfACode) {
+  auto page = culprit({"explain", "R012"});
+  EXPECT_EQ(page.wait(), 0);
+  EXPECT_THAT(page.output(), HasSubstr("--strict"));
+  auto all = culprit({"explain"});
+  EXPECT_EQ(all.wait(), 0);
+  EXPECT_THAT(all.output(), HasSubstr("R001  "));
+  auto unknown = culprit({"explain", "R999"});
+  EXPECT_EQ(unknown.wait(), 2);
+  EXPECT_THAT(unknown.output(), HasSubstr("R999"));
+}
+
 TEST_F(Commands, GraphShowsTheRobot) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   auto graph = culprit({"graph", "--json"});

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "language/compiler.h"
+#include "language/condition_checks.h"
+#include "language/conflict_checks.h"
 #include "language/evaluate.h"
 #include "language/parser.h"
 #include "language/rule_checks.h"
@@ -32,6 +34,7 @@ class Checker {
     for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
     for (std::size_t r = 0; r < rules_.rules.size(); ++r) link_readers(RuleId(r));
     check_circles(file_, rules_, diagnostics_);
+    check_meaning();
     return std::move(rules_);
   }
 
@@ -163,6 +166,7 @@ class Checker {
         rule.trigger = compile(*typed);
         check_constant_trigger(written, rule.trigger, diagnostics_);
         collect_thresholds(*typed, rules_.inputs);
+        conditions_.push_back({&written, id, std::move(*typed), {}});
       }
     }
     rules_.rules.push_back(std::move(rule));
@@ -179,6 +183,20 @@ class Checker {
       add_strategy(strategy, id);
     }
     if (!written.has_broken_part) check_launches(written, rules_, id, diagnostics_);
+  }
+
+  // What a rule means is worth a thought once all of them can be read: a warning that follows from
+  // an error would be one too many.
+  void check_meaning() {
+    const bool failed = std::any_of(diagnostics_.begin(), diagnostics_.end(),
+                                    [](const auto& d) { return d.severity == Severity::kError; });
+    if (failed) return;
+    for (const RuleConditions& rule : conditions_) {
+      check_conditions(rule, rules_, diagnostics_);
+      check_last_resort(rule, rules_, diagnostics_);
+    }
+    check_covered_rules(conditions_, rules_, diagnostics_);
+    check_oscillation(conditions_, rules_, diagnostics_);
   }
 
   void check_complete(const syntax::Rule& rule) {
@@ -235,6 +253,11 @@ class Checker {
              written.probability.value == 0 ? "a strategy that never helps need not be written down"
                                             : "");
     }
+    if (written.probability.value > 0 && written.probability.value < 1) {
+      diagnostics_.push_back({Code::kProbabilityRange, Severity::kWarning, written.probability.span,
+                              "this success probability is less than one percent",
+                              "probabilities are in percent: write 90 for 0.9"});
+    }
     if (!in_percent(written.confidence)) {
       report(Code::kConfidenceRange, written.confidence.span,
              "a confidence is above 0 and at most 100", "it counts as that many past attempts");
@@ -242,7 +265,11 @@ class Checker {
     strategy.success = percent(written.probability.value);
     strategy.confidence = written.confidence.value;
     if (written.when) {
-      if (auto typed = boolean(*written.when, "a WHEN condition")) strategy.when = compile(*typed);
+      if (auto typed = boolean(*written.when, "a WHEN condition")) {
+        strategy.when = compile(*typed);
+        const bool has_trigger = !conditions_.empty() && conditions_.back().rule == rule;
+        if (has_trigger) conditions_.back().whens.push_back({id, std::move(*typed)});
+      }
     }
     if (written.adaptations.empty() && !written.has_broken_adaptation) {
       report(Code::kIncomplete, written.name.span,
@@ -350,6 +377,7 @@ class Checker {
   RuleSet rules_;
   Symbols symbols_;
   std::set<std::string> rule_names_;
+  std::vector<RuleConditions> conditions_;  // of each rule that has a trigger
 };
 
 }  // namespace

@@ -47,7 +47,14 @@ enum class Code : std::uint16_t {
   kNeverValid = 42,
   kAlwaysTrue = 50,
   kNeverTrue = 51,
+  kOscillation = 52,
   kCircularDependency = 53,
+  kAlwaysTrueInRange = 54,
+  kNeverTrueInRange = 55,
+  kCovered = 56,
+  kWhenNeverTrue = 57,
+  kWhenContradictsTrigger = 58,
+  kNoLastResort = 59,
 };
 
 // "R011"

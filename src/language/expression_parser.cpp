@@ -108,6 +108,10 @@ class ExpressionParser {
           e.literal = token.literal;
           return e;
         }
+        if (token.text == "not" && continues(scanner_.peek())) {
+          return fail(Code::kSyntax, token.span, "'not' is no operator",
+                      "write ! for 'not', as in !docked");
+        }
         e.kind = Kind::kName;
         e.name = {token.text, token.span};
         return scanner_.peek().is("(") ? call(std::move(e), depth) : std::optional(std::move(e));
@@ -122,6 +126,11 @@ class ExpressionParser {
     return fail(
         Code::kSyntax, token.span, "a value is missing here",
         "write a number, true or false, a \"text\", a signal, a constant or a function call");
+  }
+
+  // Whether a value begins here, where none may stand behind a name.
+  static bool continues(const Token& token) {
+    return token.kind == Token::Kind::kIdentifier || token.is("(") || token.is("!");
   }
 
   std::optional<Expression> parenthesis(const Token& open, int depth) {

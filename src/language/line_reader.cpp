@@ -76,7 +76,12 @@ std::optional<Name> LineReader::ros_name(Scanner& s, std::string_view what) {
 std::optional<Duration> LineReader::duration(Scanner& s, std::string_view what) {
   const Token token = s.next();
   if (token.kind == Token::Kind::kDuration) return std::get<Duration>(token.literal);
-  fail_token(token, what, "a duration is a number and its unit, as in 500ms or 2s");
+  std::string remedy = "a duration is a number and its unit, as in 500ms or 2s";
+  const Token unit = s.peek();
+  const std::string one_word = std::string(source_.text(token.span)) + unit.text;
+  if (unit.kind == Token::Kind::kIdentifier && parse_duration(one_word))
+    remedy = "write " + one_word + ", without the blank";
+  fail_token(token, what, std::move(remedy));
   return std::nullopt;
 }
 
@@ -96,8 +101,10 @@ std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view wh
     }
     return syntax::Number{std::get<double>(token.literal), false, token.span};
   }
-  fail_token(token, what,
-             token.kind == Token::Kind::kEnd ? "a number is missing at the end of this line" : "");
+  std::string remedy;
+  if (token.kind == Token::Kind::kEnd) remedy = "a number is missing at the end of this line";
+  if (token.is("%")) remedy = "the number counts in percent already: write it without the %";
+  fail_token(token, what, std::move(remedy));
   return std::nullopt;
 }
 
@@ -163,6 +170,7 @@ bool LineReader::line_ends(Scanner& s) {
   if (token.kind == Token::Kind::kBad) return fail(Code::kBadToken, token.span, token.text, "");
   std::string remedy = "remove it, or begin a comment with #";
   if (token.is("=")) remedy = "write == to compare";
+  if (token.is(":")) remedy = "remove the ':'";
   if (token.text == "and") remedy = "write && for 'and'";
   if (token.text == "or") remedy = "write || for 'or'";
   return fail(Code::kExtraText, s.rest(), "this text does not belong to the line",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "language/line_reader.h"
 #include "language/scanner.h"
@@ -46,8 +47,12 @@ class Parser {
     for (const Statement& candidate : kStatements) {
       if (head.text != candidate.keyword) continue;
       keyword_ = head.span;
-      if (has_placeholder(s)) return broken();
-      if (!(this->*candidate.parse)(s) || !read_.line_ends(s)) broken();
+      const Scanner behind_keyword = s;
+      if (has_placeholder(s) || has_colon(s) || !(this->*candidate.parse)(s) ||
+          !read_.line_ends(s)) {
+        broken();
+        broken_declaration(candidate.keyword, behind_keyword);
+      }
       return;
     }
     std::vector<std::string_view> keywords;
@@ -56,7 +61,8 @@ class Parser {
     std::transform(upper.begin(), upper.end(), upper.begin(),
                    [](unsigned char c) { return std::toupper(c); });
     const bool lower_case = std::find(keywords.begin(), keywords.end(), upper) != keywords.end();
-    const std::string near = lower_case ? upper : closest(upper, keywords);
+    std::string near = lower_case ? upper : closest(upper, keywords);
+    if (near.empty()) near = word_of_other_tools(upper);
     const std::string word = head.text.empty() ? std::string(source_.text(head.span)) : head.text;
     read_.fail(
         Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
@@ -65,6 +71,44 @@ class Parser {
             : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY IGNORE SIGNAL RULE "
               "POLICIES TRIGGER STRATEGY ADAPTATION");
     broken();
+    broken_declaration(near, s);
+  }
+
+  // Where people who know alerting or behaviour tools look first.
+  static std::string word_of_other_tools(std::string_view word) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kWords = {
+        {{"ALERT", "RULE"},
+         {"SEVERITY", "POLICIES"},
+         {"IF", "TRIGGER"},
+         {"EXPR", "TRIGGER"},
+         {"CONDITION", "TRIGGER"},
+         {"ACTION", "ADAPTATION"},
+         {"DO", "ADAPTATION"}}};
+    for (const auto& [theirs, ours] : kWords) {
+      if (theirs == word) return std::string(ours);
+    }
+    return "";
+  }
+
+  bool has_colon(Scanner& s) {
+    const Token token = s.peek();
+    if (!token.is(":")) return false;
+    read_.fail(Code::kExtraText, token.span, "no ':' stands behind the word of a statement",
+               "remove the ':'");
+    return true;
+  }
+
+  // The name that the line was about to declare, so that its uses are not called undeclared.
+  void broken_declaration(std::string_view keyword, Scanner s) {
+    using Kind = syntax::BrokenDeclaration::Kind;
+    const Token name = s.next();
+    if (name.kind != Token::Kind::kIdentifier) return;
+    if (keyword == "CONST")
+      file_.broken_declarations.push_back({Kind::kConstant, {name.text, name.span}});
+    if (keyword == "COMPONENT")
+      file_.broken_declarations.push_back({Kind::kComponent, {name.text, name.span}});
+    if (keyword == "SIGNAL")
+      file_.broken_declarations.push_back({Kind::kSignal, {name.text, name.span}});
   }
 
   // The paper's and our own documentation write <name> where a name is to be put in; people copy
@@ -234,6 +278,8 @@ class Parser {
 
   bool rule(Scanner& s) {
     file_.rules.emplace_back();
+    // A part that stands before the rule may be the one that the rule then lacks.
+    file_.rules.back().has_broken_part = std::exchange(stray_part_, false);
     auto name = read_.declared_name(s, "the rule's name");
     if (!name) return false;
     file_.rules.back().name = std::move(*name);
@@ -258,6 +304,11 @@ class Parser {
   bool criticality(Scanner& s, syntax::Policies& policies) {
     using enum syntax::Criticality;
     const Token level = s.next();
+    if (level.text == "CRITICAL" || level.text == "FATAL") {
+      // The nearest word would be NON_CRITICAL.
+      return read_.fail(Code::kSyntax, level.span, "there is no criticality " + level.text,
+                        "did you mean ERROR? It is the highest");
+    }
     if (level.text == "ERROR" || level.text == "FAILURE") {
       policies.criticality = kError;
     } else if (level.text == "WARNING" || level.text == "DEGRADED") {
@@ -409,6 +460,7 @@ class Parser {
 
   bool inside_rule(const std::string& keyword) {
     if (!file_.rules.empty()) return true;
+    stray_part_ = true;
     return read_.fail(Code::kOutOfPlace, keyword_, keyword + " belongs to a RULE",
                       "put a RULE line before it");
   }
@@ -429,7 +481,8 @@ class Parser {
   const Source& source_;
   LineReader read_;
   syntax::File file_;
-  Span keyword_;  // of the line at hand
+  Span keyword_;             // of the line at hand
+  bool stray_part_ = false;  // a part of a rule stood before any RULE line
 };
 
 }  // namespace

@@ -69,31 +69,32 @@ void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnost
 
 void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
                     std::vector<Diagnostic>& diagnostics) {
-  std::size_t impossible = 0;
-  for (std::size_t s = 0; s < rules[id].strategies.size(); ++s) {
-    bool reported = false;
-    const Strategy& strategy = rules[rules[id].strategies[s]];
-    for (const auto& adaptation : strategy.adaptations) {
-      const Component& component = rules[adaptation.component];
-      if (reported || !needs_launch(adaptation.type) || !component.launch.empty()) continue;
-      reported = true;
-      ++impossible;
-      const auto written =
-          std::find_if(rule.strategies.begin(), rule.strategies.end(),
-                       [&](const syntax::Strategy& w) { return w.name.text == strategy.name; });
-      const auto line = std::find_if(written->adaptations.begin(), written->adaptations.end(),
-                                     [](const auto& a) { return needs_launch(a.type); });
-      diagnostics.push_back({Code::kNoLaunch, Severity::kWarning, line->span,
-                             "strategy '" + strategy.name + "' can never run: component '" +
-                                 component.name + "' has no LAUNCH command",
-                             "add LAUNCH \"program arguments\" to its COMPONENT line"});
-    }
+  std::vector<Diagnostic> impossible;
+  auto written = rule.strategies.begin();  // in the same order, but for those without a name
+  for (const StrategyId s : rules[id].strategies) {
+    const Strategy& strategy = rules[s];
+    while (written->name.text != strategy.name) ++written;
+    const auto missing = std::find_if(
+        strategy.adaptations.begin(), strategy.adaptations.end(),
+        [&](const auto& a) { return needs_launch(a.type) && rules[a.component].launch.empty(); });
+    if (missing == strategy.adaptations.end()) continue;
+    const auto place = static_cast<std::size_t>(missing - strategy.adaptations.begin());
+    impossible.push_back({Code::kNoLaunch, Severity::kWarning, written->adaptations[place].span,
+                          "strategy '" + strategy.name + "' can never run: component '" +
+                              rules[missing->component].name + "' has no LAUNCH command",
+                          "add LAUNCH \"program arguments\" to its COMPONENT line"});
   }
-  if (impossible > 0 && impossible == rules[id].strategies.size()) {
+  if (!impossible.empty() && impossible.size() == rules[id].strategies.size()) {
+    // One mistake, one message: this one says what those of the strategies would.
     diagnostics.push_back({Code::kNeverValid, Severity::kError, rule.name.span,
-                           "no strategy of rule '" + rule.name.text + "' can ever run",
-                           "add a strategy that works, or the LAUNCH commands that they need"});
+                           "no strategy of rule '" + rule.name.text +
+                               "' can ever run: the components that they start have no LAUNCH "
+                               "command",
+                           "add LAUNCH \"program arguments\" to their COMPONENT lines, or a "
+                           "strategy that needs none"});
+    return;
   }
+  diagnostics.insert(diagnostics.end(), impossible.begin(), impossible.end());
 }
 
 void check_constant_trigger(const syntax::Rule& rule, const Program& trigger,

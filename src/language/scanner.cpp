@@ -150,7 +150,12 @@ Token Scanner::symbol(std::uint32_t at) const {
     ++end;  // one whole character
   const bool control = static_cast<unsigned char>(text_[at]) < 0x20 || text_[at] == 0x7f;
   if (control) return bad({at, end}, "a control character has no place in a rule file");
-  return bad({at, end}, "'" + std::string(text_.substr(at, end - at)) + "' means nothing here");
+  std::string_view advice;
+  if (text_[at] == '\'') advice = "; a text stands in double quotes: \"active\"";
+  if (text_[at] == '&') advice = "; write && for 'and'";
+  if (text_[at] == '|') advice = "; write || for 'or'";
+  return bad({at, end}, "'" + std::string(text_.substr(at, end - at)) + "' means nothing here" +
+                            std::string(advice));
 }
 
 syntax::Name Scanner::next_name() {

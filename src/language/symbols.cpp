@@ -107,6 +107,30 @@ void Symbols::declare(const syntax::File& file) {
     signal_types_.push_back(s.range ? std::optional(Type::kDouble) : std::nullopt);
     rules_.signals.push_back(std::move(signal));
   }
+  for (const syntax::BrokenDeclaration& broken : file.broken_declarations) declare_broken(broken);
+}
+
+// There is an error, so the rule set will not be used; only the names have to be there.
+void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
+  using Kind = syntax::BrokenDeclaration::Kind;
+  const std::string& name = broken.name.text;
+  switch (broken.kind) {
+    case Kind::kConstant:
+      constants_.try_emplace(name, Constant{{}, true});
+      return;
+    case Kind::kComponent:
+      if (components_.try_emplace(name, ComponentId(rules_.components.size())).second) {
+        // Whether it has a LAUNCH command is not known, so nobody may miss it.
+        rules_.components.push_back({name, "", {""}, true});
+      }
+      return;
+    case Kind::kSignal:
+      if (signals_.try_emplace(name, SignalId(rules_.signals.size())).second) {
+        rules_.signals.push_back({name, LookedUp{}, Type::kDouble, {}, {}});
+        signal_types_.emplace_back();
+      }
+      return;
+  }
 }
 
 const Symbols::Constant* Symbols::constant(const std::string& name) const {
@@ -172,6 +196,12 @@ SignalId Symbols::signal(const syntax::Name& name) {
   signal_types_.emplace_back();
   signals_[name.text] = id;
   return id;
+}
+
+bool Symbols::is_looked_up(const std::string& signal) const {
+  const auto found = signals_.find(signal);
+  return strictness_ == Strictness::kLenient && found != signals_.end() &&
+         std::holds_alternative<LookedUp>(rules_[found->second].source);
 }
 
 std::string Symbols::forget_near_miss(const std::string& signal) {

@@ -38,6 +38,8 @@ class Symbols {
 
   ComponentId component(const syntax::Name& name);
   SignalId signal(const syntax::Name& name);
+  // A signal that the file uses and does not declare, in a lenient check; a strict one has said so.
+  bool is_looked_up(const std::string& signal) const;
   TopicId topic(const std::string& name);
   DiagnosticId diagnostic(const std::string& name);
   ParameterId parameter(ComponentId component, const std::string& name);
@@ -52,6 +54,7 @@ class Symbols {
   std::optional<Type>& type_of(ParameterId id) { return parameter_types_[id.index]; }
 
  private:
+  void declare_broken(const syntax::BrokenDeclaration& broken);
   bool first_declaration(const syntax::Name& name, const char* what);
   void report_undeclared(const syntax::Name& name, const char* what,
                          const std::vector<std::string_view>& declared);

@@ -175,6 +175,13 @@ struct Rule {
   bool has_broken_part = false;  // a POLICIES, TRIGGER or STRATEGY line is there and does not parse
 };
 
+// A line that declares something and does not parse: what uses the name is not at fault.
+struct BrokenDeclaration {
+  enum class Kind : std::uint8_t { kConstant, kComponent, kSignal };
+  Kind kind = Kind::kConstant;
+  Name name;
+};
+
 struct File {
   std::optional<Name> robot;
   struct Cycle {
@@ -188,6 +195,7 @@ struct File {
   std::vector<Name> ignored_topics;
   std::vector<Signal> signals;
   std::vector<Rule> rules;
+  std::vector<BrokenDeclaration> broken_declarations;
 };
 
 }  // namespace culprit::syntax

@@ -1,5 +1,6 @@
 #include "language/typing.h"
 
+#include <algorithm>
 #include <array>
 
 #include "language/compiler.h"
@@ -76,6 +77,17 @@ class Typer {
       : symbols_(symbols), diagnostics_(diagnostics) {}
 
   std::optional<Typed> type(const Expression& e) {
+    auto typed = type_of(e);
+    if (!typed) return typed;
+    typed->span = e.span;
+    // a != b is !(a == b) in one place.
+    if (typed->op == Op::kNot && typed->children[0].span == Span{})
+      typed->children[0].span = e.span;
+    return typed;
+  }
+
+ private:
+  std::optional<Typed> type_of(const Expression& e) {
     switch (e.kind) {
       case Kind::kLiteral:
         return literal(e.literal);
@@ -93,7 +105,6 @@ class Typer {
     return std::nullopt;
   }
 
- private:
   std::optional<Typed> name(const Expression& e) {
     if (const auto* constant = symbols_.constant(e.name.text)) {
       if (constant->broken) return std::nullopt;  // reported where it is defined
@@ -208,12 +219,28 @@ class Typer {
     const Type b = right.type;
     if (!alike(left, right))
       return mismatch(e, type_at(e, 0, a, b), type_at(e, 1, a, b), "compare");
+    if (a == Type::kString) warn_of_bare_text(e);
     const Op op = member(family, left.type);
     if (op == kNone) {
       return fail(Code::kTypeMismatch, e.span, "true and false have no order",
                   "compare them with == or !=");
     }
     return node(op, Type::kBool, {std::move(left), std::move(right)});
+  }
+
+  // `lifecycle(camera) == active` would wait for a signal of that name.
+  void warn_of_bare_text(const Expression& e) {
+    constexpr std::array<std::string_view, 4> kStates = {"unconfigured", "inactive", "active",
+                                                         "finalized"};
+    for (const Expression& side : e.children) {
+      if (side.kind != Kind::kName || !symbols_.is_looked_up(side.name.text)) continue;
+      const std::string& name = side.name.text;
+      if (std::find(kStates.begin(), kStates.end(), name) == kStates.end()) continue;
+      diagnostics_.push_back(
+          {Code::kUnknownName, Severity::kWarning, side.span,
+           "signal '" + name + "' is not declared and will be looked up on the robot",
+           "a text needs quotes: did you mean \"" + name + "\"?"});
+    }
   }
 
   static bool is_comparison(const Expression& e) {

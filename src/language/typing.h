@@ -23,6 +23,7 @@ struct Typed {
   Type type = Type::kBool;
   Constant constant;
   InputId input;
+  Span span;  // of a condition (type kBool): where it is written
   std::vector<Typed> children;
 };
 

@@ -1,0 +1,102 @@
+#include "cli/diagnostic_report.h"
+
+#include <fmt/core.h>
+
+#include "language/explanations.h"
+
+namespace culprit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* severity_of(const Diagnostic& d) {
+  return d.severity == Severity::kError ? "error" : "warning";
+}
+
+// RFC 3986: a path is not yet a URI reference.
+std::string uri_of(std::string_view path) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~/";
+  std::string uri = path.starts_with('/') ? "file://" : "";
+  for (const char c : path) {
+    if (kPlain.find(c) != std::string_view::npos) {
+      uri += c;
+    } else {
+      uri += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+  }
+  return uri;
+}
+
+Json sarif_rules() {
+  Json rules = Json::array();
+  for (const Explanation& e : explanations()) {
+    rules.push_back({{"id", to_string(e.code)},
+                     {"shortDescription", {{"text", e.title}}},
+                     {"fullDescription", {{"text", e.why}}},
+                     {"help", {{"text", page(e)}}}});
+  }
+  return rules;
+}
+
+Json sarif_region(const Source& source, Span span) {
+  const Position begin = source.position(span.begin);
+  const Position end = source.position(span.end);
+  return {{"startLine", begin.line},
+          {"startColumn", begin.column},
+          {"endLine", end.line},
+          {"endColumn", end.column}};
+}
+
+Json sarif_result(const Source& source, const Diagnostic& d) {
+  const std::string message = d.remedy.empty() ? d.cause : d.cause + "\n" + d.remedy;
+  Json location{{"physicalLocation",
+                 {{"artifactLocation", {{"uri", uri_of(source.name())}}},
+                  {"region", sarif_region(source, d.span)}}}};
+  return {{"ruleId", to_string(d.code)},
+          {"level", severity_of(d)},
+          {"message", {{"text", message}}},
+          {"locations", Json::array({std::move(location)})}};
+}
+
+}  // namespace
+
+Json json_report(const std::vector<CheckedFile>& files) {
+  Json report = Json::array();
+  for (const auto& [source, diagnostics] : files) {
+    for (const Diagnostic& d : diagnostics) {
+      const Position begin = source.position(d.span.begin);
+      const Position end = source.position(d.span.end);
+      report.push_back({{"file", source.name()},
+                        {"code", to_string(d.code)},
+                        {"severity", severity_of(d)},
+                        {"line", begin.line},
+                        {"column", begin.column},
+                        {"end_line", end.line},
+                        {"end_column", end.column},
+                        {"cause", d.cause},
+                        {"remedy", d.remedy}});
+    }
+  }
+  return report;
+}
+
+Json sarif_report(const std::vector<CheckedFile>& files) {
+  Json results = Json::array();
+  for (const auto& [source, diagnostics] : files) {
+    for (const Diagnostic& d : diagnostics) results.push_back(sarif_result(source, d));
+  }
+  Json driver{{"name", "culprit"}, {"rules", sarif_rules()}};
+  Json run{{"tool", {{"driver", std::move(driver)}}},
+           {"columnKind", "unicodeCodePoints"},
+           {"results", std::move(results)}};
+  return {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
+          {"version", "2.1.0"},
+          {"runs", Json::array({std::move(run)})}};
+}
+
+std::string to_text(const Json& document) {
+  return document.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace culprit::cli

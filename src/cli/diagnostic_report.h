@@ -1,0 +1,30 @@
+// What a check found, for programs: editors, scripts, and what shows it beside the code.
+//
+// Lines and columns count from 1, columns in characters; ends are exclusive.
+#pragma once
+
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "language/diagnostic.h"
+#include "language/source.h"
+
+namespace culprit::cli {
+
+struct CheckedFile {
+  Source source;
+  std::vector<Diagnostic> diagnostics;
+};
+
+// An array of {file, code, severity, line, column, end_line, end_column, cause, remedy}, in the
+// order of the files and of their text.
+nlohmann::ordered_json json_report(const std::vector<CheckedFile>& files);
+
+// SARIF 2.1.0 (OASIS), one run. Every code is a rule, found or not.
+nlohmann::ordered_json sarif_report(const std::vector<CheckedFile>& files);
+
+// `document` as text. What is not UTF-8 in a rule file becomes U+FFFD.
+std::string to_text(const nlohmann::ordered_json& document);
+
+}  // namespace culprit::cli

@@ -1,0 +1,227 @@
+#include "language/condition_checks.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "language/compiler.h"
+#include "language/facts.h"
+
+namespace culprit {
+namespace {
+
+bool is_connective(const Typed& e) {
+  if (e.type != Type::kBool) return false;
+  if (e.op == Op::kNot) return e.span != e.children[0].span;  // not the ! of !=
+  return e.op == Op::kAnd || e.op == Op::kOr || e.op == Op::kSelect;
+}
+
+const Typed* plain_input(const Typed& e) {
+  if (e.op == Op::kInput) return &e;
+  return e.op == Op::kIntToDouble ? plain_input(e.children[0]) : nullptr;
+}
+
+// The input that a comparison with a constant is about; null for other conditions.
+const Typed* compared_input(const Typed& comparison) {
+  if (comparison.op == Op::kNot) return compared_input(comparison.children[0]);
+  if (comparison.children.size() != 2) return nullptr;
+  const Typed* left = plain_input(comparison.children[0]);
+  return left != nullptr ? left : plain_input(comparison.children[1]);
+}
+
+// "1", not "1.0": as people write the ends of a RANGE.
+std::string plain_number(double value) {
+  std::string text = to_string(Value(value));
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
+  return text;
+}
+
+bool has_declared_range(InputId id, const RuleSet& rules) {
+  switch (rules[id].kind) {
+    case Input::Kind::kSignal:
+    case Input::Kind::kMin:
+    case Input::Kind::kMax:
+    case Input::Kind::kMean:
+    case Input::Kind::kStddev:
+      return rules[rules[id].signal].range.has_value();
+    default:
+      return false;
+  }
+}
+
+// What is known of the input, for a message; empty if the message can say nothing more.
+std::string known_of(InputId id, const RuleSet& rules) {
+  if (has_declared_range(id, rules)) {
+    const Signal& signal = rules[rules[id].signal];
+    return ": '" + signal.name + "' has RANGE " + plain_number(signal.range->low) + ".." +
+           plain_number(signal.range->high);
+  }
+  switch (rules[id].kind) {
+    case Input::Kind::kRate:
+      return ": a rate is not negative";
+    case Input::Kind::kAge:
+      return ": an age is not negative";
+    case Input::Kind::kPhi:
+      return ": phi is not negative";
+    case Input::Kind::kLevel:
+      return ": a level is 0, 1, 2 or 3";
+    case Input::Kind::kLifecycle:
+      return ": the states are unconfigured, inactive, active and finalized";
+    default:
+      return "";
+  }
+}
+
+struct Finding {
+  bool always = false;  // otherwise never
+  Span span;
+  std::string reason;  // of the cause
+  bool is_by_range = false;
+};
+
+// The smallest parts of `condition` that are always or never true.
+void find_constant_parts(const Typed& condition, const RuleSet& rules,
+                         std::vector<Finding>& findings) {
+  if (!reads_inputs(condition)) return;  // a constant that switches something on or off
+  const std::size_t before = findings.size();
+  if (is_connective(condition)) {
+    for (const Typed& child : condition.children) find_constant_parts(child, rules, findings);
+    if (findings.size() > before) return;
+  }
+  const bool never = is_never(true, condition, rules);
+  if (!never && !is_never(false, condition, rules)) return;
+  std::string reason;
+  bool is_by_range = false;
+  if (is_connective(condition)) {
+    reason = never ? ": its parts exclude one another" : ": one of its parts always holds";
+  } else if (const Typed* input = compared_input(condition)) {
+    reason = known_of(input->input, rules);
+    is_by_range = has_declared_range(input->input, rules);
+  }
+  findings.push_back({!never, condition.span, std::move(reason), is_by_range});
+}
+
+// Neither can be true when the other is.
+bool exclude_each_other(const Typed& a, const Typed& b, const RuleSet& rules) {
+  if (!is_small_enough(a) || !is_small_enough(b)) return false;
+  Facts facts(rules);
+  for (int round = 0; round < 2; ++round) {
+    if (!facts.assume(a, true) || !facts.assume(b, true)) return true;
+  }
+  return false;
+}
+
+void check_when(const RuleConditions& rule, const RuleConditions::When& when, const RuleSet& rules,
+                std::vector<Diagnostic>& diagnostics) {
+  const std::string strategy = "strategy '" + rules[when.strategy].name + "'";
+  std::vector<Finding> findings;
+  if (is_never(true, when.condition, rules)) {
+    find_constant_parts(when.condition, rules, findings);
+    const std::string reason = findings.empty() ? "" : findings[0].reason;
+    diagnostics.push_back({Code::kWhenNeverTrue, Severity::kWarning, when.condition.span,
+                           strategy + " can never be chosen: its WHEN is never true" + reason,
+                           "correct the condition, or remove the strategy"});
+    return;
+  }
+  // A rule that counts cycles or acts on an edge looks for strategies while its trigger is false.
+  const Policies& policies = rules[rule.rule].policies;
+  if (policies.hold_window > 1 || policies.on_change) return;
+  if (!exclude_each_other(rule.trigger, when.condition, rules)) return;
+  diagnostics.push_back({Code::kWhenContradictsTrigger, Severity::kWarning, when.condition.span,
+                         strategy + " can never help: its WHEN is false while the trigger is true",
+                         "correct the condition, or move the strategy to a rule of its own"});
+}
+
+bool tells_of_life(Input::Kind kind) {
+  return kind == Input::Kind::kRate || kind == Input::Kind::kAge || kind == Input::Kind::kPhi ||
+         kind == Input::Kind::kAlive;
+}
+
+// Everything that tells of life falls silent for good.
+void fall_silent(const Typed& e, const RuleSet& rules, Facts& facts) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const Typed& child : e.children) fall_silent(child, rules, facts);
+  if (e.op != Op::kInput) return;
+  switch (rules[e.input].kind) {
+    case Input::Kind::kRate:
+      facts.know(e.input, Interval{0, 0});
+      return;
+    case Input::Kind::kAge:
+    case Input::Kind::kPhi:
+      facts.know(e.input, Interval{1e15, kInfinity});  // 1e15 ns: eleven days
+      return;
+    case Input::Kind::kAlive:
+      facts.know(e.input, TruthSet{false, true});
+      return;
+    default:
+      return;
+  }
+}
+
+bool reads_life(const Typed& e, const RuleSet& rules) {
+  return (e.op == Op::kInput && tells_of_life(rules[e.input].kind)) ||
+         std::any_of(e.children.begin(), e.children.end(),
+                     [&](const Typed& c) { return reads_life(c, rules); });
+}
+
+// Whether some part of the trigger that silence alone decides speaks for it. `truth` is what the
+// part has to be for that.
+bool silence_speaks_for(const Typed& e, bool truth, const Facts& silent, const RuleSet& rules) {
+  if (e.op == Op::kNot) return silence_speaks_for(e.children[0], !truth, silent, rules);
+  if (is_connective(e)) {
+    return std::any_of(e.children.begin(), e.children.end(), [&](const Typed& c) {
+      return c.type == Type::kBool && silence_speaks_for(c, truth, silent, rules);
+    });
+  }
+  Facts otherwise = silent;
+  return reads_life(e, rules) && !otherwise.assume(e, !truth);
+}
+
+}  // namespace
+
+void check_conditions(const RuleConditions& rule, const RuleSet& rules,
+                      std::vector<Diagnostic>& diagnostics) {
+  std::vector<Finding> findings;
+  if (is_small_enough(rule.trigger)) find_constant_parts(rule.trigger, rules, findings);
+  for (const Finding& f : findings) {
+    diagnostics.push_back(
+        {f.always ? Code::kAlwaysTrueInRange : Code::kNeverTrueInRange, Severity::kWarning, f.span,
+         std::string(f.always ? "this is always true" : "this is never true") + f.reason,
+         f.is_by_range ? "correct the condition, or the RANGE if the value can be another"
+                       : "correct the condition, or remove it"});
+  }
+  const bool never_fires = is_never(true, rule.trigger, rules);
+  if (never_fires) return;  // with which every WHEN would be at odds
+  for (const RuleConditions::When& when : rule.whens) check_when(rule, when, rules, diagnostics);
+}
+
+void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
+                       std::vector<Diagnostic>& diagnostics) {
+  const Rule& checked = rules[rule.rule];
+  const auto can_be_launched = [&](ComponentId c) { return !rules[c].launch.empty(); };
+  const auto launches = [&](const Adaptation& a) {
+    return a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart;
+  };
+  const auto helps_a_hung_process = [&](StrategyId s) {
+    const auto& adaptations = rules[s].adaptations;
+    return std::any_of(adaptations.begin(), adaptations.end(), launches);
+  };
+  const auto launchable =
+      std::find_if(checked.components.begin(), checked.components.end(), can_be_launched);
+  if (launchable == checked.components.end() || !is_small_enough(rule.trigger)) return;
+  if (std::any_of(checked.strategies.begin(), checked.strategies.end(), helps_a_hung_process))
+    return;
+  Facts silent(rules);
+  fall_silent(rule.trigger, rules, silent);
+  Facts with_trigger = silent;
+  if (!silence_speaks_for(rule.trigger, true, silent, rules) ||
+      !with_trigger.assume(rule.trigger, true))
+    return;
+  const std::string& name = rules[*launchable].name;
+  diagnostics.push_back({Code::kNoLastResort, Severity::kWarning, rule.written->name.span,
+                         "rule '" + checked.name +
+                             "' detects silence, and none of its strategies helps if the process "
+                             "hangs",
+                         "add a strategy with ADAPTATION " + name + " redeploy"});
+}
+
+}  // namespace culprit

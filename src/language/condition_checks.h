@@ -1,0 +1,36 @@
+// Design-time checks of what triggers and WHEN conditions say: never, always, not together. All are
+// warnings, given only where the values of the inputs leave no doubt (language/facts.h).
+#pragma once
+
+#include <vector>
+
+#include "language/diagnostic.h"
+#include "language/rule_set.h"
+#include "language/syntax.h"
+#include "language/typing.h"
+
+namespace culprit {
+
+// A rule's conditions before they are compiled.
+struct RuleConditions {
+  struct When {
+    StrategyId strategy;
+    Typed condition;
+  };
+  const syntax::Rule* written = nullptr;
+  RuleId rule;
+  Typed trigger;
+  std::vector<When> whens;  // of the strategies that have one
+};
+
+// Triggers, or parts of one, that are always or never true; WHEN conditions that are never true, or
+// never together with the trigger.
+void check_conditions(const RuleConditions& rule, const RuleSet& rules,
+                      std::vector<Diagnostic>& diagnostics);
+
+// A rule that fires when something falls silent, of which no strategy helps against a hung process,
+// though there is a LAUNCH command.
+void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
+                       std::vector<Diagnostic>& diagnostics);
+
+}  // namespace culprit

@@ -1,0 +1,181 @@
+#include "language/conflict_checks.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "language/compiler.h"
+#include "language/evaluate.h"
+#include "language/facts.h"
+
+namespace culprit {
+namespace {
+
+// So many of one kind are compared with each other: more would only make checking slow, and nobody
+// reads so many warnings.
+constexpr std::size_t kMaxCompared = 64;
+
+// Whether the two can be so at the same time.
+bool is_possible(const Typed& a, bool a_truth, const Typed& b, bool b_truth, const RuleSet& rules) {
+  if (!is_small_enough(a) || !is_small_enough(b)) return true;
+  Facts facts(rules);
+  for (int round = 0; round < 2; ++round) {
+    if (!facts.assume(a, a_truth) || !facts.assume(b, b_truth)) return false;
+  }
+  return true;
+}
+
+// The input of a trigger that is one comparison with a constant.
+std::optional<InputId> only_input(const Typed& trigger) {
+  if (trigger.children.size() != 2 || trigger.children[0].type == Type::kBool) return std::nullopt;
+  for (const std::size_t side : {0u, 1u}) {
+    const Typed& here = trigger.children[side];
+    const Typed& leaf = here.op == Op::kIntToDouble ? here.children[0] : here;
+    if (leaf.op == Op::kInput && !reads_inputs(trigger.children[1 - side])) return leaf.input;
+  }
+  return std::nullopt;
+}
+
+// Whether `rule` has detected a failure by the time when one of the same trigger and the policies
+// of `other` detects it.
+bool is_no_slower(const Policies& rule, const Policies& other) {
+  return !rule.on_change && rule.hold_for <= other.hold_for && rule.cooldown <= other.cooldown &&
+         rule.hold_needed == other.hold_needed && rule.hold_window == other.hold_window;
+}
+
+bool covers(const RuleConditions& strong, const RuleConditions& weak, const RuleSet& rules) {
+  const Rule& s = rules[strong.rule];
+  const Rule& w = rules[weak.rule];
+  return s.components == w.components && !w.components.empty() &&
+         s.policies.criticality >= w.policies.criticality && is_no_slower(s.policies, w.policies) &&
+         !is_possible(weak.trigger, true, strong.trigger, false, rules);
+}
+
+// What an adaptation leaves behind: a state of one thing that another adaptation can change.
+struct Effect {
+  std::string thing;
+  std::string state;
+  std::string verb;  // for messages: "activates", "sets exposure to 3"
+};
+
+std::optional<Effect> effect_of(const Adaptation& a) {
+  const std::string component = std::to_string(a.component.index);
+  switch (a.type) {
+    case AdaptationType::kActivate:
+      return Effect{component + " lifecycle", "active", "activates it"};
+    case AdaptationType::kDeactivate:
+      return Effect{component + " lifecycle", "inactive", "deactivates it"};
+    case AdaptationType::kStart:
+      return Effect{component + " process", "started", "starts it"};
+    case AdaptationType::kStop:
+      return Effect{component + " process", "stopped", "stops it"};
+    case AdaptationType::kChangeCommunication:
+      return Effect{component + " parameter " + a.subject, "\"" + a.topic + "\"",
+                    "sets its " + a.subject + " to " + a.topic};
+    case AdaptationType::kSetParameter: {
+      const bool is_constant =
+          !a.value.empty() && std::none_of(a.value.code.begin(), a.value.code.end(),
+                                           [](const auto& i) { return i.op == Op::kInput; });
+      if (!is_constant) return std::nullopt;
+      const Slot slot = evaluate(a.value, {});
+      if (!slot.known) return std::nullopt;
+      // A whole number fits a parameter of numbers, so 1 and 1.0 are no different.
+      const Value value = a.value.type == Type::kInt ? Value(static_cast<double>(slot.i))
+                                                     : to_value(slot, a.value.type);
+      return Effect{component + " parameter " + a.subject, to_string(value),
+                    "sets its " + a.subject + " to " + to_string(to_value(slot, a.value.type))};
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+struct Doing {
+  const RuleConditions* rule;
+  StrategyId strategy;
+  Effect effect;
+};
+
+bool take_turns(const Doing& a, const Doing& b, const RuleSet& rules) {
+  const Typed& one = a.rule->trigger;
+  const Typed& other = b.rule->trigger;
+  return is_possible(one, true, other, true, rules) ||
+         !is_possible(one, false, other, false, rules);
+}
+
+Span span_of(const Doing& doing, std::size_t adaptation, const RuleSet& rules) {
+  const auto& strategies = doing.rule->written->strategies;
+  const auto written = std::find_if(strategies.begin(), strategies.end(), [&](const auto& s) {
+    return s.name.text == rules[doing.strategy].name;
+  });
+  return written->adaptations[adaptation].span;
+}
+
+}  // namespace
+
+void check_covered_rules(const std::vector<RuleConditions>& conditions, const RuleSet& rules,
+                         std::vector<Diagnostic>& diagnostics) {
+  std::map<InputId, std::vector<const RuleConditions*>> by_input;
+  for (const RuleConditions& rule : conditions) {
+    const auto input = only_input(rule.trigger);
+    if (!input || is_never(true, rule.trigger, rules) || is_never(false, rule.trigger, rules))
+      continue;
+    auto& group = by_input[*input];
+    if (group.size() < kMaxCompared) group.push_back(&rule);
+  }
+  for (const auto& [input, group] : by_input) {
+    for (const RuleConditions* weak : group) {
+      const auto strong = std::find_if(group.begin(), group.end(), [&](const auto* candidate) {
+        if (candidate == weak || !covers(*candidate, *weak, rules)) return false;
+        // Of two that cover each other the second one is one too many.
+        return candidate->rule < weak->rule || !covers(*weak, *candidate, rules);
+      });
+      if (strong == group.end()) continue;
+      const std::string& name = rules[(*strong)->rule].name;
+      diagnostics.push_back(
+          {Code::kCovered, Severity::kWarning, weak->trigger.span,
+           "rule '" + name +
+               "' covers this one: whenever this trigger is true, "
+               "its trigger is too, for the same components",
+           "move the strategies to rule '" + name + "', or give this rule a trigger of its own"});
+    }
+  }
+}
+
+void check_oscillation(const std::vector<RuleConditions>& conditions, const RuleSet& rules,
+                       std::vector<Diagnostic>& diagnostics) {
+  std::map<std::string, std::vector<Doing>> by_thing;
+  std::set<std::pair<RuleId, std::string>> reported;  // a rule and a thing: once is enough
+  const auto compare = [&](const Doing& later, std::size_t adaptation, const Adaptation& a) {
+    for (const Doing& earlier : by_thing[later.effect.thing]) {
+      const bool undoes = earlier.rule->rule != later.rule->rule &&
+                          earlier.effect.state != later.effect.state &&
+                          take_turns(earlier, later, rules);
+      if (!undoes || !reported.emplace(later.rule->rule, later.effect.thing).second) continue;
+      diagnostics.push_back(
+          {Code::kOscillation, Severity::kWarning, span_of(later, adaptation, rules),
+           "rules '" + rules[earlier.rule->rule].name + "' and '" + rules[later.rule->rule].name +
+               "' can undo one another for ever: strategy '" + rules[earlier.strategy].name +
+               "' of the one " + earlier.effect.verb + ", this one " + later.effect.verb +
+               " (component '" + rules[a.component].name + "')",
+           "leave a band between their triggers, or make the two strategies of one rule"});
+    }
+  };
+  for (const RuleConditions& rule : conditions) {
+    if (is_never(true, rule.trigger, rules)) continue;
+    for (const StrategyId s : rules[rule.rule].strategies) {
+      const auto& adaptations = rules[s].adaptations;
+      for (std::size_t i = 0; i < adaptations.size(); ++i) {
+        auto effect = effect_of(adaptations[i]);
+        if (!effect) continue;
+        const Doing doing{&rule, s, std::move(*effect)};
+        compare(doing, i, adaptations[i]);
+        auto& known = by_thing[doing.effect.thing];
+        if (known.size() < kMaxCompared) known.push_back(doing);
+      }
+    }
+  }
+}
+
+}  // namespace culprit

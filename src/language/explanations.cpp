@@ -1,0 +1,380 @@
+#include "language/explanations.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace culprit {
+namespace {
+
+// What surrounds the line that an example is about.
+std::string rule_with(std::string_view trigger, std::string_view policies = "ERROR",
+                      std::string_view strategy = "STRATEGY restart 50 10",
+                      std::string_view adaptation = "ADAPTATION camera restart 5") {
+  std::string out = "RULE CameraFails\n";
+  out += "  POLICIES " + std::string(policies) + "\n";
+  out += "  TRIGGER " + std::string(trigger) + "\n";
+  out += "    " + std::string(strategy) + "\n";
+  out += "      " + std::string(adaptation) + "\n";
+  return out;
+}
+
+std::vector<Explanation> syntax_explanations() {
+  return {
+      {Code::kUnknownStatement, "a line begins with a word that is no statement",
+       "Every line is one statement, and its first word says which: ROBOT, CYCLE, CONST, "
+       "COMPONENT, "
+       "DEPENDENCY, IGNORE, SIGNAL, RULE, POLICIES, TRIGGER, STRATEGY or ADAPTATION, in upper "
+       "case. "
+       "The line counts for nothing until the word is right.",
+       "robot sunset\n", "ROBOT sunset\n"},
+      {Code::kSyntax, "something else is expected at this place",
+       "The statement is known, but its line is not built as this statement is. The message says "
+       "what belongs to the place under the carets; docs/rule-language.md shows each statement "
+       "whole.",
+       "CYCLE 200\n", "CYCLE 200ms\n"},
+      {Code::kBadToken, "this is no word, number or text of the language",
+       "A text without its closing quote, a number with letters behind it, or a character that the "
+       "language does not use. Nothing after it on the line can be read with certainty.",
+       "COMPONENT camera LAUNCH \"camera_driver --fps 30\n",
+       "COMPONENT camera LAUNCH \"camera_driver --fps 30\"\n"},
+      {Code::kExtraText, "the line goes on after its statement has ended",
+       "What follows would be ignored, and it may have been meant to do something: && for 'and', "
+       "== "
+       "to compare, or a comment that lacks its #.",
+       rule_with("entropy > 0.5 and exposure < 3"), rule_with("entropy > 0.5 && exposure < 3")},
+      {Code::kOutOfPlace, "this line is not inside what it belongs to",
+       "POLICIES, TRIGGER and STRATEGY belong to the RULE line before them, one POLICIES and one "
+       "TRIGGER each; an ADAPTATION belongs to the STRATEGY line before it.",
+       "RULE CameraFails\n  POLICIES ERROR\n  TRIGGER rate(/robot/image) < 1\n"
+       "  TRIGGER age(/robot/image) > 1s\n    STRATEGY restart 50 10\n"
+       "      ADAPTATION camera restart 5\n",
+       rule_with("rate(/robot/image) < 1 || age(/robot/image) > 1s")},
+      {Code::kIncomplete, "a part of the rule or strategy is missing",
+       "A rule needs POLICIES (how critical the failure is), a TRIGGER (when it is there) and at "
+       "least one STRATEGY (what may help); a strategy needs at least one ADAPTATION.",
+       "RULE CameraFails\n  POLICIES ERROR\n    STRATEGY restart 50 10\n"
+       "      ADAPTATION camera restart 5\n",
+       rule_with("rate(/robot/image) < 1")},
+      {Code::kTooDeep, "an expression is nested too deeply",
+       "Expressions may nest 256 levels deep, so that checking and evaluating them takes a bounded "
+       "amount of memory. An expression that a person wrote never comes near: split it into "
+       "several "
+       "rules, or name parts of it with CONST.",
+       rule_with(std::string(257, '!') + "docked"), rule_with("!docked")},
+      {Code::kPlaceholder, "a form was copied and not filled in",
+       "Documentation writes <name> where a name of yours belongs. The angle brackets are no part "
+       "of "
+       "the language.",
+       rule_with("<expression>"), rule_with("rate(/robot/image) < 1")},
+  };
+}
+
+std::vector<Explanation> name_explanations() {
+  return {
+      {Code::kDuplicateName, "a name is given twice",
+       "Constants, components and signals share one set of names, rules have theirs, and each "
+       "rule's "
+       "strategies have theirs. With two things of one name, neither a reader nor a message could "
+       "tell which is meant.",
+       "CONST limit = 0.5\nCONST limit = 0.7\n", "CONST limit = 0.5\nCONST high_limit = 0.7\n"},
+      {Code::kUnknownName, "an undeclared name is nearly a declared one",
+       "Names that a file does not declare are looked up on the robot, so a slip of the fingers is "
+       "not an error by itself: it is a rule that waits for ever for something that does not "
+       "exist. "
+       "Correct the name, or declare it if it is meant to be another one.",
+       "COMPONENT camera NODE /robot/camera\n" + rule_with("rate(/robot/image) < 1", "ERROR",
+                                                           "STRATEGY restart 50 10",
+                                                           "ADAPTATION camrea restart 5"),
+       "COMPONENT camera NODE /robot/camera\n" + rule_with("rate(/robot/image) < 1")},
+      {Code::kUndeclared, "a name is not declared (--strict)",
+       "culprit check --strict accepts only components and signals that the file declares, so that "
+       "it stands for itself and no rule depends on what the robot happens to call its nodes.",
+       rule_with("rate(/robot/image) < 1"),
+       "COMPONENT camera NODE /robot/camera\n" + rule_with("rate(/robot/image) < 1"),
+       Strictness::kStrict},
+      {Code::kUnknownFunction, "there is no function of this name",
+       "Expressions call rate, age, phi, alive, lifecycle, parameter, level, mean, min, max, "
+       "stddev, "
+       "changed, abs, pow and sqrt. Functions of your own do not exist; CONST names values.",
+       rule_with("frequency(/robot/image) < 1"), rule_with("rate(/robot/image) < 1")},
+      {Code::kUnknownAdaptation, "there is no adaptation of this name",
+       "An adaptation is one of the things that culprit can do to a component: set_parameter, "
+       "increase_parameter, decrease_parameter, change_communication, activate, deactivate, "
+       "restart, "
+       "redeploy, start, stop, change_mode and call. For a routine of the component's own, use "
+       "call.",
+       rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY reboot 50 10",
+                 "ADAPTATION camera reboot 5"),
+       rule_with("rate(/robot/image) < 1")},
+      {Code::kUnknownPolicy, "there is no policy of this name, or it is given twice",
+       "After the criticality come FOR, HOLD, COOLDOWN, ATTEMPTS and ON_CHANGE, each at most once "
+       "and "
+       "in any order.",
+       rule_with("rate(/robot/image) < 1", "ERROR AFTER 2s"),
+       rule_with("rate(/robot/image) < 1", "ERROR FOR 2s")},
+      {Code::kReservedWord, "a word of the language is used as a name",
+       "Keywords and true and false cannot be names, or a line could be read in two ways. Names "
+       "are "
+       "usually lower case; keywords are upper case.",
+       "CONST RANGE = 30\n", "CONST range = 30\n"},
+      {Code::kBadRosName, "this is no full ROS name",
+       "Topics and nodes are named with their namespace, from the leading slash: letters, digits "
+       "and "
+       "underscores between slashes. There is no namespace that a relative name could be relative "
+       "to.",
+       rule_with("rate(image) < 1"), rule_with("rate(/robot/image) < 1")},
+  };
+}
+
+std::vector<Explanation> value_explanations() {
+  return {
+      {Code::kTypeMismatch, "a value is of the wrong kind",
+       "Expressions know true/false, whole numbers, numbers, texts and durations, and mix none but "
+       "the two kinds of numbers. A duration has a unit, a text has quotes, a trigger is true or "
+       "false.",
+       rule_with("age(/robot/image) > 0.5"), rule_with("age(/robot/image) > 500ms")},
+      {Code::kUnknownType, "nothing tells what kind of value this is",
+       "Signals and parameters get their kind from their use: compared with 0.5 it is a number, "
+       "with "
+       "\"docked\" a text, alone it is true or false. Where two unknown ones meet, neither tells "
+       "about the other. Often a text merely lacks its quotes.",
+       rule_with("mode == docked"), rule_with("mode == \"docked\"")},
+      {Code::kArguments, "a function is called with the wrong arguments",
+       "Each function takes what its usage line says; the message repeats it.",
+       rule_with("rate() < 1"), rule_with("rate(/robot/image) < 1")},
+      {Code::kNotConstant, "a constant is made of something that changes",
+       "A constant is computed once, when the file is read: of numbers, texts, durations and of "
+       "constants that were defined before it. What changes at run time is a signal.",
+       "CONST limit = battery / 2\n", "CONST full = 12.6\nCONST limit = full / 2\n"},
+      {Code::kNoValue, "a constant has no value",
+       "The expression divides by zero, overflows, or takes the root of a negative number. At run "
+       "time such a value would be unknown, and no trigger that uses it could ever fire.",
+       "CONST limit = 1 / 0\n", "CONST limit = 1 / 2\n"},
+      {Code::kProbabilityRange, "a success probability is out of range",
+       "The first number of a STRATEGY is the probability, in percent, that it resolves the "
+       "failure: "
+       "above 0 and at most 100. It is where learning begins, so an estimate will do.",
+       rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY restart 150 10"),
+       rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY restart 90 10")},
+      {Code::kConfidenceRange, "a confidence is out of range",
+       "The second number of a STRATEGY says how many past attempts the probability is worth: "
+       "above 0 "
+       "and at most 100. A high one makes culprit slow to learn otherwise.",
+       rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY restart 50 0"),
+       rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY restart 50 1")},
+      {Code::kImpactRange, "an impact is out of range",
+       "The last number of an ADAPTATION counts the cycles until the failure is gone, once the "
+       "adaptation took effect: a whole number, at least 1. The verdict on the strategy waits that "
+       "long, so too small a number condemns strategies that would have helped.",
+       rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY restart 50 10",
+                 "ADAPTATION camera restart 2.5"),
+       rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY restart 50 10",
+                 "ADAPTATION camera restart 3")},
+      {Code::kPolicyRange, "a time or count is out of range",
+       "Durations of policies, windows and cycles are longer than zero and bounded; HOLD n/k asks "
+       "for "
+       "n of the last k cycles, so n is at most k; ATTEMPTS is at least 1.",
+       rule_with("rate(/robot/image) < 1", "ERROR HOLD 5/3"),
+       rule_with("rate(/robot/image) < 1", "ERROR HOLD 3/5")},
+      {Code::kEmptyRange, "a RANGE holds no values",
+       "RANGE low..high says which values a signal can have; the smaller number comes first.",
+       "SIGNAL battery TOPIC /battery FIELD percentage RANGE 1..0\n",
+       "SIGNAL battery TOPIC /battery FIELD percentage RANGE 0..1\n"},
+  };
+}
+
+std::vector<Explanation> rule_explanations() {
+  return {
+      {Code::kContradiction, "a strategy contradicts itself",
+       "All adaptations of a strategy are applied together. One that undoes or repeats another, or "
+       "that reconfigures a process which the same strategy ends, cannot have been meant: the "
+       "robot "
+       "would be left in whichever state came last. Alternatives are strategies of their own.",
+       "RULE CameraFails\n  POLICIES ERROR\n  TRIGGER rate(/robot/image) < 1\n"
+       "    STRATEGY again 50 10\n      ADAPTATION camera deactivate 5\n"
+       "      ADAPTATION camera activate 5\n",
+       rule_with("rate(/robot/image) < 1")},
+      {Code::kNoLaunch, "a strategy needs a LAUNCH command that is missing",
+       "redeploy and start run the LAUNCH command of the component. Without one culprit cannot "
+       "start "
+       "it, and the strategy is never chosen.",
+       "COMPONENT camera NODE /robot/camera\n"
+       "RULE CameraFails\n  POLICIES ERROR\n  TRIGGER rate(/robot/image) < 1\n"
+       "    STRATEGY restart 50 10\n      ADAPTATION camera restart 5\n"
+       "    STRATEGY redeploy 90 10\n      ADAPTATION camera redeploy 10\n",
+       "COMPONENT camera NODE /robot/camera LAUNCH \"ros2 run my_cameras driver\"\n"
+       "RULE CameraFails\n  POLICIES ERROR\n  TRIGGER rate(/robot/image) < 1\n"
+       "    STRATEGY restart 50 10\n      ADAPTATION camera restart 5\n"
+       "    STRATEGY redeploy 90 10\n      ADAPTATION camera redeploy 10\n"},
+      {Code::kNeverValid, "no strategy of a rule can ever run",
+       "Every strategy of the rule starts a component that has no LAUNCH command. The failure "
+       "would "
+       "be detected, and nothing could be done about it.",
+       "COMPONENT camera NODE /robot/camera\n" + rule_with("rate(/robot/image) < 1", "ERROR",
+                                                           "STRATEGY redeploy 90 10",
+                                                           "ADAPTATION camera redeploy 10"),
+       "COMPONENT camera NODE /robot/camera LAUNCH \"ros2 run my_cameras driver\"\n" +
+           rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY redeploy 90 10",
+                     "ADAPTATION camera redeploy 10")},
+      {Code::kAlwaysTrue, "a trigger reads nothing and is always true",
+       "A trigger that reads no signal, topic or component says the same whatever the robot does: "
+       "this failure would be there from the start and could never be resolved.",
+       rule_with("1 < 2"), rule_with("rate(/robot/image) < 2")},
+      {Code::kNeverTrue, "a trigger reads nothing and is never true",
+       "A trigger that reads no signal, topic or component says the same whatever the robot does: "
+       "this failure would never be detected.",
+       rule_with("1 > 2"), rule_with("1 > rate(/robot/image)")},
+      {Code::kCircularDependency, "declared dependencies lead in a circle",
+       "DEPENDENCY a ON b says that failures of b show at a. In a circle every component could be "
+       "blamed on every other, and the search for the culprit could not begin anywhere.",
+       "COMPONENT camera\nCOMPONENT fusion\nDEPENDENCY fusion ON camera\n"
+       "DEPENDENCY camera ON fusion\n",
+       "COMPONENT camera\nCOMPONENT fusion\nDEPENDENCY fusion ON camera\n"},
+  };
+}
+
+std::string lights(std::string_view off_above) {
+  return "RULE TooDark\n  POLICIES WARNING\n  TRIGGER brightness < 0.3\n    STRATEGY light 90 10\n"
+         "      ADAPTATION lamp activate 5\nRULE TooBright\n  POLICIES WARNING\n"
+         "  TRIGGER brightness > " +
+         std::string(off_above) + "\n    STRATEGY dark 90 10\n      ADAPTATION lamp deactivate 5\n";
+}
+
+std::string escalation(std::string_view first, std::string_view second) {
+  return rule_with("age(/robot/image) > 500ms", first) + "RULE CameraFailsForLong\n  POLICIES " +
+         std::string(second) +
+         "\n  TRIGGER age(/robot/image) > 2s\n    STRATEGY activate 50 10\n"
+         "      ADAPTATION camera activate 5\n";
+}
+
+std::vector<Explanation> meaning_explanations() {
+  const std::string battery = "SIGNAL battery TOPIC /battery FIELD percentage RANGE 0..1\n";
+  const std::string camera = "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\"\n";
+  return {
+      {Code::kOscillation, "strategies of two rules undo one another",
+       "One rule's strategy sets what the other's resets, and nothing keeps them from taking "
+       "turns: "
+       "both triggers can be true together, or one of them always is. The robot could flip between "
+       "the two for ever. Leave a band between the triggers, as a thermostat does, or make both "
+       "strategies alternatives of one rule, which remembers what it tried.",
+       lights("0.2"), lights("0.7")},
+      {Code::kAlwaysTrueInRange, "a condition is always true",
+       "For every value that its inputs can have, by their RANGE or by what they are, this "
+       "condition "
+       "holds. A trigger made of it would report a failure from the first value on and never "
+       "resolve it; in an && it has no say.",
+       battery + rule_with("battery < 20"), battery + rule_with("battery < 0.2")},
+      {Code::kNeverTrueInRange, "a condition is never true",
+       "For no value that its inputs can have, by their RANGE or by what they are, does this "
+       "condition hold, or its parts exclude one another. A trigger made of it would never detect "
+       "the failure.",
+       rule_with("entropy > 0.8 && entropy < 0.2"), rule_with("entropy > 0.8 || entropy < 0.2")},
+      {Code::kCovered, "a rule is covered by another one",
+       "Whenever this rule's trigger is true, the other one's is too; it adapts the same "
+       "components, "
+       "is at least as critical, and detects no later. This rule can only get in its way. Where it "
+       "was meant as an escalation it has to be more critical.",
+       escalation("ERROR", "WARNING"), escalation("WARNING", "ERROR")},
+      {Code::kWhenNeverTrue, "a strategy's WHEN is never true",
+       "For no value that its inputs can have does the condition hold, so the strategy is never "
+       "chosen. Often a state or a limit is misspelt.",
+       rule_with("rate(/robot/image) < 1", "ERROR",
+                 "STRATEGY restart 50 10 WHEN lifecycle(camera) == \"Active\""),
+       rule_with("rate(/robot/image) < 1", "ERROR",
+                 "STRATEGY restart 50 10 WHEN lifecycle(camera) == \"active\"")},
+      {Code::kWhenContradictsTrigger, "a strategy's WHEN contradicts the rule's trigger",
+       "The strategies of a rule are chosen while its trigger is true, and then this WHEN is "
+       "false. "
+       "The strategy waits for a situation in which it is not needed.",
+       rule_with("rate(/robot/image) < 1", "ERROR",
+                 "STRATEGY restart 50 10 WHEN rate(/robot/image) > 5"),
+       rule_with("rate(/robot/image) < 1", "ERROR",
+                 "STRATEGY restart 50 10 WHEN rate(/robot/image) > 0.1")},
+      {Code::kNoLastResort, "no strategy helps if the process hangs",
+       "The rule fires when something falls silent, and a hung process is silent. It answers no "
+       "lifecycle request and no parameter call, so all of the rule's strategies would fail, "
+       "though "
+       "a LAUNCH command is there. A strategy that redeploys is the last resort; it costs nothing "
+       "while cheaper ones help.",
+       camera + rule_with("age(/robot/image) > 500ms"),
+       camera + rule_with("age(/robot/image) > 500ms") +
+           "    STRATEGY redeploy 90 10\n      ADAPTATION camera redeploy 10\n"},
+  };
+}
+
+std::string indented(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const auto end = std::min(text.find('\n'), text.size());
+    out += "    " + std::string(text.substr(0, end)) + "\n";
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
+std::string wrapped(std::string_view text, std::size_t width) {
+  std::string out;
+  std::size_t column = 0;
+  while (!text.empty()) {
+    const auto end = std::min(text.find(' '), text.size());
+    if (column > 0) out += column + 1 + end > width ? '\n' : ' ';
+    column = column > 0 && column + 1 + end <= width ? column + 1 + end : end;
+    out += text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
+}  // namespace
+
+const std::vector<Explanation>& explanations() {
+  static const std::vector<Explanation> kAll = [] {
+    std::vector<Explanation> all;
+    for (const auto& part : {syntax_explanations(), name_explanations(), value_explanations(),
+                             rule_explanations(), meaning_explanations()}) {
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    std::sort(all.begin(), all.end(),
+              [](const Explanation& a, const Explanation& b) { return a.code < b.code; });
+    return all;
+  }();
+  return kAll;
+}
+
+const Explanation* find_explanation(std::string_view code) {
+  if (code.starts_with('R') || code.starts_with('r')) code.remove_prefix(1);
+  std::uint16_t number = 0;
+  const auto [rest, error] = std::from_chars(code.data(), code.data() + code.size(), number);
+  if (error != std::errc() || rest != code.data() + code.size()) return nullptr;
+  const auto found =
+      std::find_if(explanations().begin(), explanations().end(),
+                   [&](const Explanation& e) { return e.code == static_cast<Code>(number); });
+  return found == explanations().end() ? nullptr : &*found;
+}
+
+std::string page(const Explanation& e) {
+  return to_string(e.code) + ": " + e.title + "\n\n" + wrapped(e.why, 80) + "\n\nWrong:\n\n" +
+         indented(e.wrong) + "\nRight:\n\n" + indented(e.right);
+}
+
+std::string diagnostics_as_markdown() {
+  std::string out =
+      "# Diagnostics\n\n"
+      "What `culprit check` says, by code. A code never changes its meaning. `culprit explain "
+      "R012`\n"
+      "shows one of these pages, and `culprit explain --markdown` writes them all.\n\n"
+      "| code | meaning |\n| --- | --- |\n";
+  for (const Explanation& e : explanations()) {
+    const std::string code = to_string(e.code);
+    std::string anchor = code;
+    anchor[0] = 'r';
+    out += "| [" + code + "](#" + anchor + ") | " + e.title + " |\n";
+  }
+  for (const Explanation& e : explanations()) {
+    out += "\n## " + to_string(e.code) + "\n\n**" + e.title + ".** " + e.why + "\n\nWrong:\n\n" +
+           indented(e.wrong) + "\nRight:\n\n" + indented(e.right);
+  }
+  return out;
+}
+
+}  // namespace culprit

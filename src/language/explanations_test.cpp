@@ -1,0 +1,106 @@
+#include "language/explanations.h"
+
+#include <fstream>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+
+namespace culprit {
+namespace {
+
+// The compiler asks for a line here when a code is added.
+bool exists(Code code) {
+  switch (code) {
+    case Code::kUnknownStatement:
+    case Code::kSyntax:
+    case Code::kBadToken:
+    case Code::kExtraText:
+    case Code::kOutOfPlace:
+    case Code::kIncomplete:
+    case Code::kTooDeep:
+    case Code::kPlaceholder:
+    case Code::kDuplicateName:
+    case Code::kUnknownName:
+    case Code::kUndeclared:
+    case Code::kUnknownFunction:
+    case Code::kUnknownAdaptation:
+    case Code::kUnknownPolicy:
+    case Code::kReservedWord:
+    case Code::kBadRosName:
+    case Code::kTypeMismatch:
+    case Code::kUnknownType:
+    case Code::kArguments:
+    case Code::kNotConstant:
+    case Code::kNoValue:
+    case Code::kProbabilityRange:
+    case Code::kConfidenceRange:
+    case Code::kImpactRange:
+    case Code::kPolicyRange:
+    case Code::kEmptyRange:
+    case Code::kContradiction:
+    case Code::kNoLaunch:
+    case Code::kNeverValid:
+    case Code::kAlwaysTrue:
+    case Code::kNeverTrue:
+    case Code::kCircularDependency:
+    case Code::kOscillation:
+    case Code::kAlwaysTrueInRange:
+    case Code::kNeverTrueInRange:
+    case Code::kCovered:
+    case Code::kWhenNeverTrue:
+    case Code::kWhenContradictsTrigger:
+    case Code::kNoLastResort:
+      return true;
+  }
+  return false;
+}
+
+std::vector<std::string> codes_of(const Explanation& e, const std::string& text) {
+  std::vector<std::string> codes;
+  for (const Diagnostic& d : check(Source("example.rules", text), e.strictness).diagnostics)
+    codes.push_back(to_string(d.code));
+  return codes;
+}
+
+TEST(Explanations, ThereIsOneForEachCode) {
+  std::set<Code> explained;
+  for (const Explanation& e : explanations()) {
+    EXPECT_TRUE(explained.insert(e.code).second) << to_string(e.code);
+    EXPECT_FALSE(e.title.empty() || e.why.empty()) << to_string(e.code);
+  }
+  for (std::uint16_t number = 0; number < 1000; ++number) {
+    const Code code{number};
+    EXPECT_EQ(exists(code), explained.contains(code)) << to_string(code);
+  }
+}
+
+TEST(Explanations, EveryWrongExampleShowsItsCodeAndNothingElse) {
+  for (const Explanation& e : explanations())
+    EXPECT_EQ(codes_of(e, e.wrong), std::vector{to_string(e.code)}) << e.wrong;
+}
+
+TEST(Explanations, EveryRightExampleIsRight) {
+  for (const Explanation& e : explanations())
+    EXPECT_EQ(codes_of(e, e.right), std::vector<std::string>()) << e.right;
+}
+
+TEST(Explanations, AreFoundByTheirCode) {
+  ASSERT_NE(find_explanation("R012"), nullptr);
+  EXPECT_EQ(find_explanation("R012")->code, Code::kUndeclared);
+  EXPECT_EQ(find_explanation("r012"), find_explanation("R012"));
+  EXPECT_EQ(find_explanation("12"), find_explanation("R012"));
+  for (const char* none : {"", "R", "R009", "R012x", "R-12", "R65548", "twelve"})
+    EXPECT_EQ(find_explanation(none), nullptr) << none;
+}
+
+TEST(Explanations, ThePageOfTheDocumentationIsTheirs) {
+  std::ifstream in("docs/diagnostics.md", std::ios::binary);
+  const std::string written(std::istreambuf_iterator<char>(in), {});
+  EXPECT_EQ(written, diagnostics_as_markdown())
+      << "write it anew: culprit explain --markdown > docs/diagnostics.md";
+}
+
+}  // namespace
+}  // namespace culprit

@@ -1,0 +1,239 @@
+#include "language/facts.h"
+
+namespace culprit {
+namespace {
+
+// Far above what a person writes: ten comparisons are about 40 nodes.
+constexpr std::size_t kMaxNodes = 120;
+
+// How many nodes `e` has; some number above `limit` if there are more than that.
+std::size_t node_count(const Typed& e, std::size_t limit) {
+  std::size_t count = 1;
+  for (const Typed& child : e.children) {
+    if (count > limit) break;
+    count += node_count(child, limit - count);
+  }
+  return count;
+}
+
+// A mean is summed up in floating point and may leave the range by a rounding error.
+Interval with_rounding(const Interval& i) {
+  const double slack = 1e-9 * (i.high - i.low);
+  return {i.low - slack, i.high + slack};
+}
+
+Interval declared_range(const Signal& signal) {
+  return signal.range ? Interval{signal.range->low, signal.range->high} : Interval{};
+}
+
+ValueSet first_values(const Input& input, const RuleSet& rules) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  switch (input.kind) {
+    case Input::Kind::kSignal:
+      if (input.type != Type::kDouble) break;
+      return declared_range(rules[input.signal]);
+    case Input::Kind::kMin:
+    case Input::Kind::kMax:
+      return declared_range(rules[input.signal]);
+    case Input::Kind::kMean:
+      return with_rounding(declared_range(rules[input.signal]));
+    case Input::Kind::kStddev: {
+      const Interval range = declared_range(rules[input.signal]);
+      return Interval{0, with_rounding({0, range.high - range.low}).high};
+    }
+    case Input::Kind::kRate:
+    case Input::Kind::kAge:
+    case Input::Kind::kPhi:
+      return Interval{0, kInfinity};
+    case Input::Kind::kLevel:
+      return Interval{0, 3};
+    case Input::Kind::kLifecycle:
+      return TextSet{
+          {"unconfigured", "inactive", "active", "finalized", "unknown", "in transition"}, false};
+    case Input::Kind::kAlive:
+    case Input::Kind::kParameter:
+    case Input::Kind::kChanged:
+      break;
+  }
+  return all_values(input.type);
+}
+
+bool is_number(Type type) { return type != Type::kBool && type != Type::kString; }
+
+bool is_single(const Interval& i) { return i.low == i.high; }
+bool is_single(const TextSet& t) { return !t.is_complement && t.texts.size() == 1; }
+
+// All values but the one of `single`, as far as an interval can leave one out.
+Interval all_but(const Interval& single, const Interval& of) {
+  Interval out = of;
+  if (of.low == single.low) out.is_low_open = true;
+  if (of.high == single.low) out.is_high_open = true;
+  return out;
+}
+
+}  // namespace
+
+ValueSet Facts::values_of(InputId input) const {
+  const auto known = values_.find(input);
+  return known != values_.end() ? known->second : first_values((*rules_)[input], *rules_);
+}
+
+bool Facts::assume(const Typed& e, bool truth) {
+  const auto child = [&](std::size_t i, bool t) {
+    return [&e, i, t](Facts& f) { return f.assume(e.children[i], t); };
+  };
+  switch (e.op) {
+    case Op::kConstant:
+    case Op::kInput:
+      return narrow(e, TruthSet{truth, !truth});
+    case Op::kNot:
+      return assume(e.children[0], !truth);
+    case Op::kAnd:
+    case Op::kOr: {
+      const bool both = (e.op == Op::kAnd) == truth;
+      if (both) return assume(e.children[0], truth) && assume(e.children[1], truth);
+      return either(child(0, truth), child(1, truth));
+    }
+    case Op::kSelect: {
+      const auto yes = [&](Facts& f) {
+        return f.assume(e.children[0], true) && f.assume(e.children[1], truth);
+      };
+      const auto no = [&](Facts& f) {
+        return f.assume(e.children[0], false) && f.assume(e.children[2], truth);
+      };
+      return either(yes, no);
+    }
+    default:
+      return compare(e, truth);
+  }
+}
+
+template <class First, class Second>
+bool Facts::either(First first, Second second) {
+  Facts a = *this;
+  Facts b = *this;
+  const bool is_first_possible = first(a);
+  const bool is_second_possible = second(b);
+  if (is_first_possible && is_second_possible) a.join(b);
+  *this = is_first_possible ? std::move(a) : std::move(b);
+  return is_first_possible || is_second_possible;
+}
+
+void Facts::join(const Facts& other) {
+  for (auto known = values_.begin(); known != values_.end();) {
+    const auto theirs = other.values_.find(known->first);
+    if (theirs == other.values_.end()) {
+      known = values_.erase(known);
+    } else {
+      known->second = hull(known->second, theirs->second);
+      ++known;
+    }
+  }
+}
+
+bool Facts::compare(const Typed& e, bool truth) {
+  const Typed& left = e.children[0];
+  const Typed& right = e.children[1];
+  switch (e.op) {
+    case Op::kLessInt:
+    case Op::kLessDouble:
+      return truth ? order(left, right, Order::kLess) : order(right, left, Order::kLessEqual);
+    case Op::kLessEqualInt:
+    case Op::kLessEqualDouble:
+      return truth ? order(left, right, Order::kLessEqual) : order(right, left, Order::kLess);
+    case Op::kEqualInt:
+    case Op::kEqualDouble:
+    case Op::kEqualString: {
+      if (!truth) return differ(left, right);
+      const ValueSet theirs = values_of(right);
+      return narrow(right, values_of(left)) && narrow(left, theirs);
+    }
+    case Op::kEqualBool:
+      return compare_truths(left, right, truth);
+    default:
+      return true;  // the order of texts is not reasoned about
+  }
+}
+
+// Only with a constant: reasoning about two conditions at once would have to try all their cases.
+bool Facts::compare_truths(const Typed& left, const Typed& right, bool truth) {
+  if (right.op == Op::kConstant) return assume(left, right.constant.slot.b == truth);
+  if (left.op == Op::kConstant) return assume(right, left.constant.slot.b == truth);
+  return true;
+}
+
+bool Facts::order(const Typed& left, const Typed& right, Order order) {
+  const Interval a = interval_of(left);
+  const Interval b = interval_of(right);
+  const bool strict = order == Order::kLess;
+  Interval below;
+  below.high = b.high;
+  below.is_high_open = strict || b.is_high_open;
+  Interval above;
+  above.low = a.low;
+  above.is_low_open = strict || a.is_low_open;
+  return narrow(left, below) && narrow(right, above);
+}
+
+bool Facts::differ(const Typed& left, const Typed& right) {
+  const ValueSet a = values_of(left);
+  const ValueSet b = values_of(right);
+  if (is_number(left.type)) {
+    const auto& x = std::get<Interval>(a);
+    const auto& y = std::get<Interval>(b);
+    if (is_single(y)) return narrow(left, all_but(y, x));
+    return !is_single(x) || narrow(right, all_but(x, y));
+  }
+  auto x = std::get<TextSet>(a);
+  auto y = std::get<TextSet>(b);
+  if (is_single(y)) {
+    y.is_complement = true;
+    return narrow(left, y);
+  }
+  x.is_complement = true;
+  return !is_single(std::get<TextSet>(a)) || narrow(right, x);
+}
+
+bool Facts::narrow(const Typed& e, const ValueSet& set) {
+  const Typed& leaf = e.op == Op::kIntToDouble ? e.children[0] : e;
+  if (leaf.op == Op::kConstant && leaf.type == Type::kBool)
+    return !is_empty(intersection(only_value(leaf.constant, leaf.type), set));
+  if (leaf.op != Op::kInput) return !is_empty(intersection(values_of(e), set));
+  ValueSet narrowed = intersection(values_of(leaf.input), set);
+  const bool is_whole = leaf.type == Type::kInt || leaf.type == Type::kDuration;
+  if (is_whole) narrowed = whole_numbers(std::get<Interval>(narrowed));
+  const bool possible = !is_empty(narrowed);
+  values_[leaf.input] = std::move(narrowed);
+  return possible;
+}
+
+Interval Facts::interval_of(const Typed& e) const { return std::get<Interval>(values_of(e)); }
+
+ValueSet Facts::values_of(const Typed& e) const {
+  switch (e.op) {
+    case Op::kConstant:
+      return only_value(e.constant, e.type);
+    case Op::kInput:
+      return values_of(e.input);
+    case Op::kSelect:
+      return hull(values_of(e.children[1]), values_of(e.children[2]));
+    default:
+      break;
+  }
+  if (!is_number(e.type)) return all_values(e.type);
+  return apply(e.op, interval_of(e.children[0]),
+               e.children.size() > 1 ? interval_of(e.children[1]) : Interval{});
+}
+
+bool is_small_enough(const Typed& expression) {
+  return node_count(expression, kMaxNodes) <= kMaxNodes;
+}
+
+bool is_never(bool truth, const Typed& condition, const RuleSet& rules) {
+  if (!is_small_enough(condition)) return false;
+  Facts facts(rules);
+  // What the second part of a condition says may rule out a case of the first: look twice.
+  return !facts.assume(condition, truth) || !facts.assume(condition, truth);
+}
+
+}  // namespace culprit

@@ -1,0 +1,59 @@
+// What can be true: reasoning about expressions before anything runs.
+//
+// Facts are the possible values of inputs. At first they are what the input's kind says (a rate is
+// not negative) and its signal's RANGE; assuming that an expression is true or false narrows them.
+// Where nothing is left, the assumption is certainly wrong. The reverse does not hold: what cannot
+// be decided counts as possible, so a message that rests on an impossibility is never mistaken.
+//
+// Unknown values need no case of their own: a trigger fires only on true, and these are the values
+// for which an expression is known to be true or false.
+#pragma once
+
+#include <map>
+
+#include "language/rule_set.h"
+#include "language/typing.h"
+#include "language/value_set.h"
+
+namespace culprit {
+
+class Facts {
+ public:
+  // `rules` must outlive the facts.
+  explicit Facts(const RuleSet& rules) : rules_(&rules) {}
+
+  // Narrows the facts to where `condition` is known to be `truth`. False: nothing is left.
+  // @pre condition.type is kBool
+  bool assume(const Typed& condition, bool truth);
+
+  ValueSet values_of(InputId input) const;
+  // `set` holds all values that the input has from now on.
+  void know(InputId input, ValueSet set) { values_[input] = std::move(set); }
+
+ private:
+  // A comparison as "left before right", "left not after right" or "left equals right".
+  enum class Order : std::uint8_t { kLess, kLessEqual, kEqual, kNotEqual };
+
+  template <class First, class Second>
+  bool either(First first, Second second);
+  bool compare(const Typed& comparison, bool truth);
+  bool compare_truths(const Typed& left, const Typed& right, bool truth);
+  bool order(const Typed& left, const Typed& right, Order order);
+  bool differ(const Typed& left, const Typed& right);
+  bool narrow(const Typed& expression, const ValueSet& set);
+  void join(const Facts& other);
+  ValueSet values_of(const Typed& expression) const;
+  Interval interval_of(const Typed& expression) const;
+
+  const RuleSet* rules_;
+  std::map<InputId, ValueSet> values_;  // of inputs of which more is known than at first
+};
+
+// Expressions larger than this are not reasoned about, so that checking a hostile file takes time
+// in proportion to its size.
+bool is_small_enough(const Typed& expression);
+
+// Certainly not true (false) with any values of its inputs.
+bool is_never(bool truth, const Typed& condition, const RuleSet& rules);
+
+}  // namespace culprit
