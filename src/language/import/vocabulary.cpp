@@ -1,0 +1,213 @@
+#include "language/import/vocabulary.h"
+
+#include <algorithm>
+
+#include "language/line_reader.h"
+
+namespace culprit::foreign {
+namespace {
+
+using Kind = Expression::Kind;
+
+constexpr std::string_view kFrequency = "_freq";
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// "/a/b/c" -> "c", and "a_b_" for its namespace.
+std::string own_name(const std::string& node) { return node.substr(node.rfind('/') + 1); }
+std::string namespace_of(const std::string& node) {
+  const auto slash = node.rfind('/');
+  return slash == std::string::npos ? "" : node.substr(0, slash);
+}
+std::string as_prefix(std::string name_space) {
+  if (name_space.empty()) return "";
+  std::replace(name_space.begin(), name_space.end(), '/', '_');
+  return name_space.substr(1) + "_";
+}
+
+bool is_free_name(const std::string& name) {
+  const Source source("name", name);
+  std::vector<Diagnostic> diagnostics;
+  Scanner scanner(source.text(), source.line(1));
+  return LineReader(source, diagnostics).declared_name(scanner, "a name").has_value() &&
+         scanner.at_end();
+}
+
+void collect_names(const Expression& e, std::vector<std::string>& names) {
+  if (e.kind == Kind::kName) names.push_back(e.name.text);
+  for (const Expression& child : e.children) collect_names(child, names);
+}
+
+// The names that `e` reads as values that change. In `a < b` that is a; b is what it is compared
+// with.
+void collect_readings(const Expression& e, std::vector<std::string>& names) {
+  if (e.kind == Kind::kName) names.push_back(e.name.text);
+  const bool compares = e.kind == Kind::kBinary && e.op >= syntax::Operator::kLess &&
+                        e.op <= syntax::Operator::kNotEqual;
+  const bool is_limit_named = compares && e.children[0].kind == Kind::kName;
+  for (std::size_t i = 0; i < e.children.size(); ++i) {
+    if (i == 0 || !is_limit_named) collect_readings(e.children[i], names);
+  }
+}
+
+}  // namespace
+
+std::string NameClaims::claim(const std::string& wanted) {
+  constexpr std::size_t kLongest = 200;
+  std::string name = wanted.substr(0, kLongest);
+  for (char& c : name) {
+    if (!is_letter(c) && !is_digit(c)) c = '_';
+  }
+  if (name.empty() || is_digit(name.front())) name.insert(name.begin(), '_');
+  std::string candidate = name;
+  while (!is_free_name(candidate) || !used_.insert(candidate).second) {
+    int& number = next_.emplace(name, 2).first->second;
+    candidate = name + "_" + std::to_string(number++);
+  }
+  return candidate;
+}
+
+const std::string& NameClaims::keep(const std::string& name) { return *used_.insert(name).first; }
+
+Vocabulary::Vocabulary(const File& file) {
+  for (const Constant& constant : file.constants) constants_.emplace(constant.name, &constant);
+  std::vector<std::string> names;
+  std::vector<std::string> readings;
+  for (const Rule& rule : file.rules) {
+    collect_names(rule.trigger, names);
+    collect_readings(rule.trigger, readings);
+    for (const Strategy& strategy : rule.strategies) {
+      for (const Adaptation& adaptation : strategy.adaptations) {
+        if (adaptation.value) collect_names(*adaptation.value, names);
+      }
+    }
+  }
+  find_components(file);
+  for (const std::string& name : readings) add_reading(name);
+  for (const std::string& name : names) {
+    if (constants_.count(name) == 0) add_reading(name);
+  }
+  for (const auto& [name, constant] : constants_) {
+    const bool is_monitored = rates_.count(name) != 0 || signal_names_.count(name) != 0;
+    if (!is_monitored) constant_names_[name] = claims_.claim(name);
+  }
+}
+
+void Vocabulary::find_components(const File& file) {
+  std::vector<const Adaptation*> adaptations;
+  for (const Rule& rule : file.rules) {
+    for (const Strategy& strategy : rule.strategies) {
+      for (const Adaptation& adaptation : strategy.adaptations) adaptations.push_back(&adaptation);
+    }
+  }
+  // A component without a full name is found by its name, so that name must not go to another.
+  for (const Adaptation* a : adaptations) {
+    if (!a->component.starts_with('/')) add_component(a->component);
+  }
+  for (const Adaptation* a : adaptations) add_component(a->component);
+  std::set<std::string> redeployed;
+  for (const Adaptation* a : adaptations) {
+    if (a->type == AdaptationType::kRedeploy) redeployed.insert(a->component);
+  }
+  for (Component& component : components_)
+    component.is_redeployed = redeployed.count(component.node) != 0;
+}
+
+void Vocabulary::add_component(const std::string& written) {
+  const auto [known, is_new] = component_names_.emplace(written, "");
+  if (!is_new) return;
+  known->second = claims_.claim(own_name(written));
+  components_.push_back({known->second, written, false});
+}
+
+void Vocabulary::add_reading(const std::string& name) {
+  if (rates_.count(name) != 0 || signal_names_.count(name) != 0) return;
+  const auto constant = constants_.find(name);
+  const bool is_text = constant != constants_.end() && constant->second->type == "string";
+  if (is_text || add_rate(name) || add_diagnostic(name)) return;
+  if (constant == constants_.end())
+    signal_names_[name] = is_free_name(name) ? claims_.keep(name) : claims_.claim(name);
+}
+
+bool Vocabulary::add_rate(const std::string& name) {
+  if (!name.ends_with(kFrequency)) return false;
+  std::string topic;
+  std::size_t longest = 0;
+  for (const Component& component : components_) {
+    const std::string name_space = namespace_of(component.node);
+    const std::string prefix = as_prefix(name_space);
+    if (prefix.size() <= longest || !name.starts_with(prefix)) continue;
+    if (name.size() <= prefix.size() + kFrequency.size()) continue;
+    longest = prefix.size();
+    topic = name_space + "/" +
+            name.substr(prefix.size(), name.size() - prefix.size() - kFrequency.size());
+  }
+  if (!topic.empty()) rates_[name] = topic;
+  return !topic.empty();
+}
+
+bool Vocabulary::add_diagnostic(const std::string& name) {
+  if (name.ends_with(kFrequency)) return false;
+  std::string status;
+  for (const Component& component : components_) {
+    const std::string own = own_name(component.node);
+    if (own.size() > status.size() && name.starts_with(own + "_") && name.size() > own.size() + 1)
+      status = own;
+  }
+  if (status.empty()) return false;
+  const std::string ours = claims_.claim(name);
+  signal_names_[name] = ours;
+  signals_.push_back({ours, status, name.substr(status.size() + 1)});
+  return true;
+}
+
+std::string Vocabulary::constant(const Constant& constant) const {
+  const auto found = constant_names_.find(constant.name);
+  return found == constant_names_.end() ? "" : found->second;
+}
+
+Meaning Vocabulary::meaning(const std::string& written) const {
+  if (const auto rate = rates_.find(written); rate != rates_.end())
+    return {"rate(" + rate->second + ")", false};
+  if (const auto signal = signal_names_.find(written); signal != signal_names_.end())
+    return {signal->second, false};
+  const auto constant = constant_names_.find(written);
+  if (constant == constant_names_.end()) return {written, false};
+  return {constant->second, std::holds_alternative<std::int64_t>(constants_.at(written)->value)};
+}
+
+std::string Vocabulary::note(const std::string& written) const {
+  if (const auto rate = rates_.find(written); rate != rates_.end()) {
+    return written + " is taken for the rate of " + rate->second +
+           " within 2 s; the reference takes the best rate of the last few messages, so it sees "
+           "silence later";
+  }
+  const auto signal = signal_names_.find(written);
+  if (signal == signal_names_.end()) return "";
+  const bool is_declared = std::any_of(signals_.begin(), signals_.end(),
+                                       [&](const Signal& s) { return s.name == signal->second; });
+  if (is_declared) return "";
+  if (signal->second != written) {
+    return written + " is called " + signal->second + " here; declare it: SIGNAL " +
+           signal->second + " DIAGNOSTIC status KEY key";
+  }
+  if (written.ends_with("_heartbeat_freq")) {
+    return written +
+           " has no equivalent and is looked up on the robot by name; alive(component) "
+           "says whether a node still answers";
+  }
+  if (written.ends_with(kFrequency)) {
+    return written +
+           " names no topic of a known namespace and is looked up on the robot by name; "
+           "if it is a topic's frequency, write rate(/namespace/topic)";
+  }
+  if (written.ends_with("_lc_state")) {
+    return written +
+           " is looked up on the robot by name; lifecycle(component) gives \"active\" and "
+           "the like";
+  }
+  return written + " is declared nowhere and is looked up in the robot's diagnostics by name";
+}
+
+}  // namespace culprit::foreign
