@@ -99,6 +99,18 @@ TEST(Importer, TellsConstantsFromMonitoredValues) {
   EXPECT_THAT(result->text, HasSubstr("CONST camera_heat_limit = 70.0\n"));
 }
 
+// Its monitoring overwrites such a constant; otherwise the rule would mean nothing.
+TEST(Importer, TakesTheOnlyConstantThatATriggerReadsForASignal) {
+  const auto result = imported(
+      "BEGIN CONSTS\ndouble entropy 0.0\ndouble limit 0.06\nEND CONSTS\nBEGIN RULES\nRULE r\n"
+      "POLICIES OK ON_TICK 1/1\nTRIGGER entropy > limit\nSTRATEGY s 100\n"
+      "ADAPTATION /ns/camera action_restart\nEND RULES\n");
+  ASSERT_TRUE(result) << result.error();
+  EXPECT_EQ(result->rules, 1u);
+  EXPECT_THAT(result->text, HasSubstr("CONST limit = 0.06\n"));
+  EXPECT_THAT(result->text, testing::Not(HasSubstr("CONST entropy")));
+}
+
 TEST(Importer, GivesEveryActionItsName) {
   const struct {
     std::string written, becomes;

@@ -39,16 +39,22 @@ void collect_names(const Expression& e, std::vector<std::string>& names) {
   for (const Expression& child : e.children) collect_names(child, names);
 }
 
-// The names that `e` reads as values that change. In `a < b` that is a; b is what it is compared
-// with.
-void collect_readings(const Expression& e, std::vector<std::string>& names) {
-  if (e.kind == Kind::kName) names.push_back(e.name.text);
+struct Uses {
+  std::vector<std::string> readings;  // as values that change
+  std::vector<std::string> limits;    // as what such a value is compared with
+};
+
+// In `a < b`, a is read and b is a limit.
+void collect_uses(const Expression& e, Uses& uses) {
+  if (e.kind == Kind::kName) uses.readings.push_back(e.name.text);
   const bool compares = e.kind == Kind::kBinary && e.op >= syntax::Operator::kLess &&
                         e.op <= syntax::Operator::kNotEqual;
-  const bool is_limit_named = compares && e.children[0].kind == Kind::kName;
-  for (std::size_t i = 0; i < e.children.size(); ++i) {
-    if (i == 0 || !is_limit_named) collect_readings(e.children[i], names);
+  if (compares && e.children[0].kind == Kind::kName) {
+    uses.readings.push_back(e.children[0].name.text);
+    collect_names(e.children[1], uses.limits);
+    return;
   }
+  for (const Expression& child : e.children) collect_uses(child, uses);
 }
 
 }  // namespace
@@ -72,25 +78,35 @@ const std::string& NameClaims::keep(const std::string& name) { return *used_.ins
 
 Vocabulary::Vocabulary(const File& file) {
   for (const Constant& constant : file.constants) constants_.emplace(constant.name, &constant);
-  std::vector<std::string> names;
-  std::vector<std::string> readings;
+  std::vector<Uses> triggers;
+  std::vector<std::string> values;
   for (const Rule& rule : file.rules) {
-    collect_names(rule.trigger, names);
-    collect_readings(rule.trigger, readings);
+    collect_uses(rule.trigger, triggers.emplace_back());
     for (const Strategy& strategy : rule.strategies) {
       for (const Adaptation& adaptation : strategy.adaptations) {
-        if (adaptation.value) collect_names(*adaptation.value, names);
+        if (adaptation.value) collect_names(*adaptation.value, values);
       }
     }
   }
   find_components(file);
-  for (const std::string& name : readings) add_reading(name);
-  for (const std::string& name : names) {
+  std::set<std::string> fixed(values.begin(), values.end());
+  for (const Uses& uses : triggers) fixed.insert(uses.limits.begin(), uses.limits.end());
+  for (const Uses& uses : triggers) {
+    for (const std::string& name : uses.readings) add_reading(name);
+  }
+  for (const std::string& name : fixed) {
     if (constants_.count(name) == 0) add_reading(name);
   }
+  for (const Uses& uses : triggers) {
+    const bool is_constant = std::none_of(uses.readings.begin(), uses.readings.end(),
+                                          [this](const auto& name) { return is_monitored(name); });
+    if (!is_constant) continue;
+    for (const std::string& name : uses.readings) {
+      if (fixed.count(name) == 0 && constants_.at(name)->type != "string") look_up(name);
+    }
+  }
   for (const auto& [name, constant] : constants_) {
-    const bool is_monitored = rates_.count(name) != 0 || signal_names_.count(name) != 0;
-    if (!is_monitored) constant_names_[name] = claims_.claim(name);
+    if (!is_monitored(name)) constant_names_[name] = claims_.claim(name);
   }
 }
 
@@ -122,12 +138,19 @@ void Vocabulary::add_component(const std::string& written) {
 }
 
 void Vocabulary::add_reading(const std::string& name) {
-  if (rates_.count(name) != 0 || signal_names_.count(name) != 0) return;
+  if (is_monitored(name)) return;
   const auto constant = constants_.find(name);
   const bool is_text = constant != constants_.end() && constant->second->type == "string";
   if (is_text || add_rate(name) || add_diagnostic(name)) return;
-  if (constant == constants_.end())
-    signal_names_[name] = is_free_name(name) ? claims_.keep(name) : claims_.claim(name);
+  if (constant == constants_.end()) look_up(name);
+}
+
+bool Vocabulary::is_monitored(const std::string& name) const {
+  return rates_.count(name) != 0 || signal_names_.count(name) != 0;
+}
+
+void Vocabulary::look_up(const std::string& name) {
+  signal_names_[name] = is_free_name(name) ? claims_.keep(name) : claims_.claim(name);
 }
 
 bool Vocabulary::add_rate(const std::string& name) {
@@ -207,7 +230,7 @@ std::string Vocabulary::note(const std::string& written) const {
            " is looked up on the robot by name; lifecycle(component) gives \"active\" and "
            "the like";
   }
-  return written + " is declared nowhere and is looked up in the robot's diagnostics by name";
+  return written + " is looked up on the robot: as the key of a diagnostic, or <hardware id>_<key>";
 }
 
 }  // namespace culprit::foreign

@@ -5,8 +5,8 @@
 // by how the reference's monitoring names its values:
 //   <namespace>_<topic>_freq   the rate of a topic in the namespace of one of the file's components
 //   <node>_<key>               a key of the diagnostics of one of the file's components
-//   a declared constant        otherwise
-//   a signal                   otherwise; culprit looks it up on the robot
+// Any other constant stays one, unless a trigger reads nothing else and it is used nowhere as a
+// limit or a value; any other name is a signal, which culprit looks up on the robot.
 #pragma once
 
 #include <map>
@@ -64,6 +64,8 @@ class Vocabulary {
   void find_components(const File& file);
   void add_component(const std::string& written);
   void add_reading(const std::string& name);
+  void look_up(const std::string& name);
+  bool is_monitored(const std::string& name) const;
   bool add_rate(const std::string& name);
   bool add_diagnostic(const std::string& name);
 
