@@ -1,5 +1,7 @@
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <string_view>
 
 #include <fmt/core.h>
 
@@ -21,15 +23,19 @@ bool write_text(const std::string& path, const std::string& text) {
   return (path.empty() ? std::fflush(file) : std::fclose(file)) == 0 && is_written;
 }
 
+// Each note once, with the first line that it is about; the output has it at every place.
 void print_summary(const ImportOptions& options, const Imported& imported) {
   fmt::print(stderr, "culprit: {}: {} rules imported, {} kept as comments, {} notes\n",
              options.file, imported.rules, imported.rules_as_comments, imported.notes.size());
+  std::map<std::string_view, int> times;
+  for (const foreign::Note& note : imported.notes) ++times[note.text];
   for (const foreign::Note& note : imported.notes) {
-    if (note.line == 0) {
-      fmt::print(stderr, "{}: note: {}\n", options.file, note.text);
-    } else {
-      fmt::print(stderr, "{}:{}: note: {}\n", options.file, note.line, note.text);
-    }
+    int& count = times[note.text];
+    if (count == 0) continue;
+    const std::string line = note.line == 0 ? "" : fmt::format(":{}", note.line);
+    const std::string more = count == 1 ? "" : fmt::format(" ({} places)", count);
+    fmt::print(stderr, "{}{}: note: {}{}\n", options.file, line, note.text, more);
+    count = 0;
   }
 }
 

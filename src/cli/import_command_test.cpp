@@ -37,6 +37,9 @@ TEST_F(ImportCommand, WritesTheRulesAndSumsUpTheNotes) {
             kOk);
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
               testing::AllOf(testing::HasSubstr("7 rules imported, 1 kept as comments, 2"),
+                             testing::HasSubstr("mission_phase is looked up on the robot: as the "
+                                                "key of a diagnostic, or <hardware id>_<key> "
+                                                "(6 places)\n"),
                              testing::HasSubstr("conditions.txt:35: note: this rule is kept as a "
                                                 "comment: this trigger is never true")));
   std::ifstream in(path("out.rules"));
@@ -46,7 +49,9 @@ TEST_F(ImportCommand, WritesTheRulesAndSumsUpTheNotes) {
 
 TEST_F(ImportCommand, PrintsTheRulesWithoutAnOutputFile) {
   testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
   EXPECT_EQ(run({"import", "src/language/import/golden/strategies.txt"}), kOk);
+  testing::internal::GetCapturedStderr();
   EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr("RULE ScanLost\n"));
 }
 

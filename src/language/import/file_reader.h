@@ -53,7 +53,6 @@ class FileReader {
   bool constant(const std::vector<Word>& words);
   std::optional<syntax::Literal> constant_value(const Word& type, const Word& value,
                                                 std::vector<std::string>& notes);
-  bool is_comment(const std::vector<Word>& words) const;
   bool is_separator() const;
   std::string comment_text(Span comment) const;
 
