@@ -40,7 +40,7 @@ TEST_F(ImportCommand, WritesTheRulesAndSumsUpTheNotes) {
                              testing::HasSubstr("mission_phase is looked up on the robot: as the "
                                                 "key of a diagnostic, or <hardware id>_<key> "
                                                 "(6 places)\n"),
-                             testing::HasSubstr("conditions.txt:35: note: this rule is kept as a "
+                             testing::HasSubstr("conditions.txt:36: note: this rule is kept as a "
                                                 "comment: this trigger is never true")));
   std::ifstream in(path("out.rules"));
   const std::string text(std::istreambuf_iterator<char>(in), {});

@@ -23,6 +23,7 @@ class ConditionDialect {
 
   Expected<File> read() {
     reader_.file().dialect = "RULE, COMPONENTS, IF, THEN";
+    reader_.file().last_constant_counts = true;
     auto file = reader_.read([this](const std::vector<Word>& words) { return statement(words); });
     if (file && expected_ != kRule && !out_of_order(rule_span_, "the end")) {
       return Error{reader_.error()};

@@ -72,6 +72,7 @@ struct Rule {
 struct File {
   std::string dialect;  // for people
   std::vector<Constant> constants;
+  bool last_constant_counts = false;  // of several with one name
   std::vector<Rule> rules;
   std::vector<std::string> comments_at_end;
 };

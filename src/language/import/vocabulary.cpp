@@ -77,7 +77,10 @@ std::string NameClaims::claim(const std::string& wanted) {
 const std::string& NameClaims::keep(const std::string& name) { return *used_.insert(name).first; }
 
 Vocabulary::Vocabulary(const File& file) {
-  for (const Constant& constant : file.constants) constants_.emplace(constant.name, &constant);
+  for (const Constant& constant : file.constants) {
+    const auto [known, is_new] = constants_.emplace(constant.name, &constant);
+    if (file.last_constant_counts) known->second = &constant;
+  }
   std::vector<Uses> triggers;
   std::vector<std::string> values;
   for (const Rule& rule : file.rules) {
@@ -183,6 +186,10 @@ bool Vocabulary::add_diagnostic(const std::string& name) {
   signal_names_[name] = ours;
   signals_.push_back({ours, status, name.substr(status.size() + 1)});
   return true;
+}
+
+bool Vocabulary::counts(const Constant& constant) const {
+  return constants_.at(constant.name) == &constant;
 }
 
 std::string Vocabulary::constant(const Constant& constant) const {

@@ -35,6 +35,7 @@ class NameClaims {
 
 class Vocabulary {
  public:
+  // `file` must outlive it.
   explicit Vocabulary(const File& file);
 
   struct Component {
@@ -54,6 +55,8 @@ class Vocabulary {
   const std::string& component(const std::string& written) const {
     return component_names_.at(written);
   }
+  // False if another declaration of the same name counts.
+  bool counts(const Constant& constant) const;
   // Empty for a constant that is a monitored value.
   std::string constant(const Constant& constant) const;
   Meaning meaning(const std::string& written) const;

@@ -112,15 +112,14 @@ class Writer {
   }
 
   void constants() {
-    std::set<std::string> seen;
     for (const Constant& constant : file_.constants) {
       Block& block = this->block(constant.remarks.line);
       block.comments = constant.remarks.comments;
       for (const std::string& text : constant.remarks.notes) note(block, text);
       const std::string original = constant.type + " " + constant.name + " " + constant.value_text;
-      if (!seen.insert(constant.name).second) {
-        note(block, "'" + original + "' declares " + constant.name +
-                        " once more; the first declaration counts");
+      if (!vocabulary_.counts(constant)) {
+        note(block, "'" + original + "' is one of several declarations of " + constant.name +
+                        "; the " + (file_.last_constant_counts ? "last" : "first") + " one counts");
         continue;
       }
       const std::string ours = vocabulary_.constant(constant);
@@ -302,7 +301,8 @@ class Writer {
       return name_text(std::get<std::string>(value.literal));
     if (value.kind == Kind::kName) {
       for (const Constant& constant : file_.constants) {
-        if (constant.name == value.name.text && constant.type == "string")
+        if (constant.name == value.name.text && constant.type == "string" &&
+            vocabulary_.counts(constant))
           return name_text(std::get<std::string>(constant.value));
       }
       note(block,
