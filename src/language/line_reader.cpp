@@ -34,6 +34,8 @@ bool is_ros_name(std::string_view name) {
 
 }  // namespace
 
+std::span<const std::string_view> reserved_words() { return kReservedWords; }
+
 std::optional<Name> LineReader::identifier(Scanner& s, std::string_view what) {
   const Token token = s.next();
   if (token.kind == Token::Kind::kIdentifier) return Name{token.text, token.span};

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,9 @@
 #include "language/syntax.h"
 
 namespace culprit {
+
+// The words that nothing can be named by.
+std::span<const std::string_view> reserved_words();
 
 class LineReader {
  public:

@@ -1,0 +1,81 @@
+// The editor's grammar knows the same words as the language.
+#include <fstream>
+#include <regex>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "language/functions.h"
+#include "language/line_reader.h"
+#include "language/syntax.h"
+
+namespace culprit {
+namespace {
+
+using Words = std::set<std::string, std::less<>>;
+
+nlohmann::json read_json(const std::string& name) {
+  std::ifstream in("editors/vscode/" + name);
+  return nlohmann::json::parse(in);
+}
+
+const nlohmann::json& grammar() {
+  static const nlohmann::json document = read_json("syntaxes/culprit-rules.tmLanguage.json");
+  return document;
+}
+
+// The alternatives of the pattern `name`, as in "\\b(true|false)\\b".
+Words words_of(const std::string& name) {
+  const std::string match = grammar().at("repository").at(name).at("match");
+  std::smatch list;
+  static const std::regex kList(R"(\(([A-Za-z_]+(\|[A-Za-z_]+)+)\))");
+  if (!std::regex_search(match, list, kList)) return {};
+  const std::string alternatives = list[1];
+  static const std::regex kWord("[A-Za-z_]+");
+  return Words(std::sregex_token_iterator(alternatives.begin(), alternatives.end(), kWord),
+               std::sregex_token_iterator());
+}
+
+template <class Range>
+Words set_of(const Range& range) {
+  return Words(range.begin(), range.end());
+}
+
+TEST(EditorGrammar, KnowsEveryKeyword) {
+  Words known = words_of("statements");
+  known.merge(words_of("clauses"));
+  EXPECT_EQ(known, set_of(reserved_words()));
+}
+
+TEST(EditorGrammar, KnowsEveryAdaptation) {
+  EXPECT_EQ(words_of("adaptations"), set_of(syntax::adaptation_keywords()));
+}
+
+TEST(EditorGrammar, KnowsEveryFunction) {
+  EXPECT_EQ(words_of("functions"), set_of(function_names()));
+}
+
+TEST(EditorGrammar, KnowsEveryCriticality) {
+  EXPECT_EQ(words_of("criticalities"),
+            (Words{"NON_CRITICAL", "WARNING", "ERROR", "OK", "DEGRADED", "FAILURE"}));
+}
+
+TEST(EditorGrammar, IncludesOnlyWhatItDefines) {
+  for (const auto& pattern : grammar().at("patterns")) {
+    const std::string include = pattern.at("include");
+    EXPECT_TRUE(grammar().at("repository").contains(include.substr(1))) << include;
+  }
+}
+
+TEST(EditorGrammar, IsTheOneThatTheExtensionNames) {
+  const auto contributes = read_json("package.json").at("contributes");
+  const auto& entry = contributes.at("grammars").at(0);
+  EXPECT_EQ(entry.at("scopeName"), grammar().at("scopeName"));
+  EXPECT_EQ(entry.at("language"), contributes.at("languages").at(0).at("id"));
+  EXPECT_EQ(entry.at("path"), "./syntaxes/culprit-rules.tmLanguage.json");
+  EXPECT_EQ(read_json("language-configuration.json").at("comments").at("lineComment"), "#");
+}
+
+}  // namespace
+}  // namespace culprit
