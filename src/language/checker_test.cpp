@@ -236,6 +236,7 @@ TEST(Checker, SaysWhatTheGoldenFilesSay) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".rules") continue;
+    if (entry.path().filename().string().starts_with("format_")) continue;  // of formatter_test.cpp
     ++files;
     const auto read = [](const std::filesystem::path& path) {
       std::ifstream in(path, std::ios::binary);
