@@ -70,7 +70,7 @@ Grammar::Productions productions_of_sentences() {
 }
 
 TEST(Grammar, MakesSentencesThatTheParserTakes) {
-  constexpr int kSentences = 3000;
+  constexpr int kSentences = 800;
   std::mt19937 random(1);
   std::map<std::string, int> count;
   for (int n = 0; n < kSentences; ++n) {
