@@ -240,6 +240,7 @@ TEST(Checker, SaysWhatTheGoldenFilesSay) {
   for (const Explanation& e : explanations()) unseen.insert(e.code);
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".rules") continue;
+    if (entry.path().filename().string().starts_with("format_")) continue;  // of formatter_test.cpp
     const auto read = [](const std::filesystem::path& path) {
       std::ifstream in(path, std::ios::binary);
       return std::string(std::istreambuf_iterator<char>(in), {});

@@ -14,12 +14,12 @@ using syntax::Name;
 
 class Parser {
  public:
-  Parser(const Source& source, std::vector<Diagnostic>& diagnostics)
-      : source_(source), read_(source, diagnostics) {}
+  Parser(const Source& source, std::vector<Diagnostic>& diagnostics, std::vector<Lexeme>* lexemes)
+      : source_(source), read_(source, diagnostics), lexemes_(lexemes) {}
 
   syntax::File parse() {
     for (std::uint32_t line = 1; line <= source_.line_count(); ++line) {
-      Scanner scanner(source_.text(), source_.line(line));
+      Scanner scanner(source_.text(), source_.line(line), lexemes_);
       if (!scanner.at_end()) statement(scanner);
     }
     return std::move(file_);
@@ -119,8 +119,8 @@ class Parser {
     for (auto open = text.find('<'); open != std::string_view::npos;
          open = text.find('<', open + 1)) {
       const auto close = text.find_first_not_of(
-          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_ ", open + 1);
-      if (close == std::string_view::npos || text[close] != '>' || text[open + 1] == ' ' ||
+          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_ \t\r\f\v", open + 1);
+      if (close == std::string_view::npos || text[close] != '>' || is_blank(text[open + 1]) ||
           close == open + 1)
         continue;
       const auto begin = rest.begin + static_cast<std::uint32_t>(open);
@@ -480,6 +480,7 @@ class Parser {
 
   const Source& source_;
   LineReader read_;
+  std::vector<Lexeme>* lexemes_;
   syntax::File file_;
   Span keyword_;             // of the line at hand
   bool stray_part_ = false;  // a part of a rule stood before any RULE line
@@ -487,8 +488,9 @@ class Parser {
 
 }  // namespace
 
-syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics) {
-  return Parser(source, diagnostics).parse();
+syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics,
+                   std::vector<Lexeme>* lexemes) {
+  return Parser(source, diagnostics, lexemes).parse();
 }
 
 }  // namespace culprit

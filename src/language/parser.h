@@ -8,12 +8,15 @@
 #include <vector>
 
 #include "language/diagnostic.h"
+#include "language/scanner.h"
 #include "language/source.h"
 #include "language/syntax.h"
 
 namespace culprit {
 
-// Never fails: what cannot be understood is reported and left out.
-syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics);
+// Never fails: what cannot be understood is reported and left out. What the statements are written
+// with is entered into `lexemes`, if wanted; comments are not.
+syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics,
+                   std::vector<Lexeme>* lexemes = nullptr);
 
 }  // namespace culprit

@@ -9,13 +9,19 @@ namespace {
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+
+Lexeme::Kind lexeme_kind(Token::Kind kind) {
+  if (kind == Token::Kind::kIdentifier) return Lexeme::Kind::kWord;
+  return kind == Token::Kind::kSymbol ? Lexeme::Kind::kSymbol : Lexeme::Kind::kLiteral;
+}
 
 Token bad(Span span, std::string message) {
   return {Token::Kind::kBad, span, std::move(message), {}};
 }
 
 }  // namespace
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 
 bool Scanner::is_comment(std::uint32_t at) const {
   return text_[at] == '#' || (text_[at] == '/' && at + 1 < end_ && text_[at + 1] == '/');
@@ -43,7 +49,12 @@ Span Scanner::rest() const {
 Token Scanner::next() {
   Token token = peek();
   at_ = token.span.end;
+  if (token.kind != Token::Kind::kEnd) enter(lexeme_kind(token.kind), token.span);
   return token;
+}
+
+void Scanner::enter(Lexeme::Kind kind, Span span) {
+  if (record_ != nullptr) record_->push_back({kind, span});
 }
 
 Token Scanner::peek() const {
@@ -164,6 +175,7 @@ syntax::Name Scanner::next_name() {
     Token token = quoted(begin);
     if (token.kind == Token::Kind::kString) {
       at_ = token.span.end;
+      enter(Lexeme::Kind::kName, token.span);
       return {std::get<std::string>(token.literal), token.span};
     }
   }
@@ -173,6 +185,7 @@ syntax::Name Scanner::next_name() {
     ++end;
   }
   at_ = end;
+  enter(Lexeme::Kind::kName, {begin, end});
   return {std::string(text_.substr(begin, end - begin)), {begin, end}};
 }
 

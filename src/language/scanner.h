@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "language/source.h"
 #include "language/syntax.h"
@@ -33,12 +34,26 @@ struct Token {
   bool is(std::string_view symbol) const { return kind == Kind::kSymbol && text == symbol; }
 };
 
+// A piece of a line as its reader took it, for those who care how the text was written.
+struct Lexeme {
+  enum class Kind : std::uint8_t {
+    kWord,     // an identifier: a word of the language or a name of an expression
+    kName,     // taken by next_name
+    kLiteral,  // a number, a duration or a text
+    kSymbol
+  };
+  Kind kind = Kind::kWord;
+  Span span;
+};
+
 class Scanner {
  public:
   // The longest name that is accepted, as in DDS (topic names are string<255>).
   static constexpr std::size_t kMaxName = 255;
 
-  Scanner(std::string_view text, Span line) : text_(text), at_(line.begin), end_(line.end) {}
+  // What is taken off the line is also entered into `record`, if there is one.
+  Scanner(std::string_view text, Span line, std::vector<Lexeme>* record = nullptr)
+      : text_(text), at_(line.begin), end_(line.end), record_(record) {}
 
   // The next token of an expression or a clause.
   Token next();
@@ -62,10 +77,15 @@ class Scanner {
   Token quoted(std::uint32_t at) const;
   Token identifier(std::uint32_t at) const;
   Token symbol(std::uint32_t at) const;
+  void enter(Lexeme::Kind kind, Span span);
 
   std::string_view text_;
   std::uint32_t at_;
   std::uint32_t end_;
+  std::vector<Lexeme>* record_;
 };
+
+// What stands between the tokens of a line.
+bool is_blank(char c);
 
 }  // namespace culprit

@@ -1,0 +1,139 @@
+// culprit fmt as a user runs it: files, output and exit codes.
+#include <filesystem>
+#include <fstream>
+#include <sys/stat.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/commands.h"
+
+namespace culprit::cli {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kCareless = "CONST a=1\r\n\n\nRULE r\nTRIGGER  a>2\n";
+constexpr const char* kCanonical = "CONST a = 1\n\nRULE r\n  TRIGGER a > 2\n";
+
+struct Fmt : testing::Test {
+  Fmt() {
+    std::string name = (std::filesystem::temp_directory_path() / "culprit-fmt-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    folder = name;
+  }
+  ~Fmt() override { std::filesystem::remove_all(folder); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name, std::ios::binary) << text;
+    return (folder / name).string();
+  }
+  static std::string read(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  }
+
+  // Gives the exit code; what was printed is in `out` and `err`.
+  int fmt(std::vector<std::string> arguments) {
+    CLI::App app;
+    int exit_code = -1;
+    add_fmt(app, exit_code);
+    arguments.insert(arguments.begin(), "fmt");
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    app.parse(arguments);
+    out = testing::internal::GetCapturedStdout();
+    err = testing::internal::GetCapturedStderr();
+    return exit_code;
+  }
+
+  std::filesystem::path folder;
+  std::string out;
+  std::string err;
+};
+
+TEST_F(Fmt, RewritesAFileAndKeepsItsPermissions) {
+  const std::string file = write("a.rules", kCareless);
+  chmod(file.c_str(), 0640);
+  EXPECT_EQ(fmt({file}), kOk);
+  EXPECT_EQ(read(file), kCanonical);
+  EXPECT_THAT(out, HasSubstr("a.rules: formatted"));
+  struct stat now {};
+  stat(file.c_str(), &now);
+  EXPECT_EQ(now.st_mode & 07777, 0640u);
+  const auto left = std::distance(std::filesystem::directory_iterator(folder), {});
+  EXPECT_EQ(left, 1) << "a temporary file was left behind";
+}
+
+TEST_F(Fmt, DoesNotTouchAFileThatIsAsItShouldBe) {
+  const std::string file = write("a.rules", kCanonical);
+  struct stat before {};
+  stat(file.c_str(), &before);
+  EXPECT_EQ(fmt({file}), kOk);
+  struct stat now {};
+  stat(file.c_str(), &now);
+  EXPECT_EQ(now.st_ino, before.st_ino);
+  EXPECT_EQ(out, "");
+}
+
+TEST_F(Fmt, FollowsSymbolicLinks) {
+  const std::string file = write("a.rules", kCareless);
+  const std::string link = (folder / "link.rules").string();
+  std::filesystem::create_symlink(file, link);
+  EXPECT_EQ(fmt({link}), kOk);
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(read(file), kCanonical);
+}
+
+TEST_F(Fmt, CheckListsWhatWouldChangeAndWritesNothing) {
+  const std::string careless = write("a.rules", kCareless);
+  const std::string canonical = write("b.rules", kCanonical);
+  EXPECT_EQ(fmt({"--check", careless, canonical}), kFailed);
+  EXPECT_EQ(out, careless + "\n");
+  EXPECT_EQ(read(careless), kCareless);
+  EXPECT_EQ(fmt({"--check", canonical}), kOk);
+  EXPECT_EQ(out, "");
+}
+
+TEST_F(Fmt, DiffShowsWhatWouldChangeAndWritesNothing) {
+  const std::string file = write("a.rules", kCareless);
+  EXPECT_EQ(fmt({"--diff", file}), kOk);
+  EXPECT_EQ(out, "--- " + file + "\n+++ " + file +
+                     "\n@@ -1,5 +1,4 @@\n"
+                     "-CONST a=1\r\n"
+                     "+CONST a = 1\n"
+                     " \n"
+                     "-\n"
+                     " RULE r\n"
+                     "-TRIGGER  a>2\n"
+                     "+  TRIGGER a > 2\n");
+  EXPECT_EQ(read(file), kCareless);
+  EXPECT_EQ(fmt({"--diff", "--check", file}), kFailed);
+}
+
+TEST_F(Fmt, LeavesAFileWithErrorsAndFormatsTheOthers) {
+  const std::string broken = write("a.rules", "RULE r\nPOLICIES  EROR\n");
+  const std::string careless = write("b.rules", kCareless);
+  EXPECT_EQ(fmt({broken, careless, (folder / "none.rules").string()}), kFailed);
+  EXPECT_EQ(read(broken), "RULE r\nPOLICIES  EROR\n");
+  EXPECT_EQ(read(careless), kCanonical);
+  EXPECT_THAT(err, HasSubstr("a.rules:2:11: error[R002]"));
+  EXPECT_THAT(err, HasSubstr("none.rules"));
+}
+
+TEST_F(Fmt, SaysWhyAFileCannotBeReplaced) {
+  EXPECT_EQ(fmt({folder.string()}), kFailed);
+  EXPECT_THAT(err, HasSubstr("directory"));
+}
+
+TEST_F(Fmt, ReadsTheStandardInput) {
+  std::istringstream in(kCareless);
+  std::streambuf* before = std::cin.rdbuf(in.rdbuf());
+  EXPECT_EQ(fmt({"-"}), kOk);
+  std::cin.rdbuf(before);
+  EXPECT_EQ(out, kCanonical);
+}
+
+}  // namespace
+}  // namespace culprit::cli
