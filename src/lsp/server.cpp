@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "language/formatter.h"
 #include "lsp/completion.h"
 #include "lsp/hover.h"
 #include "lsp/text_position.h"
@@ -207,6 +208,7 @@ Json Server::answer(const std::string& method, const Json& params) {
   if (method == "textDocument/hover") return succeeded(hover_at(found->second, params));
   if (method == "textDocument/definition") return succeeded(definition(uri, found->second, params));
   if (method == "textDocument/references") return succeeded(references(uri, found->second, params));
+  if (method == "textDocument/formatting") return succeeded(formatting(found->second));
   if (method == "textDocument/documentSymbol") return succeeded(symbols(found->second));
   if (method == "textDocument/semanticTokens/full")
     return succeeded(semantic_tokens(found->second));
@@ -226,6 +228,7 @@ Json Server::capabilities() const {
           {"definitionProvider", true},
           {"referencesProvider", true},
           {"renameProvider", true},
+          {"documentFormattingProvider", true},
           {"documentSymbolProvider", true},
           {"semanticTokensProvider", {{"legend", std::move(legend)}, {"full", true}}}};
 }
@@ -298,6 +301,14 @@ Expected<Json> Server::rename(const std::string& uri, const Document& document,
       edits.push_back({{"range", to_json(document.source, o.span)}, {"newText", name}});
   }
   return Json{{"changes", {{uri, std::move(edits)}}}};
+}
+
+// One edit, of the whole text. A file with mistakes stays as it is: they are shown already.
+Json Server::formatting(const Document& document) const {
+  const auto text = format(document.source);
+  if (!text || *text == document.source.text()) return Json::array();
+  const auto end = static_cast<std::uint32_t>(document.source.text().size());
+  return Json::array({{{"range", to_json(document.source, {0, end})}, {"newText", *text}}});
 }
 
 // Rules hold their strategies; everything else that is declared stands beside them.

@@ -38,6 +38,7 @@ class Server {
   Json definition(const std::string& uri, const Document& document, const Json& params) const;
   Json references(const std::string& uri, const Document& document, const Json& params) const;
   Expected<Json> rename(const std::string& uri, const Document& document, const Json& params) const;
+  Json formatting(const Document& document) const;
   Json symbols(const Document& document) const;
   Json semantic_tokens(const Document& document) const;
 

@@ -155,6 +155,22 @@ TEST(LspServer, ProposesWhatFitsThePlace) {
   EXPECT_THAT(labels(session.ask("completion", 17, 16)), testing::ElementsAre("camera"));
 }
 
+TEST(LspServer, LaysOutTheFile) {
+  Session session(
+      "RULE r\nPOLICIES   ERROR\nTRIGGER age(/t)>1s\nSTRATEGY s 50 10\nADAPTATION c restart 5\n");
+  const auto format = [&] {
+    return session.request("textDocument/formatting",
+                           {{"textDocument", {{"uri", kUri}}}})["result"];
+  };
+  const Json edits = format();
+  ASSERT_EQ(edits.size(), 1u);
+  EXPECT_THAT(edits[0]["newText"].get<std::string>(), HasSubstr("\n  TRIGGER age(/t) > 1s\n"));
+  session.change(edits[0]["newText"]);
+  EXPECT_EQ(format(), Json::array()) << "it is laid out already";
+  session.change("RULE\n");
+  EXPECT_EQ(format(), Json::array()) << "what does not parse is left alone";
+}
+
 TEST(LspServer, OutlinesTheFile) {
   Session session;
   const Json symbols =

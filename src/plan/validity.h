@@ -1,13 +1,15 @@
 // Does a strategy make sense in the present state of the system? (paper, Algorithm 1, condition 2)
 //
 // An adaptation is valid if it would change something and can be carried out:
-//   set, increase, decrease parameter; change mode; call   its component is alive
-//   change communication   likewise, and the parameter does not name the topic already
-//   activate               its component is alive, has a lifecycle, and is not active
-//   deactivate             its component is alive and active
-//   restart                its component is alive and has a lifecycle: a dead or hung process
-//   answers no request redeploy               it has a LAUNCH command start                  it has
-//   a LAUNCH command and is not there stop                   it is there
+//   - set, increase, decrease parameter, change mode, call: its component is alive;
+//   - change communication: likewise, and the parameter does not name the topic already;
+//   - activate: its component is alive, has a lifecycle, and is not active;
+//   - deactivate: its component is alive and active;
+//   - restart: its component is alive and has a lifecycle; a dead or hung process answers no
+//   request;
+//   - redeploy: it has a LAUNCH command;
+//   - start: it has a LAUNCH command and is not there;
+//   - stop: it is there.
 // A strategy is valid if each of its adaptations is, given the ones before it, and its WHEN
 // condition is true.
 #pragma once
