@@ -5,8 +5,7 @@
 //   - change communication: likewise, and the parameter does not name the topic already;
 //   - activate: its component is alive, has a lifecycle, and is not active;
 //   - deactivate: its component is alive and active;
-//   - restart: its component is alive and has a lifecycle; a dead or hung process answers no
-//   request;
+//   - restart: it is alive and has a lifecycle, for a dead or hung process answers no request;
 //   - redeploy: it has a LAUNCH command;
 //   - start: it has a LAUNCH command and is not there;
 //   - stop: it is there.
