@@ -13,6 +13,7 @@ constexpr int kUsage = 2;
 
 void add_run(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
+void add_test(CLI::App& app, int& exit_code);
 void add_graph(CLI::App& app, int& exit_code);
 void add_demo(CLI::App& app, int& exit_code);
 

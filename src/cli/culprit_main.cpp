@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   int exit_code = culprit::cli::kOk;
   culprit::cli::add_run(app, exit_code);
   culprit::cli::add_check(app, exit_code);
+  culprit::cli::add_test(app, exit_code);
   culprit::cli::add_graph(app, exit_code);
   culprit::cli::add_demo(app, exit_code);
   try {
