@@ -17,6 +17,7 @@ void add_run(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_explain(CLI::App& app, int& exit_code);
 void add_fmt(CLI::App& app, int& exit_code);
+void add_test(CLI::App& app, int& exit_code);
 void add_graph(CLI::App& app, int& exit_code);
 void add_demo(CLI::App& app, int& exit_code);
 void add_lsp(CLI::App& app, const std::string& version, int& exit_code);

@@ -11,6 +11,9 @@ template <class... F>
 struct Overload : F... {
   using F::operator()...;
 };
+// clang before 17 does not deduce this by itself, and the fuzzers are built by it.
+template <class... F>
+Overload(F...) -> Overload<F...>;
 
 // "~/recalibrate" and "recalibrate" are the component's own.
 std::string absolute(const std::string& service, const std::string& node) {

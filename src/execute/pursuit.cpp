@@ -87,7 +87,9 @@ Duration Pursuit::timeout(const Request& request) {
 
 Time Pursuit::next_deadline() const {
   if (step_ == Step::kLook || step_ == Step::kDecide) return kLongAgo;
-  return std::min(wake_, deadline_);
+  // The patience is looked at only after a look, so it is no time to wake at by itself: a deadline
+  // that has passed and is not acted on would keep the manager stepping without end.
+  return wake_;
 }
 
 void Pursuit::answered(const Reply& reply, Time) {
@@ -228,7 +230,7 @@ std::optional<Pursuit::Request> Pursuit::change(Request request, Time now) {
 std::optional<Pursuit::Request> Pursuit::look_again(Time now) {
   if (now >= deadline_)
     return give_up("not " + describe(goal_) + " after " + to_string(patience(goal_)));
-  wake_ = later(now, kPause);
+  wake_ = std::min(later(now, kPause), deadline_);
   step_ = Step::kPausing;
   return std::nullopt;
 }

@@ -1,0 +1,85 @@
+// Not called test_command.cpp: test_*.cpp are what only tests of a folder use.
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <unistd.h>
+
+#include <fmt/core.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "rule_test/file_run.h"
+
+namespace culprit::cli {
+namespace {
+
+struct TestOptions {
+  std::vector<std::string> files;
+  std::string filter;
+  std::string junit;
+};
+
+struct Totals {
+  int tests = 0;
+  int failed = 0;
+  int unusable_files = 0;
+  Duration robot_time{};
+
+  void add(const rule_test::FileRun& run) {
+    if (!run.is_usable) ++unusable_files;
+    for (const auto& suite : run.suites) {
+      for (const auto& test : suite.cases) {
+        ++tests;
+        if (!test.failure.empty()) ++failed;
+        robot_time += test.length;
+      }
+    }
+  }
+};
+
+bool write_junit(const std::string& path, const std::vector<rule_test::SuiteReport>& suites) {
+  std::ofstream file(path, std::ios::binary);
+  file << rule_test::junit(suites);
+  file.close();
+  if (file) return true;
+  fmt::print(stderr, "culprit: cannot write {}\n", path);
+  return false;
+}
+
+int run_tests(const TestOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Totals totals;
+  std::vector<rule_test::SuiteReport> suites;
+  for (const std::string& file : options.files) {
+    rule_test::FileRun run = rule_test::run_file(file, options.filter, colour_of(STDERR_FILENO));
+    fmt::print(stderr, "{}", run.complaints);
+    fmt::print("{}", run.output);
+    totals.add(run);
+    if (!run.is_usable) fmt::print(stderr, "culprit: {} cannot be run\n", file);
+    std::move(run.suites.begin(), run.suites.end(), std::back_inserter(suites));
+  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  fmt::print("{} tests, {} failed; {:g} s of the robot's time in {:.3f} s\n", totals.tests,
+             totals.failed, seconds(totals.robot_time), took.count());
+  if (!options.junit.empty() && !write_junit(options.junit, suites)) return kUsage;
+  if (totals.unusable_files > 0) return kUsage;
+  if (totals.tests == 0) {
+    fmt::print(stderr, "culprit: no test is called like '{}'\n", options.filter);
+    return kUsage;
+  }
+  return totals.failed > 0 ? kFailed : kOk;
+}
+
+}  // namespace
+
+void add_test(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<TestOptions>();
+  CLI::App* command = app.add_subcommand(
+      "test", "Run unit tests of rule files: what the manager does with a robot that is played");
+  command->add_option("FILES", options->files, "Test files")->required();
+  command->add_option("--filter", options->filter, "Only tests whose name contains this");
+  command->add_option("--junit", options->junit, "Write the results as JUnit XML to this file");
+  command->callback([options, &exit_code] { exit_code = run_tests(*options); });
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,198 @@
+#include "rule_test/expectation_reader.h"
+
+#include <array>
+
+namespace culprit::rule_test {
+namespace {
+
+using syntax::Name;
+using Kind = Expectation::Kind;
+
+enum class About : std::uint8_t { kRule, kStrategy, kComponent };
+
+struct Verb {
+  std::string_view word;
+  Kind kind;
+  About about;
+};
+constexpr std::array kVerbs = {
+    Verb{"DETECTED", Kind::kDetected, About::kRule},
+    Verb{"RESOLVED", Kind::kResolved, About::kRule},
+    Verb{"EXHAUSTED", Kind::kExhausted, About::kRule},
+    Verb{"LOST", Kind::kLost, About::kRule},
+    Verb{"CHOSEN", Kind::kChosen, About::kStrategy},
+    Verb{"EXECUTED", Kind::kExecuted, About::kStrategy},
+    Verb{"FAILED", Kind::kFailed, About::kStrategy},
+    Verb{"EXCLUDED", Kind::kExcluded, About::kStrategy},
+    Verb{"RANKED", Kind::kRanked, About::kStrategy},
+    Verb{"BLAMED", Kind::kBlamed, About::kComponent},
+};
+
+struct Reason {
+  std::string_view word;
+  Condition condition;
+};
+constexpr std::array kReasons = {
+    Reason{"tried", Condition::kTried},           Reason{"invalid", Condition::kInvalid},
+    Reason{"adapting", Condition::kAdapting},     Reason{"affected", Condition::kAffected},
+    Reason{"dependency", Condition::kDependency}, Reason{"other_chosen", Condition::kOneEach},
+};
+
+class ExpectationReader {
+ public:
+  ExpectationReader(Scanner& s, LineReader& read, Names& names)
+      : s_(s), read_(read), names_(names) {}
+
+  std::optional<Expectation> read() {
+    const bool is_read = took("NO") ? no_strategy() : sentence();
+    if (!is_read || !clauses()) return std::nullopt;
+    return e_;
+  }
+
+ private:
+  bool took(std::string_view word) {
+    if (s_.peek().text != word || s_.peek().kind != Token::Kind::kIdentifier) return false;
+    s_.next();
+    return true;
+  }
+
+  // "NO STRATEGY"; OF and FOR are clauses.
+  bool no_strategy() {
+    e_.kind = Kind::kAnyChosen;
+    e_.wanted = false;
+    return read_.expect_word(s_, "STRATEGY");
+  }
+
+  bool sentence() {
+    e_.wanted = !took("NOT");
+    const auto subject = read_.name_or_text(s_, "a rule, a strategy or a component");
+    if (!subject) return false;
+    const Token word = s_.next();
+    for (const Verb& verb : kVerbs) {
+      if (word.text == verb.word) {
+        e_.kind = verb.kind;
+        return resolve(*subject, verb.about) && (e_.kind != Kind::kRanked || rank());
+      }
+    }
+    if (!knows(subject->text)) {
+      const std::string near = names_.closest_subject(subject->text);
+      return read_.fail(Code::kUnknownName, subject->span,
+                        "the rules have no rule, strategy or component '" + subject->text + "'",
+                        near.empty() ? "" : "did you mean " + near + "?");
+    }
+    std::vector<std::string_view> fitting;
+    for (const Verb& verb : kVerbs) {
+      if (fits(subject->text, verb.about)) fitting.push_back(verb.word);
+    }
+    return read_.unexpected_clause(word, fitting);
+  }
+
+  bool knows(const std::string& name) const {
+    return fits(name, About::kRule) || fits(name, About::kStrategy) ||
+           fits(name, About::kComponent);
+  }
+  bool fits(const std::string& name, About about) const {
+    switch (about) {
+      case About::kRule:
+        return names_.is_rule(name);
+      case About::kStrategy:
+        return names_.is_strategy(name);
+      case About::kComponent:
+        return names_.is_component(name);
+    }
+    return false;
+  }
+
+  bool resolve(const Name& name, About about) {
+    switch (about) {
+      case About::kRule:
+        e_.rule = names_.rule(name);
+        return e_.rule.has_value();
+      case About::kStrategy:
+        e_.strategy = names_.strategy(name);
+        return e_.strategy.has_value();
+      case About::kComponent:
+        e_.component = names_.component(name);
+        return e_.component.has_value();
+    }
+    return false;
+  }
+
+  bool rank() {
+    const Span span = s_.peek().span;
+    const auto rank = read_.whole_number(s_, "its place by cost, 1 for the cheapest");
+    if (!rank) return false;
+    if (*rank < 1)
+      return read_.fail(Code::kPolicyRange, span, "places by cost count from 1, the cheapest", "");
+    e_.rank = static_cast<std::size_t>(*rank);
+    return true;
+  }
+
+  bool clauses() {
+    if (e_.kind == Kind::kRanked) return true;
+    while (!s_.at_end()) {
+      if (!clause()) return false;
+    }
+    const Duration by = e_.by.value_or(Duration::max());
+    return by >= e_.after || read_.fail(Code::kEmptyRange, by_span_, "BY is before AFTER", "");
+  }
+
+  bool clause() {
+    const Token word = s_.next();
+    std::vector<std::string_view> known;
+    const auto is = [&](std::string_view clause, bool makes_sense, bool is_free) {
+      if (!makes_sense) return false;
+      known.push_back(clause);
+      return word.text == clause && is_free;
+    };
+    const bool has_rule = e_.kind == Kind::kBlamed || e_.kind == Kind::kAnyChosen;
+    if (is("BY", true, !e_.by)) {
+      by_span_ = s_.peek().span;
+      e_.by = read_.duration(s_, "a time");
+      return e_.by.has_value();
+    }
+    if (is("AFTER", true, e_.after == Duration::zero())) {
+      const auto after = read_.positive_duration(s_, "a time");
+      e_.after = after.value_or(Duration::zero());
+      return after.has_value();
+    }
+    if (is("FOR", has_rule, !e_.rule)) return names_clause(About::kRule, "a rule");
+    if (is("OF", e_.kind == Kind::kAnyChosen, !e_.component))
+      return names_clause(About::kComponent, "a component");
+    if (is("WITH", e_.kind == Kind::kResolved, !e_.strategy))
+      return names_clause(About::kStrategy, "a strategy");
+    if (is("BECAUSE", e_.kind == Kind::kExcluded, !e_.condition)) return because();
+    return read_.unexpected_clause(word, known);
+  }
+
+  bool names_clause(About about, std::string_view what) {
+    const auto name = read_.name_or_text(s_, what);
+    return name && resolve(*name, about);
+  }
+
+  // "BECAUSE dependency ON camera"
+  bool because() {
+    const Token word = s_.next();
+    std::vector<std::string_view> known;
+    for (const Reason& reason : kReasons) {
+      known.push_back(reason.word);
+      if (word.text == reason.word) e_.condition = reason.condition;
+    }
+    if (!e_.condition) return read_.unexpected_clause(word, known);
+    return !took("ON") || names_clause(About::kComponent, "a component");
+  }
+
+  Scanner& s_;
+  LineReader& read_;
+  Names& names_;
+  Expectation e_;
+  Span by_span_;
+};
+
+}  // namespace
+
+std::optional<Expectation> read_expectation(Scanner& scanner, LineReader& read, Names& names) {
+  return ExpectationReader(scanner, read, names).read();
+}
+
+}  // namespace culprit::rule_test

@@ -1,0 +1,42 @@
+// The text of a test file -> its tests, every name looked up in the rules that they test.
+//
+// Statements are lines, as in rule files, and reading goes on behind every mistake. What stands
+// before the first TEST holds for every test of the file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "language/diagnostic.h"
+#include "language/source.h"
+#include "rule_test/expectation.h"
+#include "rule_test/scenario.h"
+
+namespace culprit::rule_test {
+
+// Bounds of what a file can make a run cost.
+inline constexpr Duration kLongestRun = std::chrono::hours(1);
+inline constexpr double kHighestRate = 1000;  // Hz
+inline constexpr Duration kShortestPeriod = std::chrono::milliseconds(1);
+
+struct Test {
+  std::string name;
+  Span span;
+  Scenario scenario;  // beyond what all tests of the file share
+  std::vector<Expectation> expectations;
+  Duration length{};
+};
+
+struct Suite {
+  Scenario shared;
+  std::vector<Test> tests;
+};
+
+// The files that the RULES lines name, as written. Reports if there is none.
+std::vector<syntax::Name> rule_files(const Source& source, std::vector<Diagnostic>& diagnostics);
+
+// Reads everything but the RULES lines. What cannot be understood is reported and left out: a suite
+// is good for running only if no diagnostic is an error.
+Suite read_suite(const Source& source, const RuleSet& rules, std::vector<Diagnostic>& diagnostics);
+
+}  // namespace culprit::rule_test

@@ -1,0 +1,63 @@
+#include "rule_test/reader.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "rule_test/test_suite.h"
+
+namespace culprit::rule_test {
+namespace {
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+std::string messages(const Source& source) {
+  std::vector<Diagnostic> diagnostics;
+  rule_files(source, diagnostics);
+  read_suite(source, pipeline_rules(), diagnostics);
+  std::string out;
+  for (const Diagnostic& d : diagnostics) out += render(d, source);
+  return out;
+}
+
+// Each file in golden/ holds mistakes, and beside it what is said about them.
+// CULPRIT_WRITE_GOLDEN=1 writes what is said now, for a person to read and commit.
+TEST(Reader, SaysWhatTheGoldenFilesSay) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("src/rule_test/golden")) {
+    if (entry.path().extension() != ".test") continue;
+    ++files;
+    const Source source(entry.path().filename().string(), read_file(entry.path()));
+    const auto expected = std::filesystem::path(entry.path()).replace_extension(".expected");
+    if (std::getenv("CULPRIT_WRITE_GOLDEN") != nullptr)
+      std::ofstream(expected, std::ios::binary) << messages(source);
+    EXPECT_EQ(messages(source), read_file(expected)) << entry.path();
+  }
+  EXPECT_GT(files, 0);
+}
+
+TEST(Reader, SharesWhatStandsBeforeTheFirstTest) {
+  std::vector<Diagnostic> diagnostics;
+  const Suite suite =
+      read_suite(Source("x.test",
+                        "TOPIC /rgb 0s: 10Hz\nTEST a\nTOPIC /rgb 2s..3s: silent\nRUN 5s\n"
+                        "EXPECT CameraDead DETECTED\nTEST b\nRUN 5s\nEXPECT NO STRATEGY\n"),
+                 pipeline_rules(), diagnostics);
+  EXPECT_TRUE(diagnostics.empty());
+  ASSERT_EQ(suite.tests.size(), 2u);
+  EXPECT_EQ(suite.shared.courses.size(), 1u);
+  ASSERT_EQ(suite.tests[0].scenario.courses.size(), 1u);
+  const Stretch& stretch = suite.tests[0].scenario.courses[0].stretches.at(0);
+  EXPECT_EQ(stretch.from, std::chrono::seconds(2));
+  EXPECT_EQ(stretch.until, std::chrono::seconds(3));
+  EXPECT_FALSE(stretch.value);
+  EXPECT_TRUE(suite.tests[1].scenario.courses.empty());
+}
+
+}  // namespace
+}  // namespace culprit::rule_test

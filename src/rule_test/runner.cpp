@@ -1,0 +1,35 @@
+#include "rule_test/runner.h"
+
+#include <atomic>
+
+#include "manager/runtime.h"
+#include "plan/paper_planner.h"
+#include "rule_test/scripted_robot.h"
+
+namespace culprit::rule_test {
+
+Result run_test(const RuleSet& rules, const Suite& suite, const Test& test) {
+  Scenario scenario = suite.shared;
+  scenario.append(test.scenario);
+  ScriptedRobot robot(rules, scenario);
+  Manager manager(rules, std::make_unique<PaperPlanner>(), {});
+  Result result{test.name, test.length, {}, {}};
+
+  Runtime runtime(manager, robot);
+  runtime.on_events = [&](const Manager& m) {
+    for (const Event& event : m.events()) {
+      robot.hear(event);
+      result.events.push_back(event);
+    }
+  };
+  const std::atomic<bool> never = false;
+  runtime.run(never, Time{test.length});
+
+  for (const Expectation& expectation : test.expectations) {
+    if (auto instead = disappointment(expectation, result.events, rules))
+      result.disappointments.push_back({expectation.span, std::move(*instead)});
+  }
+  return result;
+}
+
+}  // namespace culprit::rule_test

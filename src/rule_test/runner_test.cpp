@@ -1,0 +1,164 @@
+#include "rule_test/runner.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rule_test/test_suite.h"
+
+namespace culprit::rule_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// ---- each kind of expectation can be met, and can fail
+
+constexpr const char* kCameraKilled = "AT 2s camera KILLED\nRUN 10s\n";
+constexpr const char* kCameraSick =
+    "TOPIC /rgb 2s: silent\nADAPTATION camera redeploy HEALS /rgb\nRUN 10s\n";
+constexpr const char* kCameraLost = "TOPIC /rgb 2s: silent\nRUN 10min\n";
+
+struct Case {
+  const char* story;
+  const char* met;
+  const char* failing;
+  const char* instead;
+};
+
+class EachExpectation : public testing::TestWithParam<Case> {};
+
+TEST_P(EachExpectation, IsMetByWhatHappens) {
+  const Played played = play(std::string(GetParam().story) + "EXPECT " + GetParam().met + "\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
+TEST_P(EachExpectation, FailsIfSomethingElseHappens) {
+  const Played played = play(std::string(GetParam().story) + "EXPECT " + GetParam().failing + "\n");
+  EXPECT_FALSE(played.result.is_ok());
+  EXPECT_THAT(played.instead(), ElementsAre(HasSubstr(GetParam().instead))) << played.text();
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, EachExpectation,
+    testing::Values(
+        Case{kCameraKilled, "CameraDead DETECTED BY 2.5s", "Blurred DETECTED", "did not happen"},
+        Case{kCameraKilled, "CameraDead DETECTED AFTER 2s", "CameraDead DETECTED BY 1s",
+             "happened later, at 2.250 s"},
+        Case{kCameraKilled, "NOT Blurred DETECTED", "NOT CameraDead DETECTED",
+             "it happened at 2.250 s"},
+        Case{kCameraKilled, "NOT CameraDead DETECTED BY 2s", "CameraDead DETECTED AFTER 5s",
+             "too early, at 2.250 s"},
+        Case{kCameraKilled, "CameraDead RESOLVED", "CameraDead RESOLVED BY 2.3s", "happened later"},
+        Case{kCameraKilled, "CameraDead RESOLVED WITH camera_redeploy",
+             "CameraDead RESOLVED WITH camera_restart", "did not happen"},
+        Case{kCameraLost, "CameraDead EXHAUSTED", "NOT CameraDead EXHAUSTED", "happened at"},
+        Case{"SIGNAL blur 1s: 0.9 2s: silent\nADAPTATION camera set_parameter UNANSWERED\nRUN "
+             "1min\n",
+             "Blurred LOST", "CameraDead LOST", "did not happen"},
+        Case{kCameraKilled, "camera_redeploy CHOSEN BY 2.3s", "camera_restart CHOSEN",
+             "did not happen"},
+        Case{kCameraKilled, "camera_redeploy EXECUTED BY 3s", "camera_restart EXECUTED",
+             "did not happen"},
+        Case{kCameraSick, "camera_restart FAILED", "camera_redeploy FAILED", "did not happen"},
+        Case{kCameraKilled, "camera BLAMED", "fusion BLAMED", "did not happen"},
+        Case{kCameraKilled, "camera BLAMED FOR FusionDead", "camera BLAMED FOR Blurred",
+             "did not happen"},
+        Case{kCameraKilled, "NO STRATEGY OF fusion", "NO STRATEGY OF camera", "happened at"},
+        Case{kCameraKilled, "NO STRATEGY FOR FusionDead", "NO STRATEGY FOR CameraDead",
+             "happened at"},
+        Case{kCameraKilled, "NO STRATEGY BY 2s", "NO STRATEGY", "happened at 2.250 s"},
+        Case{kCameraKilled, "camera_restart EXCLUDED BECAUSE invalid ON camera",
+             "camera_restart EXCLUDED BECAUSE tried",
+             "what was said of it: camera_restart makes no sense now: camera is not alive"},
+        Case{kCameraKilled, "fusion_redeploy EXCLUDED BECAUSE dependency ON camera",
+             "fusion_redeploy EXCLUDED BECAUSE dependency ON fusion", "depends on camera"},
+        Case{kCameraSick, "camera_redeploy EXCLUDED BECAUSE other_chosen", "focus EXCLUDED",
+             "it was never weighed"},
+        Case{kCameraSick, "camera_restart RANKED 1", "camera_redeploy RANKED 1",
+             "its cost was number 2"}));
+
+// ---- the robot
+
+TEST(ScriptedRobot, FallsSilentWithWhatItNeeds) {
+  const Played played = play("AT 2s camera KILLED\nRUN 10s\nEXPECT FusionDead DETECTED\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
+TEST(ScriptedRobot, EndsOnlyTheStretchesThatHadBegunWhenItIsHealed) {
+  const Played played = play(
+      "SIGNAL blur 2s: 0.9 8s: 0.8\nSTRATEGY focus HEALS blur\nRUN 7s\n"
+      "EXPECT Blurred RESOLVED BY 4s\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+  const Played again = play(
+      "SIGNAL blur 2s: 0.9 8s: 0.8\nSTRATEGY focus HEALS blur\nRUN 12s\n"
+      "EXPECT Blurred DETECTED AFTER 8s\nEXPECT Blurred RESOLVED AFTER 8s\n");
+  EXPECT_TRUE(again.result.is_ok()) << again.text();
+}
+
+TEST(ScriptedRobot, StaysSickIfNothingHealsIt) {
+  const Played played = play("SIGNAL blur 2s: 0.9\nRUN 10s\nEXPECT NOT Blurred RESOLVED\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
+TEST(ScriptedRobot, RefusesWhatItIsToldToRefuse) {
+  const Played played = play(
+      "TOPIC /rgb 2s: silent\nADAPTATION camera restart REFUSED HEALS /rgb\n"
+      "ADAPTATION camera redeploy HEALS /rgb AFTER 100ms\nRUN 10s\n"
+      "EXPECT camera_restart FAILED BY 2.5s\nEXPECT NOT camera_restart EXECUTED\n"
+      "EXPECT CameraDead RESOLVED WITH camera_redeploy\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
+TEST(ScriptedRobot, TakesItsTime) {
+  const Played played = play(
+      "AT 2s camera KILLED\nADAPTATION camera redeploy TAKES 4s\nRUN 10s\n"
+      "EXPECT camera_redeploy EXECUTED AFTER 6.2s BY 6.5s\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
+TEST(ScriptedRobot, AnswersNothingWhileItHangs) {
+  const Played played = play(
+      "AT 2s camera HUNG\nRUN 20s\nEXPECT camera_restart FAILED\n"
+      "EXPECT CameraDead RESOLVED WITH camera_redeploy\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
+TEST(ScriptedRobot, LeavesAComponentOutThatIsAbsent) {
+  const Played played = play(
+      "COMPONENT camera STATE absent\nRUN 20s\nEXPECT NOT CameraDead DETECTED BY 4s\n"
+      "EXPECT CameraDead RESOLVED WITH camera_redeploy\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
+TEST(ScriptedRobot, IsSilentWhileItIsInactive) {
+  const Played played = play(
+      "AT 2s camera STATE inactive\nRUN 10s\nEXPECT CameraDead RESOLVED WITH camera_restart\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
+TEST(ScriptedRobot, SurvivesComponentsThatNeedEachOther) {
+  const Played played = play(
+      "COMPONENT camera NEEDS fusion\nAT 2s camera KILLED\nRUN 10s\nEXPECT FusionDead DETECTED\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
+// ---- the same again
+
+TEST(Runner, PlaysTheSameTestTheSameWay) {
+  const std::string story =
+      "AT 2s camera KILLED\nAT 2s fusion HUNG\nSIGNAL blur 1.5s: 0.9 4s..6s: silent\n"
+      "STRATEGY focus HEALS blur AFTER 70ms\nRUN 1min\nEXPECT NO STRATEGY\n";
+  const std::string first = play(story).text();
+  EXPECT_EQ(first, play(story).text());
+  EXPECT_THAT(first, HasSubstr("camera is held responsible"));
+}
+
+TEST(Runner, LeavesAHealthyRobotAlone) {
+  const Played played = play("RUN 1min\nEXPECT NO STRATEGY\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+  EXPECT_THAT(played.instead(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace culprit::rule_test

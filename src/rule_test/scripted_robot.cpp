@@ -1,0 +1,410 @@
+#include "rule_test/scripted_robot.h"
+
+#include <algorithm>
+
+#include "language/evaluate.h"
+
+namespace culprit::rule_test {
+namespace {
+
+Value empty_value(Type type) {
+  switch (type) {
+    case Type::kBool:
+      return false;
+    case Type::kInt:
+      return std::int64_t{0};
+    case Type::kString:
+      return std::string();
+    default:
+      return 0.0;
+  }
+}
+
+// The adaptation can make the manager ask this of its component.
+bool can_ask(const Adaptation& adaptation, const Command& command) {
+  using enum AdaptationType;
+  const AdaptationType type = adaptation.type;
+  if (const auto* set = std::get_if<SetParameter>(&command.what))
+    return adaptation.subject == set->name &&
+           (type == kSetParameter || type == kIncreaseParameter || type == kDecreaseParameter ||
+            type == kChangeCommunication);
+  if (std::holds_alternative<ChangeLifecycle>(command.what))
+    return type == kActivate || type == kDeactivate || type == kRestart;
+  if (std::holds_alternative<StopProcess>(command.what)) return type == kRedeploy || type == kStop;
+  if (std::holds_alternative<StartProcess>(command.what))
+    return type == kRedeploy || type == kStart;
+  if (std::holds_alternative<CallService>(command.what)) return type == kCall;
+  if (const auto* mode = std::get_if<ChangeMode>(&command.what))
+    return type == kChangeMode && adaptation.subject == mode->mode;
+  return false;  // reading is no change
+}
+
+// A restart takes its time to come back, not to go.
+bool takes_time(const Command& command, const Adaptation& adaptation) {
+  if (std::holds_alternative<StopProcess>(command.what))
+    return adaptation.type == AdaptationType::kStop;
+  const auto* change = std::get_if<ChangeLifecycle>(&command.what);
+  return change == nullptr || change->transition != Transition::kDeactivate ||
+         adaptation.type != AdaptationType::kRestart;
+}
+
+}  // namespace
+
+ScriptedRobot::ScriptedRobot(const RuleSet& rules, const Scenario& scenario)
+    : rules_(rules), scenario_(scenario) {
+  build_components(scenario);
+  build_voices(scenario);
+  set_default_parameters();
+  for (const Incident& i : scenario.incidents) plan(Time{i.at}, [this, &i] { incident(i); });
+}
+
+void ScriptedRobot::build_components(const Scenario& scenario) {
+  for (const culprit::Component& known : rules_.components) {
+    Component component;
+    component.node = known.node.empty() ? "/" + known.name : known.node;
+    component.pid = ++last_pid_;
+    components_.push_back(std::move(component));
+  }
+  for (const InitialState& state : scenario.states) {
+    Component& component = components_[state.component.index];
+    component.is_there = state.presence == Presence::kThere;
+    component.process = component.is_there ? ProcessState::kRunning : ProcessState::kGone;
+    component.lifecycle = component.lifecycle_at_start = state.lifecycle;
+  }
+  for (const Need& need : scenario.needs)
+    components_[need.consumer.index].needs.push_back(need.producer);
+  for (std::size_t c = 0; c < components_.size(); ++c) appear(ComponentId(c));
+  for (const Endpoint& endpoint : scenario.endpoints)
+    tell(
+        EndpointAppeared{components_[endpoint.component.index].node, endpoint.kind, endpoint.name});
+  for (const Need& need : scenario.needs) {
+    const std::string& producer = components_[need.producer.index].node;
+    const std::string service = producer + "/needed";
+    tell(EndpointAppeared{producer, EndpointKind::kServer, service});
+    tell(EndpointAppeared{components_[need.consumer.index].node, EndpointKind::kClient, service});
+  }
+}
+
+// Courses of one subject, in the file's shared part and in the test, make one voice.
+void ScriptedRobot::build_voices(const Scenario& scenario) {
+  for (const Course& course : scenario.courses) {
+    for (const Stretch& stretch : course.stretches) {
+      if (const auto* id = std::get_if<ParameterId>(&course.subject)) {
+        plan(Time{stretch.from},
+             [this, id = *id, &stretch] { follow_parameter(id, *stretch.value); });
+        continue;
+      }
+      plan(Time{stretch.from}, [this] { has_changed_ = true; });
+      if (stretch.until) plan(Time{*stretch.until}, [this] { has_changed_ = true; });
+    }
+    if (std::holds_alternative<ParameterId>(course.subject)) continue;
+    auto voice = std::find_if(voices_.begin(), voices_.end(),
+                              [&](const Voice& v) { return v.subject == course.subject; });
+    if (voice == voices_.end()) {
+      voices_.push_back({course.subject, {}, kPeriod, {}, {}, false, {}});
+      voice = voices_.end() - 1;
+    }
+    voice->stretches.insert(voice->stretches.end(), course.stretches.begin(),
+                            course.stretches.end());
+    voice->period = course.period.value_or(voice->period);
+  }
+  for (const Origin& origin : scenario.origins) {
+    for (Voice& voice : voices_) {
+      if (voice.subject == origin.subject) voice.tellers.push_back(origin.component);
+    }
+  }
+}
+
+void ScriptedRobot::set_default_parameters() {
+  for (const Strategy& strategy : rules_.strategies) {
+    for (const Adaptation& adaptation : strategy.adaptations) {
+      Component& component = components_[adaptation.component.index];
+      const bool is_topic = adaptation.type == AdaptationType::kChangeCommunication;
+      if (is_topic || !adaptation.value.empty())
+        component.parameters.emplace(adaptation.subject, is_topic
+                                                             ? Value(std::string())
+                                                             : empty_value(adaptation.value.type));
+    }
+  }
+}
+
+// ---- time
+
+void ScriptedRobot::observe(Time until, std::vector<Observation>& observations) {
+  while (true) {
+    Time next = until;
+    if (!agenda_.empty()) next = std::min(next, agenda_.begin()->first);
+    for (const Voice& voice : voices_) {
+      if (voice.is_heard || has_changed_) next = std::min(next, voice.next);
+    }
+    now_ = std::max(now_, next);
+    while (!agenda_.empty() && agenda_.begin()->first <= now_) {
+      const auto action = std::move(agenda_.begin()->second);
+      agenda_.erase(agenda_.begin());
+      action();
+    }
+    if (has_changed_) refresh_voices();
+    for (Voice& voice : voices_) {
+      if (voice.is_heard && voice.next <= now_) speak(voice);
+    }
+    if (!inbox_.empty() || now_ >= until) break;
+  }
+  std::move(inbox_.begin(), inbox_.end(), std::back_inserter(observations));
+  inbox_.clear();
+}
+
+void ScriptedRobot::speak(Voice& voice) {
+  voice.next = later(voice.next, voice.period);
+  if (const auto* topic = std::get_if<TopicId>(&voice.subject)) {
+    tell(SampleArrived{*topic, 1});
+  } else if (const auto* signal = std::get_if<SignalId>(&voice.subject)) {
+    tell(SignalRead{*signal, *voice.value});
+  } else if (const auto* diagnostic = std::get_if<DiagnosticId>(&voice.subject)) {
+    tell(DiagnosticRead{*diagnostic,
+                        static_cast<std::uint8_t>(std::get<std::int64_t>(*voice.value))});
+  }
+}
+
+// What each voice says now, and whether it can be heard. One that begins to be heard speaks at
+// once.
+void ScriptedRobot::refresh_voices() {
+  has_changed_ = false;
+  for (Voice& voice : voices_) {
+    const auto covers = [&](const Stretch& s) {
+      return Time{s.from} <= now_ && (!s.until || now_ < Time{*s.until});
+    };
+    const auto last = std::find_if(voice.stretches.rbegin(), voice.stretches.rend(), covers);
+    voice.value = last == voice.stretches.rend() ? std::nullopt : last->value;
+    if (voice.value && std::holds_alternative<TopicId>(voice.subject))
+      voice.period = from_seconds(1 / std::get<double>(*voice.value));
+  }
+  const std::vector<bool> works = working();
+  for (Voice& voice : voices_) {
+    const bool was_heard = voice.is_heard;
+    voice.is_heard = voice.value && std::all_of(voice.tellers.begin(), voice.tellers.end(),
+                                                [&](ComponentId c) { return works[c.index]; });
+    if (voice.is_heard && !was_heard) voice.next = now_;
+  }
+}
+
+// From components that cannot work by themselves, spread to all that need them.
+std::vector<bool> ScriptedRobot::working() const {
+  std::vector<bool> works;
+  for (const Component& c : components_) {
+    const bool is_active = c.lifecycle == Lifecycle::kActive || c.lifecycle == Lifecycle::kUnknown;
+    works.push_back(c.hears() && is_active);
+  }
+  std::vector<bool> is_mute(components_.size());
+  for (const Voice& voice : voices_) {
+    for (const ComponentId teller : voice.tellers) {
+      if (!voice.value) is_mute[teller.index] = true;
+    }
+  }
+  for (bool goes_on = true; goes_on;) {
+    goes_on = false;
+    for (std::size_t c = 0; c < components_.size(); ++c) {
+      if (!works[c]) continue;
+      const auto& needs = components_[c].needs;
+      works[c] = std::all_of(needs.begin(), needs.end(),
+                             [&](ComponentId n) { return works[n.index] && !is_mute[n.index]; });
+      goes_on |= !works[c];
+    }
+  }
+  return works;
+}
+
+// ---- what happens to it
+
+void ScriptedRobot::appear(ComponentId id) {
+  const Component& component = components_[id.index];
+  if (!component.is_there) return;
+  tell(ProcessSeen{id, ProcessState::kRunning, component.pid, ""});
+  tell(NodeAppeared{component.node, component.pid});
+  if (component.lifecycle != Lifecycle::kUnknown) tell(LifecycleRead{id, component.lifecycle});
+}
+
+void ScriptedRobot::incident(const Incident& incident) {
+  Component& component = components_[incident.component.index];
+  has_changed_ = true;
+  if (component.process == ProcessState::kGone) return;
+  switch (incident.kind) {
+    case Incident::Kind::kKilled:
+      component.process = ProcessState::kGone;
+      component.is_there = false;
+      tell(ProcessSeen{incident.component, ProcessState::kGone, component.pid,
+                       "killed by signal 9"});
+      break;
+    case Incident::Kind::kStopped:
+      component.process = ProcessState::kStopped;
+      tell(ProcessSeen{incident.component, ProcessState::kStopped, component.pid, ""});
+      break;
+    case Incident::Kind::kHung:
+      component.answers = false;
+      break;
+    case Incident::Kind::kState:
+      component.lifecycle = incident.lifecycle;
+      tell(LifecycleRead{incident.component, component.lifecycle});
+      break;
+  }
+}
+
+void ScriptedRobot::heal(const std::vector<Subject>& subjects) {
+  has_changed_ = true;
+  for (Voice& voice : voices_) {
+    if (std::find(subjects.begin(), subjects.end(), voice.subject) == subjects.end()) continue;
+    std::erase_if(voice.stretches, [&](const Stretch& s) {
+      return s.from > Duration::zero() && Time{s.from} <= now_;
+    });
+  }
+}
+
+void ScriptedRobot::follow_parameter(ParameterId id, const Value& value) {
+  const Parameter& parameter = rules_[id];
+  components_[parameter.component.index].parameters[parameter.name] = value;
+  tell(ParameterRead{id, value});
+}
+
+void ScriptedRobot::hear(const Event& event) {
+  if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
+    for (const ComponentId component : rules_[chosen->strategy].components)
+      components_[component.index].adapted_by = chosen->strategy;
+  } else if (const auto* done = std::get_if<AdaptationDone>(&event.what)) {
+    const std::size_t last = rules_[done->strategy].adaptations.size() - 1;
+    for (const Cure& cure : scenario_.cures) {
+      if (cure.strategy != done->strategy || cure.adaptation.value_or(last) != done->adaptation)
+        continue;
+      plan(later(event.at, cure.after), [this, &cure] { heal(cure.subjects); });
+    }
+  }
+}
+
+// ---- what it is asked
+
+ScriptedRobot::Conduct ScriptedRobot::conduct(const Command& command) const {
+  Conduct conduct;
+  const auto strategy = components_[command.component.index].adapted_by;
+  if (!strategy) return conduct;
+  const auto& adaptations = rules_[*strategy].adaptations;
+  const auto asking = std::find_if(adaptations.begin(), adaptations.end(), [&](const auto& a) {
+    return a.component == command.component && can_ask(a, command);
+  });
+  if (asking == adaptations.end()) return conduct;
+  const auto index = static_cast<std::size_t>(asking - adaptations.begin());
+  for (const Answer& answer : scenario_.answers) {
+    if (answer.strategy != *strategy || answer.adaptation != index) continue;
+    if (answer.manner) conduct.manner = *answer.manner;
+    if (answer.takes && takes_time(command, *asking)) conduct.takes = answer.takes;
+  }
+  return conduct;
+}
+
+// A moment later, so that the robot has heard by then which strategy the command serves.
+void ScriptedRobot::execute(const Command& command) {
+  plan(later(now_, kAnswerTime), [this, command] { serve(command); });
+}
+
+void ScriptedRobot::reply(const Command& command, Outcome outcome, decltype(Reply::value) value,
+                          std::string text) {
+  tell(Reply{command.id, outcome, std::move(value), std::move(text)});
+}
+
+void ScriptedRobot::time_out(const Command& command) {
+  plan(later(now_, command.timeout), [this, command] { reply(command, Outcome::kTimedOut); });
+}
+
+void ScriptedRobot::serve(const Command& command) {
+  Component& c = components_[command.component.index];
+  const Conduct how = conduct(command);
+  if (how.manner == Answer::Manner::kRefuses) return reply(command, Outcome::kRefused);
+  if (how.manner == Answer::Manner::kNeverAnswers) return time_out(command);
+  if (std::holds_alternative<StartProcess>(command.what))
+    return start(command, how.takes.value_or(kStartTime));
+  const bool stops = std::holds_alternative<StopProcess>(command.what);
+  if (!stops && !c.hears()) return time_out(command);
+  if (!how.takes) return stops ? stop(command) : carry_out(command);
+  // What takes longer than the manager waits is done all the same, and nobody hears of it.
+  const bool is_late = *how.takes > command.timeout;
+  if (is_late) time_out(command);
+  plan(later(now_, *how.takes),
+       [this, command, stops] { stops ? stop(command) : carry_out(command); });
+}
+
+void ScriptedRobot::carry_out(const Command& command) {
+  Component& c = components_[command.component.index];
+  if (const auto* change = std::get_if<ChangeLifecycle>(&command.what)) {
+    change_lifecycle(command, change->transition);
+  } else if (std::holds_alternative<ReadLifecycle>(command.what)) {
+    reply(command, Outcome::kDone, c.lifecycle);
+  } else if (const auto* set = std::get_if<SetParameter>(&command.what)) {
+    set_parameter(command, *set);
+  } else if (const auto* read = std::get_if<ReadParameter>(&command.what)) {
+    const auto found = c.parameters.find(read->name);
+    if (found == c.parameters.end())
+      return reply(command, Outcome::kRefused, {}, "no parameter " + read->name);
+    reply(command, Outcome::kDone, found->second);
+  } else if (const auto* mode = std::get_if<ChangeMode>(&command.what)) {
+    c.mode = mode->mode;
+    reply(command, Outcome::kDone);
+  } else if (std::holds_alternative<ReadMode>(command.what)) {
+    reply(command, Outcome::kDone, Value(c.mode));
+  } else {
+    reply(command, Outcome::kDone);  // a routine that says it succeeded
+  }
+}
+
+void ScriptedRobot::set_parameter(const Command& command, const SetParameter& set) {
+  components_[command.component.index].parameters[set.name] = set.value;
+  for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
+    const Parameter& parameter = rules_.parameters[p];
+    if (parameter.component == command.component && parameter.name == set.name)
+      tell(ParameterRead{ParameterId(p), set.value});
+  }
+  reply(command, Outcome::kDone);
+}
+
+void ScriptedRobot::change_lifecycle(const Command& command, Transition transition) {
+  using enum Lifecycle;
+  Component& c = components_[command.component.index];
+  const bool is_possible = (transition == Transition::kConfigure && c.lifecycle == kUnconfigured) ||
+                           (transition == Transition::kCleanup && c.lifecycle == kInactive) ||
+                           (transition == Transition::kActivate && c.lifecycle == kInactive) ||
+                           (transition == Transition::kDeactivate && c.lifecycle == kActive);
+  if (!is_possible) return reply(command, Outcome::kRefused, {}, "the transition is not possible");
+  c.lifecycle = transition == Transition::kActivate  ? kActive
+                : transition == Transition::kCleanup ? kUnconfigured
+                                                     : kInactive;
+  has_changed_ = true;
+  tell(LifecycleRead{command.component, c.lifecycle});
+  reply(command, Outcome::kDone);
+}
+
+void ScriptedRobot::stop(const Command& command) {
+  Component& c = components_[command.component.index];
+  if (c.process != ProcessState::kGone)
+    tell(ProcessSeen{command.component, ProcessState::kGone, c.pid, "stopped"});
+  c.process = ProcessState::kGone;
+  c.is_there = false;
+  has_changed_ = true;
+  reply(command, Outcome::kDone);
+}
+
+// The process runs at once; its node joins the graph after `takes`, in the state that the component
+// had at the start of the test.
+void ScriptedRobot::start(const Command& command, Duration takes) {
+  Component& c = components_[command.component.index];
+  c.process = ProcessState::kRunning;
+  c.pid = ++last_pid_;
+  reply(command, Outcome::kDone, Value(std::int64_t{c.pid}));
+  tell(ProcessSeen{command.component, ProcessState::kRunning, c.pid, ""});
+  plan(later(now_, takes), [this, id = command.component, pid = c.pid] {
+    Component& started = components_[id.index];
+    if (started.pid != pid || started.process == ProcessState::kGone) return;
+    started.is_there = true;
+    started.answers = true;
+    started.lifecycle = started.lifecycle_at_start;
+    has_changed_ = true;
+    appear(id);
+  });
+}
+
+}  // namespace culprit::rule_test

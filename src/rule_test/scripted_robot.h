@@ -1,0 +1,110 @@
+// A robot that plays a scenario in virtual time.
+//
+// All components of the rules are there at time 0 and work, unless the scenario says otherwise. A
+// component works if its process runs and answers, its lifecycle (if it has one) is active, and
+// whatever it needs delivers: works, with none of its topics and signals silent. What only a
+// component tells is silent while the component does not work.
+//
+// Requests are obeyed after a moment: 5 ms, 300 ms for a process to come up. A parameter that
+// strategies write and the scenario does not set is there, with nothing in it (false, 0, "").
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "knowledge/event.h"
+#include "robot/robot.h"
+#include "rule_test/scenario.h"
+
+namespace culprit::rule_test {
+
+class ScriptedRobot : public Robot {
+ public:
+  static constexpr Duration kAnswerTime = std::chrono::milliseconds(5);
+  static constexpr Duration kStartTime = std::chrono::milliseconds(300);
+  static constexpr Duration kPeriod = std::chrono::milliseconds(100);  // of signals and levels
+
+  // Both must outlive the robot.
+  ScriptedRobot(const RuleSet& rules, const Scenario& scenario);
+
+  Time now() const override { return now_; }
+  void observe(Time until, std::vector<Observation>& observations) override;
+  void execute(const Command& command) override;
+
+  // What the manager did. Tells the robot which strategy a command serves, and when an adaptation
+  // took effect.
+  void hear(const Event& event);
+
+ private:
+  struct Component {
+    std::string node;
+    int pid = 0;
+    bool is_there = true;
+    ProcessState process = ProcessState::kRunning;
+    Lifecycle lifecycle = Lifecycle::kActive;
+    Lifecycle lifecycle_at_start = Lifecycle::kActive;
+    bool answers = true;
+    std::string mode;
+    std::map<std::string, Value> parameters;
+    std::optional<StrategyId> adapted_by;
+    std::vector<ComponentId> needs;
+
+    bool hears() const { return is_there && process == ProcessState::kRunning && answers; }
+  };
+  struct Voice {
+    Subject subject;
+    std::vector<Stretch> stretches;
+    Duration period{};
+    std::vector<ComponentId> tellers;  // it is silent while one of them does not work
+    std::optional<Value> value;        // now; nothing: silent
+    bool is_heard = false;             // value, and all tellers work
+    Time next{};
+  };
+
+  void build_components(const Scenario& scenario);
+  void build_voices(const Scenario& scenario);
+  void set_default_parameters();
+  void appear(ComponentId id);
+  void incident(const Incident& incident);
+  void heal(const std::vector<Subject>& subjects);
+  void follow_parameter(ParameterId id, const Value& value);
+  void refresh_voices();
+  std::vector<bool> working() const;
+  void speak(Voice& voice);
+
+  // How a command is answered.
+  struct Conduct {
+    Answer::Manner manner = Answer::Manner::kObeys;
+    std::optional<Duration> takes;
+  };
+  Conduct conduct(const Command& command) const;
+  void serve(const Command& command);
+  void carry_out(const Command& command);
+  void set_parameter(const Command& command, const SetParameter& set);
+  void change_lifecycle(const Command& command, Transition transition);
+  void start(const Command& command, Duration takes);
+  void stop(const Command& command);
+  void time_out(const Command& command);
+  void reply(const Command& command, Outcome outcome, decltype(Reply::value) value = {},
+             std::string text = "");
+
+  template <class What>
+  void tell(What what) {
+    inbox_.push_back({now_, std::move(what)});
+  }
+  void plan(Time at, std::function<void()> action) { agenda_.emplace(at, std::move(action)); }
+
+  const RuleSet& rules_;
+  const Scenario& scenario_;
+  Time now_{};
+  std::vector<Component> components_;
+  std::vector<Voice> voices_;
+  std::multimap<Time, std::function<void()>> agenda_;
+  std::vector<Observation> inbox_;
+  bool has_changed_ = true;  // what can be heard has to be found out anew
+  int last_pid_ = 100;
+};
+
+}  // namespace culprit::rule_test

@@ -1,0 +1,31 @@
+// Tests from texts, for tests of how they are read and run.
+#pragma once
+
+#include <string>
+
+#include "rule_test/report.h"
+
+namespace culprit::rule_test {
+
+// A camera and a fusion that needs it, each with a failure that is healed by a restart or else by a
+// redeploy; and a blur that a parameter heals.
+RuleSet pipeline_rules();
+
+// The robot of these rules when it is well, to stand before the tests.
+extern const char* const kPipeline;
+
+struct Played {
+  Source source;
+  RuleSet rules;
+  Suite suite;
+  Result result;
+
+  // The disappointments, in one line each.
+  std::vector<std::string> instead() const;
+  std::string text() const { return report(result, source, rules); }
+};
+
+// Reads and runs one test, written without its TEST line. A mistake in it fails the test that asks.
+Played play(const std::string& test);
+
+}  // namespace culprit::rule_test
