@@ -1,9 +1,10 @@
 # The two commands of this project are `make demo` and `make test`. Each installs what is missing first.
 .PHONY: build demo test bench format clean dependencies
 
+# The programs; `make test` builds the tests.
 build: dependencies
 	cmake --preset release
-	cmake --build --preset release
+	cmake --build --preset release --target culprit sunset-node
 
 demo: build
 	build/release/bin/culprit demo
