@@ -5,9 +5,10 @@
 #include <unordered_set>
 
 #include "knowledge/component_states.h"
-#include "knowledge/signal_store.h"
 #include "language/line_reader.h"
 #include "language/scanner.h"
+#include "rule_test/answer_reader.h"
+#include "rule_test/course_reader.h"
 #include "rule_test/expectation_reader.h"
 #include "rule_test/names.h"
 
@@ -15,15 +16,6 @@ namespace culprit::rule_test {
 namespace {
 
 using syntax::Name;
-
-// "10Hz": a rate is a name to the scanner.
-std::optional<double> rate_of(const std::string& text) {
-  if (!text.ends_with("Hz") || text.size() > 32) return std::nullopt;
-  const Value number = value_from_text(text.substr(0, text.size() - 2));
-  if (const auto* whole = std::get_if<std::int64_t>(&number)) return static_cast<double>(*whole);
-  if (const auto* real = std::get_if<double>(&number)) return *real;
-  return std::nullopt;
-}
 
 class Reader {
  public:
@@ -283,110 +275,10 @@ class Reader {
   }
 
   bool course(Scanner& s, Subject subject) {
-    Course course{subject, {}, {}};
-    const bool is_sampled =
-        std::holds_alternative<SignalId>(subject) || std::holds_alternative<DiagnosticId>(subject);
-    if (is_sampled && s.peek().text == "EVERY") {
-      s.next();
-      const Span span = s.peek().span;
-      course.period = read_.duration(s, "how often it is read");
-      if (!course.period) return false;
-      if (*course.period < kShortestPeriod)
-        return read_.fail(Code::kPolicyRange, span, "at least 1ms must pass between readings", "");
-    }
-    do {
-      if (!stretch(s, course)) return false;
-    } while (!s.at_end());
-    scenario().courses.push_back(std::move(course));
+    auto course = read_course(s, read_, rules_, subject);
+    if (!course) return false;
+    scenario().courses.push_back(std::move(*course));
     return true;
-  }
-
-  // "2s: value", "2s..5s: value"
-  bool stretch(Scanner& s, Course& course) {
-    Stretch stretch;
-    const auto from = read_.duration(s, "a time, as in 2s: or 2s..5s:");
-    if (!from) return false;
-    stretch.from = *from;
-    if (s.peek().is("..")) {
-      s.next();
-      const Span span = s.peek().span;
-      stretch.until = read_.duration(s, "a time");
-      if (!stretch.until) return false;
-      if (*stretch.until <= stretch.from)
-        return read_.fail(Code::kEmptyRange, span, "this time is not after the one before", "");
-      if (std::holds_alternative<ParameterId>(course.subject))
-        return read_.fail(Code::kSyntax, span, "a parameter keeps its value until it is set again",
-                          "write the time from which on it has it, as in 2s: true");
-    }
-    if (!read_.expect_symbol(s, ":")) return false;
-    if (!value(s, course.subject, stretch)) return false;
-    course.stretches.push_back(std::move(stretch));
-    return true;
-  }
-
-  bool value(Scanner& s, Subject subject, Stretch& stretch) {
-    const bool is_parameter = std::holds_alternative<ParameterId>(subject);
-    if (s.peek().text == "silent" && s.peek().kind == Token::Kind::kIdentifier && !is_parameter) {
-      s.next();
-      return true;
-    }
-    if (std::holds_alternative<TopicId>(subject)) return rate(s, stretch);
-    const std::uint32_t begin = s.position();
-    stretch.value = literal(s);
-    if (!stretch.value) return false;
-    const Span span{begin, std::max(begin, last_end_)};
-    if (std::holds_alternative<DiagnosticId>(subject)) return is_level(*stretch.value, span);
-    if (const auto* id = std::get_if<SignalId>(&subject)) return fits(*stretch.value, *id, span);
-    return true;
-  }
-
-  bool rate(Scanner& s, Stretch& stretch) {
-    const Name name = s.next_name();
-    const auto rate = rate_of(name.text);
-    if (!rate)
-      return read_.fail(Code::kSyntax, name.span, "expected a rate, or silent",
-                        "a rate is written like 10Hz");
-    if (!(*rate > 0 && *rate <= kHighestRate))
-      return read_.fail(Code::kPolicyRange, name.span, "a rate is above 0Hz and at most 1000Hz",
-                        "write silent where nothing comes");
-    stretch.value = Value(*rate);
-    return true;
-  }
-
-  std::optional<Value> literal(Scanner& s) {
-    const bool negative = s.peek().is("-");
-    if (negative) s.next();
-    const Token token = s.next();
-    last_end_ = token.span.end;
-    const bool is_truth =
-        token.kind == Token::Kind::kIdentifier && (token.text == "true" || token.text == "false");
-    if (token.kind == Token::Kind::kNumber) {
-      if (const auto* whole = std::get_if<std::int64_t>(&token.literal))
-        return Value(negative ? -*whole : *whole);
-      const double number = std::get<double>(token.literal);
-      return Value(negative ? -number : number);
-    }
-    if (!negative && is_truth) return Value(token.text == "true");
-    if (!negative && token.kind == Token::Kind::kString)
-      return Value(std::get<std::string>(token.literal));
-    read_.fail_token(token, "a value", "a value is true, false, a number, or a text in quotes");
-    return std::nullopt;
-  }
-
-  bool fits(const Value& value, SignalId id, Span span) {
-    std::string text;
-    if (as_type(value, rules_[id].type, text).known) return true;
-    return read_.fail(Code::kTypeMismatch, span,
-                      rules_[id].name + " is a " + std::string(to_string(rules_[id].type)) +
-                          " in the rules, and this is none",
-                      "");
-  }
-
-  bool is_level(const Value& value, Span span) {
-    const auto* level = std::get_if<std::int64_t>(&value);
-    if (level != nullptr && *level >= 0 && *level <= 3) return true;
-    return read_.fail(Code::kPolicyRange, span,
-                      "a level is 0 (OK), 1 (WARN), 2 (ERROR) or 3 (STALE)", "");
   }
 
   // ---- what happens, and how the robot answers
@@ -417,106 +309,11 @@ class Reader {
     return true;
   }
 
-  // Everywhere in the rules where this component is adapted in this way.
   bool adaptation(Scanner& s) {
-    const auto name = read_.component_reference(s);
-    const auto component = name ? names_.component(*name) : std::nullopt;
-    if (!component) return false;
-    const Token word = s.next();
-    const auto type = syntax::adaptation_type(word.text);
-    if (!type) {
-      const std::string near = closest(word.text, syntax::adaptation_keywords());
-      return read_.fail_token(word, "an adaptation, such as restart or set_parameter",
-                              near.empty() ? "" : "did you mean " + near + "?");
-    }
-    std::optional<Name> subject;
-    if (!is_answer(s.peek().text)) {
-      subject = read_.name_or_text(s, kAnswersText);
-      if (!subject) return false;
-    }
-    std::vector<Place> places;
-    for (std::size_t i = 0; i < rules_.strategies.size(); ++i) {
-      const auto& adaptations = rules_.strategies[i].adaptations;
-      for (std::size_t a = 0; a < adaptations.size(); ++a) {
-        const bool same = adaptations[a].component == *component && adaptations[a].type == *type &&
-                          (!subject || adaptations[a].subject == subject->text);
-        if (same) places.push_back({StrategyId(i), a});
-      }
-    }
-    if (places.empty())
-      return read_.fail(Code::kUnknownName,
-                        {name->span.begin, (subject ? subject->span : word.span).end},
-                        "no strategy of the rules adapts " + name->text + " in this way", "");
-    return answers(s, places);
+    return read_answers_of_adaptation(s, read_, names_, rules_, scenario());
   }
-
   bool strategy(Scanner& s) {
-    const auto name = read_.name_or_text(s, "a strategy");
-    const auto id = name ? names_.strategy(*name) : std::nullopt;
-    return id && answers(s, {{*id, std::nullopt}});
-  }
-
-  struct Place {
-    StrategyId strategy;
-    std::optional<std::size_t> adaptation;  // nothing: all of them
-  };
-  static constexpr const char* kAnswersText = "HEALS, TAKES, REFUSED or UNANSWERED";
-  static bool is_answer(std::string_view word) {
-    return word == "HEALS" || word == "TAKES" || word == "REFUSED" || word == "UNANSWERED";
-  }
-
-  bool answers(Scanner& s, const std::vector<Place>& places) {
-    do {
-      const Token word = s.next();
-      if (word.text == "HEALS") {
-        if (!heals(s, places)) return false;
-      } else if (word.text == "TAKES") {
-        const auto time = read_.duration(s, "how long it takes");
-        if (!time) return false;
-        answer(places, {}, time);
-      } else if (word.text == "REFUSED") {
-        answer(places, Answer::Manner::kRefuses, {});
-      } else if (word.text == "UNANSWERED") {
-        answer(places, Answer::Manner::kNeverAnswers, {});
-      } else {
-        return read_.unexpected_clause(word, {"HEALS", "TAKES", "REFUSED", "UNANSWERED"});
-      }
-    } while (!s.at_end());
-    return true;
-  }
-
-  void answer(const std::vector<Place>& places, std::optional<Answer::Manner> manner,
-              std::optional<Duration> takes) {
-    for (const Place& place : places) {
-      const std::size_t count = rules_[place.strategy].adaptations.size();
-      for (std::size_t a = 0; a < count; ++a) {
-        if (place.adaptation && *place.adaptation != a) continue;
-        scenario().answers.push_back({place.strategy, a, manner, takes});
-      }
-    }
-  }
-
-  // "HEALS /topic signal AFTER 300ms"
-  bool heals(Scanner& s, const std::vector<Place>& places) {
-    Cure cure;
-    do {
-      const auto name = read_.name_or_text(s, "a topic or a signal");
-      const auto subject = name ? names_.topic_or_signal(*name) : std::nullopt;
-      if (!subject) return false;
-      cure.subjects.push_back(*subject);
-    } while (!s.at_end() && !is_answer(s.peek().text) && s.peek().text != "AFTER");
-    if (s.peek().text == "AFTER") {
-      s.next();
-      const auto after = read_.duration(s, "how long after it took effect");
-      if (!after) return false;
-      cure.after = *after;
-    }
-    for (const Place& place : places) {
-      cure.strategy = place.strategy;
-      cure.adaptation = place.adaptation;
-      scenario().cures.push_back(cure);
-    }
-    return true;
+    return read_answers_of_strategy(s, read_, names_, rules_, scenario());
   }
 
   const Source& source_;
@@ -528,7 +325,6 @@ class Reader {
   std::unordered_set<std::string> test_names_;
   bool is_broken_ = false;  // a line of the test under way; what follows from it is not reported
   Span keyword_;
-  std::uint32_t last_end_ = 0;
 };
 
 const std::array<Reader::Statement, Reader::kStatementCount> Reader::kStatements = {{

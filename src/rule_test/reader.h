@@ -14,10 +14,8 @@
 
 namespace culprit::rule_test {
 
-// Bounds of what a file can make a run cost.
+// A bound of what a file can make a run cost.
 inline constexpr Duration kLongestRun = std::chrono::hours(1);
-inline constexpr double kHighestRate = 1000;  // Hz
-inline constexpr Duration kShortestPeriod = std::chrono::milliseconds(1);
 
 struct Test {
   std::string name;

@@ -1,0 +1,148 @@
+#include "rule_test/course_reader.h"
+
+#include <algorithm>
+
+#include "knowledge/signal_store.h"
+
+namespace culprit::rule_test {
+namespace {
+
+using syntax::Name;
+
+// "10Hz": a rate is a name to the scanner.
+std::optional<double> rate_of(const std::string& text) {
+  if (!text.ends_with("Hz") || text.size() > 32) return std::nullopt;
+  const Value number = value_from_text(text.substr(0, text.size() - 2));
+  if (const auto* whole = std::get_if<std::int64_t>(&number)) return static_cast<double>(*whole);
+  if (const auto* real = std::get_if<double>(&number)) return *real;
+  return std::nullopt;
+}
+
+class CourseReader {
+ public:
+  CourseReader(Scanner& scanner, LineReader& read, const RuleSet& rules)
+      : s_(scanner), read_(read), rules_(rules) {}
+
+  std::optional<Course> course(Subject subject) {
+    Course course{subject, {}, {}};
+    const bool is_sampled =
+        std::holds_alternative<SignalId>(subject) || std::holds_alternative<DiagnosticId>(subject);
+    if (is_sampled && s_.peek().text == "EVERY") {
+      s_.next();
+      const Span span = s_.peek().span;
+      course.period = read_.duration(s_, "how often it is read");
+      if (!course.period) return std::nullopt;
+      if (*course.period < kShortestPeriod) {
+        read_.fail(Code::kPolicyRange, span, "at least 1ms must pass between readings", "");
+        return std::nullopt;
+      }
+    }
+    do {
+      if (!stretch(course)) return std::nullopt;
+    } while (!s_.at_end());
+    return course;
+  }
+
+ private:
+  // "2s: value", "2s..5s: value"
+  bool stretch(Course& course) {
+    Stretch stretch;
+    const auto from = read_.duration(s_, "a time, as in 2s: or 2s..5s:");
+    if (!from) return false;
+    stretch.from = *from;
+    if (s_.peek().is("..")) {
+      s_.next();
+      const Span span = s_.peek().span;
+      stretch.until = read_.duration(s_, "a time");
+      if (!stretch.until) return false;
+      if (*stretch.until <= stretch.from)
+        return read_.fail(Code::kEmptyRange, span, "this time is not after the one before", "");
+      if (std::holds_alternative<ParameterId>(course.subject))
+        return read_.fail(Code::kSyntax, span, "a parameter keeps its value until it is set again",
+                          "write the time from which on it has it, as in 2s: true");
+    }
+    if (!read_.expect_symbol(s_, ":")) return false;
+    if (!value(course.subject, stretch)) return false;
+    course.stretches.push_back(std::move(stretch));
+    return true;
+  }
+
+  bool value(Subject subject, Stretch& stretch) {
+    const bool is_parameter = std::holds_alternative<ParameterId>(subject);
+    if (s_.peek().text == "silent" && s_.peek().kind == Token::Kind::kIdentifier && !is_parameter) {
+      s_.next();
+      return true;
+    }
+    if (std::holds_alternative<TopicId>(subject)) return rate(stretch);
+    const std::uint32_t begin = s_.position();
+    stretch.value = literal();
+    if (!stretch.value) return false;
+    const Span span{begin, std::max(begin, last_end_)};
+    if (std::holds_alternative<DiagnosticId>(subject)) return is_level(*stretch.value, span);
+    if (const auto* id = std::get_if<SignalId>(&subject)) return fits(*stretch.value, *id, span);
+    return true;
+  }
+
+  bool rate(Stretch& stretch) {
+    const Name name = s_.next_name();
+    const auto rate = rate_of(name.text);
+    if (!rate)
+      return read_.fail(Code::kSyntax, name.span, "expected a rate, or silent",
+                        "a rate is written like 10Hz");
+    if (!(*rate > 0 && *rate <= kHighestRate))
+      return read_.fail(Code::kPolicyRange, name.span, "a rate is above 0Hz and at most 1000Hz",
+                        "write silent where nothing comes");
+    stretch.value = Value(*rate);
+    return true;
+  }
+
+  std::optional<Value> literal() {
+    const bool negative = s_.peek().is("-");
+    if (negative) s_.next();
+    const Token token = s_.next();
+    last_end_ = token.span.end;
+    const bool is_truth =
+        token.kind == Token::Kind::kIdentifier && (token.text == "true" || token.text == "false");
+    if (token.kind == Token::Kind::kNumber) {
+      if (const auto* whole = std::get_if<std::int64_t>(&token.literal))
+        return Value(negative ? -*whole : *whole);
+      const double number = std::get<double>(token.literal);
+      return Value(negative ? -number : number);
+    }
+    if (!negative && is_truth) return Value(token.text == "true");
+    if (!negative && token.kind == Token::Kind::kString)
+      return Value(std::get<std::string>(token.literal));
+    read_.fail_token(token, "a value", "a value is true, false, a number, or a text in quotes");
+    return std::nullopt;
+  }
+
+  bool fits(const Value& value, SignalId id, Span span) {
+    std::string text;
+    if (as_type(value, rules_[id].type, text).known) return true;
+    return read_.fail(Code::kTypeMismatch, span,
+                      rules_[id].name + " is a " + std::string(to_string(rules_[id].type)) +
+                          " in the rules, and this is none",
+                      "");
+  }
+
+  bool is_level(const Value& value, Span span) {
+    const auto* level = std::get_if<std::int64_t>(&value);
+    if (level != nullptr && *level >= 0 && *level <= 3) return true;
+    return read_.fail(Code::kPolicyRange, span,
+                      "a level is 0 (OK), 1 (WARN), 2 (ERROR) or 3 (STALE)", "");
+  }
+
+  Scanner& s_;
+  LineReader& read_;
+  const RuleSet& rules_;
+  std::uint32_t last_end_ = 0;  // of the last value
+};
+
+}  // namespace
+
+std::optional<Course> read_course(Scanner& scanner, LineReader& read, const RuleSet& rules,
+                                  Subject subject) {
+  return CourseReader(scanner, read, rules).course(subject);
+}
+
+}  // namespace culprit::rule_test
