@@ -1,4 +1,6 @@
-// Test files of rules: whatever the text is, it is read to its end, and every diagnostic renders.
+// Test files of rules: whatever the text is, it is read to its end, every diagnostic renders, and
+// what is free of errors can be played.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -6,6 +8,7 @@
 
 #include "language/checker.h"
 #include "rule_test/reader.h"
+#include "rule_test/runner.h"
 
 namespace {
 
@@ -43,7 +46,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const rule_test::Suite suite = rule_test::read_suite(source, rules(), diagnostics);
   for (const Diagnostic& diagnostic : diagnostics)
     if (render(diagnostic, source).empty()) __builtin_trap();
-  for (const rule_test::Test& test : suite.tests)
+  const bool is_usable = std::all_of(diagnostics.begin(), diagnostics.end(),
+                                     [](const auto& d) { return d.severity != Severity::kError; });
+  // Longer ones say nothing new, and take long.
+  constexpr Duration kShort = std::chrono::seconds(10);
+  for (const rule_test::Test& test : suite.tests) {
     if (test.length > rule_test::kLongestRun) __builtin_trap();
+    if (is_usable && test.length <= kShort && size < 2000)
+      rule_test::run_test(rules(), suite, test);
+  }
   return 0;
 }
