@@ -22,10 +22,8 @@ std::vector<Explanation> syntax_explanations() {
   return {
       {Code::kUnknownStatement, "a line begins with a word that is no statement",
        "Every line is one statement, and its first word says which: ROBOT, CYCLE, CONST, "
-       "COMPONENT, "
-       "DEPENDENCY, IGNORE, SIGNAL, RULE, POLICIES, TRIGGER, STRATEGY or ADAPTATION, in upper "
-       "case. "
-       "The line counts for nothing until the word is right.",
+       "COMPONENT, DEPENDENCY, IGNORE, SIGNAL, RULE, POLICIES, TRIGGER, STRATEGY or ADAPTATION, in "
+       "upper case. The line counts for nothing until the word is right.",
        "robot sunset\n", "ROBOT sunset\n"},
       {Code::kSyntax, "something else is expected at this place",
        "The statement is known, but its line is not built as this statement is. The message says "
@@ -39,8 +37,7 @@ std::vector<Explanation> syntax_explanations() {
        "COMPONENT camera LAUNCH \"camera_driver --fps 30\"\n"},
       {Code::kExtraText, "the line goes on after its statement has ended",
        "What follows would be ignored, and it may have been meant to do something: && for 'and', "
-       "== "
-       "to compare, or a comment that lacks its #.",
+       "== to compare, or a comment that lacks its #.",
        rule_with("entropy > 0.5 and exposure < 3"), rule_with("entropy > 0.5 && exposure < 3")},
       {Code::kOutOfPlace, "this line is not inside what it belongs to",
        "POLICIES, TRIGGER and STRATEGY belong to the RULE line before them, one POLICIES and one "
@@ -58,13 +55,11 @@ std::vector<Explanation> syntax_explanations() {
       {Code::kTooDeep, "an expression is nested too deeply",
        "Expressions may nest 256 levels deep, so that checking and evaluating them takes a bounded "
        "amount of memory. An expression that a person wrote never comes near: split it into "
-       "several "
-       "rules, or name parts of it with CONST.",
+       "several rules, or name parts of it with CONST.",
        rule_with(std::string(257, '!') + "docked"), rule_with("!docked")},
       {Code::kPlaceholder, "a form was copied and not filled in",
        "Documentation writes <name> where a name of yours belongs. The angle brackets are no part "
-       "of "
-       "the language.",
+       "of the language.",
        rule_with("<expression>"), rule_with("rate(/robot/image) < 1")},
   };
 }
@@ -73,15 +68,13 @@ std::vector<Explanation> name_explanations() {
   return {
       {Code::kDuplicateName, "a name is given twice",
        "Constants, components and signals share one set of names, rules have theirs, and each "
-       "rule's "
-       "strategies have theirs. With two things of one name, neither a reader nor a message could "
-       "tell which is meant.",
+       "rule's strategies have theirs. With two things of one name, neither a reader nor a message "
+       "could tell which is meant.",
        "CONST limit = 0.5\nCONST limit = 0.7\n", "CONST limit = 0.5\nCONST high_limit = 0.7\n"},
       {Code::kUnknownName, "an undeclared name is nearly a declared one",
        "Names that a file does not declare are looked up on the robot, so a slip of the fingers is "
        "not an error by itself: it is a rule that waits for ever for something that does not "
-       "exist. "
-       "Correct the name, or declare it if it is meant to be another one.",
+       "exist. Correct the name, or declare it if it is meant to be another one.",
        "COMPONENT camera NODE /robot/camera\n" + rule_with("rate(/robot/image) < 1", "ERROR",
                                                            "STRATEGY restart 50 10",
                                                            "ADAPTATION camrea restart 5"),
@@ -94,34 +87,30 @@ std::vector<Explanation> name_explanations() {
        Strictness::kStrict},
       {Code::kUnknownFunction, "there is no function of this name",
        "Expressions call rate, age, phi, alive, lifecycle, parameter, level, mean, min, max, "
-       "stddev, "
-       "changed, abs, pow and sqrt. Functions of your own do not exist; CONST names values.",
+       "stddev, changed, abs, pow and sqrt. Functions of your own do not exist; CONST names "
+       "values.",
        rule_with("frequency(/robot/image) < 1"), rule_with("rate(/robot/image) < 1")},
       {Code::kUnknownAdaptation, "there is no adaptation of this name",
        "An adaptation is one of the things that culprit can do to a component: set_parameter, "
        "increase_parameter, decrease_parameter, change_communication, activate, deactivate, "
-       "restart, "
-       "redeploy, start, stop, change_mode and call. For a routine of the component's own, use "
-       "call.",
+       "restart, redeploy, start, stop, change_mode and call. For a routine of the component's "
+       "own, use call.",
        rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY reboot 50 10",
                  "ADAPTATION camera reboot 5"),
        rule_with("rate(/robot/image) < 1")},
       {Code::kUnknownPolicy, "there is no policy of this name, or it is given twice",
        "After the criticality come FOR, HOLD, COOLDOWN, ATTEMPTS and ON_CHANGE, each at most once "
-       "and "
-       "in any order.",
+       "and in any order.",
        rule_with("rate(/robot/image) < 1", "ERROR AFTER 2s"),
        rule_with("rate(/robot/image) < 1", "ERROR FOR 2s")},
       {Code::kReservedWord, "a word of the language is used as a name",
        "Keywords and true and false cannot be names, or a line could be read in two ways. Names "
-       "are "
-       "usually lower case; keywords are upper case.",
+       "are usually lower case; keywords are upper case.",
        "CONST RANGE = 30\n", "CONST range = 30\n"},
       {Code::kBadRosName, "this is no full ROS name",
        "Topics and nodes are named with their namespace, from the leading slash: letters, digits "
-       "and "
-       "underscores between slashes. There is no namespace that a relative name could be relative "
-       "to.",
+       "and underscores between slashes. There is no namespace that a relative name could be "
+       "relative to.",
        rule_with("rate(image) < 1"), rule_with("rate(/robot/image) < 1")},
   };
 }
@@ -135,9 +124,8 @@ std::vector<Explanation> value_explanations() {
        rule_with("age(/robot/image) > 0.5"), rule_with("age(/robot/image) > 500ms")},
       {Code::kUnknownType, "nothing tells what kind of value this is",
        "Signals and parameters get their kind from their use: compared with 0.5 it is a number, "
-       "with "
-       "\"docked\" a text, alone it is true or false. Where two unknown ones meet, neither tells "
-       "about the other. Often a text merely lacks its quotes.",
+       "with \"docked\" a text, alone it is true or false. Where two unknown ones meet, neither "
+       "tells about the other. Often a text merely lacks its quotes.",
        rule_with("mode == docked"), rule_with("mode == \"docked\"")},
       {Code::kArguments, "a function is called with the wrong arguments",
        "Each function takes what its usage line says; the message repeats it.",
@@ -152,14 +140,12 @@ std::vector<Explanation> value_explanations() {
        "CONST limit = 1 / 0\n", "CONST limit = 1 / 2\n"},
       {Code::kProbabilityRange, "a success probability is out of range",
        "The first number of a STRATEGY is the probability, in percent, that it resolves the "
-       "failure: "
-       "above 0 and at most 100. It is where learning begins, so an estimate will do.",
+       "failure: above 0 and at most 100. It is where learning begins, so an estimate will do.",
        rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY restart 150 10"),
        rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY restart 90 10")},
       {Code::kConfidenceRange, "a confidence is out of range",
        "The second number of a STRATEGY says how many past attempts the probability is worth: "
-       "above 0 "
-       "and at most 100. A high one makes culprit slow to learn otherwise.",
+       "above 0 and at most 100. A high one makes culprit slow to learn otherwise.",
        rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY restart 50 0"),
        rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY restart 50 1")},
       {Code::kImpactRange, "an impact is out of range",
@@ -172,8 +158,7 @@ std::vector<Explanation> value_explanations() {
                  "ADAPTATION camera restart 3")},
       {Code::kPolicyRange, "a time or count is out of range",
        "Durations of policies, windows and cycles are longer than zero and bounded; HOLD n/k asks "
-       "for "
-       "n of the last k cycles, so n is at most k; ATTEMPTS is at least 1.",
+       "for n of the last k cycles, so n is at most k; ATTEMPTS is at least 1.",
        rule_with("rate(/robot/image) < 1", "ERROR HOLD 5/3"),
        rule_with("rate(/robot/image) < 1", "ERROR HOLD 3/5")},
       {Code::kEmptyRange, "a RANGE holds no values",
@@ -188,16 +173,15 @@ std::vector<Explanation> rule_explanations() {
       {Code::kContradiction, "a strategy contradicts itself",
        "All adaptations of a strategy are applied together. One that undoes or repeats another, or "
        "that reconfigures a process which the same strategy ends, cannot have been meant: the "
-       "robot "
-       "would be left in whichever state came last. Alternatives are strategies of their own.",
+       "robot would be left in whichever state came last. Alternatives are strategies of their "
+       "own.",
        "RULE CameraFails\n  POLICIES ERROR\n  TRIGGER rate(/robot/image) < 1\n"
        "    STRATEGY again 50 10\n      ADAPTATION camera deactivate 5\n"
        "      ADAPTATION camera activate 5\n",
        rule_with("rate(/robot/image) < 1")},
       {Code::kNoLaunch, "a strategy needs a LAUNCH command that is missing",
        "redeploy and start run the LAUNCH command of the component. Without one culprit cannot "
-       "start "
-       "it, and the strategy is never chosen.",
+       "start it, and the strategy is never chosen.",
        "COMPONENT camera NODE /robot/camera\n"
        "RULE CameraFails\n  POLICIES ERROR\n  TRIGGER rate(/robot/image) < 1\n"
        "    STRATEGY restart 50 10\n      ADAPTATION camera restart 5\n"
@@ -208,8 +192,7 @@ std::vector<Explanation> rule_explanations() {
        "    STRATEGY redeploy 90 10\n      ADAPTATION camera redeploy 10\n"},
       {Code::kNeverValid, "no strategy of a rule can ever run",
        "Every strategy of the rule starts a component that has no LAUNCH command. The failure "
-       "would "
-       "be detected, and nothing could be done about it.",
+       "would be detected, and nothing could be done about it.",
        "COMPONENT camera NODE /robot/camera\n" + rule_with("rate(/robot/image) < 1", "ERROR",
                                                            "STRATEGY redeploy 90 10",
                                                            "ADAPTATION camera redeploy 10"),
@@ -253,16 +236,14 @@ std::vector<Explanation> meaning_explanations() {
   return {
       {Code::kOscillation, "strategies of two rules undo one another",
        "One rule's strategy sets what the other's resets, and nothing keeps them from taking "
-       "turns: "
-       "both triggers can be true together, or one of them always is. The robot could flip between "
-       "the two for ever. Leave a band between the triggers, as a thermostat does, or make both "
-       "strategies alternatives of one rule, which remembers what it tried.",
+       "turns: both triggers can be true together, or one of them always is. The robot could flip "
+       "between the two for ever. Leave a band between the triggers, as a thermostat does, or make "
+       "both strategies alternatives of one rule, which remembers what it tried.",
        lights("0.2"), lights("0.7")},
       {Code::kAlwaysTrueInRange, "a condition is always true",
        "For every value that its inputs can have, by their RANGE or by what they are, this "
-       "condition "
-       "holds. A trigger made of it would report a failure from the first value on and never "
-       "resolve it; in an && it has no say.",
+       "condition holds. A trigger made of it would report a failure from the first value on and "
+       "never resolve it; in an && it has no say.",
        battery + rule_with("battery < 20"), battery + rule_with("battery < 0.2")},
       {Code::kNeverTrueInRange, "a condition is never true",
        "For no value that its inputs can have, by their RANGE or by what they are, does this "
@@ -271,9 +252,8 @@ std::vector<Explanation> meaning_explanations() {
        rule_with("entropy > 0.8 && entropy < 0.2"), rule_with("entropy > 0.8 || entropy < 0.2")},
       {Code::kCovered, "a rule is covered by another one",
        "Whenever this rule's trigger is true, the other one's is too; it adapts the same "
-       "components, "
-       "is at least as critical, and detects no later. This rule can only get in its way. Where it "
-       "was meant as an escalation it has to be more critical.",
+       "components, is at least as critical, and detects no later. This rule can only get in its "
+       "way. Where it was meant as an escalation it has to be more critical.",
        escalation("ERROR", "WARNING"), escalation("WARNING", "ERROR")},
       {Code::kWhenNeverTrue, "a strategy's WHEN is never true",
        "For no value that its inputs can have does the condition hold, so the strategy is never "
@@ -284,8 +264,7 @@ std::vector<Explanation> meaning_explanations() {
                  "STRATEGY restart 50 10 WHEN lifecycle(camera) == \"active\"")},
       {Code::kWhenContradictsTrigger, "a strategy's WHEN contradicts the rule's trigger",
        "The strategies of a rule are chosen while its trigger is true, and then this WHEN is "
-       "false. "
-       "The strategy waits for a situation in which it is not needed.",
+       "false. The strategy waits for a situation in which it is not needed.",
        rule_with("rate(/robot/image) < 1", "ERROR",
                  "STRATEGY restart 50 10 WHEN rate(/robot/image) > 5"),
        rule_with("rate(/robot/image) < 1", "ERROR",
@@ -293,9 +272,8 @@ std::vector<Explanation> meaning_explanations() {
       {Code::kNoLastResort, "no strategy helps if the process hangs",
        "The rule fires when something falls silent, and a hung process is silent. It answers no "
        "lifecycle request and no parameter call, so all of the rule's strategies would fail, "
-       "though "
-       "a LAUNCH command is there. A strategy that redeploys is the last resort; it costs nothing "
-       "while cheaper ones help.",
+       "though a LAUNCH command is there. A strategy that redeploys is the last resort; it costs "
+       "nothing while cheaper ones help.",
        camera + rule_with("age(/robot/image) > 500ms"),
        camera + rule_with("age(/robot/image) > 500ms") +
            "    STRATEGY redeploy 90 10\n      ADAPTATION camera redeploy 10\n"},
