@@ -10,6 +10,7 @@
 #include "cli/paths.h"
 #include "cli/rule_file.h"
 #include "knowledge/describe.h"
+#include "manager/manager.h"
 #include "manager/runtime.h"
 #include "plan/paper_planner.h"
 
@@ -112,19 +113,19 @@ int run(const RunOptions& options) {
 
   const Colour colour = colour_of(STDOUT_FILENO);
   Runtime runtime(manager, **robot);
-  runtime.on_events = [&](const Manager& m) {
-    for (const Event& event : m.events()) {
+  runtime.on_events = [&](std::span<const Event> events) {
+    for (const Event& event : events) {
       const std::string text = line(event, *rules, manager_options.start, colour);
       if (text.empty()) continue;
       fmt::print("{}\n", text);
       (*robot)->link().log(severity_of(event), describe(event, *rules));
     }
     std::fflush(stdout);
-    (*robot)->link().publish(health(m.knowledge()));
+    (*robot)->link().publish(health(manager.knowledge()));
   };
   (*robot)->link().publish(health(manager.knowledge()));
   for (const Command& command : manager.step((*robot)->now(), seen)) (*robot)->execute(command);
-  if (!manager.events().empty()) runtime.on_events(manager);
+  if (!manager.events().empty()) runtime.on_events(manager.events());
   runtime.run(signals.stopped());
   signals.on_stop({});
   fmt::print("culprit: stopped; the robot goes on as it is\n");

@@ -105,7 +105,7 @@ Expected<void> SunsetDemo::open() {
       std::make_unique<Manager>(rules_, std::make_unique<PaperPlanner>(options_.switches), manager);
   runtime_ = std::thread([this] {
     Runtime runtime(*manager_, *robot_);
-    runtime.on_events = [this](const Manager& m) { on_events(m); };
+    runtime.on_events = [this](std::span<const Event> events) { on_events(events); };
     runtime.run(is_ending_);
   });
   if (wait_until_well(60s)) return {};
@@ -114,9 +114,9 @@ Expected<void> SunsetDemo::open() {
                "; its logs are in " + (keep_state() / "log").string()};
 }
 
-void SunsetDemo::on_events(const Manager& manager) {
+void SunsetDemo::on_events(std::span<const Event> events) {
   const std::lock_guard lock(mutex_);
-  for (const Event& event : manager.events()) {
+  for (const Event& event : events) {
     last_event_ = event.at;
     if (episode_) episode_->add(event);
     if (options_.on_event) options_.on_event(event, rules_, start_);

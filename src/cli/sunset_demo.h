@@ -16,6 +16,7 @@
 #include "cli/live_robot.h"
 #include "cli/play.h"
 #include "exemplars/sunset/experiment.h"
+#include "manager/manager.h"
 #include "manager/runtime.h"
 #include "plan/paper_planner.h"
 #include "ros2/domain_lock.h"
@@ -71,7 +72,7 @@ class SunsetDemo {
   SunsetDemo(Options options, const std::atomic<bool>& stop, ros2::DomainLock domain,
              RuleSet rules);
   Expected<void> open();
-  void on_events(const Manager& manager);
+  void on_events(std::span<const Event> events);
   Expected<void> inject(const Play& play);
   // Waits until the robot is well and no failure is open for a while. Gives whether that came to
   // be.

@@ -14,10 +14,9 @@
 #include "analyze/analyzer.h"
 #include "execute/executor.h"
 #include "knowledge/knowledge.h"
+#include "manager/managing_system.h"
 #include "monitor/monitor.h"
 #include "plan/planner.h"
-#include "robot/command.h"
-#include "robot/observation.h"
 
 namespace culprit {
 
@@ -26,7 +25,7 @@ enum class Autonomy : std::uint8_t {
   kAdvise  // dry run: strategies are chosen and said, and nothing is done
 };
 
-class Manager {
+class Manager : public ManagingSystem {
  public:
   // Discovery takes this long in the worst case: participants announce themselves every 3 s.
   static constexpr Duration kDiscovery = std::chrono::seconds(5);
@@ -40,16 +39,10 @@ class Manager {
   // `rules` must outlive the manager and keep its address.
   Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Options options);
 
-  // Takes in what was observed, oldest first, and gives the requests that follow. Times never go
-  // back; one that does is taken for the latest seen. Never throws, never blocks; allocates nothing
-  // while nothing is wrong.
-  std::vector<Command> step(Time now, std::span<const Observation> observations);
-
-  // When step wants to be called even if nothing arrives.
-  Time next_deadline() const;
-
-  // What happened in the last step.
-  std::span<const Event> events() const { return knowledge_.events; }
+  // Never throws, never blocks; allocates nothing while nothing is wrong.
+  std::vector<Command> step(Time now, std::span<const Observation> observations) override;
+  Time next_deadline() const override;
+  std::span<const Event> events() const override { return knowledge_.events; }
   const Knowledge& knowledge() const { return knowledge_; }
 
   // For beliefs from an earlier run.

@@ -11,7 +11,7 @@ void Runtime::run(const std::atomic<bool>& stop, Time end) {
     robot_.observe(std::min(end, manager_.next_deadline()), observations);
     for (const Command& command : manager_.step(robot_.now(), observations))
       robot_.execute(command);
-    if (!manager_.events().empty() && on_events) on_events(manager_);
+    if (!manager_.events().empty() && on_events) on_events(manager_.events());
   }
 }
 

@@ -1,14 +1,14 @@
-// Drives a manager over a robot: waits, steps, carries out.
+// Drives a managing system over a robot: waits, steps, carries out.
 //
-// The only loop there is. It steps the manager as soon as something was observed or one of its
-// deadlines has passed; there is no period. A simulated robot runs through the same loop in virtual
-// time.
+// The only loop there is. It steps the managing system as soon as something was observed or one of
+// its deadlines has passed; there is no period. A simulated robot runs through the same loop in
+// virtual time.
 #pragma once
 
 #include <atomic>
 #include <functional>
 
-#include "manager/manager.h"
+#include "manager/managing_system.h"
 #include "robot/robot.h"
 
 namespace culprit {
@@ -16,17 +16,17 @@ namespace culprit {
 class Runtime {
  public:
   // Both must outlive the runtime.
-  Runtime(Manager& manager, Robot& robot) : manager_(manager), robot_(robot) {}
+  Runtime(ManagingSystem& manager, Robot& robot) : manager_(manager), robot_(robot) {}
 
   // Called after every step in which something happened, on the thread of run(). It must not block.
-  std::function<void(const Manager&)> on_events;
+  std::function<void(std::span<const Event>)> on_events;
 
   // Runs until `stop` is set, or the robot's clock has come to `end`. Whoever sets `stop` also has
   // to interrupt the robot's waiting.
   void run(const std::atomic<bool>& stop, Time end = kNever);
 
  private:
-  Manager& manager_;
+  ManagingSystem& manager_;
   Robot& robot_;
 };
 

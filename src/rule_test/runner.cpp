@@ -2,6 +2,7 @@
 
 #include <atomic>
 
+#include "manager/manager.h"
 #include "manager/runtime.h"
 #include "plan/paper_planner.h"
 #include "rule_test/scripted_robot.h"
@@ -16,8 +17,8 @@ Result run_test(const RuleSet& rules, const Suite& suite, const Test& test) {
   Result result{test.name, test.length, {}, {}};
 
   Runtime runtime(manager, robot);
-  runtime.on_events = [&](const Manager& m) {
-    for (const Event& event : m.events()) {
+  runtime.on_events = [&](std::span<const Event> events) {
+    for (const Event& event : events) {
       robot.hear(event);
       result.events.push_back(event);
     }
