@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace culprit::study {
 
@@ -39,8 +40,8 @@ class BootstrapMean {
   std::optional<Interval> interval() const;
 
  private:
-  std::array<double, kReplicates> sums_{};
-  std::array<double, kReplicates> counts_{};
+  std::vector<double> sums_ = std::vector<double>(kReplicates);
+  std::vector<double> counts_ = std::vector<double>(kReplicates);
 };
 
 }  // namespace culprit::study
