@@ -30,6 +30,8 @@ struct PaperSwitches {
   bool dependencies = true;
   bool criticality = true;
   bool impact = true;
+
+  bool operator==(const PaperSwitches&) const = default;
 };
 
 class PaperPlanner : public Planner {

@@ -21,11 +21,11 @@ constexpr Rgb kDryLawn{124, 134, 82};
 constexpr Rgb kBareConcrete{176, 172, 166};
 
 template <typename Choices>
-Rgb any_of(const Choices& choices, Random& random) {
+Rgb any_of(const Choices& choices, simulation::Random& random) {
   return choices[static_cast<std::size_t>(random.below(static_cast<int>(choices.size())))];
 }
 
-void scatter_trees(Terrain& terrain, Rect area, int count, Random& random) {
+void scatter_trees(Terrain& terrain, Rect area, int count, simulation::Random& random) {
   for (int i = 0; i < count; ++i) {
     const int x = area.x + random.below(std::max(1, area.width));
     const int y = area.y + random.below(std::max(1, area.height));
@@ -36,7 +36,7 @@ void scatter_trees(Terrain& terrain, Rect area, int count, Random& random) {
 }
 
 // Lots of about 15 m x 20 m, each with a house, a drive and a garden.
-void paint_houses(Terrain& terrain, Rect area, Random& random) {
+void paint_houses(Terrain& terrain, Rect area, simulation::Random& random) {
   paint(terrain, area, {Label::kTree, kHedge, 1.3});  // what the lots leave of it are hedges
   const int columns = std::max(1, area.width / cells(15));
   const int rows = std::max(1, area.height / cells(20));
@@ -62,7 +62,7 @@ void paint_houses(Terrain& terrain, Rect area, Random& random) {
 }
 
 // Two buildings in a row that share `area`, with a gap between them.
-void paint_pair(Terrain& terrain, Rect area, double low, double high, Random& random) {
+void paint_pair(Terrain& terrain, Rect area, double low, double high, simulation::Random& random) {
   const int gap = cells(6);
   const int split = area.width * (35 + random.below(30)) / 100;
   const Rgb roof = any_of(kFlatRoofs, random);
@@ -74,7 +74,7 @@ void paint_pair(Terrain& terrain, Rect area, double low, double high, Random& ra
 }
 
 // Two rows of buildings with a green yard between them.
-void paint_apartments(Terrain& terrain, Rect area, Random& random) {
+void paint_apartments(Terrain& terrain, Rect area, simulation::Random& random) {
   paint(terrain, area, {Label::kGrass, kLawn, 0});
   const int depth = cells(12);
   const Rect yard{area.x, area.y + depth + 8, area.width, area.height - 2 * (depth + 8)};
@@ -87,7 +87,7 @@ void paint_apartments(Terrain& terrain, Rect area, Random& random) {
 }
 
 // Cars in rows of places, each row with its lane; many places are free.
-void park_rows(Rect lot, Random& random, std::vector<Vehicle>& parked) {
+void park_rows(Rect lot, simulation::Random& random, std::vector<Vehicle>& parked) {
   const int rows = lot.height / cells(8);
   const int places = (lot.width - 4) / cells(2.7);
   for (int row = 0; row < rows; ++row) {
@@ -103,7 +103,8 @@ void park_rows(Rect lot, Random& random, std::vector<Vehicle>& parked) {
 }
 
 // Two halls and their parking lot.
-void paint_commerce(Terrain& terrain, Rect area, Random& random, std::vector<Vehicle>& parked) {
+void paint_commerce(Terrain& terrain, Rect area, simulation::Random& random,
+                    std::vector<Vehicle>& parked) {
   paint(terrain, area, {Label::kPavement, kLot, 0});
   const int split = area.height * 11 / 20;
   paint_pair(terrain, {area.x + 4, area.y + 4, area.width - 8, split - 8}, 5, 8, random);
@@ -115,7 +116,7 @@ void paint_commerce(Terrain& terrain, Rect area, Random& random, std::vector<Veh
 }
 
 // Two paths that cross, a pond, trees.
-void paint_park(Terrain& terrain, Rect area, Random& random) {
+void paint_park(Terrain& terrain, Rect area, simulation::Random& random) {
   paint(terrain, area, {Label::kGrass, kLawn, 0});
   const Rect along{area.x, area.y + area.height / 2, area.width, cells(2.4)};
   const Rect across{area.x + area.width / 3, area.y, cells(2.4), area.height};
@@ -127,7 +128,7 @@ void paint_park(Terrain& terrain, Rect area, Random& random) {
 }
 
 // Bare soil, a shell of a building, containers.
-void paint_building_site(Terrain& terrain, Rect area, Random& random) {
+void paint_building_site(Terrain& terrain, Rect area, simulation::Random& random) {
   paint(terrain, area, {Label::kGround, kSoil, 0});
   const int containers = 12;
   for (int i = 0; i < containers; ++i) {
@@ -147,7 +148,8 @@ void paint_building_site(Terrain& terrain, Rect area, Random& random) {
 
 }  // namespace
 
-void paint_block(Terrain& terrain, Rect area, Random& random, std::vector<Vehicle>& parked) {
+void paint_block(Terrain& terrain, Rect area, simulation::Random& random,
+                 std::vector<Vehicle>& parked) {
   const double kind = random.uniform();
   if (kind < 0.40) {
     paint_houses(terrain, area, random);

@@ -35,7 +35,8 @@ void paint_gabled_house(Terrain& terrain, Rect area, double eaves, Rgb roof) {
   }
 }
 
-void paint_flat_building(Terrain& terrain, Rect area, double height, Rgb roof, Random& random) {
+void paint_flat_building(Terrain& terrain, Rect area, double height, Rgb roof,
+                         simulation::Random& random) {
   const Rgb rim{static_cast<std::uint8_t>(roof.r - 20), static_cast<std::uint8_t>(roof.g - 20),
                 static_cast<std::uint8_t>(roof.b - 20)};
   paint(terrain, area, {Label::kBuilding, rim, height});
@@ -51,7 +52,7 @@ void paint_flat_building(Terrain& terrain, Rect area, double height, Rgb roof, R
   }
 }
 
-void paint_tree(Terrain& terrain, int x, int y, double height, Random& random) {
+void paint_tree(Terrain& terrain, int x, int y, double height, simulation::Random& random) {
   const double radius = cells(0.42 * height);
   const int reach = static_cast<int>(radius) + 1;
   const int tone = random.below(24);

@@ -4,8 +4,8 @@
 // afterwards. Lengths are in cells, heights in metres.
 #pragma once
 
-#include "exemplars/sunset/random.h"
 #include "exemplars/sunset/terrain.h"
+#include "simulation/random.h"
 
 namespace culprit::sunset {
 
@@ -33,10 +33,11 @@ void paint(Terrain& terrain, Rect area, const Surface& surface);
 void paint_gabled_house(Terrain& terrain, Rect area, double eaves, Rgb roof);
 
 // A flat roof with a darker rim and a few technical boxes on it.
-void paint_flat_building(Terrain& terrain, Rect area, double height, Rgb roof, Random& random);
+void paint_flat_building(Terrain& terrain, Rect area, double height, Rgb roof,
+                         simulation::Random& random);
 
 // A rounded, ragged crown; what stands higher already stays.
-void paint_tree(Terrain& terrain, int x, int y, double height, Random& random);
+void paint_tree(Terrain& terrain, int x, int y, double height, simulation::Random& random);
 
 // An ellipse that fills `area`, with a shore of bare soil.
 void paint_pond(Terrain& terrain, Rect area);

@@ -11,8 +11,10 @@
 
 namespace culprit::sunset {
 
-using Pictures = std::deque<ros2::msg::Image>;  // oldest first
+template <class Picture>
+using Pictures = std::deque<Picture>;  // oldest first
 
+// Whatever has a stamp_of(picture) is a picture: the live nodes' messages, the model's frames.
 constexpr Duration stamp_of(const ros2::msg::Image& picture) {
   return std::chrono::seconds(picture.header.stamp.sec) +
          std::chrono::nanoseconds(picture.header.stamp.nanosec);
@@ -26,9 +28,10 @@ struct PairIndex {
 // Of all pairs at most `tolerance` apart for which `allowed(first, second)` is true, the closest;
 // of equally close ones the first, in the order of the first stream, then of the second. Nothing if
 // there is none.
-template <class Allowed>
-std::optional<PairIndex> closest_pair(const Pictures& first, const Pictures& second,
-                                      Duration tolerance, Allowed allowed) {
+template <class Picture, class Allowed>
+std::optional<PairIndex> closest_pair(const Pictures<Picture>& first,
+                                      const Pictures<Picture>& second, Duration tolerance,
+                                      Allowed allowed) {
   std::optional<PairIndex> best;
   Duration best_apart{};
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -45,7 +48,8 @@ std::optional<PairIndex> closest_pair(const Pictures& first, const Pictures& sec
 }
 
 // Adds the newest picture and drops the oldest beyond `keep`.
-inline void push(Pictures& pictures, ros2::msg::Image picture, std::size_t keep) {
+template <class Picture>
+void push(Pictures<Picture>& pictures, Picture picture, std::size_t keep) {
   pictures.push_back(std::move(picture));
   if (pictures.size() > keep) pictures.pop_front();
 }

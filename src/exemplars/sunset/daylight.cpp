@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "exemplars/sunset/random.h"
+#include "simulation/random.h"
 
 namespace culprit::sunset {
 namespace {
@@ -31,7 +31,7 @@ void cast_shadows(Terrain& terrain) {
 class Patches {
  public:
   explicit Patches(std::uint64_t seed) {
-    Random random(seed);
+    simulation::Random random(seed);
     for (float& value : lattice_) value = static_cast<float>(random.uniform(-1, 1));
   }
 
@@ -98,7 +98,7 @@ Rgb in_shadow(Rgb colour) {
 void light(Terrain& terrain, std::uint64_t seed) {
   cast_shadows(terrain);
   const Patches patches(seed);
-  Random random(mix(seed));
+  simulation::Random random(simulation::mix(seed));
   for (int y = 0; y < kTerrainCells; ++y) {
     for (int x = 0; x < kTerrainCells; ++x) {
       Cell& cell = terrain.at(x, y);

@@ -2,7 +2,7 @@
 
 #include "exemplars/sunset/faults.h"
 #include "exemplars/sunset/pictures.h"
-#include "exemplars/sunset/random.h"
+#include "simulation/random.h"
 
 namespace culprit::sunset {
 
@@ -32,7 +32,7 @@ void DepthNode::on_frame(const msg::Image& frame) {
   auto picture = depth_of(frame);
   if (!picture) return;
   if (const auto g = parameter<double>("depth_degradation"); g > 0) {
-    picture = depth_noise(*picture, g, mix(options().seed) + frames_);
+    picture = depth_noise(*picture, g, simulation::mix(options().seed) + frames_);
   }
   publisher_->publish(to_message(*picture, frame.header));
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "exemplars/sunset/random.h"
+#include "simulation/random.h"
 
 namespace culprit::sunset {
 namespace {
@@ -80,7 +80,7 @@ RgbImage shift(const RgbImage& rgb, std::int64_t image_shift) {
 }
 
 DepthImage depth_noise(const DepthImage& depth, double depth_degradation, std::uint64_t seed) {
-  Random random(seed);
+  simulation::Random random(seed);
   DepthImage result(depth.size);
   std::transform(depth.pixels.begin(), depth.pixels.end(), result.pixels.begin(),
                  [&](std::uint16_t count) {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "exemplars/sunset/random.h"
+#include "simulation/random.h"
 
 namespace culprit::sunset {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 constexpr double kScenarioDegradation = 1.5;
 
 RgbImage random_picture(std::uint64_t seed, Size size = {}) {
-  Random random(seed);
+  simulation::Random random(seed);
   RgbImage picture(size);
   for (Rgb& pixel : picture.pixels) {
     const std::uint64_t bits = random.next();

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "exemplars/sunset/random.h"
+#include "simulation/random.h"
 
 namespace culprit::sunset {
 namespace {
@@ -19,7 +19,7 @@ LabelImage row(std::initializer_list<Label> labels) {
 }
 
 LabelImage random_labels(std::uint64_t seed) {
-  Random random(seed);
+  simulation::Random random(seed);
   LabelImage image(Size{16, 12});
   for (Label& label : image.pixels) label = static_cast<Label>(random.below(kLabelCount));
   return image;

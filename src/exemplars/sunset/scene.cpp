@@ -4,10 +4,10 @@
 #include <numbers>
 #include <utility>
 
-#include "exemplars/sunset/random.h"
 #include "exemplars/sunset/render.h"
 #include "exemplars/sunset/sensor.h"
 #include "exemplars/sunset/traffic.h"
+#include "simulation/random.h"
 
 namespace culprit::sunset {
 namespace {
@@ -18,7 +18,7 @@ constexpr double kSpeed = 6.0;  // m/s
 enum class Stream : std::uint64_t { kTown = 1, kTraffic, kFlight, kColourNoise, kDepthNoise };
 
 std::uint64_t stream(std::uint64_t seed, Stream which) {
-  return mix(seed ^ mix(static_cast<std::uint64_t>(which)));
+  return simulation::mix(seed ^ simulation::mix(static_cast<std::uint64_t>(which)));
 }
 
 double wrapped(double metres) {
@@ -31,7 +31,7 @@ Scene::Scene(std::uint64_t seed, Size size)
     : seed_(seed), size_(size), town_(build_town(stream(seed, Stream::kTown))) {}
 
 Pose Scene::pose(std::uint64_t number) const {
-  Random random(stream(seed_, Stream::kFlight));
+  simulation::Random random(stream(seed_, Stream::kFlight));
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const double time_sec = static_cast<double>(number) * kFramePeriodSec;
   const double course = random.uniform(0, kTurn);
@@ -56,9 +56,10 @@ Frame Scene::frame(std::uint64_t number) const {
        moving_vehicles(town_.roads, stream(seed_, Stream::kTraffic), time_sec)) {
     render_vehicle(view, town_.terrain, camera, vehicle);
   }
-  return {photograph(view.rgb, Random(stream(seed_, Stream::kColourNoise) + number)),
-          measure_depth(view.height, Random(stream(seed_, Stream::kDepthNoise) + number)),
-          std::move(view.truth)};
+  return {
+      photograph(view.rgb, simulation::Random(stream(seed_, Stream::kColourNoise) + number)),
+      measure_depth(view.height, simulation::Random(stream(seed_, Stream::kDepthNoise) + number)),
+      std::move(view.truth)};
 }
 
 }  // namespace culprit::sunset

@@ -44,7 +44,7 @@ std::uint8_t exposed(std::uint8_t channel, std::uint64_t bits) {
 
 }  // namespace
 
-RgbImage photograph(const RgbImage& view, Random random) {
+RgbImage photograph(const RgbImage& view, simulation::Random random) {
   RgbImage picture = through_lens(view);
   for (Rgb& pixel : picture.pixels) {
     const std::uint64_t bits = random.next();
@@ -53,7 +53,7 @@ RgbImage photograph(const RgbImage& view, Random random) {
   return picture;
 }
 
-DepthImage measure_depth(const Image<float>& height, Random random) {
+DepthImage measure_depth(const Image<float>& height, simulation::Random random) {
   DepthImage depth(height.size);
   std::transform(height.pixels.begin(), height.pixels.end(), depth.pixels.begin(),
                  [&](float metres) {

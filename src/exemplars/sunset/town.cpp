@@ -5,8 +5,8 @@
 #include "exemplars/sunset/block.h"
 #include "exemplars/sunset/brush.h"
 #include "exemplars/sunset/daylight.h"
-#include "exemplars/sunset/random.h"
 #include "exemplars/sunset/traffic.h"
+#include "simulation/random.h"
 
 namespace culprit::sunset {
 namespace {
@@ -16,7 +16,7 @@ constexpr double kSidewalk = 2.0;         // metres
 constexpr double kSidewalkHeight = 0.15;  // metres
 constexpr double kKerbParking = 2.2;      // metres, the width of a parked row
 
-std::vector<Road> plan_roads(Random& random) {
+std::vector<Road> plan_roads(simulation::Random& random) {
   std::vector<Road> roads;
   for (const Axis axis : {Axis::kX, Axis::kY}) {
     const int avenue = random.below(kRoadsPerAxis);
@@ -77,7 +77,7 @@ void mark(Terrain& terrain, const std::vector<Road>& roads, const Road& road) {
   }
 }
 
-void park_along(const std::vector<Road>& roads, const Road& road, Random& random,
+void park_along(const std::vector<Road>& roads, const Road& road, simulation::Random& random,
                 std::vector<Vehicle>& parked) {
   for (const double side : {-1.0, 1.0}) {
     for (double along = 0; along < kTerrainMetres; along += 6.5) {
@@ -94,7 +94,7 @@ void park_along(const std::vector<Road>& roads, const Road& road, Random& random
 }
 
 void plant_along(Terrain& terrain, const std::vector<Road>& roads, const Road& road,
-                 Random& random) {
+                 simulation::Random& random) {
   for (const double side : {-1.0, 1.0}) {
     const int across = cells(road.centre + side * (road.half_width + kSidewalk + 1.0));
     for (int along = 0; along < kTerrainCells; along += cells(12)) {
@@ -129,7 +129,7 @@ void paint_canal(Terrain& terrain, const Rect& canal) {
         {Label::kPavement, kConcrete, kSidewalkHeight});
 }
 
-void paint_blocks(Town& town, Random& random) {
+void paint_blocks(Town& town, simulation::Random& random) {
   std::vector<Road> rows;
   std::vector<Road> columns;
   for (const Road& road : town.roads) (road.axis == Axis::kX ? rows : columns).push_back(road);
@@ -153,7 +153,7 @@ void paint_blocks(Town& town, Random& random) {
 }  // namespace
 
 Town build_town(std::uint64_t seed) {
-  Random random(seed);
+  simulation::Random random(seed);
   Town town;
   town.roads = plan_roads(random);
   const Surface sidewalk{Label::kPavement, kConcrete, kSidewalkHeight};

@@ -18,7 +18,7 @@ constexpr std::array kPaints = {Rgb{226, 228, 230}, Rgb{186, 190, 196}, Rgb{122,
                                 Rgb{212, 178, 52},  Rgb{226, 228, 230}};
 
 void add_lane(std::vector<Vehicle>& vehicles, const Road& road, double offset, double time_sec,
-              Random random) {
+              simulation::Random random) {
   const double direction = offset > 0 ? 1.0 : -1.0;
   const double speed = random.uniform(7.0, 12.0);
   for (int slot = 0; slot < kSlots; ++slot) {
@@ -38,7 +38,7 @@ void add_lane(std::vector<Vehicle>& vehicles, const Road& road, double offset, d
 
 }  // namespace
 
-Vehicle random_vehicle(Random& random) {
+Vehicle random_vehicle(simulation::Random& random) {
   Vehicle vehicle;
   vehicle.colour = kPaints[static_cast<std::size_t>(random.below(kPaints.size()))];
   vehicle.length = random.uniform(4.0, 4.9);
@@ -55,12 +55,12 @@ Vehicle random_vehicle(Random& random) {
 std::vector<Vehicle> moving_vehicles(const std::vector<Road>& roads, std::uint64_t seed,
                                      double time_sec) {
   std::vector<Vehicle> vehicles;
-  Random seeds(seed);
+  simulation::Random seeds(seed);
   for (const Road& road : roads) {
     for (int lane = 0; lane < road.lanes; ++lane) {
       const double offset = (lane + 0.5) * kLaneMetres;
-      add_lane(vehicles, road, offset, time_sec, Random(seeds.next()));
-      add_lane(vehicles, road, -offset, time_sec, Random(seeds.next()));
+      add_lane(vehicles, road, offset, time_sec, simulation::Random(seeds.next()));
+      add_lane(vehicles, road, -offset, time_sec, simulation::Random(seeds.next()));
     }
   }
   return vehicles;

@@ -8,13 +8,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "exemplars/sunset/random.h"
 #include "exemplars/sunset/road.h"
+#include "simulation/random.h"
 
 namespace culprit::sunset {
 
 // A car or, one time in eight, a van or truck, in a colour of its own.
-Vehicle random_vehicle(Random& random);
+Vehicle random_vehicle(simulation::Random& random);
 
 std::vector<Vehicle> moving_vehicles(const std::vector<Road>& roads, std::uint64_t seed,
                                      double time_sec);

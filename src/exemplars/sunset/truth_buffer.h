@@ -11,19 +11,18 @@
 
 namespace culprit::sunset {
 
-class TruthBuffer {
+template <class Picture>
+class BasicTruthBuffer {
  public:
   static constexpr std::size_t kKeep = 20;
   static constexpr Duration kTolerance = std::chrono::milliseconds(10);
 
-  void add_truth(ros2::msg::Image truth) { push(truths_, std::move(truth), kKeep); }
-  void add_prediction(ros2::msg::Image prediction) {
-    push(predictions_, std::move(prediction), kKeep);
-  }
+  void add_truth(Picture truth) { push(truths_, std::move(truth), kKeep); }
+  void add_prediction(Picture prediction) { push(predictions_, std::move(prediction), kKeep); }
 
   struct Judgeable {
-    ros2::msg::Image truth;
-    ros2::msg::Image prediction;
+    Picture truth;
+    Picture prediction;
   };
   std::optional<Judgeable> take_pair() {
     const auto found = closest_pair(truths_, predictions_, kTolerance,
@@ -33,15 +32,17 @@ class TruthBuffer {
   }
 
  private:
-  static ros2::msg::Image take(Pictures& pictures, std::size_t index) {
+  static Picture take(Pictures<Picture>& pictures, std::size_t index) {
     const auto place = pictures.begin() + static_cast<std::ptrdiff_t>(index);
-    ros2::msg::Image picture = std::move(*place);
+    Picture picture = std::move(*place);
     pictures.erase(place);
     return picture;
   }
 
-  Pictures truths_;
-  Pictures predictions_;
+  Pictures<Picture> truths_;
+  Pictures<Picture> predictions_;
 };
+
+using TruthBuffer = BasicTruthBuffer<ros2::msg::Image>;
 
 }  // namespace culprit::sunset

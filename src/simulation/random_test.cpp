@@ -1,8 +1,8 @@
-#include "exemplars/sunset/random.h"
+#include "simulation/random.h"
 
 #include <gtest/gtest.h>
 
-namespace culprit::sunset {
+namespace culprit::simulation {
 namespace {
 
 // The first outputs of SplitMix64 seeded with 0, as its authors publish them.
@@ -45,4 +45,4 @@ TEST(Random, UniformStaysInItsRange) {
 }
 
 }  // namespace
-}  // namespace culprit::sunset
+}  // namespace culprit::simulation

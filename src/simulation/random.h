@@ -1,4 +1,5 @@
-// The randomness of the pictures: seeded, small, and the same on every platform.
+// The randomness of simulated worlds and of their pictures: seeded, small, and the same on every
+// platform.
 //
 // SplitMix64 (Steele, Lea, Flood: "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014).
 // The standard library's distributions are not used because each implementation draws other
@@ -7,7 +8,7 @@
 
 #include <cstdint>
 
-namespace culprit::sunset {
+namespace culprit::simulation {
 
 // A well-mixed 64-bit hash; a bijection.
 constexpr std::uint64_t mix(std::uint64_t x) {
@@ -52,4 +53,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace culprit::sunset
+}  // namespace culprit::simulation

@@ -1,0 +1,88 @@
+// A simulated world: a clock, what is due, who is in it, and who watches.
+//
+// Discrete-event simulation: time jumps from one thing that is due to the next. The same seed gives
+// the same world, bit for bit, on every machine.
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "robot/observation.h"
+#include "simulation/agenda.h"
+#include "simulation/random.h"
+
+namespace culprit::simulation {
+
+class Node;
+class TopicBase;
+
+// Who hears of what can be seen of the nodes from outside. Calls come in the order of time.
+class Watcher {
+ public:
+  virtual ~Watcher() = default;
+  virtual void on_node(const Node& node, bool is_there) = 0;
+  virtual void on_endpoint(const Node& node, EndpointKind kind, const std::string& name,
+                           bool is_there) = 0;
+  virtual void on_sample(const TopicBase& topic) = 0;
+  virtual void on_diagnostic(std::string_view status, std::string_view key, const Value& value) = 0;
+  virtual void on_parameter(const Node& node, const std::string& name, const Value& value) = 0;
+  virtual void on_lifecycle(const Node& node) = 0;
+  virtual void on_process(const Node& node, const std::string& remark) = 0;
+};
+
+class World {
+ public:
+  explicit World(std::uint64_t seed) : seed_(seed) {}
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  Time now() const { return now_; }
+
+  // A source of chance of its own for whatever `name` says, so that one more draw in one place
+  // changes nothing elsewhere.
+  Random random(std::string_view name) const;
+
+  // Does `action` at `due`, or now if that is past.
+  void at(Time due, Action action) { agenda_.add(std::max(due, now_), std::move(action)); }
+  void after(Duration delay, Action action) { at(later(now_, delay), std::move(action)); }
+
+  // Does the next thing if it is due not after `until`, and gives whether there was one.
+  bool step(Time until);
+  // Does everything that is due not after `until`. Then it is `until`.
+  void run(Time until);
+  // It is `time` now. Nothing may be due before.
+  void set_time(Time time) { now_ = std::max(now_, time); }
+
+  // Null if there is none of this name.
+  Node* node(std::string_view name) const;
+  TopicBase* topic(std::string_view name) const;
+  const std::vector<Node*>& nodes() const { return nodes_; }
+
+  // There is at most one watcher; null: none. It must outlive its watching.
+  void watch(Watcher* watcher) { watcher_ = watcher; }
+  Watcher* watcher() const { return watcher_; }
+  // Something was published on /diagnostics.
+  void diagnose(std::string_view status, std::string_view key, const Value& value) const {
+    if (watcher_) watcher_->on_diagnostic(status, key, value);
+  }
+
+ private:
+  friend class Node;
+  friend class TopicBase;
+
+  int new_pid() { return ++last_pid_; }
+
+  std::uint64_t seed_;
+  Time now_{};
+  Agenda agenda_;
+  std::vector<Node*> nodes_;  // in the order of their making
+  std::map<std::string, Node*, std::less<>> nodes_by_name_;
+  std::map<std::string, TopicBase*, std::less<>> topics_;
+  Watcher* watcher_ = nullptr;
+  int last_pid_ = 100;
+};
+
+}  // namespace culprit::simulation

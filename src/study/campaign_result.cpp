@@ -1,0 +1,45 @@
+#include "study/campaign_result.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace culprit::study {
+
+void Summary::add(const std::vector<double>& values, bool is_censored, const Weights& weights) {
+  if (values.empty()) return;
+  for (const double value : values) {
+    moments_.add(value);
+    if (!is_censored) distribution_.add(value);
+  }
+  if (is_censored) censored_ += static_cast<std::int64_t>(values.size());
+  bootstrap_.add(weights, std::accumulate(values.begin(), values.end(), 0.0),
+                 static_cast<double>(values.size()));
+}
+
+const Row* CampaignResult::find(const Configuration& configuration) const {
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& candidate) {
+    return candidate.configuration == configuration;
+  });
+  return row == rows.end() ? nullptr : &*row;
+}
+
+CampaignFold::CampaignFold(Campaign campaign) {
+  for (const Configuration& configuration : campaign.rows)
+    result_.rows.emplace_back().configuration = configuration;
+  result_.campaign = std::move(campaign);
+}
+
+void CampaignFold::add(const RunMetrics& run) {
+  const Campaign& campaign = result_.campaign;
+  const RunId id = campaign[next_++];
+  Row& row = result_.rows[id.row];
+  ++row.runs;
+  const Weights weights = poisson_weights(campaign.seed, id.row, id.run);
+  for (std::size_t i = 0; i < kMetricCount; ++i) {
+    const auto metric = static_cast<Metric>(i);
+    const bool is_censored = metric == Metric::kRecovery && run.honest.is_recovery_censored;
+    row.metrics[i].add(values_of(run, metric), is_censored, weights);
+  }
+}
+
+}  // namespace culprit::study
