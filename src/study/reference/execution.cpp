@@ -37,6 +37,10 @@ Execution::Stage Execution::stage_of(const Order& order) const {
   }
 }
 
+Execution::Stage Execution::after(Stage stage) {
+  return static_cast<Stage>(static_cast<int>(stage) + 1);
+}
+
 void Execution::add(StrategyId strategy, std::span<const Slot> signals) {
   const auto& adaptations = rules_[strategy].adaptations;
   for (std::size_t a = 0; a < adaptations.size(); ++a) {
@@ -102,7 +106,7 @@ void Execution::begin(Branch& branch, ComponentId component, std::vector<Command
   branch.orders.assign(of_stage, branch.waiting.end());
   branch.waiting.erase(of_stage, branch.waiting.end());
   if (branch.orders.empty()) {
-    branch.stage = static_cast<Stage>(static_cast<int>(branch.stage) + 1);
+    branch.stage = after(branch.stage);
     return;
   }
   const bool takes_one = branch.stage == Stage::kRedeploy || branch.stage == Stage::kLifecycle;
@@ -153,8 +157,7 @@ void Execution::finish(Branch& branch, ComponentId component, Time now,
     }
   }
   if (has_succeeded && branch.stage == Stage::kRedeploy) send(component, StartProcess{}, commands);
-  branch.stage =
-      has_succeeded ? static_cast<Stage>(static_cast<int>(branch.stage) + 1) : Stage::kDone;
+  branch.stage = has_succeeded ? after(branch.stage) : Stage::kDone;
   branch.is_busy = false;
   branch.calls.clear();
   branch.orders.clear();

@@ -70,6 +70,7 @@ class Execution {
 
   const Adaptation& adaptation(const Order& order) const;
   Stage stage_of(const Order& order) const;
+  static Stage after(Stage stage);
   void advance(ComponentId component, Time now, std::vector<Command>& commands,
                std::vector<Event>& events);
   void begin(Branch& branch, ComponentId component, std::vector<Command>& commands);

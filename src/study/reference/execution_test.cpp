@@ -54,6 +54,7 @@ TEST(ReferenceExecution, KeepsANewRequestBackUntilTheSlowestComponentIsThrough) 
   ticks.run(200);
   EXPECT_TRUE(ticks.has_said("1 depth_restart chosen")) << ticks.transcript();
   EXPECT_TRUE(ticks.has_said("29 depth_restart failed")) << "and was never asked for";
+  EXPECT_FALSE(ticks.has_said("29 depth_redeploy chosen")) << "it is reserved for the restart";
   EXPECT_THAT(ticks.asked, ElementsAre("0 segmentation: deactivate"));
 }
 
@@ -74,6 +75,25 @@ TEST(ReferenceExecution, ChangesLifecyclesAndCommunicationOfAStrategyAtOnce) {
   EXPECT_THAT(ticks.asked,
               ElementsAre("0 fusion: set do_recalibration to true", "4 image_enhancement: activate",
                           "4 fusion: set topic_camera_input to \"rgb_enhanced\""));
+}
+
+TEST(ReferenceExecution, GoesOnWithAComponentInTheNextRoundAfterARefusal) {
+  ReferenceOptions options;
+  options.initial = {{"x", 0.0}};
+  Ticks ticks(options, R"(
+COMPONENT c NODE /managed_subsystem/c LAUNCH "c"
+SIGNAL x DIAGNOSTIC d KEY k
+RULE R
+  POLICIES ERROR
+  TRIGGER x > 0
+    STRATEGY s 50 10
+      ADAPTATION c activate 1
+      ADAPTATION c set_parameter p 0.5 1
+)");
+  ticks.refusing = {"c"};
+  ticks.signal("x", 1.0);
+  ticks.run(3);
+  EXPECT_THAT(ticks.asked, ElementsAre("0 c: activate", "2 c: set p to 0.5"));
 }
 
 TEST(ReferenceExecution, SendsAllEarlierParametersAgain) {
