@@ -6,15 +6,6 @@
 namespace culprit {
 namespace {
 
-std::string joined(const std::vector<std::string>& items) {
-  std::string out;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (i > 0) out += i + 1 == items.size() ? " and " : ", ";
-    out += items[i];
-  }
-  return out;
-}
-
 std::string two_decimals(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f", value);
@@ -51,8 +42,8 @@ class Describer {
     for (const Candidate& candidate : e.candidates) {
       if (candidate.strategy == e.strategy) cost = candidate.cost;
     }
-    return joined(blamed) + (blamed.size() == 1 ? " is" : " are") + " held responsible for " +
-           joined(failures) + ": " + (e.dry_run ? "would " : "") + joined(actions) + " (" +
+    return listed(blamed) + (blamed.size() == 1 ? " is" : " are") + " held responsible for " +
+           listed(failures) + ": " + (e.dry_run ? "would " : "") + listed(actions) + " (" +
            strategy.name + ", cost " + two_decimals(cost) + ")";
   }
   std::string operator()(const FailureHeldBack& e) const {
@@ -101,6 +92,23 @@ class Describer {
 };
 
 }  // namespace
+
+std::string listed(const std::vector<std::string>& items) {
+  std::string out;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) out += i + 1 == items.size() ? " and " : ", ";
+    out += items[i];
+  }
+  return out;
+}
+
+std::string to_string(Probability probability) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", 100 * probability.value);
+  std::string number = text;
+  if (number.ends_with(".0")) number.resize(number.size() - 2);
+  return number + " %";
+}
 
 std::string_view to_string(Criticality criticality) {
   switch (criticality) {

@@ -9,6 +9,12 @@ namespace culprit {
 
 std::string_view to_string(Criticality criticality);
 
+// "87.3 %", "60 %"
+std::string to_string(Probability probability);
+
+// "a, b and c"
+std::string listed(const std::vector<std::string>& items);
+
 // "restart camera", "set exposure of camera"
 std::string describe(const Adaptation& adaptation, const RuleSet& rules);
 
