@@ -93,6 +93,64 @@ class Describer {
 
 }  // namespace
 
+std::string_view to_string(Condition condition) {
+  switch (condition) {
+    case Condition::kTried:
+      return "tried";
+    case Condition::kInvalid:
+      return "invalid";
+    case Condition::kAdapting:
+      return "adapting";
+    case Condition::kAffected:
+      return "affected";
+    case Condition::kDependency:
+      return "dependency";
+    case Condition::kOneEach:
+      return "other_chosen";
+  }
+  return "";
+}
+
+std::string describe(const Input& input, const RuleSet& rules) {
+  const auto call = [&](std::string_view function, const std::string& subject) {
+    const bool has_window = input.window > Duration::zero();
+    return std::string(function) + "(" + subject +
+           (has_window ? ", " + to_string(input.window) : "") + ")";
+  };
+  using enum Input::Kind;
+  switch (input.kind) {
+    case kSignal:
+      return rules[input.signal].name;
+    case kRate:
+      return call("rate", rules[input.topic].name);
+    case kAge:
+      return call("age", rules[input.topic].name);
+    case kPhi:
+      return call("phi", rules[input.topic].name);
+    case kAlive:
+      return call("alive", rules[input.component].name);
+    case kLifecycle:
+      return call("lifecycle", rules[input.component].name);
+    case kParameter: {
+      const Parameter& parameter = rules[input.parameter];
+      return call("parameter", rules[parameter.component].name + ", " + parameter.name);
+    }
+    case kLevel:
+      return call("level", rules.diagnostics[input.diagnostic.index].name);
+    case kMean:
+      return call("mean", rules[input.signal].name);
+    case kMin:
+      return call("min", rules[input.signal].name);
+    case kMax:
+      return call("max", rules[input.signal].name);
+    case kStddev:
+      return call("stddev", rules[input.signal].name);
+    case kChanged:
+      return call("changed", rules[input.signal].name);
+  }
+  return "";
+}
+
 std::string listed(const std::vector<std::string>& items) {
   std::string out;
   for (std::size_t i = 0; i < items.size(); ++i) {
