@@ -12,6 +12,14 @@ bool is_false(const Slot& slot) { return slot.known && !slot.b; }
 
 }  // namespace
 
+Duration longest_detection(const RuleSet& rules) {
+  Duration longest{};
+  for (const Rule& rule : rules.rules)
+    longest = std::max(
+        {longest, rule.policies.hold_for, rules.cycle * std::int64_t{rule.policies.hold_window}});
+  return longest;
+}
+
 Analyzer::Analyzer(Knowledge& knowledge)
     : knowledge_(knowledge), deadlines_(knowledge.rules.rules.size()) {}
 

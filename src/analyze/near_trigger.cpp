@@ -83,10 +83,12 @@ std::optional<NearTrigger> comparison(RuleId rule, std::size_t at, const Knowled
 }
 
 std::optional<NearTrigger> nearest(RuleId rule, const Knowledge& knowledge) {
+  constexpr double kNear = 0.5;
   std::optional<NearTrigger> nearest;
   for (std::size_t at = 0; at < knowledge.rules[rule].trigger.code.size(); ++at) {
     const auto found = comparison(rule, at, knowledge);
-    if (found && (!nearest || found->distance < nearest->distance)) nearest = found;
+    if (!found || found->distance > kNear) continue;
+    if (!nearest || found->distance < nearest->distance) nearest = found;
   }
   return nearest;
 }

@@ -18,8 +18,8 @@ struct NearTrigger {
   double distance = 0;   // of the two, as a share of the larger one: 0..2
 };
 
-// For each quiet rule the nearest comparison of its trigger that is not true, if it has one: the
-// nearest first, at most `most`.
+// For each quiet rule the nearest comparison of its trigger that is not true, if it has one at a
+// distance of at most a half: the nearest first, at most `most`.
 std::vector<NearTrigger> near_triggers(const Knowledge& knowledge, std::size_t most);
 
 }  // namespace culprit

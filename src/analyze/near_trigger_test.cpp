@@ -66,6 +66,11 @@ TEST_F(NearTriggers, AreSortedByTheirDistance) {
   EXPECT_EQ(near(1), "Unsure entropy 0.059 0.06");
 }
 
+TEST_F(NearTriggers, AreNear) {
+  set("entropy", 0.02);
+  EXPECT_EQ(near(), "");
+}
+
 TEST_F(NearTriggers, KnowNothingOfUnknownValues) { EXPECT_EQ(near(), ""); }
 
 TEST_F(NearTriggers, AreNotFailures) {

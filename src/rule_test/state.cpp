@@ -24,11 +24,6 @@ Duration last_change(const Scenario& scenario) {
 
 // How long a value must last until no rule waits for it any more.
 Duration longest_wait(const RuleSet& rules) {
-  Duration wait{};
-  for (const Rule& rule : rules.rules) {
-    const Duration held = rules.cycle * std::int64_t{rule.policies.hold_window};
-    wait = std::max({wait, rule.policies.hold_for, held});
-  }
   Duration window{};
   for (const Input& input : rules.inputs) {
     window = std::max(window, input.window);
@@ -37,7 +32,7 @@ Duration longest_wait(const RuleSet& rules) {
   }
   for (const Signal& signal : rules.signals)
     window = std::max(window, signal.stale.value_or(Duration::zero()));
-  return std::min(wait, kLongestRun) + std::min(window, kLongestRun);
+  return std::min(longest_detection(rules), kLongestRun) + std::min(window, kLongestRun);
 }
 
 void learn(Knowledge& knowledge, const State::Experience& experience) {
