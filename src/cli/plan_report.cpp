@@ -107,14 +107,19 @@ struct AsJson {
   const RuleSet& rules;
 
   Json operator()(const plan::SuccessChange& c) const {
-    return {
-        {"kind", "success"}, {"strategy", rules[c.strategy].name}, {"success", c.success.value}};
+    Json json = about("success", c.strategy);
+    json["success"] = c.success.value;
+    return json;
   }
   Json operator()(const plan::ImpactChange& c) const {
-    return {{"kind", "impact"}, {"strategy", rules[c.strategy].name}, {"impact", c.impact.count}};
+    Json json = about("impact", c.strategy);
+    json["impact"] = c.impact.count;
+    return json;
   }
   Json operator()(const plan::TriedChange& c) const {
-    return {{"kind", "tried"}, {"strategy", rules[c.strategy].name}, {"tried", c.is_tried}};
+    Json json = about("tried", c.strategy);
+    json["tried"] = c.is_tried;
+    return json;
   }
   Json operator()(const plan::ResolvedChange& c) const {
     return {{"kind", "resolved"}, {"rules", names_of(c.rules, rules)}};
@@ -125,8 +130,12 @@ struct AsJson {
             {"component", rules[c.component].name},
             {"situation", kSituations[static_cast<std::size_t>(c.situation)]}};
   }
-  Json operator()(const plan::WhenChange& c) const {
-    return {{"kind", "when"}, {"strategy", rules[c.strategy].name}};
+  Json operator()(const plan::WhenChange& c) const { return about("when", c.strategy); }
+
+  Json about(const char* kind, StrategyId strategy) const {
+    return {{"kind", kind},
+            {"rule", rules[rules[strategy].rule].name},
+            {"strategy", rules[strategy].name}};
   }
 };
 

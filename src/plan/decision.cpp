@@ -15,8 +15,7 @@ class Describer {
 
   std::string operator()(const SuccessChange& change) const {
     const Probability now = knowledge_.beliefs[change.strategy].mean();
-    const std::string whose =
-        change.strategy == loser_ ? "its" : rules_[change.strategy].name + "'s";
+    const std::string whose = change.strategy == loser_ ? "its" : name_of(change.strategy) + "'s";
     return whose + " success probability were " +
            (change.success > now ? "at least " : "at most ") + to_string(change.success) + " (is " +
            to_string(now) + ")";
@@ -29,7 +28,7 @@ class Describer {
   }
   std::string operator()(const TriedChange& change) const {
     if (!change.is_tried) return "it had not been tried already";
-    return rules_[change.strategy].name + " had been tried already";
+    return name_of(change.strategy) + " had been tried already";
   }
   std::string operator()(const ResolvedChange& change) const {
     std::vector<std::string> names;
@@ -56,6 +55,13 @@ class Describer {
   std::string operator()(const WhenChange&) const { return "its WHEN condition were true"; }
 
  private:
+  // Strategies of different rules may have the same name.
+  std::string name_of(StrategyId id) const {
+    const Strategy& strategy = rules_[id];
+    const bool is_sibling = strategy.rule == rules_[loser_].rule;
+    return (is_sibling ? "" : rules_[strategy.rule].name + ".") + strategy.name;
+  }
+
   StrategyId loser_;
   const Knowledge& knowledge_;
   const RuleSet& rules_;

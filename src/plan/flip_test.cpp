@@ -189,6 +189,20 @@ TEST(Flips, OfWhatIsUnderRepair) {
   EXPECT_EQ(s.flips("hurry"), "A were resolved\n");
 }
 
+TEST(Flips, OfWhatAnotherRulesStrategyTakes) {
+  Situation s(std::string(kTwoRules) +
+              "RULE C\n  POLICIES ERROR\n  TRIGGER x > 2\n    STRATEGY hurry 40 10\n"
+              "      ADAPTATION a set_parameter fast true 4\n");
+  s.fails(0);
+  s.fails(2);
+  EXPECT_EQ(s.flips("hurry"),
+            "its success probability were at least 60.1 % (is 40 %)\n"
+            "A.a_restart's success probability were at most 39.9 % (is 60 %)\n"
+            "its impact were at most 1 cycle (is 4)\n"
+            "A were resolved\n"
+            "A.a_restart had been tried already\n");
+}
+
 // ---- for any robot
 
 std::string random_rules(std::size_t components, std::size_t rules) {
