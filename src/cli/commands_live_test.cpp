@@ -117,6 +117,22 @@ TEST_F(Commands, GraphShowsTheRobot) {
   EXPECT_THAT(dot.output(), HasSubstr("digraph"));
 }
 
+TEST_F(Commands, PlanLooksAtTheRobotAndLeavesItAsItIs) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  auto plan = culprit({"plan", world.write("two.rules", kRules), "--robot", "--format", "json"});
+  ASSERT_EQ(plan.wait(), 0) << plan.output();
+  const auto json = nlohmann::json::parse(plan.output().substr(plan.output().find('{')));
+  ASSERT_EQ(json["failures"].size(), 1u) << json;
+  EXPECT_EQ(json["failures"][0]["rule"], "DepthGone");
+  EXPECT_EQ(json["failures"][0]["chosen"], "depth_redeploy");
+  EXPECT_GT(json["failures"][0]["failing_s"], 0.0);
+  auto graph = culprit({"graph"});
+  ASSERT_EQ(graph.wait(), 0);
+  EXPECT_THAT(graph.output(), Not(HasSubstr("/managed_subsystem/depth"))) << "it was started";
+  EXPECT_THAT(graph.output(), HasSubstr("/managed_subsystem/camera  (process " +
+                                        std::to_string(camera.pid()) + ")"));
+}
+
 TEST_F(Commands, RunAdoptsWhatRunsStartsWhatIsMissingAndLeavesTheRobotAsItIs) {
   TestProgram camera(world, {"sunset-node", "camera"});
   auto run = culprit({"run", world.write("two.rules", kRules), "--launch", "--state-dir", state()});
