@@ -126,20 +126,15 @@ class Checker {
   }
 
   void infer() {
-    bool learned = true;
-    while (learned) {
-      learned = false;
-      for (const syntax::Rule& rule : file_.rules) {
-        if (rule.trigger) infer_types(*rule.trigger, Type::kBool, symbols_, learned);
-        for (const syntax::Strategy& strategy : rule.strategies) {
-          if (strategy.when) infer_types(*strategy.when, Type::kBool, symbols_, learned);
-          for (const syntax::Adaptation& a : strategy.adaptations) {
-            const bool number = a.type == AdaptationType::kIncreaseParameter ||
-                                a.type == AdaptationType::kDecreaseParameter;
-            if (a.value)
-              infer_types(*a.value, number ? std::optional(Type::kDouble) : std::nullopt, symbols_,
-                          learned);
-          }
+    for (const syntax::Rule& rule : file_.rules) {
+      if (rule.trigger) infer_types(*rule.trigger, Type::kBool, symbols_);
+      for (const syntax::Strategy& strategy : rule.strategies) {
+        if (strategy.when) infer_types(*strategy.when, Type::kBool, symbols_);
+        for (const syntax::Adaptation& a : strategy.adaptations) {
+          const bool number = a.type == AdaptationType::kIncreaseParameter ||
+                              a.type == AdaptationType::kDecreaseParameter;
+          if (a.value)
+            infer_types(*a.value, number ? std::optional(Type::kDouble) : std::nullopt, symbols_);
         }
       }
     }

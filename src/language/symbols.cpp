@@ -104,7 +104,7 @@ void Symbols::declare(const syntax::File& file) {
       signal.range = {s.range->low, s.range->high};
     }
     signals_[s.name.text] = SignalId(rules_.signals.size());
-    signal_types_.push_back(s.range ? std::optional(Type::kDouble) : std::nullopt);
+    signal_types_.push_back(types_.add(s.range ? std::optional(Type::kDouble) : std::nullopt));
     rules_.signals.push_back(std::move(signal));
   }
   for (const syntax::BrokenDeclaration& broken : file.broken_declarations) declare_broken(broken);
@@ -127,7 +127,7 @@ void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
     case Kind::kSignal:
       if (signals_.try_emplace(name, SignalId(rules_.signals.size())).second) {
         rules_.signals.push_back({name, LookedUp{}, Type::kDouble, {}, {}});
-        signal_types_.emplace_back();
+        signal_types_.push_back(types_.add(std::nullopt));
       }
       return;
   }
@@ -193,7 +193,7 @@ SignalId Symbols::signal(const syntax::Name& name) {
   report_undeclared(name, "signal", declared);
   const SignalId id(rules_.signals.size());
   rules_.signals.push_back({name.text, LookedUp{}, Type::kDouble, {}, {}});
-  signal_types_.emplace_back();
+  signal_types_.push_back(types_.add(std::nullopt));
   signals_[name.text] = id;
   return id;
 }
@@ -232,7 +232,7 @@ ParameterId Symbols::parameter(ComponentId component, const std::string& name) {
       parameters_.emplace(std::pair(component, name), ParameterId(rules_.parameters.size()));
   if (is_new) {
     rules_.parameters.push_back({component, name});
-    parameter_types_.emplace_back();
+    parameter_types_.push_back(types_.add(std::nullopt));
   }
   return found->second;
 }

@@ -15,6 +15,7 @@
 #include "language/diagnostic.h"
 #include "language/rule_set.h"
 #include "language/syntax.h"
+#include "language/type_classes.h"
 
 namespace culprit {
 
@@ -50,8 +51,11 @@ class Symbols {
   std::string forget_near_miss(const std::string& signal);
 
   // Types of signals and parameters are found by use; nothing until then.
-  std::optional<Type>& type_of(SignalId id) { return signal_types_[id.index]; }
-  std::optional<Type>& type_of(ParameterId id) { return parameter_types_[id.index]; }
+  TypeClasses& types() { return types_; }
+  TypeClasses::Variable type_variable(SignalId id) const { return signal_types_[id.index]; }
+  TypeClasses::Variable type_variable(ParameterId id) const { return parameter_types_[id.index]; }
+  std::optional<Type> type_of(SignalId id) const { return types_.type_of(type_variable(id)); }
+  std::optional<Type> type_of(ParameterId id) const { return types_.type_of(type_variable(id)); }
 
  private:
   void declare_broken(const syntax::BrokenDeclaration& broken);
@@ -75,8 +79,9 @@ class Symbols {
     Span span;
   };
   std::unordered_map<std::string, NearMiss> near_misses_;
-  std::vector<std::optional<Type>> signal_types_;
-  std::vector<std::optional<Type>> parameter_types_;
+  TypeClasses types_;
+  std::vector<TypeClasses::Variable> signal_types_;
+  std::vector<TypeClasses::Variable> parameter_types_;
 };
 
 }  // namespace culprit
