@@ -292,6 +292,12 @@ TEST(Checker, RefusesRunTimeValuesWhereConstantsBelong) {
             std::vector<std::string>{"R020"});
 }
 
+TEST(Checker, SeesCirclesWhateverTheComponentsAreCalled) {
+  EXPECT_EQ(codes_of("COMPONENT a NODE /a\nCOMPONENT b NODE /b\n"
+                     "DEPENDENCY /a ON b\nDEPENDENCY /b ON a\n"),
+            std::vector<std::string>{"R053"});
+}
+
 TEST(Checker, SurvivesHostileNesting) {
   for (const char* open : {"(", "!", "-", "1 ? ", "abs(", "1 + (", "x && !("}) {
     std::string expression;
