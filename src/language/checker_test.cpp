@@ -185,6 +185,20 @@ RULE R
   EXPECT_EQ(type("later"), Type::kDouble);  // learned from a comparison that comes after
 }
 
+// However far away the rule is that tells of it.
+TEST(Checker, LearnsTypesAlongChainsOfComparisons) {
+  constexpr int kRules = 1000;
+  std::string text;
+  for (int i = kRules; i >= 0; --i) {
+    const std::string n = std::to_string(i);
+    const std::string other = i == 0 ? "(late ? s0 : \"dock\")" : "s" + std::to_string(i - 1);
+    text += "RULE R" + n + "\n POLICIES ERROR\n TRIGGER s" + n + " == " + other +
+            "\n  STRATEGY s 50 10\n   ADAPTATION c restart 1\n";
+  }
+  for (const Signal& s : rules_of(text).signals)
+    EXPECT_EQ(s.type, s.name == "late" ? Type::kBool : Type::kString) << s.name;
+}
+
 TEST(Checker, FindsTheThresholdsOfInputs) {
   const RuleSet rules = rules_of(R"(
 CONST slow = 5
@@ -278,6 +292,12 @@ TEST(Checker, RefusesRunTimeValuesWhereConstantsBelong) {
             std::vector<std::string>{"R020"});
 }
 
+TEST(Checker, SeesCirclesWhateverTheComponentsAreCalled) {
+  EXPECT_EQ(codes_of("COMPONENT a NODE /a\nCOMPONENT b NODE /b\n"
+                     "DEPENDENCY /a ON b\nDEPENDENCY /b ON a\n"),
+            std::vector<std::string>{"R053"});
+}
+
 TEST(Checker, SurvivesHostileNesting) {
   for (const char* open : {"(", "!", "-", "1 ? ", "abs(", "1 + (", "x && !("}) {
     std::string expression;
@@ -287,6 +307,9 @@ TEST(Checker, SurvivesHostileNesting) {
   std::string chain = "x";
   for (int i = 0; i < 100000; ++i) chain += " + x";
   EXPECT_FALSE(codes_of("RULE R\nPOLICIES ERROR\nTRIGGER " + chain + " > 1\n").empty());
+  std::string choices = "x";  // of a type that nothing tells
+  for (int i = 0; i < 40; ++i) choices = "a ? (" + choices + ") : y";
+  EXPECT_FALSE(codes_of("RULE R\nPOLICIES ERROR\nTRIGGER (" + choices + ") == z\n").empty());
 }
 
 }  // namespace

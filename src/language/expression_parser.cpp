@@ -34,6 +34,13 @@ const BinaryOperator* binary_operator(const Token& token) {
   return nullptr;
 }
 
+// Moved one by one: a list in braces would copy whole trees.
+template <class... Children>
+void adopt(Expression& parent, Children... children) {
+  parent.children.reserve(sizeof...(children));
+  (parent.children.push_back(std::move(children)), ...);
+}
+
 class ExpressionParser {
  public:
   ExpressionParser(Scanner& scanner, std::vector<Diagnostic>& diagnostics)
@@ -51,7 +58,7 @@ class ExpressionParser {
     Expression e;
     e.kind = Kind::kConditional;
     e.span = {condition->span.begin, no->span.end};
-    e.children = {std::move(*condition), std::move(*yes), std::move(*no)};
+    adopt(e, std::move(*condition), std::move(*yes), std::move(*no));
     return e;
   }
 
@@ -72,7 +79,7 @@ class ExpressionParser {
       e.kind = Kind::kBinary;
       e.op = found->op;
       e.span = {left->span.begin, right->span.end};
-      e.children = {std::move(*left), std::move(*right)};
+      adopt(e, std::move(*left), std::move(*right));
       left = std::move(e);
     }
     return left;
@@ -89,7 +96,7 @@ class ExpressionParser {
     e.kind = Kind::kUnary;
     e.op = token.is("!") ? Operator::kNot : Operator::kNegate;
     e.span = {token.span.begin, operand->span.end};
-    e.children = {std::move(*operand)};
+    adopt(e, std::move(*operand));
     return e;
   }
 

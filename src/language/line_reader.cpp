@@ -37,8 +37,8 @@ bool is_ros_name(std::string_view name) {
 std::span<const std::string_view> reserved_words() { return kReservedWords; }
 
 std::optional<Name> LineReader::identifier(Scanner& s, std::string_view what) {
-  const Token token = s.next();
-  if (token.kind == Token::Kind::kIdentifier) return Name{token.text, token.span};
+  Token token = s.next();
+  if (token.kind == Token::Kind::kIdentifier) return Name{std::move(token.text), token.span};
   fail_token(token, what, "a name is made of letters, digits and '_', and begins with no digit");
   return std::nullopt;
 }
