@@ -104,4 +104,8 @@ std::string closest(std::string_view name, const std::vector<std::string_view>& 
   return std::string(best);
 }
 
+std::optional<Edit> replacement(Span span, const std::string& near) {
+  return near.empty() ? std::nullopt : std::optional(Edit{span, near});
+}
+
 }  // namespace culprit

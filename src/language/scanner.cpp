@@ -1,5 +1,6 @@
 #include "language/scanner.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -15,8 +16,8 @@ Lexeme::Kind lexeme_kind(Token::Kind kind) {
   return kind == Token::Kind::kSymbol ? Lexeme::Kind::kSymbol : Lexeme::Kind::kLiteral;
 }
 
-Token bad(Span span, std::string message) {
-  return {Token::Kind::kBad, span, std::move(message), {}};
+Token bad(Span span, std::string message, std::optional<Edit> fix = {}) {
+  return {Token::Kind::kBad, span, std::move(message), {}, std::move(fix)};
 }
 
 }  // namespace
@@ -141,7 +142,13 @@ Token Scanner::quoted(std::uint32_t at) const {
     }
     out += c;
   }
-  return bad({at, end_}, "this string has no closing '\"'");
+  return unclosed(at);
+}
+
+Token Scanner::unclosed(std::uint32_t at) const {
+  std::uint32_t end = end_;
+  while (end > at + 1 && is_blank(text_[end - 1])) --end;
+  return bad({at, end_}, "this string has no closing '\"'", Edit{{end, end}, "\""});
 }
 
 Token Scanner::symbol(std::uint32_t at) const {
@@ -156,17 +163,36 @@ Token Scanner::symbol(std::uint32_t at) const {
               {}};
     }
   }
+  return meaningless(at);
+}
+
+Token Scanner::meaningless(std::uint32_t at) const {
   std::uint32_t end = at + 1;
   while (end < end_ && (static_cast<unsigned char>(text_[end]) & 0xC0) == 0x80)
     ++end;  // one whole character
   const bool control = static_cast<unsigned char>(text_[at]) < 0x20 || text_[at] == 0x7f;
   if (control) return bad({at, end}, "a control character has no place in a rule file");
   std::string_view advice;
-  if (text_[at] == '\'') advice = "; a text stands in double quotes: \"active\"";
-  if (text_[at] == '&') advice = "; write && for 'and'";
-  if (text_[at] == '|') advice = "; write || for 'or'";
-  return bad({at, end}, "'" + std::string(text_.substr(at, end - at)) + "' means nothing here" +
-                            std::string(advice));
+  std::optional<Edit> fix;
+  if (text_[at] == '\'') {
+    advice = "; a text stands in double quotes: \"active\"";
+    const auto close = text_.substr(0, end_).find('\'', end);
+    const std::string_view inside = text_.substr(end, std::min<std::size_t>(close, end_) - end);
+    if (close != std::string_view::npos && inside.find_first_of("\"\\") == std::string_view::npos)
+      fix = {{at, static_cast<std::uint32_t>(close) + 1}, "\"" + std::string(inside) + "\""};
+  }
+  if (text_[at] == '&') {
+    advice = "; write && for 'and'";
+    fix = {{at, end}, "&&"};
+  }
+  if (text_[at] == '|') {
+    advice = "; write || for 'or'";
+    fix = {{at, end}, "||"};
+  }
+  return bad(
+      {at, end},
+      "'" + std::string(text_.substr(at, end - at)) + "' means nothing here" + std::string(advice),
+      std::move(fix));
 }
 
 syntax::Name Scanner::next_name() {
