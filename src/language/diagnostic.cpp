@@ -58,6 +58,13 @@ std::string to_string(Code code) {
   return text;
 }
 
+std::string title_of(const Edit& edit, const Source& source) {
+  const std::string before = "'" + std::string(source.text(edit.span)) + "'";
+  const std::string after = "'" + edit.text + "'";
+  if (edit.span.begin == edit.span.end) return "insert " + after;
+  return edit.text.empty() ? "remove " + before : "change " + before + " to " + after;
+}
+
 std::string render(const Diagnostic& diagnostic, const Source& source, Colour colour) {
   const Paint& paint = colour == Colour::kOn ? kColoured : kPlain;
   const bool is_error = diagnostic.severity == Severity::kError;

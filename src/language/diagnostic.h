@@ -82,6 +82,9 @@ struct Diagnostic {
   bool operator==(const Diagnostic&) const = default;
 };
 
+// What the edit does, for people who choose it: "change 'robot' to 'ROBOT'".
+std::string title_of(const Edit& edit, const Source& source);
+
 enum class Colour : std::uint8_t { kOff, kOn };
 
 // As a compiler shows it: place and cause, the line with carets under the span, the remedy.

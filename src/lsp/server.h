@@ -39,6 +39,7 @@ class Server {
   Json references(const std::string& uri, const Document& document, const Json& params) const;
   Expected<Json> rename(const std::string& uri, const Document& document, const Json& params) const;
   Json formatting(const Document& document) const;
+  Json code_actions(const std::string& uri, const Document& document, const Json& params) const;
   Json symbols(const Document& document) const;
   Json semantic_tokens(const Document& document) const;
 

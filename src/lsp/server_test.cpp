@@ -171,6 +171,41 @@ TEST(LspServer, LaysOutTheFile) {
   EXPECT_EQ(format(), Json::array()) << "what does not parse is left alone";
 }
 
+TEST(LspServer, OffersTheFixOfWhatIsPointedAt) {
+  Session session("ROBOT r\n# Bäume 🌳\nrobot x\nCONTS a = 3\nCYCLE 200\n");
+  const auto actions = [&](std::uint32_t line, Json context = Json::object()) {
+    const Json place{{"line", line}, {"character", 0}};
+    return session.request("textDocument/codeAction",
+                           {{"textDocument", {{"uri", kUri}}},
+                            {"range", {{"start", place}, {"end", place}}},
+                            {"context", std::move(context)}})["result"];
+  };
+  EXPECT_EQ(actions(0), Json::array());
+  EXPECT_EQ(actions(4), Json::array()) << "which unit is meant is not known";
+  ASSERT_EQ(actions(3).size(), 1u);
+  const Json action = actions(3)[0];
+  EXPECT_EQ(action["title"], "change 'CONTS' to 'CONST'");
+  EXPECT_EQ(action["isPreferred"], true);
+  EXPECT_EQ(action["diagnostics"][0]["code"], "R001");
+  const Json edit = action["edit"]["changes"][kUri][0];
+  EXPECT_EQ(edit["newText"], "CONST");
+  EXPECT_EQ(edit["range"]["start"], (Json{{"line", 3}, {"character", 0}}));
+  EXPECT_EQ(edit["range"]["end"], (Json{{"line", 3}, {"character", 5}}));
+  EXPECT_EQ(actions(3, {{"only", {"refactor"}}}), Json::array());
+  EXPECT_EQ(actions(3, {{"only", {"quickfix"}}}).size(), 1u);
+}
+
+TEST(LspServer, PrefersNoFixWhereThereIsAChoice) {
+  Session session("robot x\nCONTS a = 3\n");
+  const Json actions = session.request("textDocument/codeAction",
+                                       {{"textDocument", {{"uri", kUri}}},
+                                        {"range",
+                                         {{"start", {{"line", 0}, {"character", 0}}},
+                                          {"end", {{"line", 9u}, {"character", 0u}}}}}})["result"];
+  ASSERT_EQ(actions.size(), 2u);
+  EXPECT_FALSE(actions[0].contains("isPreferred"));
+}
+
 TEST(LspServer, OutlinesTheFile) {
   Session session;
   const Json symbols =
