@@ -56,6 +56,12 @@ enum class Code : std::uint16_t {
   kWhenNeverTrue = 57,
   kWhenContradictsTrigger = 58,
   kNoLastResort = 59,
+  // What the robot at hand has not
+  kNoSuchNode = 60,
+  kNoSuchTopic = 61,
+  kNoSuchParameter = 62,
+  kNoSuchDiagnostic = 63,
+  kNoSuchService = 64,
 };
 
 // "R011"

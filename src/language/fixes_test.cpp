@@ -5,7 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "language/checker.h"
+#include "language/explanations.h"
+#include "language/live_checks.h"
 
 namespace culprit {
 namespace {
@@ -94,9 +95,12 @@ TEST(Fixes, RemoveWhatTheyAreOfferedFor) {
     std::ifstream in(entry.path(), std::ios::binary);
     const Source source(entry.path().filename().string(),
                         std::string(std::istreambuf_iterator<char>(in), {}));
-    const auto strictness =
-        source.name().starts_with("strict_") ? Strictness::kStrict : Strictness::kLenient;
-    for (const Diagnostic& d : check(source, strictness).diagnostics) {
+    const auto checked = [&](const Source& text) {
+      if (source.name().starts_with("live_")) return check_against(example_robot(), text);
+      const bool is_strict = source.name().starts_with("strict_");
+      return check(text, is_strict ? Strictness::kStrict : Strictness::kLenient);
+    };
+    for (const Diagnostic& d : checked(source).diagnostics) {
       if (!d.fix) continue;
       ++applied;
       ASSERT_LE(d.fix->span.begin, d.fix->span.end) << render(d, source);
@@ -104,7 +108,7 @@ TEST(Fixes, RemoveWhatTheyAreOfferedFor) {
       // What stands before the diagnostic stays, so it would be at the same place.
       ASSERT_GE(d.fix->span.begin, d.span.begin) << render(d, source);
       const Source after(source.name(), with(*d.fix, source));
-      const auto left = check(after, strictness).diagnostics;
+      const auto left = checked(after).diagnostics;
       EXPECT_TRUE(std::none_of(left.begin(), left.end(),
                                [&](const Diagnostic& other) {
                                  return other.code == d.code && other.span.begin == d.span.begin;

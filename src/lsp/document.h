@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "language/checker.h"
+#include "language/occurrences.h"
 #include "language/source.h"
 #include "language/syntax.h"
-#include "lsp/occurrences.h"
 
 namespace culprit::lsp {
 

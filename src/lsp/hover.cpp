@@ -72,6 +72,10 @@ std::string hover(const Document& document, const Occurrence& thing) {
       return declaration(document, thing);
     case Kind::kTopic:
       return "Topic `" + thing.name + "`";
+    case Kind::kDiagnostic:
+      return "Diagnostic status `" + thing.name + "`";
+    case Kind::kService:
+      return "Service `" + thing.name + "`";
     case Kind::kParameter:
       return "Parameter `" + thing.name + "` of `" + thing.scope + "`";
   }

@@ -108,8 +108,8 @@ int item_kind(Proposal::Kind kind) {
 }
 
 // What editors colour names by; the order is that of Occurrence::Kind.
-constexpr std::array kTokenTypes = {"enumMember", "class",     "variable", "string",
-                                    "property",   "namespace", "method",   "function"};
+constexpr std::array kTokenTypes = {"enumMember", "class",  "variable", "string", "property",
+                                    "namespace",  "method", "function", "string", "string"};
 
 // SymbolKind, for things that a file declares.
 int symbol_kind(Kind kind) {
