@@ -60,16 +60,6 @@ bool is_identifier(std::string_view name) {
                      [&](unsigned char c) { return is_letter(c) || std::isdigit(c) != 0; });
 }
 
-// As a rule file writes the name of a status, a key or a parameter; empty if it cannot.
-std::string as_written(const std::string& name) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-';
-  };
-  if (std::all_of(name.begin(), name.end(), is_plain)) return name;
-  const auto is_unfit = [](unsigned char c) { return c < 0x20 || c == '"' || c == '\\'; };
-  return std::any_of(name.begin(), name.end(), is_unfit) ? "" : "\"" + name + "\"";
-}
-
 class LiveChecks {
  public:
   LiveChecks(const syntax::File& file, const RuleSet& rules, const LiveInventory& robot)

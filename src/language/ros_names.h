@@ -15,4 +15,8 @@ std::string topic_of(const std::string& topic, const std::string& node);
 // "~/recalibrate" and "recalibrate" are the node's own; "/x" stays.
 std::string service_of(const std::string& service, const std::string& node);
 
+// As a rule file writes the name of a status, a key or a parameter: in quotes where it has to be;
+// empty where it cannot be written.
+std::string as_written(const std::string& name);
+
 }  // namespace culprit

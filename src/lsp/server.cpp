@@ -102,7 +102,12 @@ int item_kind(Proposal::Kind kind) {
     case Proposal::Kind::kComponent:
       return 7;
     case Proposal::Kind::kTopic:
+    case Proposal::Kind::kStatus:
       return 12;
+    case Proposal::Kind::kParameter:
+      return 10;
+    case Proposal::Kind::kService:
+      return 2;
   }
   return 1;
 }
@@ -186,6 +191,7 @@ void Server::notice(const std::string& method, const Json& params) {
       open(uri, text_at(changes->back(), {"text"}));
   } else if (method == "textDocument/didClose") {
     documents_.erase(uri);
+    interests_.erase(uri);
     send_({{"jsonrpc", "2.0"},
            {"method", "textDocument/publishDiagnostics"},
            {"params", {{"uri", uri}, {"diagnostics", Json::array()}}}});
@@ -193,14 +199,33 @@ void Server::notice(const std::string& method, const Json& params) {
 }
 
 void Server::open(const std::string& uri, std::string text) {
-  documents_.insert_or_assign(uri, Document(std::move(text)));
+  Document& document = documents_.insert_or_assign(uri, Document(std::move(text))).first->second;
+  if (document.checked.rules) interests_[uri] = interest_of(*document.checked.rules);
+  if (robot_) document.compare_with(*robot_);
   publish(uri);
+}
+
+void Server::see(LiveInventory robot) {
+  robot_ = std::move(robot);
+  for (auto& [uri, document] : documents_) {
+    if (document.compare_with(*robot_)) publish(uri);
+  }
+}
+
+LiveInterest Server::interest() const {
+  LiveInterest all;
+  for (const auto& [uri, interest] : interests_) {
+    all.nodes.insert(interest.nodes.begin(), interest.nodes.end());
+    for (const auto& [topic, fields] : interest.fields_of_topics)
+      all.fields_of_topics[topic].insert(fields.begin(), fields.end());
+  }
+  return all;
 }
 
 void Server::publish(const std::string& uri) {
   const Document& document = documents_.at(uri);
   Json diagnostics = Json::array();
-  for (const Diagnostic& d : document.checked.diagnostics)
+  for (const Diagnostic& d : document.diagnostics)
     diagnostics.push_back(to_json(d, document.source));
   send_({{"jsonrpc", "2.0"},
          {"method", "textDocument/publishDiagnostics"},
@@ -242,7 +267,7 @@ Json Server::capabilities() const {
   constexpr int kWholeText = 1;
   Json legend{{"tokenTypes", kTokenTypes}, {"tokenModifiers", {"declaration"}}};
   return {{"textDocumentSync", {{"openClose", true}, {"change", kWholeText}}},
-          {"completionProvider", {{"triggerCharacters", {" ", "("}}}},
+          {"completionProvider", {{"triggerCharacters", {" ", "(", "/"}}}},
           {"hoverProvider", true},
           {"definitionProvider", true},
           {"referencesProvider", true},
@@ -259,8 +284,12 @@ const Occurrence* Server::pointed_at(const Document& document, const Json& param
 
 Json Server::completion(const Document& document, const Json& params) const {
   Json items = Json::array();
-  for (const Proposal& p : proposals(document, place_in(document, params))) {
-    Json item{{"label", p.text}, {"kind", item_kind(p.kind)}};
+  const std::uint32_t place = place_in(document, params);
+  for (const Proposal& p : proposals(document, place, robot())) {
+    // Editors do not know what belongs to the name of a topic.
+    Json edit{{"range", to_json(document.source, typed_part(document, place, p))},
+              {"newText", p.text}};
+    Json item{{"label", p.text}, {"kind", item_kind(p.kind)}, {"textEdit", std::move(edit)}};
     if (!p.detail.empty()) item["detail"] = p.detail;
     items.push_back(std::move(item));
   }
@@ -269,7 +298,7 @@ Json Server::completion(const Document& document, const Json& params) const {
 
 Json Server::hover_at(const Document& document, const Json& params) const {
   const Occurrence* thing = pointed_at(document, params);
-  const std::string text = thing == nullptr ? "" : hover(document, *thing);
+  const std::string text = thing == nullptr ? "" : hover(document, *thing, robot());
   if (text.empty()) return nullptr;
   return {{"contents", {{"kind", "markdown"}, {"value", text}}},
           {"range", to_json(document.source, thing->span)}};
@@ -338,7 +367,7 @@ Json Server::code_actions(const std::string& uri, const Document& document,
   if (!wants_quick_fixes(params)) return actions;
   const std::uint32_t begin = place_in(document, params, {"range", "start"});
   const std::uint32_t end = place_in(document, params, {"range", "end"});
-  for (const Diagnostic& d : document.checked.diagnostics) {
+  for (const Diagnostic& d : document.diagnostics) {
     const bool touches = d.span.begin <= end && begin <= d.span.end;
     if (!d.fix || !touches) continue;
     Json edit{{"range", to_json(document.source, d.fix->span)}, {"newText", d.fix->text}};
