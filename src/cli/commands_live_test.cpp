@@ -93,6 +93,46 @@ TEST_F(Commands, CheckPrintsNothingButTheDocumentForPrograms) {
   EXPECT_EQ(nonsense.wait(), 2);
 }
 
+TEST_F(Commands, CheckComparesWithTheRobot) {
+  const std::string good = world.write("good.rules", R"(
+COMPONENT camera NODE /managed_subsystem/camera
+RULE CameraSlow
+  POLICIES WARNING
+  TRIGGER rate(/managed_subsystem/rgb_camera) < 1 && lifecycle(camera) == "active"
+    STRATEGY tune 50 10
+      ADAPTATION camera set_parameter image_degradation 0.1 2
+)");
+  const std::string bad = world.write("bad.rules", R"(
+COMPONENT camera NODE /managed_subsystem/camrea
+COMPONENT depth
+RULE CameraSlow
+  POLICIES WARNING
+  TRIGGER rate(/managed_subsystem/rgb_camra) < 1
+    STRATEGY restart 50 10
+      ADAPTATION camera restart 2
+    STRATEGY tune 50 10
+      ADAPTATION /managed_subsystem/camera set_parameter image_degradaton 0.1 2
+)");
+  auto alone = culprit({"check", "--robot", "--wait", "0.5", good});
+  EXPECT_EQ(alone.wait(), 1) << "there is no robot yet";
+  EXPECT_THAT(alone.output(), HasSubstr("ROS_DOMAIN_ID"));
+
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  auto right = culprit({"check", "--robot", good});
+  EXPECT_EQ(right.wait(), 0);
+  EXPECT_THAT(right.output(), Not(HasSubstr("warning"))) << right.output();
+  auto wrong = culprit({"check", "--robot", "--format", "json", bad});
+  EXPECT_EQ(wrong.wait(), 0) << "a robot changes: these are warnings";
+  std::vector<std::string> found;
+  for (const auto& d : nlohmann::json::parse(wrong.output())) {
+    found.push_back(d["code"].get<std::string>() + " " +
+                    (d.contains("fix") ? d["fix"]["text"].get<std::string>() : "-"));
+  }
+  EXPECT_THAT(found,
+              testing::ElementsAre("R060 /managed_subsystem/camera", "R060 -",
+                                   "R061 /managed_subsystem/rgb_camera", "R062 image_degradation"));
+}
+
 TEST_F(Commands, ExplainShowsThePageOfACode) {
   auto page = culprit({"explain", "R012"});
   EXPECT_EQ(page.wait(), 0);

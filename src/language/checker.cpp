@@ -1,6 +1,7 @@
 #include "language/checker.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "language/compiler.h"
 #include "language/condition_checks.h"
@@ -262,7 +263,8 @@ class Checker {
     if (written.probability.value > 0 && written.probability.value < 1) {
       diagnostics_.push_back({Code::kProbabilityRange, Severity::kWarning, written.probability.span,
                               "this success probability is less than one percent",
-                              "probabilities are in percent: write 90 for 0.9"});
+                              "probabilities are in percent: write 90 for 0.9",
+                              in_percent_fix(written.probability)});
     }
     if (!in_percent(written.confidence)) {
       report(Code::kConfidenceRange, written.confidence.span,
@@ -291,6 +293,14 @@ class Checker {
     rules_.heaviest = std::max(rules_.heaviest, strategy.impact);
     rules_.rules[rule.index].strategies.push_back(id);
     rules_.strategies.push_back(std::move(strategy));
+  }
+
+  // Nothing where a hundred times as much is no whole percent either.
+  static std::optional<Edit> in_percent_fix(const syntax::Number& fraction) {
+    if (fraction.value < 0.01) return std::nullopt;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", fraction.value * 100);
+    return Edit{fraction.span, text};
   }
 
   void add_adaptation(const syntax::Adaptation& written, Strategy& strategy) {

@@ -10,6 +10,7 @@
 
 #include "language/evaluate.h"
 #include "language/explanations.h"
+#include "language/live_checks.h"
 
 namespace culprit {
 namespace {
@@ -246,8 +247,9 @@ TEST(Checker, SplitsLaunchCommandsWithoutAShell) {
 }
 
 // Each file in golden/ holds mistakes, and beside it what is said about them.
-// strict_* are checked strictly; newcomer_* are what people write who come from elsewhere.
-// CULPRIT_WRITE_GOLDEN=1 writes what is said now, for a person to read and commit.
+// strict_* are checked strictly, live_* against example_robot(); newcomer_* are what people write
+// who come from elsewhere. CULPRIT_WRITE_GOLDEN=1 writes what is said now, for a person to read and
+// commit.
 TEST(Checker, SaysWhatTheGoldenFilesSay) {
   const std::filesystem::path folder = "src/language/golden";
   std::set<Code> unseen;
@@ -261,8 +263,10 @@ TEST(Checker, SaysWhatTheGoldenFilesSay) {
     };
     const Source source(entry.path().filename().string(), read(entry.path()));
     const bool is_strict = source.name().starts_with("strict_");
-    const std::string said =
-        all_messages(source, check(source, is_strict ? Strictness::kStrict : Strictness::kLenient));
+    const Strictness strictness = is_strict ? Strictness::kStrict : Strictness::kLenient;
+    const bool has_robot = source.name().starts_with("live_");
+    const std::string said = all_messages(
+        source, has_robot ? check_against(example_robot(), source) : check(source, strictness));
     for (const Explanation& e : explanations()) {
       if (said.find("[" + to_string(e.code) + "]") != std::string::npos) unseen.erase(e.code);
     }

@@ -81,6 +81,13 @@ std::string to_string(Code code) {
   return text;
 }
 
+std::string title_of(const Edit& edit, const Source& source) {
+  const std::string before = "'" + std::string(source.text(edit.span)) + "'";
+  const std::string after = "'" + edit.text + "'";
+  if (edit.span.begin == edit.span.end) return "insert " + after;
+  return edit.text.empty() ? "remove " + before : "change " + before + " to " + after;
+}
+
 std::string render(const Diagnostic& diagnostic, const Source& source, Colour colour) {
   const Paint& paint = colour == Colour::kOn ? kColoured : kPlain;
   const bool is_error = diagnostic.severity == Severity::kError;
@@ -123,6 +130,10 @@ std::string closest(std::string_view name, const std::vector<std::string_view>& 
     if (best_distance == 1) break;
   }
   return std::string(best);
+}
+
+std::optional<Edit> replacement(Span span, const std::string& near) {
+  return near.empty() ? std::nullopt : std::optional(Edit{span, near});
 }
 
 }  // namespace culprit

@@ -36,8 +36,8 @@ std::uint32_t symbol_length(std::string_view text) {
   return kSingles.find(text[0]) != std::string_view::npos ? 1 : 0;
 }
 
-Token bad(Span span, std::string message) {
-  return {Token::Kind::kBad, span, std::move(message), {}};
+Token bad(Span span, std::string message, std::optional<Edit> fix = {}) {
+  return {Token::Kind::kBad, span, std::move(message), {}, std::move(fix)};
 }
 
 }  // namespace
@@ -162,24 +162,49 @@ Token Scanner::quoted(std::uint32_t at) const {
     }
     out += c;
   }
-  return bad({at, end_}, "this string has no closing '\"'");
+  return unclosed(at);
+}
+
+Token Scanner::unclosed(std::uint32_t at) const {
+  std::uint32_t end = end_;
+  while (end > at + 1 && is_blank(text_[end - 1])) --end;
+  return bad({at, end_}, "this string has no closing '\"'", Edit{{end, end}, "\""});
 }
 
 Token Scanner::symbol(std::uint32_t at) const {
   if (const std::uint32_t length = symbol_length(text_.substr(at, std::min(2u, end_ - at)))) {
     return {Token::Kind::kSymbol, {at, at + length}, std::string(text_.substr(at, length)), {}};
   }
+  return meaningless(at);
+}
+
+Token Scanner::meaningless(std::uint32_t at) const {
   std::uint32_t end = at + 1;
   while (end < end_ && (static_cast<unsigned char>(text_[end]) & 0xC0) == 0x80)
     ++end;  // one whole character
   const bool control = static_cast<unsigned char>(text_[at]) < 0x20 || text_[at] == 0x7f;
   if (control) return bad({at, end}, "a control character has no place in a rule file");
   std::string_view advice;
-  if (text_[at] == '\'') advice = "; a text stands in double quotes: \"active\"";
-  if (text_[at] == '&') advice = "; write && for 'and'";
-  if (text_[at] == '|') advice = "; write || for 'or'";
-  return bad({at, end}, "'" + std::string(text_.substr(at, end - at)) + "' means nothing here" +
-                            std::string(advice));
+  std::optional<Edit> fix;
+  if (text_[at] == '\'') {
+    advice = "; a text stands in double quotes: \"active\"";
+    const auto close = text_.substr(0, end_).find('\'', end);
+    const std::string_view inside = text_.substr(end, std::min<std::size_t>(close, end_) - end);
+    if (close != std::string_view::npos && inside.find_first_of("\"\\") == std::string_view::npos)
+      fix = {{at, static_cast<std::uint32_t>(close) + 1}, "\"" + std::string(inside) + "\""};
+  }
+  if (text_[at] == '&') {
+    advice = "; write && for 'and'";
+    fix = {{at, end}, "&&"};
+  }
+  if (text_[at] == '|') {
+    advice = "; write || for 'or'";
+    fix = {{at, end}, "||"};
+  }
+  return bad(
+      {at, end},
+      "'" + std::string(text_.substr(at, end - at)) + "' means nothing here" + std::string(advice),
+      std::move(fix));
 }
 
 syntax::Name Scanner::next_name() {

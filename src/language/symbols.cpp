@@ -164,17 +164,19 @@ std::string Symbols::near_name(const std::string& name,
 void Symbols::report_undeclared(const syntax::Name& name, const char* what,
                                 const std::vector<std::string_view>& declared) {
   const std::string near = near_name(name.text, declared);
+  const auto fix = replacement(name.span, near);
   if (strictness_ == Strictness::kStrict) {
     diagnostics_.push_back(
         {Code::kUndeclared, Severity::kError, name.span,
          std::string(what) + " '" + name.text + "' is not declared",
-         near.empty() ? "declare it, or check without --strict" : "did you mean '" + near + "'?"});
+         near.empty() ? "declare it, or check without --strict" : "did you mean '" + near + "'?",
+         fix});
   } else if (!near.empty()) {
     near_misses_[name.text] = {near, diagnostics_.size()};
     diagnostics_.push_back({Code::kUnknownName, Severity::kWarning, name.span,
                             std::string(what) + " '" + name.text +
                                 "' is not declared and will be looked up on the robot",
-                            "did you mean '" + near + "'?"});
+                            "did you mean '" + near + "'?", fix});
   }
 }
 

@@ -126,7 +126,7 @@ class Typer {
     const std::string near = symbols_.forget_near_miss(e.name.text);
     if (!near.empty()) {
       return fail(Code::kUnknownName, e.span, "signal '" + e.name.text + "' is not declared",
-                  "did you mean '" + near + "'?");
+                  "did you mean '" + near + "'?", Edit{e.span, near});
     }
     return fail(Code::kUnknownType, e.span, "nothing tells what kind of value this is",
                 "compare it with a constant; a text needs quotes: \"" + e.name.text + "\"");
@@ -242,7 +242,8 @@ class Typer {
       diagnostics_.push_back(
           {Code::kUnknownName, Severity::kWarning, side.span,
            "signal '" + name + "' is not declared and will be looked up on the robot",
-           "a text needs quotes: did you mean \"" + name + "\"?"});
+           "a text needs quotes: did you mean \"" + name + "\"?",
+           Edit{side.span, "\"" + name + "\""}});
     }
   }
 
@@ -487,8 +488,10 @@ class Typer {
                 std::move(remedy));
   }
 
-  std::nullopt_t fail(Code code, Span span, std::string cause, std::string remedy) {
-    diagnostics_.push_back({code, Severity::kError, span, std::move(cause), std::move(remedy)});
+  std::nullopt_t fail(Code code, Span span, std::string cause, std::string remedy,
+                      std::optional<Edit> fix = {}) {
+    diagnostics_.push_back(
+        {code, Severity::kError, span, std::move(cause), std::move(remedy), std::move(fix)});
     return std::nullopt;
   }
 
