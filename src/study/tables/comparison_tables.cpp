@@ -186,6 +186,7 @@ std::vector<Table> tables(const Findings& findings) {
   if (!result.rows.empty()) {
     tables.push_back(results_table(result));
     tables.push_back(honest_table(result));
+    tables.push_back(root_cause_table(result));
   }
   for (const Ablation& ablation : ablations(result)) {
     tables.push_back(comparison_table(ablation));

@@ -94,8 +94,8 @@ TEST(Tables, OfAStudyAreAllThere) {
     ids.push_back(table.id);
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size()) << table.id;
   }
-  EXPECT_EQ(ids, (std::vector<std::string>{"ablation", "honest", "comparison", "effects",
-                                           "robustness", "learning"}));
+  EXPECT_EQ(ids, (std::vector<std::string>{"ablation", "honest", "root-causes", "comparison",
+                                           "effects", "robustness", "learning"}));
   EXPECT_TRUE(tables({}).empty());
 }
 
