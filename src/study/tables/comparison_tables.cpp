@@ -112,7 +112,7 @@ std::vector<Cell> welch_row(const Row& ideal, const Row& misspecified) {
 }  // namespace
 
 Table comparison_table(const Ablation& ablation) {
-  Table table{"comparison",
+  Table table{id_of("comparison", ablation.planner, ablation.profile),
               "Ours beside the paper's: " + played(ablation.planner, ablation.profile),
               switch_columns(),
               {},
@@ -134,7 +134,7 @@ Table comparison_table(const Ablation& ablation) {
 
 Table effects_table(const Ablation& ablation) {
   Table table{
-      "effects",
+      id_of("effects", ablation.planner, ablation.profile),
       "Change in percent by switching one factor on: " + played(ablation.planner, ablation.profile),
       {{"", "factor", "", "", Align::kLeft},
        {"", "from", "", "", Align::kCentre},
@@ -164,7 +164,7 @@ Table effects_table(const Ablation& ablation) {
 }
 
 Table robustness_table(const Row& ideal, const Row& misspecified) {
-  Table table{"robustness",
+  Table table{id_of("robustness", ideal.configuration.planner, ideal.configuration.profile),
               "Probabilities off by 20 %: " +
                   played(ideal.configuration.planner, ideal.configuration.profile),
               {{"", "initial P", "", "Initial $P_s$", Align::kLeft}},

@@ -131,7 +131,8 @@ Table learning_table(const std::vector<LearningCurve>& curves) {
                           {last.count() == 0 ? "–" : number(std::abs(last.mean() - curve.truth))}});
   }
   table.notes.push_back(fmt::format(
-      "After {} experiments, c_p = {:g}. The paper prints a figure of F1 and F4 without numbers.",
+      "After {} experiments. Of the paper's own learning (c_p = {:g}) there is a figure of "
+      "F1 and F4, without numbers.",
       curves.front().learned.size(), published::kLearning.confidence));
   return table;
 }
