@@ -120,6 +120,15 @@ TEST_F(StudyCommand, MergesNothingByHalves) {
   EXPECT_EQ(text(path("out")), "old");
 }
 
+TEST_F(StudyCommand, WritesAReportAndPlots) {
+  ASSERT_EQ(run_small({"--html", path("report.html"), "--svg", path("plots")}), kOk) << complaint;
+  const std::string page = text(path("report.html"));
+  EXPECT_THAT(page, HasSubstr("culprit study sunset --ablation"));
+  EXPECT_THAT(page, HasSubstr("is held responsible for"));
+  EXPECT_THAT(text(path("plots/downtime_s.svg")), HasSubstr("<svg"));
+  EXPECT_EQ(run_small({"--html", path("no/report.html")}), kFailed);
+}
+
 TEST_F(StudyCommand, SaysWhatCanBeChosen) {
   EXPECT_EQ(run({"sunset", "--profile", "september"}), kUsage);
   EXPECT_THAT(complaint, HasSubstr("there are paper, head, october, live"));
