@@ -50,7 +50,8 @@ nlohmann::json to_json(const std::vector<PlayOutcome>& outcomes) {
     nlohmann::json entry{{"name", o.name},
                          {"faults", o.faults},
                          {"failures", o.failures},
-                         {"strategies_executed", o.strategies_executed},
+                         {"strategies", o.strategies},
+                         {"strategies_executed", o.strategies.size()},
                          {"strategies_succeeded", o.strategies_succeeded},
                          {"unnecessary_redeployments", o.unnecessary_redeployments},
                          {"reaction_time_s", o.reaction_times},
@@ -73,7 +74,7 @@ void print_outcome(const PlayOutcome& o) {
     reactions += fmt::format("{}{:.2f}", reactions.empty() ? "" : ", ", t);
   fmt::print("\n  faults                     {}\n", joined(o.faults));
   fmt::print("  failures                   {}\n", joined(o.failures));
-  fmt::print("  strategies executed        {} ({} resolved a failure)\n", o.strategies_executed,
+  fmt::print("  strategies executed        {} ({} resolved a failure)\n", o.strategies.size(),
              o.strategies_succeeded);
   fmt::print("  unnecessary redeployments  {}\n", o.unnecessary_redeployments);
   fmt::print("  reaction times             {} s\n", reactions.empty() ? "-" : reactions);
@@ -91,7 +92,7 @@ void print_summary(const std::vector<PlayOutcome>& outcomes) {
                                                                    o.reaction_times.end(), 0.0) /
                                                        static_cast<double>(o.reaction_times.size());
     fmt::print("{:<42} {:>8} {:>10} {:>9} {:>7.2f} s {:>6.2f} s {:>5}  {}\n", o.name,
-               o.failures.size(), o.strategies_executed, o.unnecessary_redeployments, mean,
+               o.failures.size(), o.strategies.size(), o.unnecessary_redeployments, mean,
                o.downtime, o.mean_iou ? fmt::format("{:.2f}", *o.mean_iou) : "-",
                o.is_resolved() ? "healed" : "NOT HEALED");
   }

@@ -21,7 +21,7 @@ void Episode::on(const FailureResolved& e) {
 
 void Episode::on(const StrategyChosen& e) {
   if (e.dry_run) return;
-  ++strategies_executed_;
+  strategies_.push_back(rules_[e.strategy].name);
   const auto& adaptations = rules_[e.strategy].adaptations;
   const bool redeploys =
       std::any_of(adaptations.begin(), adaptations.end(),

@@ -19,7 +19,8 @@ class Episode {
 
   // Failures in the order of their detection; one that came twice is there twice.
   const std::vector<std::string>& failures() const { return failures_; }
-  int strategies_executed() const { return strategies_executed_; }
+  // Strategies in the order of their execution.
+  const std::vector<std::string>& strategies() const { return strategies_; }
   int strategies_succeeded() const { return strategies_succeeded_; }
   // Executed strategies that redeploy a component.
   int redeployments() const { return redeployments_; }
@@ -43,7 +44,7 @@ class Episode {
   std::vector<std::string> failures_;
   std::vector<Duration> reactions_;
   std::set<RuleId> open_;
-  int strategies_executed_ = 0;
+  std::vector<std::string> strategies_;
   int strategies_succeeded_ = 0;
   int redeployments_ = 0;
   bool is_exhausted_ = false;

@@ -166,7 +166,7 @@ Expected<PlayOutcome> SunsetDemo::play(const Play& play) {
   {
     const std::lock_guard lock(mutex_);
     outcome.failures = episode_->failures();
-    outcome.strategies_executed = episode_->strategies_executed();
+    outcome.strategies = episode_->strategies();
     outcome.strategies_succeeded = episode_->strategies_succeeded();
     outcome.unnecessary_redeployments =
         std::max(0, episode_->redeployments() - play.redeployments_needed());

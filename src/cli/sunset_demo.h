@@ -28,7 +28,7 @@ struct PlayOutcome {
   std::string name;
   std::vector<std::string> faults;
   std::vector<std::string> failures;
-  int strategies_executed = 0;
+  std::vector<std::string> strategies;  // executed, in their order
   int strategies_succeeded = 0;
   int unnecessary_redeployments = 0;
   std::vector<double> reaction_times;

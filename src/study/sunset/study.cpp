@@ -119,7 +119,8 @@ std::unique_ptr<ManagingSystem> SunsetStudy::manager(const Setting& setting,
                                    manager_options(setting));
 }
 
-SunsetRun SunsetStudy::play(const Setting& setting, RunId id) const {
+SunsetRun SunsetStudy::play(RunId id) const {
+  const Setting& setting = settings_[id.row];
   static const std::vector<sunset::Scenario> kScenarios = sunset::scenarios();
   const std::uint64_t seed = seed_of(id);
   sunset::model::SunsetModel model(*setting.profile, seed);
@@ -130,14 +131,14 @@ SunsetRun SunsetStudy::play(const Setting& setting, RunId id) const {
 RunMetrics SunsetStudy::run(RunId id) const {
   const Setting& setting = settings_[id.row];
   const PaperSwitches& on = setting.configuration.switches;
-  return measure(play(setting, id), *setting.rules,
+  return measure(play(id), *setting.rules,
                  on.dependencies && !on.criticality && !on.impact);
 }
 
 Timeline SunsetStudy::explain(RunId id) const {
   const Setting& setting = settings_[id.row];
   const RuleSet& rules = *setting.rules;
-  const SunsetRun run = play(setting, id);
+  const SunsetRun run = play(id);
   Timeline timeline{setting.configuration, id.run, run.scenario.name(), {}};
   const auto at = [](Time t) { return seconds(t.time_since_epoch()); };
   for (const auto& injection : run.injections) {

@@ -29,6 +29,10 @@ class SunsetStudy {
   // From several threads if you like.
   RunMetrics run(RunId id) const;
 
+  // The same run, with all that happened in it. By the rules of its row.
+  SunsetRun play(RunId id) const;
+  const RuleSet& rules(std::uint32_t row) const { return *settings_[row].rules; }
+
   // The same run, told.
   Timeline explain(RunId id) const;
 
@@ -50,7 +54,6 @@ class SunsetStudy {
   std::uint64_t seed_of(RunId id) const;
   static Manager::Options manager_options(const Setting& setting);
   std::unique_ptr<ManagingSystem> manager(const Setting& setting, std::uint64_t seed) const;
-  SunsetRun play(const Setting& setting, RunId id) const;
 
   std::vector<Setting> settings_;
   std::uint64_t seed_;
