@@ -9,7 +9,7 @@ namespace {
 // More failures in the way than this are no explanation that anybody reads.
 constexpr std::size_t kMostHindrances = 8;
 
-constexpr int kThousand = 1000;  // in which probabilities are sought
+constexpr int kCertain = 1000;  // probabilities are sought in thousandths
 
 // Between `loses` and `wins`, in either order: the value nearest to `loses` that still wins.
 template <class Wins>
@@ -43,7 +43,7 @@ std::vector<Change> FlipFinder::flips(StrategyId loser) {
   const auto add = [&](std::optional<Change> flip) {
     if (flip) flips.push_back(std::move(*flip));
   };
-  add(success_of(loser, kThousand, loser));
+  add(success_of(loser, kCertain, loser));
   add(impact(loser));
   if (now.rival) add(success_of(*now.rival, 0, loser));
   std::stable_sort(flips.begin(), flips.end(),
@@ -99,9 +99,9 @@ FlipFinder::Outcome FlipFinder::outcome_with(const Change& change, StrategyId lo
 // The success probability of `changed` nearest to what it is, toward `end`, with which the loser is
 // chosen.
 std::optional<Change> FlipFinder::success_of(StrategyId changed, int end, StrategyId loser) {
-  const double now = kThousand * what_if_.knowledge().beliefs[changed].mean().value;
+  const double now = kCertain * what_if_.knowledge().beliefs[changed].mean().value;
   const auto change = [&](std::int64_t thousandths) {
-    return SuccessChange{changed, {static_cast<double>(thousandths) / kThousand}};
+    return SuccessChange{changed, {static_cast<double>(thousandths) / kCertain}};
   };
   const auto wins = [&](std::int64_t thousandths) { return wins_with(change(thousandths), loser); };
   if (!wins(end)) return std::nullopt;
