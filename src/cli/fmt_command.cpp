@@ -46,8 +46,7 @@ int format_file(const FmtOptions& options, const std::string& file) {
     return kOk;
   }
   if (*text == *formatted) return kOk;
-  if (const auto replaced = replace_text(file, *formatted); !replaced)
-    return fail(replaced.error());
+  if (const auto replaced = write_text(file, *formatted); !replaced) return fail(replaced.error());
   fmt::print("{}: formatted\n", file);
   return kOk;
 }

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "cli/commands.h"
+#include "cli/text_file.h"
 #include "language/import/importer.h"
 
 namespace culprit::cli {
@@ -15,13 +16,6 @@ struct ImportOptions {
   std::string file;
   std::string output;
 };
-
-bool write_text(const std::string& path, const std::string& text) {
-  std::FILE* file = path.empty() ? stdout : std::fopen(path.c_str(), "wb");
-  if (file == nullptr) return false;
-  const bool is_written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  return (path.empty() ? std::fflush(file) : std::fclose(file)) == 0 && is_written;
-}
 
 // Each note once, with the first line that it is about; the output has it at every place.
 void print_summary(const ImportOptions& options, const Imported& imported) {
@@ -46,9 +40,10 @@ int import_file(const ImportOptions& options) {
     fmt::print(stderr, "culprit: {}\n", imported.error());
     return kFailed;
   }
-  if (!write_text(options.output, imported->text)) {
-    fmt::print(stderr, "culprit: cannot write '{}'\n",
-               options.output.empty() ? "the output" : options.output);
+  if (options.output.empty()) {
+    fmt::print("{}", imported->text);
+  } else if (const auto written = write_text(options.output, imported->text); !written) {
+    fmt::print(stderr, "culprit: {}\n", written.error());
     return kFailed;
   }
   print_summary(options, *imported);

@@ -47,7 +47,7 @@ void StudyOutput::add_to(CLI::App& command) {
 
 Expected<void> write(const study::Findings& findings, const StudyOutput& output) {
   if (!output.html.empty()) {
-    auto written = replace_text(output.html, study::html_report(findings, "SUNSET"));
+    auto written = write_text(output.html, study::html_report(findings, "SUNSET"));
     if (!written) return written;
   }
   if (!output.plot_folder.empty()) {
@@ -55,7 +55,7 @@ Expected<void> write(const study::Findings& findings, const StudyOutput& output)
     if (!written) return written;
   }
   const std::string text = in_format(findings, output.format);
-  if (!output.output.empty()) return replace_text(output.output, text);
+  if (!output.output.empty()) return write_text(output.output, text);
   fmt::print("{}", text);
   return std::fflush(stdout) == 0 ? Expected<void>() : Error{"the output cannot be written"};
 }

@@ -29,6 +29,13 @@ Expected<std::string> read_all(std::istream& in, const std::string& path) {
   return text;
 }
 
+// The process's mask can only be read by setting it; culprit sets up no other file meanwhile.
+mode_t mode_of_new_files() {
+  const mode_t mask = umask(0);
+  umask(mask);
+  return 0666 & ~mask;
+}
+
 bool write_all(int file, const std::string& text) {
   std::size_t written = 0;
   while (written < text.size()) {
@@ -48,18 +55,18 @@ Expected<std::string> read_text(const std::string& path) {
   return read_all(file, path);
 }
 
-Expected<void> replace_text(const std::string& path, const std::string& text) {
+Expected<void> write_text(const std::string& path, const std::string& text) {
   std::error_code error;
-  const std::filesystem::path target = std::filesystem::canonical(path, error);
+  const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
+  if (error) return Error{"cannot find '" + path + "': " + error.message()};
   struct stat old {};
-  if (error || stat(target.c_str(), &old) != 0) return failure("find", path);
+  const mode_t mode = stat(target.c_str(), &old) == 0 ? old.st_mode & 07777 : mode_of_new_files();
   // In the same folder, so that the rename stays within one file system.
   std::string temporary = target.parent_path() / ("." + target.filename().string() + ".XXXXXX");
   const int file = mkstemp(temporary.data());
   if (file < 0) return failure("write beside", path);
   // On the disk before the name points to it: a power failure leaves one of the two contents.
-  const bool written =
-      write_all(file, text) && fchmod(file, old.st_mode & 07777) == 0 && fsync(file) == 0;
+  const bool written = write_all(file, text) && fchmod(file, mode) == 0 && fsync(file) == 0;
   const int reason = errno;
   const bool closed = close(file) == 0;
   if (written && closed && rename(temporary.c_str(), target.c_str()) == 0) return {};

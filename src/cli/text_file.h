@@ -1,4 +1,4 @@
-// Reading and replacing whole text files.
+// Reading and writing whole text files.
 #pragma once
 
 #include <string>
@@ -11,8 +11,9 @@ namespace culprit::cli {
 // Errors: it cannot be read, or it is larger than a rule file may be.
 Expected<std::string> read_text(const std::string& path);
 
-// Puts `text` into the place of the file at `path`: other processes see the old content or the new
-// one, whole. Its permissions are kept; behind a symbolic link it is the file that is replaced.
-Expected<void> replace_text(const std::string& path, const std::string& text);
+// Makes `text` the content of the file at `path`, which may be new: other processes see the old
+// content or the new one, whole. Permissions are kept; behind a symbolic link it is the file that
+// is replaced.
+Expected<void> write_text(const std::string& path, const std::string& text);
 
 }  // namespace culprit::cli

@@ -3,6 +3,7 @@
 
 #include "manager/manager.h"
 #include "plan/paper_planner.h"
+#include "study/published.h"
 #include "study/sunset/study.h"
 
 namespace culprit::study {
@@ -38,7 +39,8 @@ std::vector<Learner> learners(const RuleSet& rules, std::uint32_t experiments) {
 std::vector<LearningCurve> SunsetStudy::learn(std::uint32_t experiments,
                                               std::uint32_t repetitions) const {
   const Setting& setting = settings_.front();
-  const RuleSet& rules = *setting.rules;
+  RuleSet rules = *setting.rules;
+  for (Strategy& strategy : rules.strategies) strategy.confidence = published::kLearning.confidence;
   const std::vector<sunset::Scenario> scenarios = sunset::scenarios();
   std::vector<Learner> all = learners(rules, experiments);
   for (std::uint32_t repetition = 0; repetition < repetitions; ++repetition) {
