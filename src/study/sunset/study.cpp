@@ -103,14 +103,12 @@ Manager::Options SunsetStudy::manager_options(const Setting& setting) {
   return options;
 }
 
-std::unique_ptr<ManagingSystem> SunsetStudy::manager(const Setting& setting,
-                                                     std::uint64_t seed) const {
+std::unique_ptr<ManagingSystem> SunsetStudy::manager(const Setting& setting) const {
   if (setting.configuration.planner == "reference") {
     ReferenceOptions options;
     options.switches = setting.configuration.switches;
     options.start = options.graph_frozen_at = Time{setting.profile->manager_start};
     options.initial = sunset_blackboard();
-    options.seed = seed;
     // The rules are made for it.
     return std::move(*ReferenceManager::make(*setting.rules, std::move(options)));
   }
@@ -124,15 +122,14 @@ SunsetRun SunsetStudy::play(RunId id) const {
   static const std::vector<sunset::Scenario> kScenarios = sunset::scenarios();
   const std::uint64_t seed = seed_of(id);
   sunset::model::SunsetModel model(*setting.profile, seed);
-  const auto managing = manager(setting, seed);
+  const auto managing = manager(setting);
   return study::play(model, *setting.rules, *managing, kScenarios[id.run % kScenarios.size()]);
 }
 
 RunMetrics SunsetStudy::run(RunId id) const {
   const Setting& setting = settings_[id.row];
   const PaperSwitches& on = setting.configuration.switches;
-  return measure(play(id), *setting.rules,
-                 on.dependencies && !on.criticality && !on.impact);
+  return measure(play(id), *setting.rules, on.dependencies && !on.criticality && !on.impact);
 }
 
 Timeline SunsetStudy::explain(RunId id) const {

@@ -53,7 +53,7 @@ class SunsetStudy {
 
   std::uint64_t seed_of(RunId id) const;
   static Manager::Options manager_options(const Setting& setting);
-  std::unique_ptr<ManagingSystem> manager(const Setting& setting, std::uint64_t seed) const;
+  std::unique_ptr<ManagingSystem> manager(const Setting& setting) const;
 
   std::vector<Setting> settings_;
   std::uint64_t seed_;
