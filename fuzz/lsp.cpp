@@ -1,9 +1,11 @@
-// A client's bytes: every message is answered or refused, and what is sent back can be written.
+// A client's bytes, while a robot is there: every message is answered or refused, and what is sent
+// back can be written.
 #include <cstddef>
 #include <cstdint>
 #include <sstream>
 #include <string>
 
+#include "language/explanations.h"
 #include "lsp/message_stream.h"
 #include "lsp/server.h"
 
@@ -12,6 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::istringstream in(std::string(reinterpret_cast<const char*>(data), size));
   std::ostringstream out;
   Server server("fuzz", [&out](const nlohmann::json& message) { write_message(out, message); });
+  server.see(culprit::example_robot());
   while (true) {
     const auto message = read_message(in);
     if (!message || !*message || !server.handle(**message)) return 0;

@@ -1,13 +1,14 @@
-// Rule files: every diagnostic must render, and every program of an accepted file must run, with
-// inputs unknown and known.
+// Rule files, alone and against a robot: every diagnostic must render, and every program of an
+// accepted file must run, with inputs unknown and known.
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "language/checker.h"
 #include "language/evaluate.h"
+#include "language/explanations.h"
+#include "language/live_checks.h"
 
 namespace {
 
@@ -45,13 +46,22 @@ void run_all(const RuleSet& rules) {
   }
 }
 
+void look_at(const Diagnostic& diagnostic, const Source& source) {
+  if (render(diagnostic, source).empty()) __builtin_trap();
+  if (!diagnostic.fix) return;
+  const Span span = diagnostic.fix->span;
+  if (span.begin > span.end || span.end > source.text().size()) __builtin_trap();
+  if (title_of(*diagnostic.fix, source).empty()) __builtin_trap();
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const Source source("fuzz.rules", std::string(reinterpret_cast<const char*>(data), size));
-  const Checked checked = check(source, Strictness::kStrict);
-  for (const Diagnostic& diagnostic : checked.diagnostics)
-    if (render(diagnostic, source).empty()) __builtin_trap();
-  if (const Checked lenient = check(source); lenient.rules) run_all(*lenient.rules);
+  for (const Checked& checked :
+       {check(source, Strictness::kStrict), check_against(example_robot(), source)}) {
+    for (const Diagnostic& diagnostic : checked.diagnostics) look_at(diagnostic, source);
+    if (checked.rules) run_all(*checked.rules);
+  }
   return 0;
 }

@@ -397,8 +397,14 @@ class Checker {
 }  // namespace
 
 Checked check(const Source& source, Strictness strictness) {
+  std::vector<Diagnostic> said;
+  const syntax::File file = parse(source, said);
+  return check(file, std::move(said), strictness);
+}
+
+Checked check(const syntax::File& file, std::vector<Diagnostic> said, Strictness strictness) {
   Checked result;
-  const syntax::File file = parse(source, result.diagnostics);
+  result.diagnostics = std::move(said);
   RuleSet rules = Checker(file, strictness, result.diagnostics).check();
   std::stable_sort(
       result.diagnostics.begin(), result.diagnostics.end(),

@@ -8,6 +8,7 @@
 #include "language/rule_set.h"
 #include "language/source.h"
 #include "language/symbols.h"
+#include "language/syntax.h"
 
 namespace culprit {
 
@@ -17,5 +18,8 @@ struct Checked {
 };
 
 Checked check(const Source& source, Strictness strictness = Strictness::kLenient);
+// The same of a file that is parsed already; `said` are the parser's complaints.
+Checked check(const syntax::File& file, std::vector<Diagnostic> said,
+              Strictness strictness = Strictness::kLenient);
 
 }  // namespace culprit

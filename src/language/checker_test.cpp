@@ -289,6 +289,12 @@ TEST(Checker, KeepsConstantsThatAreText) {
   EXPECT_EQ(evaluate(value, {}).s, "rgb_camera_image_of_the_left_side");
 }
 
+TEST(Checker, DoesNotBlameASignalForABrokenConstant) {
+  EXPECT_EQ(codes_of("CONTS limit = 0.06\nRULE r\n  POLICIES ERROR\n  TRIGGER entropy > limit\n"
+                     "    STRATEGY s 50 10\n      ADAPTATION c restart 5\n"),
+            std::vector<std::string>{"R001"});
+}
+
 TEST(Checker, RefusesRunTimeValuesWhereConstantsBelong) {
   EXPECT_EQ(codes_of("CONST a = age(/t)\n"), std::vector<std::string>{"R023"});
   EXPECT_EQ(codes_of("COMPONENT c\nRULE r\n  POLICIES ERROR\n  TRIGGER rate(/t, age(/t)) < 1\n"

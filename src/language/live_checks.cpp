@@ -343,11 +343,10 @@ void check_live(const syntax::File& file, const RuleSet& rules, const LiveInvent
 }
 
 Checked check_against(const LiveInventory& robot, const Source& source, Strictness strictness) {
-  Checked checked = check(source, strictness);
-  if (!checked.rules) return checked;
-  std::vector<Diagnostic> already_in_checked;
-  const syntax::File file = parse(source, already_in_checked);
-  check_live(file, *checked.rules, robot, checked.diagnostics);
+  std::vector<Diagnostic> said;
+  const syntax::File file = parse(source, said);
+  Checked checked = check(file, std::move(said), strictness);
+  if (checked.rules) check_live(file, *checked.rules, robot, checked.diagnostics);
   return checked;
 }
 

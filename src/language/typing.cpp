@@ -76,8 +76,10 @@ Op member(const Family& family, Type type) {
 
 class Typer {
  public:
-  Typer(Symbols& symbols, std::vector<Diagnostic>& diagnostics)
-      : symbols_(symbols), diagnostics_(diagnostics) {}
+  Typer(const Expression& whole, Symbols& symbols, std::vector<Diagnostic>& diagnostics)
+      : symbols_(symbols),
+        diagnostics_(diagnostics),
+        names_broken_constant_(names_broken_constant(whole)) {}
 
   std::optional<Typed> type(const Expression& e) {
     auto typed = type_of(e);
@@ -128,6 +130,7 @@ class Typer {
       return fail(Code::kUnknownName, e.span, "signal '" + e.name.text + "' is not declared",
                   "did you mean '" + near + "'?", Edit{e.span, near});
     }
+    if (names_broken_constant_) return std::nullopt;  // which would have told
     return fail(Code::kUnknownType, e.span, "nothing tells what kind of value this is",
                 "compare it with a constant; a text needs quotes: \"" + e.name.text + "\"");
   }
@@ -495,15 +498,25 @@ class Typer {
     return std::nullopt;
   }
 
+  bool names_broken_constant(const Expression& e) const {
+    if (e.kind == Kind::kName) {
+      const auto* constant = symbols_.constant(e.name.text);
+      return constant != nullptr && constant->broken;
+    }
+    return std::any_of(e.children.begin(), e.children.end(),
+                       [&](const Expression& child) { return names_broken_constant(child); });
+  }
+
   Symbols& symbols_;
   std::vector<Diagnostic>& diagnostics_;
+  const bool names_broken_constant_;
 };
 
 }  // namespace
 
 std::optional<Typed> type_expression(const Expression& expression, Symbols& symbols,
                                      std::vector<Diagnostic>& diagnostics) {
-  return Typer(symbols, diagnostics).type(expression);
+  return Typer(expression, symbols, diagnostics).type(expression);
 }
 
 std::optional<Typed> converted(Typed typed, Type wanted) {

@@ -5,9 +5,10 @@
 
 namespace culprit::lsp {
 
-Document::Document(std::string text) : source("", std::move(text)), checked(check(source)) {
-  std::vector<Diagnostic> already_in_checked;
-  file = parse(source, already_in_checked);
+Document::Document(std::string text) : source("", std::move(text)) {
+  std::vector<Diagnostic> said;
+  file = parse(source, said);
+  checked = check(file, std::move(said));
   names = occurrences(file);
   diagnostics = checked.diagnostics;
 }
