@@ -88,7 +88,7 @@ Profile live() {
   p.inference = milliseconds(10);
   p.focusing = from_seconds(kFocusingSec);
   p.has_blackboard = false;
-  p.manager_start = milliseconds(0);
+  p.manager_start = seconds(3);  // everything runs
   p.injection = {seconds(5), seconds(1)};
   p.injection_jitter = milliseconds(10);
   p.end_of_run = seconds(20);
