@@ -87,13 +87,6 @@ bool Analyzer::is_gone(RuleId id, Time now) const {
   return is_false(state.trigger) && now >= later(state.trigger_since, clearing_time(id));
 }
 
-Duration Analyzer::signal_latency(RuleId id) const {
-  Duration latency{};
-  for (const InputId input : knowledge_.rules[id].inputs)
-    latency = std::max(latency, knowledge_.signals.latency(input));
-  return latency;
-}
-
 void Analyzer::detect(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   state.failing_since = now;
@@ -134,11 +127,9 @@ void Analyzer::judge(RuleId id, Time now) {
       exhaust_if_spent(id, now);
       return watch_failing(id, now);
   }
-  if (attempt.deadline == kNever) {
-    const Duration impact =
-        duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
-    attempt.deadline = later(later(attempt.effective, impact), signal_latency(id));
-  }
+  // Anew each time: how long a signal takes to show a change may have become known meanwhile.
+  const Duration impact = duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
+  attempt.deadline = later(later(attempt.effective, impact), knowledge_.signals.latency(id));
   if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
   if (now < attempt.deadline || is_false(state.trigger)) return;
   if (state.trigger.known || now >= later(attempt.deadline, kLostAfter)) fail(id, now);

@@ -8,7 +8,8 @@
 //   a strategy under way succeeds when that happens, once its adaptations took effect; it fails at
 //   its deadline:
 //              its impact in cycles after they took effect, plus the latency of what the trigger
-//              reads
+//              reads: of a signal two of its periods, so that a fresh reading comes before; as long
+//              as its period is not known, five seconds
 //   a round    of strategies is followed by a back-off that doubles each time; after ATTEMPTS
 //   strategies (or as many
 //              rounds without any valid strategy) the rule is exhausted
@@ -60,7 +61,6 @@ class Analyzer {
   bool detects(RuleId id, Time now) const;
   bool is_gone(RuleId id, Time now) const;
   Duration clearing_time(RuleId id) const;
-  Duration signal_latency(RuleId id) const;
 
   void detect(RuleId id, Time now);
   void watch_failing(RuleId id, Time now);

@@ -1,6 +1,6 @@
 #include "knowledge/signal_store.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace culprit {
 
@@ -36,6 +36,13 @@ void SignalStore::touch(RuleId id) {
   if (is_touched_[id.index]) return;
   is_touched_[id.index] = true;
   touched_.push_back(id);
+}
+
+Duration SignalStore::latency(RuleId id) const {
+  Duration latency{};
+  for (const InputId input : rules_[id].inputs)
+    latency = std::max(latency, latencies_[input.index]);
+  return latency;
 }
 
 std::span<const RuleId> SignalStore::take_touched() {

@@ -35,6 +35,8 @@ class SignalStore {
 
   // How long after a change in the system this input shows it, as far as the monitor has seen.
   Duration latency(InputId id) const { return latencies_[id.index]; }
+  // Until all that the trigger of a rule reads shows it.
+  Duration latency(RuleId id) const;
   void set_latency(InputId id, Duration latency) { latencies_[id.index] = latency; }
 
   // Takes the rules that were marked since the last call, each once. Valid until the next mark.

@@ -251,14 +251,19 @@ void Monitor::on(Time at, const SignalRead& seen) { read_signal(seen.signal, see
 void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
   const culprit::Signal& declared = knowledge_.rules[signal];
   Signal& state = signals_[signal.index];
-  if (state.last) state.interval = smoothed(state.interval, at - *state.last);
   const bool is_first = !state.last;
+  const bool had_rhythm = state.interval > Duration::zero();
+  if (!is_first) state.interval = smoothed(state.interval, at - *state.last);
+  const bool has_rhythm = state.interval > Duration::zero();
   state.last = at;
   std::string text;
   const Slot slot = as_type(value, declared.type, text);
   for (const InputId id : state.inputs) {
     const Input& input = knowledge_.rules[id];
-    knowledge_.signals.set_latency(id, usual_latency(state.interval) + input.window);
+    // After one reading nobody knows when the next will come.
+    const Duration latency = has_rhythm ? usual_latency(state.interval) : kLongestLatency;
+    knowledge_.signals.set_latency(id, latency + input.window);
+    if (has_rhythm && !had_rhythm) knowledge_.signals.touch(id);
     if (input.kind == Kind::kSignal) {
       knowledge_.signals.set(id, slot);
       if (declared.stale) deadlines_.set(id.index, later(at, *declared.stale));
