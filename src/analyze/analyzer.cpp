@@ -13,11 +13,12 @@ bool is_false(const Slot& slot) { return slot.known && !slot.b; }
 }  // namespace
 
 Analyzer::Analyzer(Knowledge& knowledge)
-    : knowledge_(knowledge), deadlines_(knowledge.rules.rules.size()) {}
+    : knowledge_(knowledge), deadlines_(knowledge.rules.rules.size()), couplings_(knowledge) {}
 
 void Analyzer::advance(Time now) {
   for (const RuleId id : knowledge_.signals.take_touched()) look_at(id, now);
   while (const auto due = deadlines_.pop_due(now)) look_at(RuleId(*due), now);
+  couplings_.advance(now);
 }
 
 std::vector<RuleId> Analyzer::plannable(Time now) const {
@@ -95,6 +96,7 @@ void Analyzer::detect(RuleId id, Time now) {
   state.round = 0;
   state.retry_at = now;
   state.is_advised = false;
+  state.settling.reset();
   std::fill(state.tried.begin(), state.tried.end(), false);
   knowledge_.states.enter(id, RulePhase::kFailing);
   knowledge_.tell(now, FailureDetected{id});
@@ -122,6 +124,7 @@ void Analyzer::judge(RuleId id, Time now) {
     case Attempt::Stage::kUndoing:
       return;
     case Attempt::Stage::kOver:
+      couplings_.ended(attempt.strategy, attempt.first_change, now);
       state.attempt.reset();
       knowledge_.states.enter(id, RulePhase::kFailing);
       exhaust_if_spent(id, now);
@@ -144,9 +147,13 @@ bool Analyzer::can_have_caused(RuleId id) const {
 void Analyzer::succeed(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   const StrategyId strategy = state.attempt->strategy;
+  const Time first_change = state.attempt->first_change;
   const bool caused = can_have_caused(id);
-  if (caused && !state.attempt->is_ambiguous) knowledge_.beliefs.helped(strategy);
+  const bool is_proven = caused && !state.attempt->is_ambiguous;
+  if (is_proven) knowledge_.beliefs.helped(strategy);
   state.attempt.reset();
+  if (caused) couplings_.resolved(strategy, first_change, is_proven, now);
+  couplings_.ended(strategy, first_change, now);
   if (caused) {
     resolve(id, {id, FailureResolved::How::kByStrategy, strategy, {}}, now);
   } else {
@@ -178,6 +185,7 @@ void Analyzer::resolve(RuleId id, FailureResolved how, Time now) {
   how.reaction = now - state.failing_since;
   state.quiet_until = later(now, knowledge_.rules[id].policies.cooldown);
   knowledge_.states.enter(id, RulePhase::kQuiet);
+  if (!how.strategy && state.attempts == 0) couplings_.cleared(id, now);
   knowledge_.tell(now, std::move(how));
 }
 

@@ -22,9 +22,11 @@
 // of it was under way.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
+#include "analyze/coupling_watch.h"
 #include "knowledge/deadlines.h"
 #include "knowledge/knowledge.h"
 
@@ -43,7 +45,7 @@ class Analyzer {
 
   // Looks at every rule that the monitor touched and at those whose time has come.
   void advance(Time now);
-  Time next_deadline() const { return deadlines_.next(); }
+  Time next_deadline() const { return std::min(deadlines_.next(), couplings_.next_deadline()); }
 
   // Failures that a planner should decide about now, ascending: there, and no strategy under way,
   // no back-off.
@@ -74,6 +76,7 @@ class Analyzer {
 
   Knowledge& knowledge_;
   Deadlines deadlines_;  // by RuleId
+  CouplingWatch couplings_;
 };
 
 }  // namespace culprit

@@ -9,6 +9,7 @@ SignalStore::SignalStore(const RuleSet& rules)
       slots_(rules.inputs.size()),
       texts_(rules.inputs.size()),
       latencies_(rules.inputs.size()),
+      rhythms_(rules.topics.size()),
       is_touched_(rules.rules.size()) {
   touched_.reserve(rules.rules.size());
   taken_.reserve(rules.rules.size());

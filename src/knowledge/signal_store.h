@@ -5,12 +5,14 @@
 // and looks at no others.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "language/evaluate.h"
 #include "language/rule_set.h"
+#include "robot/time.h"
 
 namespace culprit {
 
@@ -39,6 +41,14 @@ class SignalStore {
   Duration latency(RuleId id) const;
   void set_latency(InputId id, Duration latency) { latencies_[id.index] = latency; }
 
+  // When a topic was heard last, and how long it usually is silent in between.
+  struct Rhythm {
+    std::optional<Time> last;
+    Duration interval{};  // zero: not known yet
+  };
+  const Rhythm& rhythm(TopicId id) const { return rhythms_[id.index]; }
+  void set_rhythm(TopicId id, Rhythm rhythm) { rhythms_[id.index] = rhythm; }
+
   // Takes the rules that were marked since the last call, each once. Valid until the next mark.
   std::span<const RuleId> take_touched();
 
@@ -47,6 +57,7 @@ class SignalStore {
   std::vector<Slot> slots_;
   std::vector<std::string> texts_;  // what slots of texts refer to
   std::vector<Duration> latencies_;
+  std::vector<Rhythm> rhythms_;  // by TopicId
   std::vector<RuleId> touched_;
   std::vector<RuleId> taken_;
   std::vector<bool> is_touched_;

@@ -121,6 +121,7 @@ void Monitor::on(Time at, const SampleArrived& seen) {
   if (topic.last)
     topic.interval = smoothed(topic.interval, (at - *topic.last) / std::max(1u, seen.published));
   topic.last = at;
+  knowledge_.signals.set_rhythm(seen.topic, {at, topic.interval});
   if (topic.needs_phi) topic.phi.add(at, seen.published);
   for (const InputId id : topic.inputs) {
     const Input& input = knowledge_.rules[id];
