@@ -1,6 +1,7 @@
 #include "analyze/analyzer.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "language/evaluate.h"
 
@@ -124,7 +125,7 @@ void Analyzer::judge(RuleId id, Time now) {
     case Attempt::Stage::kUndoing:
       return;
     case Attempt::Stage::kOver:
-      couplings_.ended(attempt.strategy, attempt.first_change, now);
+      couplings_.ended(attempt, now);
       state.attempt.reset();
       knowledge_.states.enter(id, RulePhase::kFailing);
       exhaust_if_spent(id, now);
@@ -146,16 +147,14 @@ bool Analyzer::can_have_caused(RuleId id) const {
 
 void Analyzer::succeed(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
-  const StrategyId strategy = state.attempt->strategy;
-  const Time first_change = state.attempt->first_change;
   const bool caused = can_have_caused(id);
-  const bool is_proven = caused && !state.attempt->is_ambiguous;
-  if (is_proven) knowledge_.beliefs.helped(strategy);
-  state.attempt.reset();
-  if (caused) couplings_.resolved(strategy, first_change, is_proven, now);
-  couplings_.ended(strategy, first_change, now);
+  const Attempt attempt = *std::exchange(state.attempt, std::nullopt);
+  const bool is_proven = caused && !attempt.is_ambiguous;
+  if (is_proven) knowledge_.beliefs.helped(attempt.strategy);
+  if (caused) couplings_.resolved(attempt, is_proven, now);
+  couplings_.ended(attempt, now);
   if (caused) {
-    resolve(id, {id, FailureResolved::How::kByStrategy, strategy, {}}, now);
+    resolve(id, {id, FailureResolved::How::kByStrategy, attempt.strategy, {}}, now);
   } else {
     resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
   }

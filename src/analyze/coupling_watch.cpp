@@ -6,31 +6,38 @@
 
 namespace culprit {
 
-void CouplingWatch::resolved(StrategyId strategy, Time first_change, bool is_proven, Time now) {
+void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
+  const StrategyId strategy = attempt.strategy;
   const RuleId cause = knowledge_.rules[strategy].rule;
   // Some show it before the failure that was repaired does.
   for (const Clearing& clearing : clearings_) {
-    if (is_proven && clearing.at >= first_change && clearing.rule != cause &&
-        is_only_cause(strategy, clearing.rule, first_change))
+    if (is_proven && clearing.at >= attempt.first_change && clearing.rule != cause &&
+        is_only_cause(strategy, clearing.rule, attempt.first_change))
       knowledge_.couplings.cleared(cause, clearing.rule);
   }
   for (const RuleId effect : knowledge_.states.active()) {
     const RuleState& state = knowledge_.states[effect];
     if (effect == cause || state.attempt) continue;
-    settle(strategy, effect, now);
+    if (state.failing_since <= attempt.effective) settle(strategy, effect, now);
     if (!is_proven || questions_.size() >= kMostWatched) continue;
     const Time due =
         later(now, std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle));
     questions_.push_back(
-        {strategy, effect, first_change, state.failing_since, due, later(now, kPatience)});
+        {strategy, effect, attempt.first_change, state.failing_since, due, later(now, kPatience)});
   }
 }
 
-// What depends on the repaired components is given the time to show that it is well.
+// What depends on the repaired components is given the time to show that it is well. Not what is no
+// effect of the failure that is gone: it was detected long before it, or only after the repair had
+// taken effect.
 void CouplingWatch::settle(StrategyId strategy, RuleId effect, Time now) {
   if (!can_resolve(knowledge_, knowledge_.rules[strategy].components, effect)) return;
+  const RuleId cause = knowledge_.rules[strategy].rule;
+  RuleState& state = knowledge_.states.state(effect);
+  const Duration slack = std::max(knowledge_.signals.latency(cause), knowledge_.rules.cycle);
+  if (later(state.failing_since, slack) < knowledge_.states[cause].failing_since) return;
   const Duration latency = std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle);
-  knowledge_.states.state(effect).settling = {knowledge_.rules[strategy].rule, later(now, latency)};
+  state.settling = {cause, now, later(now, latency)};
 }
 
 void CouplingWatch::cleared(RuleId rule, Time now) {
@@ -44,9 +51,10 @@ void CouplingWatch::cleared(RuleId rule, Time now) {
   });
 }
 
-void CouplingWatch::ended(StrategyId strategy, Time first_change, Time now) {
+void CouplingWatch::ended(const Attempt& attempt, Time now) {
   forget_what_is_settled(now);
-  if (first_change != kNever) changes_.push_back({strategy, first_change, now});
+  if (attempt.first_change != kNever)
+    changes_.push_back({attempt.strategy, attempt.first_change, now});
 }
 
 void CouplingWatch::advance(Time now) {

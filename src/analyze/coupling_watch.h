@@ -23,13 +23,11 @@ class CouplingWatch {
   // `knowledge` must outlive the watch.
   explicit CouplingWatch(Knowledge& knowledge) : knowledge_(knowledge) {}
 
-  // `strategy` resolved its failure, which nothing else can have done (`is_proven`), or it may
-  // have. `first_change` is when its first request went out.
-  void resolved(StrategyId strategy, Time first_change, bool is_proven, Time now);
+  // `attempt` resolved its failure, which nothing else can have done (`is_proven`), or it may have.
+  void resolved(const Attempt& attempt, bool is_proven, Time now);
   // A failure went away without a strategy of its own.
   void cleared(RuleId rule, Time now);
-  // An attempt that changed something since `first_change` is over.
-  void ended(StrategyId strategy, Time first_change, Time now);
+  void ended(const Attempt& attempt, Time now);
 
   void advance(Time now);
   Time next_deadline() const;

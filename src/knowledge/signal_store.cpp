@@ -9,6 +9,8 @@ SignalStore::SignalStore(const RuleSet& rules)
       slots_(rules.inputs.size()),
       texts_(rules.inputs.size()),
       latencies_(rules.inputs.size()),
+      read_at_(rules.inputs.size(), kLongAgo),
+      is_unusual_(rules.inputs.size()),
       rhythms_(rules.topics.size()),
       is_touched_(rules.rules.size()) {
   touched_.reserve(rules.rules.size());
@@ -44,6 +46,12 @@ Duration SignalStore::latency(RuleId id) const {
   for (const InputId input : rules_[id].inputs)
     latency = std::max(latency, latencies_[input.index]);
   return latency;
+}
+
+bool SignalStore::is_read_since(RuleId id, Time since) const {
+  const auto& inputs = rules_[id].inputs;
+  return std::all_of(inputs.begin(), inputs.end(),
+                     [&](InputId input) { return read_at_[input.index] > since; });
 }
 
 std::span<const RuleId> SignalStore::take_touched() {

@@ -264,8 +264,10 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
     // After one reading nobody knows when the next will come.
     const Duration latency = has_rhythm ? usual_latency(state.interval) : kLongestLatency;
     knowledge_.signals.set_latency(id, latency + input.window);
+    knowledge_.signals.set_read_at(id, at);
     if (has_rhythm && !had_rhythm) knowledge_.signals.touch(id);
     if (input.kind == Kind::kSignal) {
+      note_reading(id, slot);
       knowledge_.signals.set(id, slot);
       if (declared.stale) deadlines_.set(id.index, later(at, *declared.stale));
     } else if (input.kind == Kind::kChanged) {
@@ -279,6 +281,30 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
       update_window(id, at);
     }
   }
+}
+
+// A new extreme, or nearer to a threshold than it ever was lately?
+void Monitor::note_reading(InputId id, const Slot& slot) {
+  const Input& input = knowledge_.rules[id];
+  const bool is_number = input.type == Type::kInt || input.type == Type::kDouble;
+  if (!is_number || input.thresholds.empty() || !slot.known) return;
+  const double value = input.type == Type::kInt ? static_cast<double>(slot.i) : slot.d;
+  if (!std::isfinite(value)) return;
+  monitor::Ring<double>& usual = derived_[id.index].usual;
+  bool is_unusual = false;
+  if (usual.size() >= kLeastReadings) {
+    double least = usual[0];
+    double most = usual[0];
+    for (std::size_t i = 1; i < usual.size(); ++i) {
+      least = std::min(least, usual[i]);
+      most = std::max(most, usual[i]);
+    }
+    is_unusual = (value < least && input.thresholds.front() <= value) ||
+                 (value > most && input.thresholds.back() >= value);
+  }
+  knowledge_.signals.set_unusual(id, is_unusual);
+  if (usual.full()) usual.pop_front();
+  usual.push_back(value);
 }
 
 void Monitor::update_window(InputId id, Time now) {

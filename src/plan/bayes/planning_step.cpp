@@ -118,7 +118,7 @@ void PlanningStep::examine(std::size_t failure) {
       entry.candidate.value = root * std::min(1.0, helps) * stakes_[failure];
       entry.candidate.cost = costs[next++];
       entry.worth = worth(entry.candidate.value, entry.candidate.cost, index(tries[s]));
-      exclude(entry);
+      exclude(entry, all[s].chance);
     }
   }
 }
@@ -145,16 +145,17 @@ double PlanningStep::disruption(const Strategy& strategy) const {
   return std::min(1.0, static_cast<double>(down) / all);
 }
 
-void PlanningStep::exclude(Entry& entry) const {
+void PlanningStep::exclude(Entry& entry, double chance) const {
   const RuleId rule = failures_[entry.failure];
   const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
   for (const ComponentId c : strategy.components) {
-    if (const auto obstacle = surroundings_.obstacle(reach_.place_of(c), strategy))
+    if (const auto obstacle = surroundings_.obstacle(reach_.place_of(c), strategy, chance))
       return exclude(entry, *obstacle);
   }
   const auto& settling = knowledge_.states[rule].settling;
   const bool is_settling =
       settling && knowledge_.now < settling->until &&
+      !knowledge_.signals.is_read_since(rule, settling->since) &&
       knowledge_.couplings.of(settling->with, rule).mean(Coupling::kUsual) > 0.5;
   if (is_settling)
     return exclude(entry,

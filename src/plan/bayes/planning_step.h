@@ -33,7 +33,7 @@ class PlanningStep {
   void examine(std::size_t failure);
   std::vector<Option> options(std::size_t failure, const std::vector<Remedy>& remedies) const;
   double disruption(const Strategy& strategy) const;
-  void exclude(Entry& entry) const;
+  void exclude(Entry& entry, double chance) const;
   void exclude(Entry& entry, const Surroundings::Obstacle& obstacle) const;
   void exclude_effect(Entry& entry) const;
   void select(Criticality level);

@@ -13,11 +13,6 @@ std::size_t level_of(RuleId rule, const Knowledge& knowledge) {
   return static_cast<std::size_t>(knowledge.rules[rule].policies.criticality);
 }
 
-bool is_waiting_for_verdicts(RuleId failure, const Knowledge& knowledge) {
-  return knowledge.now <
-         later(knowledge.states[failure].failing_since, duration_of(kLongestWait, knowledge.rules));
-}
-
 }  // namespace
 
 bool takes_down(const Adaptation& adaptation) {
@@ -37,13 +32,19 @@ bool takes_down(const Strategy& strategy) {
                      [](const Adaptation& a) { return takes_down(a); });
 }
 
+Duration longest_wait(RuleId suspicious, const Knowledge& knowledge) {
+  return std::max<Duration>(duration_of(kLongestWait, knowledge.rules),
+                            kLongestWaitLatencies * knowledge.signals.latency(suspicious));
+}
+
 std::vector<RuleId> suspicious_rules(std::span<const RuleId> failures, const Knowledge& knowledge) {
+  Time latest = kLongAgo;
+  for (const RuleId f : failures) latest = std::max(latest, knowledge.states[f].failing_since);
   std::vector<RuleId> suspicious;
-  const bool anyone_waits = std::any_of(failures.begin(), failures.end(), [&](RuleId f) {
-    return is_waiting_for_verdicts(f, knowledge);
-  });
-  for (std::size_t r = 0; anyone_waits && r < knowledge.rules.rules.size(); ++r) {
-    if (is_suspicious(RuleId(r), knowledge)) suspicious.push_back(RuleId(r));
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
+    const RuleId rule(r);
+    const bool is_over = knowledge.now >= later(latest, longest_wait(rule, knowledge));
+    if (!is_over && is_suspicious(rule, knowledge)) suspicious.push_back(rule);
   }
   return suspicious;
 }
@@ -68,6 +69,7 @@ Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach,
       holding_(kLevels, Marks(reach.size())),
       urgent_(kLevels, Marks(reach.size())),
       judged_(kLevels, Marks(reach.size())),
+      pending_(kLevels, Marks(reach.size())),
       suspects_(kLevels, Marks(reach.size())),
       added_(reach.size()) {
   const auto mark = [&](Marks& marks, const std::vector<ComponentId>& components, RuleId rule) {
@@ -90,21 +92,27 @@ Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach,
   }
   for (const RuleId rule : failures) mark_below(urgent_, rule);
   for (const RuleId rule : suspicious) {
+    patience_ = std::max(patience_, longest_wait(rule, knowledge));
+    mark_below(pending_, rule);
     for (std::size_t level = 0; level <= level_of(rule, knowledge); ++level)
       mark(suspects_[level], knowledge.rules[rule].components, rule);
   }
 }
 
 std::optional<Surroundings::Obstacle> Surroundings::obstacle(std::size_t place,
-                                                             const Strategy& strategy) const {
+                                                             const Strategy& strategy,
+                                                             double chance) const {
   const std::size_t level = level_of(strategy.rule, knowledge_);
   if (has(adapting_.bits(), place))
     return Obstacle{Condition::kAdapting, reach_[place], adapting_.failure[place]};
   if (auto held = found(Condition::kDownstream, reach_.upstream(place), holding_[level]))
     return held;
-  if (is_waiting_for_verdicts(strategy.rule, knowledge_)) {
+  if (knowledge_.now < later(knowledge_.states[strategy.rule].failing_since, patience_)) {
     if (auto pending = found(Condition::kSuspect, reach_.upstream(place), suspects_[level]))
       return pending;
+    const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
+    auto pending = in_the_way(place, pending_[level]);
+    if (pending && !needs_no_verdict) return pending;
   }
   if (auto urgent = in_the_way(place, urgent_[level])) return urgent;
   return takes_down(strategy) ? in_the_way(place, judged_[level]) : std::nullopt;

@@ -21,6 +21,9 @@ std::vector<RuleId> suspicious_rules(std::span<const RuleId> failures, const Kno
 bool takes_down(const Adaptation& adaptation);
 bool takes_down(const Strategy& strategy);
 
+// How long a failure waits, from its detection on, for the verdict on a suspicious rule.
+Duration longest_wait(RuleId suspicious, const Knowledge& knowledge);
+
 // Places (see Reach) where something stands against adapting them, and why.
 class Surroundings {
  public:
@@ -34,7 +37,9 @@ class Surroundings {
     std::optional<RuleId> because;
   };
   // What stands against adapting the component at `place` by this strategy, if anything does.
-  std::optional<Obstacle> obstacle(std::size_t place, const Strategy& strategy) const;
+  // `chance` is u of the strategy (plan/bayes/remedies.h).
+  std::optional<Obstacle> obstacle(std::size_t place, const Strategy& strategy,
+                                   double chance) const;
 
   // From now on the strategy is carried out as well.
   void add(const Strategy& strategy);
@@ -64,7 +69,9 @@ class Surroundings {
   std::vector<Marks> holding_;   // by level: reserved, and holding back what depends on it
   std::vector<Marks> urgent_;    // by level: of more critical failures that are worked on
   std::vector<Marks> judged_;    // by level: of those whose strategy waits for its verdict
+  std::vector<Marks> pending_;   // by level: of suspicious rules that are more critical
   std::vector<Marks> suspects_;  // by level: of suspicious rules at least as critical
+  Duration patience_{};          // with suspicious rules
   Marks added_;
 };
 
