@@ -1,6 +1,7 @@
 #include "analyze/analyzer.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "language/evaluate.h"
 
@@ -21,11 +22,12 @@ Duration longest_detection(const RuleSet& rules) {
 }
 
 Analyzer::Analyzer(Knowledge& knowledge)
-    : knowledge_(knowledge), deadlines_(knowledge.rules.rules.size()) {}
+    : knowledge_(knowledge), deadlines_(knowledge.rules.rules.size()), couplings_(knowledge) {}
 
 void Analyzer::advance(Time now) {
   for (const RuleId id : knowledge_.signals.take_touched()) look_at(id, now);
   while (const auto due = deadlines_.pop_due(now)) look_at(RuleId(*due), now);
+  couplings_.advance(now);
 }
 
 std::vector<RuleId> Analyzer::plannable(Time now) const {
@@ -95,13 +97,6 @@ bool Analyzer::is_gone(RuleId id, Time now) const {
   return is_false(state.trigger) && now >= later(state.trigger_since, clearing_time(id));
 }
 
-Duration Analyzer::signal_latency(RuleId id) const {
-  Duration latency{};
-  for (const InputId input : knowledge_.rules[id].inputs)
-    latency = std::max(latency, knowledge_.signals.latency(input));
-  return latency;
-}
-
 void Analyzer::detect(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   state.failing_since = now;
@@ -110,6 +105,7 @@ void Analyzer::detect(RuleId id, Time now) {
   state.round = 0;
   state.retry_at = now;
   state.is_advised = false;
+  state.settling.reset();
   std::fill(state.tried.begin(), state.tried.end(), false);
   knowledge_.states.enter(id, RulePhase::kFailing);
   knowledge_.tell(now, FailureDetected{id});
@@ -137,16 +133,15 @@ void Analyzer::judge(RuleId id, Time now) {
     case Attempt::Stage::kUndoing:
       return;
     case Attempt::Stage::kOver:
+      couplings_.ended(attempt, now);
       state.attempt.reset();
       knowledge_.states.enter(id, RulePhase::kFailing);
       exhaust_if_spent(id, now);
       return watch_failing(id, now);
   }
-  if (attempt.deadline == kNever) {
-    const Duration impact =
-        duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
-    attempt.deadline = later(later(attempt.effective, impact), signal_latency(id));
-  }
+  // Anew each time: how long a signal takes to show a change may have become known meanwhile.
+  const Duration impact = duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
+  attempt.deadline = later(later(attempt.effective, impact), knowledge_.signals.latency(id));
   if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
   if (now < attempt.deadline || is_false(state.trigger)) return;
   if (state.trigger.known || now >= later(attempt.deadline, kLostAfter)) fail(id, now);
@@ -160,12 +155,14 @@ bool Analyzer::can_have_caused(RuleId id) const {
 
 void Analyzer::succeed(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
-  const StrategyId strategy = state.attempt->strategy;
   const bool caused = can_have_caused(id);
-  if (caused && !state.attempt->is_ambiguous) knowledge_.beliefs.helped(strategy);
-  state.attempt.reset();
+  const Attempt attempt = *std::exchange(state.attempt, std::nullopt);
+  const bool is_proven = caused && !attempt.is_ambiguous;
+  if (is_proven) knowledge_.beliefs.helped(attempt.strategy);
+  if (caused) couplings_.resolved(attempt, is_proven, now);
+  couplings_.ended(attempt, now);
   if (caused) {
-    resolve(id, {id, FailureResolved::How::kByStrategy, strategy, {}}, now);
+    resolve(id, {id, FailureResolved::How::kByStrategy, attempt.strategy, {}}, now);
   } else {
     resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
   }
@@ -192,6 +189,7 @@ void Analyzer::resolve(RuleId id, FailureResolved how, Time now) {
   how.reaction = now - state.failing_since;
   state.quiet_until = later(now, knowledge_.rules[id].policies.cooldown);
   knowledge_.states.enter(id, RulePhase::kQuiet);
+  if (!how.strategy && state.attempts == 0) couplings_.cleared(id, now);
   knowledge_.tell(now, std::move(how));
 }
 

@@ -8,7 +8,8 @@
 //   a strategy under way succeeds when that happens, once its adaptations took effect; it fails at
 //   its deadline:
 //              its impact in cycles after they took effect, plus the latency of what the trigger
-//              reads
+//              reads: of a signal two of its periods, so that a fresh reading comes before; as long
+//              as its period is not known, five seconds
 //   a round    of strategies is followed by a back-off that doubles each time; after ATTEMPTS
 //   strategies (or as many
 //              rounds without any valid strategy) the rule is exhausted
@@ -21,9 +22,11 @@
 // of it was under way.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
+#include "analyze/coupling_watch.h"
 #include "knowledge/deadlines.h"
 #include "knowledge/knowledge.h"
 
@@ -45,7 +48,7 @@ class Analyzer {
 
   // Looks at every rule that the monitor touched and at those whose time has come.
   void advance(Time now);
-  Time next_deadline() const { return deadlines_.next(); }
+  Time next_deadline() const { return std::min(deadlines_.next(), couplings_.next_deadline()); }
 
   // Failures that a planner should decide about now, ascending: there, and no strategy under way,
   // no back-off.
@@ -63,7 +66,6 @@ class Analyzer {
   bool detects(RuleId id, Time now) const;
   bool is_gone(RuleId id, Time now) const;
   Duration clearing_time(RuleId id) const;
-  Duration signal_latency(RuleId id) const;
 
   void detect(RuleId id, Time now);
   void watch_failing(RuleId id, Time now);
@@ -77,6 +79,7 @@ class Analyzer {
 
   Knowledge& knowledge_;
   Deadlines deadlines_;  // by RuleId
+  CouplingWatch couplings_;
 };
 
 }  // namespace culprit

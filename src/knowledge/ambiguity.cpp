@@ -3,9 +3,7 @@
 #include <algorithm>
 
 namespace culprit {
-namespace {
 
-// Can adapting `adapted` make the failure of `rule` go away?
 bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& adapted, RuleId rule) {
   const auto is_adapted = [&](ComponentId c) {
     return std::binary_search(adapted.begin(), adapted.end(), c);
@@ -17,8 +15,6 @@ bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& ada
   }
   return false;
 }
-
-}  // namespace
 
 void mark_ambiguous(Knowledge& knowledge, RuleId changed) {
   Attempt& own = *knowledge.states.state(changed).attempt;

@@ -16,4 +16,11 @@ Beliefs::Beliefs(const RuleSet& rules) {
   }
 }
 
+void Beliefs::learn(StrategyId id, Belief outcome) {
+  constexpr double kLeast = 0.05;
+  Belief& belief = beliefs_[id.index];
+  belief.alpha = std::max(kLeast, forgetting_ * belief.alpha) + outcome.alpha;
+  belief.beta = std::max(kLeast, forgetting_ * belief.beta) + outcome.beta;
+}
+
 }  // namespace culprit

@@ -3,8 +3,11 @@
 //     p_s ~ Beta(alpha, beta),  alpha_0 = c_p P_s,init,  beta_0 = c_p (1 - P_s,init)
 //     helped: alpha + 1         did not: beta + 1        P_s = E(p_s) = alpha / (alpha + beta)
 //
+// With forgetting (gamma < 1), which follows a rate that drifts, both pseudo-counts are first
+// multiplied by gamma: what happened n outcomes ago weighs gamma^n.
+//
 // Neither pseudo-count starts below 0.5, so that a designer's 100 % can still be unlearned (the
-// paper notes that its own update never converges there).
+// paper notes that its own update never converges there), nor is any forgotten to less than 0.05.
 #pragma once
 
 #include <vector>
@@ -29,12 +32,16 @@ class Beliefs {
   explicit Beliefs(const RuleSet& rules);
 
   const Belief& operator[](StrategyId id) const { return beliefs_[id.index]; }
-  void helped(StrategyId id) { beliefs_[id.index].alpha += 1; }
-  void did_not_help(StrategyId id) { beliefs_[id.index].beta += 1; }
+  void helped(StrategyId id) { learn(id, {1, 0}); }
+  void did_not_help(StrategyId id) { learn(id, {0, 1}); }
+  void set_forgetting(double forgetting) { forgetting_ = forgetting; }
   void set(StrategyId id, Belief belief) { beliefs_[id.index] = belief; }
 
  private:
+  void learn(StrategyId id, Belief outcome);
+
   std::vector<Belief> beliefs_;
+  double forgetting_ = 1;
 };
 
 }  // namespace culprit

@@ -31,5 +31,16 @@ TEST(Beliefs, ConvergeToTheTrueRate) {
   EXPECT_NEAR(beliefs[StrategyId(0)].mean().value, 0.25, 0.01);
 }
 
+TEST(Beliefs, FollowADriftWithForgetting) {
+  const Checked checked = check(Source(
+      "t", "RULE R\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY s 90 10\nADAPTATION c restart 1\n"));
+  Beliefs beliefs(*checked.rules);
+  beliefs.set_forgetting(0.9);
+  for (int i = 0; i < 500; ++i) beliefs.helped(StrategyId(0));
+  for (int i = 0; i < 50; ++i) beliefs.did_not_help(StrategyId(0));
+  EXPECT_LT(beliefs[StrategyId(0)].mean().value, 0.02);
+  EXPECT_GT(beliefs[StrategyId(0)].mean().value, 0);
+}
+
 }  // namespace
 }  // namespace culprit

@@ -55,6 +55,7 @@ std::optional<NodeId> DependencyGraph::intern_node(const std::string& name) {
   nodes_[id->index].component = component;
   if (component) nodes_of_components_[component->index] = id;
   node_ids_[name] = *id;
+  condensation_.reset();
   return id;
 }
 
@@ -73,6 +74,7 @@ std::optional<DependencyGraph::ChannelId> DependencyGraph::intern_channel(Endpoi
 bool DependencyGraph::node_appeared(const std::string& node) {
   const auto id = intern_node(node);
   if (!id || nodes_[id->index].is_present) return false;
+  condensation_.reset();
   return nodes_[id->index].is_present = true;
 }
 
@@ -80,11 +82,26 @@ bool DependencyGraph::node_vanished(const std::string& node) {
   const auto id = node_ids_.find(node);
   if (id == node_ids_.end() || !nodes_[id->second.index].is_present) return false;
   nodes_[id->second.index].is_present = false;
+  condensation_.reset();
   return true;
 }
 
 bool DependencyGraph::endpoint_appeared(const std::string& node, EndpointKind kind,
                                         const std::string& name) {
+  const bool has_changed = add_endpoint(node, kind, name);
+  if (has_changed) condensation_.reset();
+  return has_changed;
+}
+
+bool DependencyGraph::endpoint_vanished(const std::string& node, EndpointKind kind,
+                                        const std::string& name) {
+  const bool has_changed = remove_endpoint(node, kind, name);
+  if (has_changed) condensation_.reset();
+  return has_changed;
+}
+
+bool DependencyGraph::add_endpoint(const std::string& node, EndpointKind kind,
+                                   const std::string& name) {
   if (!is_service(kind) && ignored_.contains(name)) return false;
   const auto node_id = intern_node(node);
   const auto channel_id = intern_channel(kind, name);
@@ -103,8 +120,8 @@ bool DependencyGraph::endpoint_appeared(const std::string& node, EndpointKind ki
   return true;
 }
 
-bool DependencyGraph::endpoint_vanished(const std::string& node, EndpointKind kind,
-                                        const std::string& name) {
+bool DependencyGraph::remove_endpoint(const std::string& node, EndpointKind kind,
+                                      const std::string& name) {
   const auto node_id = node_ids_.find(node);
   const auto channel_id = channel_ids_.find((is_service(kind) ? 's' : 't') + name);
   if (node_id == node_ids_.end() || channel_id == channel_ids_.end()) return false;
@@ -175,6 +192,43 @@ const std::vector<ComponentId>& DependencyGraph::reach(ComponentId from,
     }
   }
   return found_;
+}
+
+const Condensation& DependencyGraph::condensation() const {
+  if (condensation_) return *condensation_;
+  std::vector<std::pair<Condensation::Vertex, Condensation::Vertex>> edges;
+  std::size_t vertices = nodes_.size();
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    for (const NodeId producer : nodes_[n].declared_producers)
+      edges.emplace_back(n, producer.index);
+  }
+  std::vector<Condensation::Vertex> producers;
+  std::vector<Condensation::Vertex> consumers;
+  for (const Channel& channel : channels_) {
+    producers.clear();
+    consumers.clear();
+    for (const End& end : channel.producers) {
+      if (counts(end, channel, true)) producers.push_back(end.node.index);
+    }
+    for (const End& end : channel.consumers) {
+      if (counts(end, channel, false)) consumers.push_back(end.node.index);
+    }
+    if (producers.empty() || consumers.empty()) continue;
+    // Most channels have one producer, which then stands for the channel.
+    Condensation::Vertex middle = producers.front();
+    if (producers.size() > 1) {
+      middle = static_cast<Condensation::Vertex>(vertices++);
+      for (const auto producer : producers) edges.emplace_back(middle, producer);
+    }
+    for (const auto consumer : consumers) edges.emplace_back(consumer, middle);
+  }
+  return condensation_.emplace(vertices, edges);
+}
+
+std::optional<Condensation::Knot> DependencyGraph::knot_of(ComponentId component) const {
+  const auto node = nodes_of_components_[component.index];
+  if (!node) return std::nullopt;
+  return condensation().knot_of(node->index);
 }
 
 std::vector<std::string> DependencyGraph::nodes() const {

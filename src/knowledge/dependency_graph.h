@@ -17,6 +17,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "knowledge/condensation.h"
 #include "language/rule_set.h"
 #include "robot/component_binding.h"
 #include "robot/observation.h"
@@ -52,6 +53,12 @@ class DependencyGraph {
   const std::vector<ComponentId>& upstream(ComponentId component) const;
   // The components that depend on it, likewise.
   const std::vector<ComponentId>& downstream(ComponentId component) const;
+
+  // All that counts now, with circles drawn together. Made anew when the graph has changed; the
+  // reference is valid until then.
+  const Condensation& condensation() const;
+  // Nothing while the component was not seen and is not declared to depend on another.
+  std::optional<Condensation::Knot> knot_of(ComponentId component) const;
 
   struct Edge {
     std::string consumer;
@@ -89,6 +96,8 @@ class DependencyGraph {
 
   std::optional<NodeId> intern_node(const std::string& name);
   std::optional<ChannelId> intern_channel(EndpointKind kind, const std::string& name);
+  bool add_endpoint(const std::string& node, EndpointKind kind, const std::string& name);
+  bool remove_endpoint(const std::string& node, EndpointKind kind, const std::string& name);
   bool counts(const End& end, const Channel& channel, bool producer) const;
   const std::vector<ComponentId>& reach(ComponentId from, Direction direction) const;
 
@@ -99,6 +108,8 @@ class DependencyGraph {
   std::unordered_map<std::string, ChannelId> channel_ids_;  // key: 't' or 's', then the name
   std::vector<std::optional<NodeId>> nodes_of_components_;
   std::unordered_set<std::string> ignored_;
+
+  mutable std::optional<Condensation> condensation_;  // of the present graph, if it was asked for
 
   // Scratch of reach(): who was visited in which search.
   mutable std::vector<std::uint32_t> visited_;

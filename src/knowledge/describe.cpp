@@ -207,6 +207,7 @@ std::string describe(const Event& event, const RuleSet& rules) {
 std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules) {
   const std::string& strategy = rules[candidate.strategy].name;
   const std::string& component = rules[candidate.component].name;
+  const std::string because = candidate.because ? " (" + rules[*candidate.because].name + ")" : "";
   if (!candidate.excluded) return strategy + " is chosen";
   switch (*candidate.excluded) {
     case Condition::kTried:
@@ -218,10 +219,19 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
     case Condition::kAffected:
       return component + " is affected by a strategy chosen just now";
     case Condition::kDependency:
-      return "it depends on " + component + ", which may be the cause" +
-             (candidate.because ? " (" + rules[*candidate.because].name + ")" : "");
+      return "it depends on " + component + ", which may be the cause" + because;
     case Condition::kOneEach:
       return "another strategy was chosen for the same failure";
+    case Condition::kDownstream:
+      return "it depends on " + component + ", which is being adapted" + because;
+    case Condition::kSuspect:
+      return "it depends on " + component + ", which looks ill" + because;
+    case Condition::kSettling:
+      return "it is expected to go away now that " + rules[*candidate.because].name +
+             " is resolved";
+    case Condition::kInTheWay:
+      return strategy + " would be in the way of what is done about " +
+             rules[*candidate.because].name;
   }
   return "";
 }

@@ -19,17 +19,34 @@ enum class Condition : std::uint8_t {
   kAdapting,    // 3: a component of it is being adapted
   kAffected,    // 4: a component of it is affected by a strategy chosen just now
   kDependency,  // 5: a component of it depends on a component that may be the cause
-  kOneEach      // another strategy was chosen for the same failure
+  kOneEach,     // another strategy was chosen for the same failure
+  // Of the bayes planner only:
+  kDownstream,  // a component of it depends on one that is being adapted
+  kSuspect,     // a component of it depends on one that looks ill, and nobody knows yet whether
+  kSettling,    // the failure is expected to go away with one that was just resolved
+  kInTheWay     // it would be in the way of what is to be done about another failure
 };
 
 struct Candidate {
   StrategyId strategy;
-  double cost = 0;                    // paper, Eq. 1
+  double cost = 0;                    // paper, Eq. 1; bayes: expected (plan/bayes/value.h)
   std::optional<Condition> excluded;  // nothing: chosen
   ComponentId component;              // that the condition is about
-  std::optional<RuleId> because;  // kDependency: the failure that `component` may be the cause of
+  std::optional<RuleId> because;  // kDependency: the failure that `component` may be the cause of;
+                                  // likewise kSuspect, kSettling, kInTheWay: the other failure
   std::string remark;             // kInvalid: why
+  // Of a planner that weighs them (bayes) and only if nothing excludes it beforehand.
+  double resolves = 0;  // the probability that it resolves the failure
+  double value = 0;     // what that is worth, before its cost
+
   bool operator==(const Candidate&) const = default;
+};
+
+// Who may be responsible for a failure.
+struct Suspect {
+  ComponentId component;
+  RuleId failure;          // that points at it: the failure itself, or one upstream
+  double probability = 0;  // that it is
 };
 
 // A failure was detected.
@@ -59,12 +76,14 @@ struct StrategyChosen {
   std::vector<Candidate> candidates;  // all of the same failure, this one included, by cost
   std::vector<RuleId> explains;  // failures downstream that are expected to go away with this one
   bool dry_run = false;          // it is only said, not done
+  std::vector<Suspect> suspects{};  // likeliest first; of a planner that weighs them
 };
 
 // A failure is there, and nothing is done about it now.
 struct FailureHeldBack {
   RuleId rule;
   std::vector<Candidate> candidates;
+  std::vector<Suspect> suspects{};
 };
 
 struct AdaptationDone {

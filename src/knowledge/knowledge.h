@@ -5,6 +5,7 @@
 
 #include "knowledge/beliefs.h"
 #include "knowledge/component_states.h"
+#include "knowledge/couplings.h"
 #include "knowledge/dependency_graph.h"
 #include "knowledge/event.h"
 #include "knowledge/rule_states.h"
@@ -21,7 +22,8 @@ struct Knowledge {
         graph(rules),
         components(rules),
         states(rules),
-        beliefs(rules) {}
+        beliefs(rules),
+        couplings(rules) {}
 
   // What `other` knows, for `rule_set`: a copy of its rules. Its events are left out.
   Knowledge(const RuleSet& rule_set, const Knowledge& other)
@@ -39,6 +41,8 @@ struct Knowledge {
   ComponentStates components;
   RuleStates states;
   Beliefs beliefs;
+  Couplings couplings;
+  Time now{};                 // of the step under way
   std::vector<Event> events;  // of the step under way
 
   template <class What>

@@ -24,6 +24,13 @@ enum class RulePhase : std::uint8_t {
   kExhausted    // the failure is there, and nothing is left to try
 };
 
+// A failure is expected to go away with another one that was just resolved.
+struct Settling {
+  RuleId with;
+  Time since = kNever;  // when that was resolved
+  Time until = kNever;  // when what its trigger reads would have shown it
+};
+
 struct RuleState {
   RulePhase phase = RulePhase::kQuiet;
   Slot trigger;                   // as last evaluated
@@ -45,6 +52,7 @@ struct RuleState {
   std::vector<bool> tried;   // in this round, by place in Rule::strategies
   std::optional<Attempt> attempt;
   bool is_advised = false;  // dry run: what would be done was said
+  std::optional<Settling> settling;
 };
 
 class RuleStates {
@@ -64,6 +72,7 @@ class RuleStates {
   // Moves a rule to another phase and keeps the health of its components.
   void enter(RuleId id, RulePhase phase);
 
+  bool is_active(RuleId id) const { return is_active(states_[id.index].phase); }
   // Rules that are failing or attempting, ascending.
   const std::vector<RuleId>& active() const { return active_; }
 

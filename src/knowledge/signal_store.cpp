@@ -1,6 +1,6 @@
 #include "knowledge/signal_store.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace culprit {
 
@@ -9,6 +9,9 @@ SignalStore::SignalStore(const RuleSet& rules)
       slots_(rules.inputs.size()),
       texts_(rules.inputs.size()),
       latencies_(rules.inputs.size()),
+      read_at_(rules.inputs.size(), kLongAgo),
+      is_unusual_(rules.inputs.size()),
+      rhythms_(rules.topics.size()),
       is_touched_(rules.rules.size()) {
   touched_.reserve(rules.rules.size());
   taken_.reserve(rules.rules.size());
@@ -48,6 +51,19 @@ void SignalStore::touch(RuleId id) {
   if (is_touched_[id.index]) return;
   is_touched_[id.index] = true;
   touched_.push_back(id);
+}
+
+Duration SignalStore::latency(RuleId id) const {
+  Duration latency{};
+  for (const InputId input : rules_[id].inputs)
+    latency = std::max(latency, latencies_[input.index]);
+  return latency;
+}
+
+bool SignalStore::is_read_since(RuleId id, Time since) const {
+  const auto& inputs = rules_[id].inputs;
+  return std::all_of(inputs.begin(), inputs.end(),
+                     [&](InputId input) { return read_at_[input.index] > since; });
 }
 
 std::span<const RuleId> SignalStore::take_touched() {

@@ -5,12 +5,14 @@
 // and looks at no others.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "language/evaluate.h"
 #include "language/rule_set.h"
+#include "robot/time.h"
 
 namespace culprit {
 
@@ -37,7 +39,29 @@ class SignalStore {
 
   // How long after a change in the system this input shows it, as far as the monitor has seen.
   Duration latency(InputId id) const { return latencies_[id.index]; }
+  // Until all that the trigger of a rule reads shows it.
+  Duration latency(RuleId id) const;
   void set_latency(InputId id, Duration latency) { latencies_[id.index] = latency; }
+
+  // When a signal was read last; kLongAgo for inputs that no reading brings.
+  Time read_at(InputId id) const { return read_at_[id.index]; }
+  void set_read_at(InputId id, Time at) { read_at_[id.index] = at; }
+  // Has every signal that the trigger of the rule reads been read after `since`? Not if it reads
+  // anything else.
+  bool is_read_since(RuleId id, Time since) const;
+
+  // Whether the last reading of a signal was beyond all that it was lately, towards a value that
+  // rules compare it with.
+  bool is_unusual(InputId id) const { return is_unusual_[id.index]; }
+  void set_unusual(InputId id, bool unusual) { is_unusual_[id.index] = unusual; }
+
+  // When a topic was heard last, and how long it usually is silent in between.
+  struct Rhythm {
+    std::optional<Time> last;
+    Duration interval{};  // zero: not known yet
+  };
+  const Rhythm& rhythm(TopicId id) const { return rhythms_[id.index]; }
+  void set_rhythm(TopicId id, Rhythm rhythm) { rhythms_[id.index] = rhythm; }
 
   // Takes the rules that were marked since the last call, each once. Valid until the next mark.
   std::span<const RuleId> take_touched();
@@ -47,6 +71,9 @@ class SignalStore {
   std::vector<Slot> slots_;
   std::vector<std::string> texts_;  // what slots of texts refer to
   std::vector<Duration> latencies_;
+  std::vector<Time> read_at_;
+  std::vector<bool> is_unusual_;
+  std::vector<Rhythm> rhythms_;  // by TopicId
   std::vector<RuleId> touched_;
   std::vector<RuleId> taken_;
   std::vector<bool> is_touched_;

@@ -32,7 +32,10 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
       executor_(knowledge_),
       autonomy_(options.autonomy),
       now_(options.start),
-      held_back_(rules.rules.size()) {}
+      held_back_(rules.rules.size()) {
+  knowledge_.beliefs.set_forgetting(options.forgetting);
+  knowledge_.couplings.set_forgetting(options.forgetting);
+}
 
 std::vector<Command> Manager::step(Time now, std::span<const Observation> observations) {
   knowledge_.events.clear();
@@ -47,6 +50,7 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
     analyzer_.advance(now_);
   }
   now_ = std::max(now_, now);
+  knowledge_.now = now_;
   monitor_.advance(now_);
   analyzer_.advance(now_);
   if (!analyzer_.anything_active()) {
@@ -108,8 +112,9 @@ void Manager::carry_out(const Verdict& verdict, Time now) {
   const StrategyId strategy = *verdict.chosen;
   held_back_[verdict.rule.index] = {};
   const bool is_dry = autonomy_ == Autonomy::kAdvise;
-  knowledge_.tell(now, StrategyChosen{strategy, verdict.candidates,
-                                      plan::explained_by(strategy, knowledge_), is_dry});
+  knowledge_.tell(
+      now, StrategyChosen{strategy, verdict.candidates, plan::explained_by(strategy, knowledge_),
+                          is_dry, verdict.suspects});
   if (is_dry) {
     knowledge_.states.state(verdict.rule).is_advised = true;
     return;
@@ -124,7 +129,7 @@ void Manager::hold_back(const Verdict& verdict, Time now) {
   const Time since = knowledge_.states[verdict.rule].failing_since;
   if (said.failing_since == since && same_reasons(said.candidates, verdict.candidates)) return;
   said = {since, verdict.candidates};
-  knowledge_.tell(now, FailureHeldBack{verdict.rule, verdict.candidates});
+  knowledge_.tell(now, FailureHeldBack{verdict.rule, verdict.candidates, verdict.suspects});
 }
 
 Time Manager::next_deadline() const {

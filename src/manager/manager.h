@@ -34,6 +34,8 @@ class Manager : public ManagingSystem {
     Autonomy autonomy = Autonomy::kAct;
     Time start{};                    // when watching begins
     Duration settling = kDiscovery;  // for so long nothing is called absent because it was not seen
+    // What was learned n outcomes ago weighs forgetting^n; 1: nothing is forgotten.
+    double forgetting = 1;
   };
 
   // `rules` must outlive the manager and keep its address.
@@ -48,8 +50,11 @@ class Manager : public ManagingSystem {
   // The failures that wait for a decision now, ascending.
   std::vector<RuleId> plannable() const { return analyzer_.plannable(now_); }
 
-  // For beliefs from an earlier run.
+  // For what was learned in an earlier run.
   void set_belief(StrategyId id, Belief belief) { knowledge_.beliefs.set(id, belief); }
+  void set_coupling(RuleId cause, RuleId effect, Coupling coupling) {
+    knowledge_.couplings.set(cause, effect, coupling);
+  }
 
  private:
   void plan(Time now);

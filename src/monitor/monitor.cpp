@@ -121,6 +121,7 @@ void Monitor::on(Time at, const SampleArrived& seen) {
   if (topic.last)
     topic.interval = smoothed(topic.interval, (at - *topic.last) / std::max(1u, seen.published));
   topic.last = at;
+  knowledge_.signals.set_rhythm(seen.topic, {at, topic.interval});
   if (topic.needs_phi) topic.phi.add(at, seen.published);
   for (const InputId id : topic.inputs) {
     const Input& input = knowledge_.rules[id];
@@ -251,15 +252,22 @@ void Monitor::on(Time at, const SignalRead& seen) { read_signal(seen.signal, see
 void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
   const culprit::Signal& declared = knowledge_.rules[signal];
   Signal& state = signals_[signal.index];
-  if (state.last) state.interval = smoothed(state.interval, at - *state.last);
   const bool is_first = !state.last;
+  const bool had_rhythm = state.interval > Duration::zero();
+  if (!is_first) state.interval = smoothed(state.interval, at - *state.last);
+  const bool has_rhythm = state.interval > Duration::zero();
   state.last = at;
   std::string text;
   const Slot slot = as_type(value, declared.type, text);
   for (const InputId id : state.inputs) {
     const Input& input = knowledge_.rules[id];
-    knowledge_.signals.set_latency(id, usual_latency(state.interval) + input.window);
+    // After one reading nobody knows when the next will come.
+    const Duration latency = has_rhythm ? usual_latency(state.interval) : kLongestLatency;
+    knowledge_.signals.set_latency(id, latency + input.window);
+    knowledge_.signals.set_read_at(id, at);
+    if (has_rhythm && !had_rhythm) knowledge_.signals.touch(id);
     if (input.kind == Kind::kSignal) {
+      note_reading(id, slot);
       knowledge_.signals.set(id, slot);
       if (declared.stale) deadlines_.set(id.index, later(at, *declared.stale));
     } else if (input.kind == Kind::kChanged) {
@@ -273,6 +281,30 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
       update_window(id, at);
     }
   }
+}
+
+// A new extreme, or nearer to a threshold than it ever was lately?
+void Monitor::note_reading(InputId id, const Slot& slot) {
+  const Input& input = knowledge_.rules[id];
+  const bool is_number = input.type == Type::kInt || input.type == Type::kDouble;
+  if (!is_number || input.thresholds.empty() || !slot.known) return;
+  const double value = input.type == Type::kInt ? static_cast<double>(slot.i) : slot.d;
+  if (!std::isfinite(value)) return;
+  monitor::Ring<double>& usual = derived_[id.index].usual;
+  bool is_unusual = false;
+  if (usual.size() >= kLeastReadings) {
+    double least = usual[0];
+    double most = usual[0];
+    for (std::size_t i = 1; i < usual.size(); ++i) {
+      least = std::min(least, usual[i]);
+      most = std::max(most, usual[i]);
+    }
+    is_unusual = (value < least && input.thresholds.front() <= value) ||
+                 (value > most && input.thresholds.back() >= value);
+  }
+  knowledge_.signals.set_unusual(id, is_unusual);
+  if (usual.full()) usual.pop_front();
+  usual.push_back(value);
 }
 
 void Monitor::update_window(InputId id, Time now) {

@@ -23,6 +23,9 @@ class Monitor {
  public:
   // A component that is only known by probing is lost after this many unanswered ones.
   static constexpr int kMissedProbes = 2;
+  // What a signal usually is: its last readings, once there are enough.
+  static constexpr std::size_t kReadings = 32;
+  static constexpr std::size_t kLeastReadings = 4;
 
   // `knowledge` must outlive the monitor. Watching begins at `start`. Until `settled`, what was not
   // seen is unknown: it may still be discovered. From then on it is absent: a component that is not
@@ -58,8 +61,9 @@ class Monitor {
   struct Derived {
     monitor::SlidingCount count{Duration(1)};
     monitor::SlidingValues values{Duration(1)};
-    std::vector<double> deviations;  // kPhi: for each threshold
-    Value last_value;                // kChanged
+    std::vector<double> deviations;          // kPhi: for each threshold
+    Value last_value;                        // kChanged
+    monitor::Ring<double> usual{kReadings};  // kSignal: the last readings
   };
 
   void on(Time at, const NodeAppeared& seen);
@@ -78,6 +82,7 @@ class Monitor {
 
   void read_signal(SignalId signal, const Value& value, Time at);
   void update(InputId id, Time now);
+  void note_reading(InputId id, const Slot& slot);
   void update_window(InputId id, Time now);
   Time next_crossing(InputId id, Time now) const;
   Time next_age(const Input& input, Time now) const;

@@ -40,7 +40,7 @@ void PaperPlanner::select(std::span<const RuleId> failures, Criticality level,
   std::vector<Candidate> candidates;
   for (const RuleId failure : failures) {
     for (const StrategyId id : rules[failure].strategies)
-      candidates.push_back({id, cost(rules[id], id, knowledge), {}, {}, {}, {}});
+      candidates.push_back({id, cost(rules[id], id, knowledge), {}, {}, {}, {}, 0, 0});
   }
   std::sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
     const auto key = [&](const Candidate& c) {
@@ -51,7 +51,7 @@ void PaperPlanner::select(std::span<const RuleId> failures, Criticality level,
   });
 
   std::vector<Verdict> found;
-  for (const RuleId failure : failures) found.push_back({failure, {}, true, {}});
+  for (const RuleId failure : failures) found.push_back({failure, {}, true, {}, {}});
   const auto verdict_of = [&](RuleId rule) {
     return std::lower_bound(found.begin(), found.end(), rule,
                             [](const Verdict& v, RuleId r) { return v.rule < r; });

@@ -1,0 +1,116 @@
+#include "knowledge/condensation.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace culprit {
+namespace {
+
+using Vertex = Condensation::Vertex;
+using Edge = std::pair<Vertex, Vertex>;
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+// Neighbours in one array: those of v are targets[first[v]] to targets[first[v + 1]].
+struct Neighbours {
+  std::vector<std::uint32_t> first;
+  std::vector<Vertex> targets;
+
+  Neighbours(std::size_t vertices, std::span<const Edge> edges)
+      : first(vertices + 1, 0), targets(edges.size()) {
+    for (const Edge& edge : edges) ++first[edge.first + 1];
+    for (std::size_t v = 0; v < vertices; ++v) first[v + 1] += first[v];
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for (const Edge& edge : edges) targets[next[edge.first]++] = edge.second;
+  }
+};
+
+// Tarjan's search, with its own stack: a long chain must not overflow the program's.
+class Search {
+ public:
+  explicit Search(const Neighbours& neighbours)
+      : neighbours_(neighbours),
+        number_(neighbours.first.size() - 1, kNone),
+        low_(number_.size()),
+        knot_of_(number_.size(), kNone) {}
+
+  std::vector<Condensation::Knot> run() {
+    for (Vertex v = 0; v < number_.size(); ++v) {
+      if (number_[v] == kNone) visit_from(v);
+    }
+    return std::move(knot_of_);
+  }
+  std::uint32_t knots() const { return knots_; }
+
+ private:
+  struct Call {
+    Vertex vertex;
+    std::uint32_t next;  // of its edges
+  };
+
+  void enter(Vertex v) {
+    number_[v] = low_[v] = count_++;
+    open_.push_back(v);
+    calls_.push_back({v, neighbours_.first[v]});
+  }
+
+  void visit_from(Vertex root) {
+    enter(root);
+    while (!calls_.empty()) {
+      Call& call = calls_.back();
+      const Vertex v = call.vertex;
+      if (call.next == neighbours_.first[v + 1]) {
+        calls_.pop_back();
+        if (!calls_.empty()) lower(calls_.back().vertex, low_[v]);
+        if (low_[v] == number_[v]) close(v);
+        continue;
+      }
+      const Vertex target = neighbours_.targets[call.next++];
+      if (number_[target] == kNone) {
+        enter(target);
+      } else if (knot_of_[target] == kNone) {
+        lower(v, number_[target]);
+      }
+    }
+  }
+
+  void lower(Vertex v, std::uint32_t to) { low_[v] = std::min(low_[v], to); }
+
+  void close(Vertex root) {
+    Vertex v = kNone;
+    do {
+      v = open_.back();
+      open_.pop_back();
+      knot_of_[v] = knots_;
+    } while (v != root);
+    ++knots_;
+  }
+
+  const Neighbours& neighbours_;
+  std::vector<std::uint32_t> number_;  // in the order of visits
+  std::vector<std::uint32_t> low_;     // the lowest number known to be reached
+  std::vector<Condensation::Knot> knot_of_;
+  std::vector<Vertex> open_;  // visited, and in no knot yet
+  std::vector<Call> calls_;
+  std::uint32_t count_ = 0;
+  std::uint32_t knots_ = 0;
+};
+
+}  // namespace
+
+Condensation::Condensation(std::size_t vertices, std::span<const Edge> edges) {
+  const Neighbours neighbours(vertices, edges);
+  Search search(neighbours);
+  knot_of_ = search.run();
+  std::vector<Edge> between;
+  between.reserve(edges.size());
+  for (const Edge& edge : edges) {
+    const Edge knots(knot_of_[edge.first], knot_of_[edge.second]);
+    if (knots.first != knots.second) between.push_back(knots);
+  }
+  Neighbours condensed(search.knots(), between);
+  first_producer_ = std::move(condensed.first);
+  producers_ = std::move(condensed.targets);
+}
+
+}  // namespace culprit

@@ -1,0 +1,39 @@
+// The dependency graph with every circle drawn together, for whoever asks about many components at
+// once.
+//
+// A knot is a node, or several that all depend on each other (a strongly connected component). The
+// knots are numbered so that each comes after all that it depends on: one pass from the first to
+// the last carries anything from producers to all their consumers.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace culprit {
+
+class Condensation {
+ public:
+  using Knot = std::uint32_t;
+  using Vertex = std::uint32_t;
+
+  // `edges` lead from a consumer to a producer; both are below `vertices`. Tarjan's algorithm.
+  Condensation(std::size_t vertices, std::span<const std::pair<Vertex, Vertex>> edges);
+
+  std::size_t size() const { return first_producer_.size() - 1; }
+  Knot knot_of(Vertex vertex) const { return knot_of_[vertex]; }
+  // What a knot depends on directly: lower numbers, possibly more than once.
+  std::span<const Knot> producers(Knot knot) const {
+    return std::span(producers_)
+        .subspan(first_producer_[knot], first_producer_[knot + 1] - first_producer_[knot]);
+  }
+
+ private:
+  std::vector<Knot> knot_of_;
+  std::vector<std::uint32_t> first_producer_;  // by knot, and the end
+  std::vector<Knot> producers_;
+};
+
+}  // namespace culprit

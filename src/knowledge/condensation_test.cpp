@@ -1,0 +1,65 @@
+#include "knowledge/condensation.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace culprit {
+namespace {
+
+using Edges = std::vector<std::pair<Condensation::Vertex, Condensation::Vertex>>;
+
+TEST(Condensation, PutsProducersFirst) {
+  const Condensation chain(3, Edges{{0, 1}, {1, 2}});
+  EXPECT_EQ(chain.size(), 3u);
+  EXPECT_LT(chain.knot_of(2), chain.knot_of(1));
+  EXPECT_LT(chain.knot_of(1), chain.knot_of(0));
+}
+
+TEST(Condensation, DrawsACircleTogether) {
+  const Condensation circle(4, Edges{{0, 1}, {1, 2}, {2, 0}, {3, 0}});
+  EXPECT_EQ(circle.size(), 2u);
+  EXPECT_EQ(circle.knot_of(0), circle.knot_of(1));
+  EXPECT_EQ(circle.knot_of(1), circle.knot_of(2));
+  EXPECT_EQ(circle.producers(circle.knot_of(3)).size(), 1u);
+}
+
+TEST(Condensation, EndsOnALongChain) {
+  Edges edges;
+  for (Condensation::Vertex v = 0; v + 1 < 200'000; ++v) edges.emplace_back(v, v + 1);
+  EXPECT_EQ(Condensation(200'000, edges).size(), 200'000u);
+}
+
+// Who is reached from `from`, the slow way; itself only through a circle.
+std::set<Condensation::Vertex> reached(Condensation::Vertex from, const Edges& edges) {
+  std::set<Condensation::Vertex> found;
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const auto& [consumer, producer] : edges) {
+      if (consumer == from || found.contains(consumer)) grows |= found.insert(producer).second;
+    }
+  }
+  return found;
+}
+
+RC_GTEST_PROP(Condensation, AgreesWithASlowSearch, ()) {
+  const auto vertices = *rc::gen::inRange<Condensation::Vertex>(1, 12);
+  const auto vertex = rc::gen::inRange<Condensation::Vertex>(0, vertices);
+  const auto edges = *rc::gen::container<Edges>(rc::gen::pair(vertex, vertex));
+  const Condensation condensed(vertices, edges);
+  for (Condensation::Vertex a = 0; a < vertices; ++a) {
+    const auto from_a = reached(a, edges);
+    for (const auto b : from_a) {
+      const bool is_mutual = a == b || reached(b, edges).contains(a);
+      RC_ASSERT((condensed.knot_of(a) == condensed.knot_of(b)) == is_mutual);
+      RC_ASSERT(condensed.knot_of(b) <= condensed.knot_of(a));
+    }
+  }
+  for (Condensation::Knot knot = 0; knot < condensed.size(); ++knot) {
+    for (const auto producer : condensed.producers(knot)) RC_ASSERT(producer < knot);
+  }
+}
+
+}  // namespace
+}  // namespace culprit

@@ -1,0 +1,62 @@
+// How surely a failure goes away when another one is resolved: kappa(j -> i), learned for each
+// ordered pair of rules (docs/planning.md).
+//
+//     kappa(j -> i) = (n0 kappa0 + cleared) / (n0 + cleared + stayed)
+//
+//   cleared  how often i went away after a strategy had resolved j, without one of its own
+//   stayed   how often it was still there when it could have shown that
+//   kappa0   what is expected before anything was seen: kUsual if i depends on j, kRare otherwise
+//   n0       how many outcomes that expectation weighs: kWeight
+//
+// What is kept are the counts: whether i depends on j is asked of the graph at the time.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "language/rule_set.h"
+
+namespace culprit {
+
+struct Coupling {
+  static constexpr double kUsual = 0.95;
+  static constexpr double kRare = 0.05;
+  static constexpr double kWeight = 2;
+
+  double cleared = 0;
+  double stayed = 0;
+
+  double mean(double expected) const {
+    return (kWeight * expected + cleared) / (kWeight + cleared + stayed);
+  }
+  bool operator==(const Coupling&) const = default;
+};
+
+class Couplings {
+ public:
+  // With forgetting below 1, what was counted before weighs that much less with each new outcome.
+  explicit Couplings(const RuleSet& rules) : by_effect_(rules.rules.size()) {}
+  void set_forgetting(double forgetting) { forgetting_ = forgetting; }
+
+  void cleared(RuleId cause, RuleId effect) { learn(cause, effect, {1, 0}); }
+  void stayed(RuleId cause, RuleId effect) { learn(cause, effect, {0, 1}); }
+  void set(RuleId cause, RuleId effect, Coupling coupling) { place(cause, effect) = coupling; }
+
+  struct Learned {
+    RuleId cause;
+    Coupling coupling;
+  };
+  // All that was learned of what `effect` goes away with, by cause.
+  std::span<const Learned> of(RuleId effect) const { return by_effect_[effect.index]; }
+  // Nothing learned: both counts are zero.
+  Coupling of(RuleId cause, RuleId effect) const;
+
+ private:
+  Coupling& place(RuleId cause, RuleId effect);
+  void learn(RuleId cause, RuleId effect, Coupling outcome);
+
+  std::vector<std::vector<Learned>> by_effect_;
+  double forgetting_ = 1;
+};
+
+}  // namespace culprit

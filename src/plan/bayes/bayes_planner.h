@@ -1,0 +1,47 @@
+// culprit's own planner: who is responsible, what would fix it, what is that worth, and which
+// strategies go together (docs/planning.md, and the headers beside this one).
+//
+// For each criticality level, from ERROR down, the strategies are chosen that have the highest
+// total worth (value minus expected cost) and do not conflict: one for each failure, and no two
+// that adapt a component or one and another that depends on it. Left out beforehand is a strategy
+// that
+//   1. was tried already, or
+//   2. is invalid in the present state of the system (its WHEN condition is not true, ...),
+//   3. adapts a component that is being adapted, or one that depends on such a component,
+//   4. is for a failure that more likely is the effect of another one (1 - R_i > 1/2),
+//   5. is for a failure that is expected to go away with one that was just resolved,
+//   6. adapts a component that depends on a suspicious one: a verdict is pending,
+//   7. adapts a component on which a more critical failure depends that is being worked on: the
+//      lower criticality never delays the higher.
+// 5 and 6 are waits of bounded length, and 3, 4 and 7 wait for failures that come to an end
+// (resolved or exhausted) without waiting for this one, so every failure has its turn.
+//
+// A strategy that took effect and only waits for its verdict stands less in the way: one of a lower
+// level does not hold back those downstream of it that are more critical, and those that take
+// nothing down need not wait for a more critical one downstream.
+//
+// Equal worths go by the names of rule and strategy, so that a decision does not depend on the
+// order of declarations.
+#pragma once
+
+#include "plan/bayes/objective.h"
+#include "plan/planner.h"
+
+namespace culprit {
+
+class BayesPlanner : public Planner {
+ public:
+  // How many suspects a decision names.
+  static constexpr std::size_t kSuspects = 5;
+
+  explicit BayesPlanner(Objective objective = Objective::kBalanced)
+      : weights_(weights(objective)) {}
+
+  std::vector<Verdict> plan(std::span<const RuleId> failures,
+                            const Knowledge& knowledge) const override;
+
+ private:
+  CostWeights weights_;
+};
+
+}  // namespace culprit

@@ -1,0 +1,166 @@
+#include "plan/bayes/conflict_free_set.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace culprit::plan {
+namespace {
+
+// The choices in the order of their worth, highest first, equal ones as they came.
+std::vector<std::size_t> by_worth(std::span<const Choice> choices) {
+  std::vector<std::size_t> order(choices.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return choices[a].worth > choices[b].worth;
+  });
+  return order;
+}
+
+class BranchAndBound {
+ public:
+  explicit BranchAndBound(std::span<const Choice> choices) : choices_(choices) {
+    for (const std::size_t c : by_worth(choices)) {
+      const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const auto& group) {
+        return choices[group.front()].failure == choices[c].failure;
+      });
+      if (same == groups_.end()) {
+        groups_.emplace_back(1, c);
+      } else {
+        same->push_back(c);
+      }
+    }
+    bounds_.assign(groups_.size() + 1, 0);
+    for (std::size_t g = groups_.size(); g-- > 0;)
+      bounds_[g] = bounds_[g + 1] + choices[groups_[g].front()].worth;
+  }
+
+  std::vector<std::size_t> run() {
+    branch(0, 0);
+    std::sort(best_.begin(), best_.end());
+    return best_;
+  }
+
+ private:
+  // Decides about the failures from `group` on, given those before it.
+  void branch(std::size_t group, double worth) {
+    if (worth > best_worth_) {
+      best_worth_ = worth;
+      best_ = taken_;
+    }
+    if (group == groups_.size() || worth + bounds_[group] <= best_worth_) return;
+    for (const std::size_t c : groups_[group]) {
+      const bool is_free = std::none_of(taken_.begin(), taken_.end(), [&](std::size_t t) {
+        return conflict(choices_[c], choices_[t]);
+      });
+      if (!is_free) continue;
+      taken_.push_back(c);
+      branch(group + 1, worth + choices_[c].worth);
+      taken_.pop_back();
+    }
+    branch(group + 1, worth);
+  }
+
+  std::span<const Choice> choices_;
+  std::vector<std::vector<std::size_t>> groups_;  // by failure, the most worth first
+  std::vector<double> bounds_;                    // what the groups from here on can add at most
+  std::vector<std::size_t> taken_;
+  std::vector<std::size_t> best_;
+  double best_worth_ = 0;
+};
+
+class Greedy {
+ public:
+  explicit Greedy(std::span<const Choice> choices)
+      : choices_(choices), is_chosen_(choices.size(), false) {
+    std::size_t failures = 0;
+    for (const Choice& choice : choices) failures = std::max(failures, choice.failure + 1);
+    of_failure_.assign(failures, kNone);
+    taken_.assign(choices.front().takes.size(), 0);
+    at_place_.assign(taken_.size() * kWordBits, kNone);
+  }
+
+  std::vector<std::size_t> run() {
+    const auto order = by_worth(choices_);
+    fill(order);
+    constexpr int kPasses = 3;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      bool is_better = false;
+      for (const std::size_t c : order) is_better |= !is_chosen_[c] && swap_in(c);
+      if (!is_better) break;
+      fill(order);
+    }
+    std::vector<std::size_t> chosen;
+    for (std::size_t c = 0; c < choices_.size(); ++c) {
+      if (is_chosen_[c]) chosen.push_back(c);
+    }
+    return chosen;
+  }
+
+ private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  void fill(const std::vector<std::size_t>& order) {
+    for (const std::size_t c : order) {
+      if (!is_chosen_[c] && rivals(c).empty()) choose(c);
+    }
+  }
+
+  // The chosen ones that conflict with `c`.
+  const std::vector<std::size_t>& rivals(std::size_t c) {
+    rivals_.clear();
+    const auto found = [&](std::size_t rival) {
+      if (rival != kNone && std::find(rivals_.begin(), rivals_.end(), rival) == rivals_.end())
+        rivals_.push_back(rival);
+    };
+    found(of_failure_[choices_[c].failure]);
+    for_each_common(choices_[c].near, taken_, [&](std::size_t place) { found(at_place_[place]); });
+    return rivals_;
+  }
+
+  bool swap_in(std::size_t c) {
+    const std::vector<std::size_t> leaving = rivals(c);
+    double worth = 0;
+    for (const std::size_t rival : leaving) worth += choices_[rival].worth;
+    if (worth >= choices_[c].worth) return false;
+    for (const std::size_t rival : leaving) put(rival, kNone);
+    choose(c);
+    return true;
+  }
+
+  void choose(std::size_t c) { put(c, c); }
+  void put(std::size_t c, std::size_t holder) {
+    is_chosen_[c] = holder != kNone;
+    of_failure_[choices_[c].failure] = holder;
+    for_each(choices_[c].takes, [&](std::size_t place) {
+      at_place_[place] = holder;
+      holder != kNone ? set(taken_, place) : clear(taken_, place);
+    });
+  }
+
+  std::span<const Choice> choices_;
+  std::vector<bool> is_chosen_;
+  std::vector<std::size_t> of_failure_;  // the chosen one
+  std::vector<Word> taken_;              // places
+  std::vector<std::size_t> at_place_;    // the chosen one that takes it
+  std::vector<std::size_t> rivals_;
+};
+
+}  // namespace
+
+bool conflict(const Choice& a, const Choice& b) {
+  return a.failure == b.failure || meet(a.takes, b.near);
+}
+
+std::vector<std::size_t> best_conflict_free_set(std::span<const Choice> choices) {
+  return choices.size() <= kExact ? exact_set(choices) : greedy_set(choices);
+}
+
+std::vector<std::size_t> exact_set(std::span<const Choice> choices) {
+  return BranchAndBound(choices).run();
+}
+
+std::vector<std::size_t> greedy_set(std::span<const Choice> choices) {
+  return choices.empty() ? std::vector<std::size_t>() : Greedy(choices).run();
+}
+
+}  // namespace culprit::plan

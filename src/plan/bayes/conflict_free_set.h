@@ -1,0 +1,35 @@
+// Which together? The choices of the highest total worth of which no two conflict.
+//
+// Two choices conflict if they are for the same failure, or if what one takes is near what the
+// other takes. Exact up to kExact choices, by branch and bound over the failures: a branch is left
+// when even the best remaining choice of every remaining failure could not make it better. Beyond,
+// greedy by worth, and then improved by swaps: a choice that is worth more than all that conflict
+// with it takes their place.
+#pragma once
+
+#include <vector>
+
+#include "plan/bayes/bit_rows.h"
+
+namespace culprit::plan {
+
+inline constexpr std::size_t kExact = 20;
+
+struct Choice {
+  std::size_t failure = 0;
+  double worth = 0;             // > 0
+  std::span<const Word> takes;  // places
+  std::span<const Word> near;   // places where no other may be taken; includes `takes`. Mutual: a
+                                // takes near b if and only if b takes near a.
+};
+
+bool conflict(const Choice& a, const Choice& b);
+
+// Indices into `choices`, ascending. Among sets of the same worth, the one with earlier choices.
+std::vector<std::size_t> best_conflict_free_set(std::span<const Choice> choices);
+
+// The two ways; for tests and measurements.
+std::vector<std::size_t> exact_set(std::span<const Choice> choices);
+std::vector<std::size_t> greedy_set(std::span<const Choice> choices);
+
+}  // namespace culprit::plan

@@ -1,0 +1,103 @@
+#include "plan/bayes/failures.h"
+
+#include <algorithm>
+#include <array>
+
+namespace culprit::plan {
+namespace {
+
+std::vector<RuleId> by_name(const Knowledge& knowledge) {
+  std::vector<RuleId> rules = knowledge.states.active();
+  std::sort(rules.begin(), rules.end(),
+            [&](RuleId a, RuleId b) { return knowledge.rules[a].name < knowledge.rules[b].name; });
+  return rules;
+}
+
+// Visits what can be reached from `root` through `rows` and is still in `open`, which it leaves.
+// Calls `done` for each when all that it leads to was visited.
+template <class Done>
+void search(std::size_t root, const BitRows& rows, std::span<Word> open,
+            std::vector<std::size_t>& path, Done done) {
+  clear(open, root);
+  path.assign(1, root);
+  while (!path.empty()) {
+    const auto next = first_common(rows[path.back()], open);
+    if (!next) {
+      done(path.back());
+      path.pop_back();
+      continue;
+    }
+    clear(open, *next);
+    path.push_back(*next);
+  }
+}
+
+}  // namespace
+
+Failures::Failures(const Knowledge& knowledge, const Reach& reach)
+    : knowledge_(knowledge),
+      rules_(by_name(knowledge)),
+      causes_(rules_.size(), rules_.size()),
+      circle_of_(rules_.size()) {
+  const RuleSet& rules = knowledge.rules;
+  BitRows touching(reach.size(), rules_.size());  // by place: which failures touch it
+  std::array<BitRows, 3> at_least{BitRows(1, rules_.size()), BitRows(1, rules_.size()),
+                                  BitRows(1, rules_.size())};  // by level: which are as critical
+  for (std::size_t i = 0; i < rules_.size(); ++i) {
+    for (const ComponentId c : rules[rules_[i]].components) set(touching[reach.place_of(c)], i);
+    for (std::size_t level = 0;
+         level <= static_cast<std::size_t>(rules[rules_[i]].policies.criticality); ++level)
+      set(at_least[level][0], i);
+  }
+  BitRows effects(rules_.size(), rules_.size());
+  for (std::size_t i = 0; i < rules_.size(); ++i) {
+    const auto row = causes_[i];
+    for (const ComponentId c : rules[rules_[i]].components) {
+      for_each(reach.upstream(reach.place_of(c)),
+               [&](std::size_t place) { add(row, touching[place]); });
+    }
+    const auto level = static_cast<std::size_t>(rules[rules_[i]].policies.criticality);
+    for (std::size_t w = 0; w < row.size(); ++w) row[w] &= at_least[level][0][w];
+    clear(row, i);
+    for_each(row, [&](std::size_t cause) { set(effects[cause], i); });
+  }
+  find_circles(effects);
+}
+
+// Kosaraju: what is visited first from the last of one search, backwards, is a circle.
+void Failures::find_circles(const BitRows& effects) {
+  BitRows open(1, rules_.size());
+  std::vector<std::size_t> path;
+  std::vector<std::size_t> order;
+  const auto open_all = [&] {
+    for (std::size_t i = 0; i < rules_.size(); ++i) set(open[0], i);
+  };
+  open_all();
+  for (std::size_t i = 0; i < rules_.size(); ++i) {
+    if (has(open[0], i))
+      search(i, causes_, open[0], path, [&](std::size_t done) { order.push_back(done); });
+  }
+  open_all();
+  for (auto root = order.rbegin(); root != order.rend(); ++root) {
+    if (!has(open[0], *root)) continue;
+    auto& circle = circles_.emplace_back();
+    search(*root, effects, open[0], path, [&](std::size_t done) { circle.push_back(done); });
+    std::sort(circle.begin(), circle.end());
+    for (const std::size_t member : circle) circle_of_[member] = circles_.size() - 1;
+  }
+  for (const auto& circle : circles_) {
+    if (circle.size() == 1) continue;
+    for (const std::size_t member : circle) {
+      for (const std::size_t other : circle) clear(causes_[member], other);
+    }
+  }
+}
+
+std::size_t Failures::index_of(RuleId rule) const {
+  const auto found = std::lower_bound(rules_.begin(), rules_.end(), rule, [&](RuleId a, RuleId b) {
+    return knowledge_.rules[a].name < knowledge_.rules[b].name;
+  });
+  return static_cast<std::size_t>(found - rules_.begin());
+}
+
+}  // namespace culprit::plan

@@ -1,0 +1,44 @@
+// The failures that are there now, and which may be the cause of which.
+//
+// Failure j may be the cause of failure i if a component that j touches is upstream of one that i
+// touches, and j is at least as critical: a lesser failure is never waited for. Failures that may
+// be the causes of each other, directly or round several corners, form a circle; that needs no
+// circle in the graph, because a rule may touch several components.
+//
+// They are in the order of their rules' names, so that nothing depends on the order of
+// declarations.
+#pragma once
+
+#include <vector>
+
+#include "plan/bayes/reach.h"
+
+namespace culprit::plan {
+
+class Failures {
+ public:
+  // `reach` holds all components that the active rules touch.
+  Failures(const Knowledge& knowledge, const Reach& reach);
+
+  std::size_t size() const { return rules_.size(); }
+  RuleId operator[](std::size_t i) const { return rules_[i]; }
+  // @pre the rule is active
+  std::size_t index_of(RuleId rule) const;
+
+  // The possible causes of failure i outside its own circle.
+  std::span<const Word> causes(std::size_t i) const { return causes_[i]; }
+  // The failures of circle c; most consist of one.
+  std::size_t circle_of(std::size_t i) const { return circle_of_[i]; }
+  const std::vector<std::vector<std::size_t>>& circles() const { return circles_; }
+
+ private:
+  void find_circles(const BitRows& effects);
+
+  const Knowledge& knowledge_;
+  std::vector<RuleId> rules_;
+  BitRows causes_;
+  std::vector<std::size_t> circle_of_;
+  std::vector<std::vector<std::size_t>> circles_;
+};
+
+}  // namespace culprit::plan

@@ -1,0 +1,289 @@
+#include "plan/bayes/planning_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "plan/bayes/bayes_planner.h"
+
+namespace culprit::plan {
+namespace {
+
+// Worths are compared to so many parts of a unit: sums of the same numbers in another order are
+// equal.
+constexpr double kParts = 1e9;
+
+// What costs more than it is worth has to be done all the same, once nothing else comes first: it
+// is worth a little, by its index.
+double worth(double value, double cost, double index) {
+  constexpr double kLittle = 1e-4;
+  return std::round(std::max(value - cost, kLittle * std::min(index, 1.0)) * kParts) / kParts +
+         1 / kParts;
+}
+
+int redeployments(const Strategy& strategy) {
+  return static_cast<int>(
+      std::count_if(strategy.adaptations.begin(), strategy.adaptations.end(),
+                    [](const Adaptation& a) { return a.type == AdaptationType::kRedeploy; }));
+}
+
+}  // namespace
+
+PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& knowledge,
+                           const CostWeights& weights)
+    : knowledge_(knowledge),
+      weights_(weights),
+      planned_(failures.begin(), failures.end()),
+      suspicious_(suspicious_rules(failures, knowledge)),
+      reach_(knowledge, components_of_interest(knowledge, suspicious_)),
+      failures_(knowledge, reach_),
+      responsibility_(knowledge, failures_),
+      surroundings_(knowledge, reach_, failures, suspicious_),
+      has_choice_(failures_.size(), false) {}
+
+std::vector<Verdict> PlanningStep::run() {
+  find_stakes();
+  for (const RuleId rule : planned_) examine(failures_.index_of(rule));
+  std::sort(entries_.begin(), entries_.end(),
+            [&](const Entry& a, const Entry& b) { return is_before(a, b); });
+  for (const Criticality level :
+       {Criticality::kError, Criticality::kWarning, Criticality::kNonCritical})
+    select(level);
+  return verdicts();
+}
+
+// By level, then by worth, then by name.
+bool PlanningStep::is_before(const Entry& a, const Entry& b) const {
+  const auto key = [&](const Entry& e) {
+    const Strategy& strategy = knowledge_.rules[e.candidate.strategy];
+    const Rule& rule = knowledge_.rules[strategy.rule];
+    return std::tuple<int, double, double, const std::string&, const std::string&>(
+        -static_cast<int>(rule.policies.criticality), -e.worth, e.candidate.cost, rule.name,
+        strategy.name);
+  };
+  return key(a) < key(b);
+}
+
+void PlanningStep::find_stakes() {
+  stakes_.resize(failures_.size());
+  const auto weight_of = [&](std::size_t i) {
+    return weight(knowledge_.rules[failures_[i]].policies.criticality);
+  };
+  for (std::size_t i = 0; i < failures_.size(); ++i) stakes_[i] += weight_of(i);
+  for (std::size_t k = 0; k < failures_.size(); ++k) {
+    responsibility_.for_each_share(
+        k, [&](std::size_t i, double share) { stakes_[i] += share * weight_of(k); });
+    // What is not downstream, and was seen to go away with another one.
+    for (const auto& [cause, coupling] : knowledge_.couplings.of(failures_[k])) {
+      if (!knowledge_.states.is_active(cause) || coupling.cleared == 0) continue;
+      const std::size_t i = failures_.index_of(cause);
+      if (i != k && !has(failures_.causes(k), i))
+        stakes_[i] += coupling.mean(Coupling::kRare) * weight_of(k);
+    }
+  }
+}
+
+void PlanningStep::examine(std::size_t failure) {
+  const auto all = remedies(failures_[failure], knowledge_);
+  const std::vector<Option> tries = options(failure, all);
+  std::vector<std::size_t> order(all.size());  // p/c index
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (index(tries[a]) != index(tries[b])) return index(tries[a]) > index(tries[b]);
+    return knowledge_.rules[all[a].strategy].name < knowledge_.rules[all[b].strategy].name;
+  });
+  std::vector<Option> possible;
+  double helps = 0;
+  for (const std::size_t s : order) {
+    if (!all[s].is_out()) possible.push_back(tries[s]);
+    helps += all[s].chance;
+  }
+  const std::vector<double> costs = expected_costs(possible);
+  const double root = responsibility_.of(failure);
+
+  std::size_t next = 0;
+  for (const std::size_t s : order) {
+    Entry& entry = entries_.emplace_back();
+    entry.failure = failure;
+    entry.candidate.strategy = all[s].strategy;
+    if (all[s].is_tried) {
+      entry.candidate.excluded = Condition::kTried;
+    } else if (all[s].invalid) {
+      entry.candidate.excluded = Condition::kInvalid;
+      entry.candidate.component = all[s].invalid->component;
+      entry.candidate.remark = all[s].invalid->reason;
+    } else {
+      entry.candidate.resolves = root * all[s].chance;
+      entry.candidate.value = root * std::min(1.0, helps) * stakes_[failure];
+      entry.candidate.cost = costs[next++];
+      entry.worth = worth(entry.candidate.value, entry.candidate.cost, index(tries[s]));
+      exclude(entry, all[s].chance);
+    }
+  }
+}
+
+std::vector<Option> PlanningStep::options(std::size_t failure,
+                                          const std::vector<Remedy>& remedies) const {
+  const Duration latency = knowledge_.signals.latency(failures_[failure]);
+  std::vector<Option> all;
+  for (const Remedy& remedy : remedies) {
+    const Strategy& strategy = knowledge_.rules[remedy.strategy];
+    const Effort effort{strategy.impact, latency, redeployments(strategy), disruption(strategy)};
+    all.push_back({remedy.chance, try_cost(effort, weights_, knowledge_.rules)});
+  }
+  return all;
+}
+
+double PlanningStep::disruption(const Strategy& strategy) const {
+  std::size_t down = 0;
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    if (takes_down(adaptation))
+      down += 1 + reach_.dependents(reach_.place_of(adaptation.component));
+  }
+  const auto all = static_cast<double>(knowledge_.rules.components.size());
+  return std::min(1.0, static_cast<double>(down) / all);
+}
+
+void PlanningStep::exclude(Entry& entry, double chance) const {
+  const RuleId rule = failures_[entry.failure];
+  const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
+  for (const ComponentId c : strategy.components) {
+    if (const auto obstacle = surroundings_.obstacle(reach_.place_of(c), strategy, chance))
+      return exclude(entry, *obstacle);
+  }
+  const auto& settling = knowledge_.states[rule].settling;
+  const bool is_settling =
+      settling && knowledge_.now < settling->until &&
+      !knowledge_.signals.is_read_since(rule, settling->since) &&
+      knowledge_.couplings.of(settling->with, rule).mean(Coupling::kUsual) > 0.5;
+  if (is_settling)
+    return exclude(entry,
+                   {Condition::kSettling, likeliest_component(settling->with), settling->with});
+  exclude_effect(entry);
+}
+
+void PlanningStep::exclude(Entry& entry, const Surroundings::Obstacle& obstacle) const {
+  entry.candidate.excluded = obstacle.condition;
+  entry.candidate.component = obstacle.component;
+  entry.candidate.because = obstacle.because;
+}
+
+// A failure that others more likely explain waits for them.
+void PlanningStep::exclude_effect(Entry& entry) const {
+  // In a circle the members take turns, whoever is the likelier: what counts is what is outside.
+  if (responsibility_.against_others(entry.failure) >= 0.5) return;
+  double most = 0;
+  RuleId cause;
+  responsibility_.for_each_share(entry.failure, [&](std::size_t j, double share) {
+    if (share > most) std::tie(most, cause) = std::pair(share, failures_[j]);
+  });
+  exclude(entry, {Condition::kDependency, likeliest_component(cause), cause});
+}
+
+void PlanningStep::select(Criticality level) {
+  std::vector<Entry*> open;
+  for (Entry& entry : entries_) {
+    const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
+    if (entry.candidate.excluded || knowledge_.rules[strategy.rule].policies.criticality != level)
+      continue;
+    for (const ComponentId c : strategy.components) {
+      const auto conflict = surroundings_.conflict(reach_.place_of(c));
+      if (conflict) {
+        exclude(entry, *conflict);
+        break;
+      }
+    }
+    if (!entry.candidate.excluded) open.push_back(&entry);
+  }
+
+  BitRows takes(open.size(), reach_.size());
+  BitRows near(open.size(), reach_.size());
+  std::vector<Choice> choices;
+  for (std::size_t e = 0; e < open.size(); ++e) {
+    for (const ComponentId c : knowledge_.rules[open[e]->candidate.strategy].components) {
+      const std::size_t place = reach_.place_of(c);
+      set(takes[e], place);
+      add(near[e], reach_.upstream(place));
+      add(near[e], reach_.downstream(place));
+    }
+    add(near[e], takes[e]);
+    choices.push_back({open[e]->failure, open[e]->worth, takes[e], near[e]});
+  }
+  std::vector<bool> is_chosen(open.size(), false);
+  for (const std::size_t e : best_conflict_free_set(choices)) {
+    is_chosen[e] = true;
+    has_choice_[open[e]->failure] = true;
+    surroundings_.add(knowledge_.rules[open[e]->candidate.strategy]);
+  }
+  for (std::size_t e = 0; e < open.size(); ++e) {
+    if (is_chosen[e]) continue;
+    if (has_choice_[open[e]->failure]) {
+      open[e]->candidate.excluded = Condition::kOneEach;
+      continue;
+    }
+    for (const ComponentId c : knowledge_.rules[open[e]->candidate.strategy].components) {
+      const auto conflict = surroundings_.conflict(reach_.place_of(c));
+      if (!conflict) continue;
+      exclude(*open[e], *conflict);
+      break;
+    }
+  }
+}
+
+// Of the components that the rule's strategies adapt, the one that the untried ones are most likely
+// to help at.
+ComponentId PlanningStep::likeliest_component(RuleId rule) const {
+  std::pair<double, ComponentId> best{-1, {}};
+  for (const ComponentId c : knowledge_.rules[rule].components) {
+    double chance = 0;
+    for (const StrategyId s : knowledge_.rules[rule].strategies) {
+      const auto& adapted = knowledge_.rules[s].components;
+      if (std::binary_search(adapted.begin(), adapted.end(), c))
+        chance += knowledge_.beliefs[s].mean().value;
+    }
+    const bool is_better =
+        chance > best.first ||
+        (chance == best.first && knowledge_.rules[c].name < knowledge_.rules[best.second].name);
+    if (is_better) best = {chance, c};
+  }
+  return best.second;
+}
+
+std::vector<Suspect> PlanningStep::suspects(std::size_t failure) const {
+  std::vector<Suspect> all;
+  const RuleId rule = failures_[failure];
+  all.push_back({likeliest_component(rule), rule, responsibility_.of(failure)});
+  responsibility_.for_each_share(failure, [&](std::size_t j, double share) {
+    all.push_back({{}, failures_[j], share});
+  });
+  const std::size_t shown = std::min(all.size(), BayesPlanner::kSuspects);
+  std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown), all.end(),
+                    [&](const Suspect& a, const Suspect& b) {
+                      return std::tie(b.probability, knowledge_.rules[a.failure].name) <
+                             std::tie(a.probability, knowledge_.rules[b.failure].name);
+                    });
+  all.resize(shown);
+  for (Suspect& suspect : all) suspect.component = likeliest_component(suspect.failure);
+  return all;
+}
+
+std::vector<Verdict> PlanningStep::verdicts() {
+  std::vector<Verdict> found;
+  std::vector<std::size_t> place(failures_.size(), failures_.size());
+  for (Entry& entry : entries_) {
+    std::size_t& at = place[entry.failure];
+    if (at == failures_.size()) {
+      at = found.size();
+      found.push_back({failures_[entry.failure], {}, true, {}, suspects(entry.failure)});
+    }
+    Verdict& verdict = found[at];
+    const auto& excluded = entry.candidate.excluded;
+    if (!excluded) verdict.chosen = entry.candidate.strategy;
+    verdict.is_spent &= excluded == Condition::kTried || excluded == Condition::kInvalid;
+    verdict.candidates.push_back(std::move(entry.candidate));
+  }
+  return found;
+}
+
+}  // namespace culprit::plan

@@ -1,0 +1,58 @@
+// One planning step of the bayes planner, with everything that it works out on the way.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "plan/bayes/conflict_free_set.h"
+#include "plan/bayes/remedies.h"
+#include "plan/bayes/responsibility.h"
+#include "plan/bayes/surroundings.h"
+#include "plan/bayes/value.h"
+#include "plan/planner.h"
+
+namespace culprit::plan {
+
+class PlanningStep {
+ public:
+  // All must outlive it.
+  PlanningStep(std::span<const RuleId> failures, const Knowledge& knowledge,
+               const CostWeights& weights);
+
+  std::vector<Verdict> run();
+
+ private:
+  // A strategy of a failure that is to be decided about.
+  struct Entry {
+    Candidate candidate;
+    std::size_t failure = 0;  // index in failures_
+    double worth = 0;
+  };
+
+  void find_stakes();
+  void examine(std::size_t failure);
+  std::vector<Option> options(std::size_t failure, const std::vector<Remedy>& remedies) const;
+  double disruption(const Strategy& strategy) const;
+  void exclude(Entry& entry, double chance) const;
+  void exclude(Entry& entry, const Surroundings::Obstacle& obstacle) const;
+  void exclude_effect(Entry& entry) const;
+  void select(Criticality level);
+  ComponentId likeliest_component(RuleId rule) const;
+  std::vector<Suspect> suspects(std::size_t failure) const;
+  std::vector<Verdict> verdicts();
+  bool is_before(const Entry& a, const Entry& b) const;
+
+  const Knowledge& knowledge_;
+  const CostWeights& weights_;
+  std::vector<RuleId> planned_;
+  std::vector<RuleId> suspicious_;
+  Reach reach_;
+  Failures failures_;
+  Responsibility responsibility_;
+  Surroundings surroundings_;
+  std::vector<double> stakes_;  // by failure: W_i + sum_k share(i -> k) W_k
+  std::vector<Entry> entries_;
+  std::vector<bool> has_choice_;  // by failure
+};
+
+}  // namespace culprit::plan

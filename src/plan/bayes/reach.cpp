@@ -1,0 +1,112 @@
+#include "plan/bayes/reach.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace culprit::plan {
+namespace {
+
+using Knot = Condensation::Knot;
+
+constexpr Knot kNowhere = std::numeric_limits<Knot>::max();
+
+std::vector<ComponentId> each_once(std::vector<ComponentId> components) {
+  std::sort(components.begin(), components.end());
+  components.erase(std::unique(components.begin(), components.end()), components.end());
+  return components;
+}
+
+// For each of 64 bits, in how many words it was set: 32 numbers' worth of binary digits, added a
+// word at a time.
+class BitCounts {
+ public:
+  void add(Word bits) {
+    for (std::size_t digit = 0; bits != 0; ++digit) {
+      const Word carry = digits_[digit] & bits;
+      digits_[digit] ^= bits;
+      bits = carry;
+    }
+  }
+  std::size_t of(std::size_t bit) const {
+    std::size_t count = 0;
+    for (std::size_t digit = 0; digit < digits_.size(); ++digit)
+      count |= static_cast<std::size_t>(digits_[digit] >> bit & 1) << digit;
+    return count;
+  }
+
+ private:
+  std::array<Word, 32> digits_{};
+};
+
+// Where the components of the rule set are in the condensed graph.
+struct Places {
+  std::vector<Knot> knot_of;           // by ComponentId
+  std::vector<std::uint32_t> members;  // components, by knot
+
+  Places(const Knowledge& knowledge, const Condensation& graph)
+      : knot_of(knowledge.rules.components.size(), kNowhere), members(graph.size(), 0) {
+    for (std::size_t c = 0; c < knot_of.size(); ++c) {
+      if (const auto knot = knowledge.graph.knot_of(ComponentId(c))) {
+        knot_of[c] = *knot;
+        ++members[*knot];
+      }
+    }
+  }
+};
+
+}  // namespace
+
+Reach::Reach(const Knowledge& knowledge, std::vector<ComponentId> components)
+    : components_(each_once(std::move(components))),
+      upstream_(components_.size(), components_.size()),
+      downstream_(components_.size(), components_.size()),
+      dependents_(components_.size(), 0) {
+  const Condensation& graph = knowledge.graph.condensation();
+  const Places places(knowledge, graph);
+  // By the order of their knots, so that a pass can begin at its first.
+  std::vector<std::size_t> order;
+  for (std::size_t p = 0; p < components_.size(); ++p) {
+    if (places.knot_of[components_[p].index] != kNowhere) order.push_back(p);
+  }
+  const auto knot_at = [&](std::size_t place) { return places.knot_of[components_[place].index]; };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(knot_at(a), a) < std::pair(knot_at(b), b);
+  });
+
+  std::vector<Word> own(graph.size(), 0);      // which of the 64 are in the knot
+  std::vector<Word> reached(graph.size(), 0);  // which are in it or upstream of it
+  for (std::size_t begin = 0; begin < order.size(); begin += kWordBits) {
+    const std::size_t end = std::min(order.size(), begin + kWordBits);
+    for (std::size_t i = begin; i < end; ++i) own[knot_at(order[i])] |= Word{1} << (i - begin);
+    const Knot first = knot_at(order[begin]);
+    std::fill(reached.begin(), reached.begin() + first, 0);
+    BitCounts counts;
+    for (Knot knot = first; knot < graph.size(); ++knot) {
+      Word bits = own[knot];
+      for (const Knot producer : graph.producers(knot)) bits |= reached[producer];
+      reached[knot] = bits;
+      for (std::uint32_t m = 0; m < places.members[knot]; ++m) counts.add(bits);
+    }
+    for (std::size_t i = begin; i < end; ++i) dependents_[order[i]] = counts.of(i - begin) - 1;
+    for (const std::size_t consumer : order) {
+      const Knot knot = knot_at(consumer);
+      Word bits = reached[knot];
+      if (places.members[knot] == 1) bits &= ~own[knot];
+      for (; bits != 0; bits &= bits - 1) {
+        const std::size_t producer =
+            order[begin + static_cast<std::size_t>(std::countr_zero(bits))];
+        set(upstream_[consumer], producer);
+        set(downstream_[producer], consumer);
+      }
+    }
+    for (std::size_t i = begin; i < end; ++i) own[knot_at(order[i])] = 0;
+  }
+}
+
+std::size_t Reach::place_of(ComponentId component) const {
+  return static_cast<std::size_t>(
+      std::lower_bound(components_.begin(), components_.end(), component) - components_.begin());
+}
+
+}  // namespace culprit::plan

@@ -1,0 +1,38 @@
+// Who is upstream of whom among a few components of a large graph.
+//
+// One pass over the condensed graph, producers first, carries 64 components at once to all their
+// consumers: with e edges and n components that is e * n / 64 steps, whatever the paths are.
+#pragma once
+
+#include <vector>
+
+#include "knowledge/knowledge.h"
+#include "plan/bayes/bit_rows.h"
+
+namespace culprit::plan {
+
+class Reach {
+ public:
+  // `components` may hold some more than once.
+  Reach(const Knowledge& knowledge, std::vector<ComponentId> components);
+
+  std::size_t size() const { return components_.size(); }
+  ComponentId operator[](std::size_t place) const { return components_[place]; }
+  // @pre it is one of the components
+  std::size_t place_of(ComponentId component) const;
+
+  // The places of those that `place` depends on: itself only through a circle.
+  std::span<const Word> upstream(std::size_t place) const { return upstream_[place]; }
+  std::span<const Word> downstream(std::size_t place) const { return downstream_[place]; }
+
+  // How many components of the whole graph depend on it.
+  std::size_t dependents(std::size_t place) const { return dependents_[place]; }
+
+ private:
+  std::vector<ComponentId> components_;  // ascending, each once
+  BitRows upstream_;
+  BitRows downstream_;
+  std::vector<std::size_t> dependents_;
+};
+
+}  // namespace culprit::plan

@@ -1,0 +1,103 @@
+#include "plan/bayes/responsibility.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace culprit::plan {
+
+double root_probability(double prior, double explained) {
+  return prior / (prior + (1 - prior) * explained);
+}
+
+Responsibility::Responsibility(const Knowledge& knowledge, const Failures& failures)
+    : knowledge_(knowledge),
+      failures_(failures),
+      against_others_(failures.size()),
+      claims_(failures.size(), 0) {
+  for (std::size_t i = 0; i < failures.size(); ++i)
+    against_others_[i] = root_probability(own(i), explained(i));
+  root_ = against_others_;
+  for (const auto& circle : failures.circles()) {
+    if (circle.size() > 1) divide(circle);
+  }
+  for (std::size_t i = 0; i < root_.size(); ++i) {
+    for_each(failures.causes(i), [&](std::size_t j) { claims_[i] += kappa(j, i) * root_[j]; });
+  }
+}
+
+double Responsibility::share(std::size_t j, std::size_t i) const {
+  if (!has(failures_.causes(i), j)) return 0;
+  return (1 - root_[i]) * kappa(j, i) * root_[j] / claims_[i];
+}
+
+double Responsibility::kappa(std::size_t j, std::size_t i) const {
+  // Most failures have learned nothing: no need to search.
+  if (knowledge_.couplings.of(failures_[i]).empty()) return Coupling::kUsual;
+  return knowledge_.couplings.of(failures_[j], failures_[i]).mean(Coupling::kUsual);
+}
+
+double Responsibility::explained(std::size_t i) const {
+  double unexplained = 1;
+  for_each(failures_.causes(i), [&](std::size_t j) { unexplained *= 1 - kappa(j, i); });
+  return 1 - unexplained;
+}
+
+double Responsibility::own(std::size_t i) const {
+  return is_seen_down(failures_[i], knowledge_) ? kSeenDown : kCoincidence;
+}
+
+void Responsibility::divide(const std::vector<std::size_t>& circle) {
+  Time first = kNever;
+  for (const std::size_t i : circle)
+    first = std::min(first, knowledge_.states[failures_[i]].failing_since);
+  double sum = 0;
+  std::vector<double> weights;
+  for (const std::size_t i : circle) sum += weights.emplace_back(weight(i, circle, first));
+  for (std::size_t k = 0; k < circle.size(); ++k) {
+    const double omega = sum > 0 ? weights[k] / sum : 1 / static_cast<double>(circle.size());
+    root_[circle[k]] *= omega + (1 - omega) * kCoincidence;
+  }
+}
+
+double Responsibility::weight(std::size_t i, const std::vector<std::size_t>& circle,
+                              Time first) const {
+  // Even one whose strategies were all tried may be the cause: they can have failed by accident.
+  constexpr double kLeast = 0.01;
+  const RuleId rule = failures_[i];
+  const RuleState& state = knowledge_.states[rule];
+  const auto& strategies = knowledge_.rules[rule].strategies;
+  double all = 0;
+  double untried = 0;
+  for (std::size_t s = 0; s < strategies.size(); ++s) {
+    const double belief = knowledge_.beliefs[strategies[s]].mean().value;
+    all += belief;
+    if (!state.tried[s]) untried += belief;
+  }
+  const double delay = seconds(state.failing_since - first) / seconds(knowledge_.rules.cycle);
+  double weight = std::max(kLeast, untried / all) * std::ldexp(1, -std::min(state.round, 50)) *
+                  (own(i) / kCoincidence) / (1 + delay);
+  for (const std::size_t k : circle) {
+    if (k != i) weight *= std::max(kLeast, kappa(i, k)) / Coupling::kUsual;
+  }
+  return weight;
+}
+
+bool replaces(const Strategy& strategy, ComponentId component) {
+  return std::any_of(
+      strategy.adaptations.begin(), strategy.adaptations.end(), [&](const Adaptation& a) {
+        return a.component == component &&
+               (a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart);
+      });
+}
+
+bool is_seen_down(RuleId rule, const Knowledge& knowledge) {
+  const Rule& failed = knowledge.rules[rule];
+  return std::any_of(failed.components.begin(), failed.components.end(), [&](ComponentId c) {
+    const ProcessState process = knowledge.components[c].process;
+    if (process == ProcessState::kRunning) return false;
+    return std::any_of(failed.strategies.begin(), failed.strategies.end(),
+                       [&](StrategyId s) { return replaces(knowledge.rules[s], c); });
+  });
+}
+
+}  // namespace culprit::plan

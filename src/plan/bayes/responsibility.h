@@ -1,0 +1,88 @@
+// Who is responsible? For each failure, the probability that it has a cause of its own and is not
+// only the effect of others: explaining away (docs/planning.md).
+//
+//     P(root i) = pi_i / (pi_i + (1 - pi_i) X_i),    X_i = 1 - prod_j (1 - kappa(j -> i))
+//
+//   i           a failure that is there
+//   j           the failures that may be its cause (plan/bayes/failures.h)
+//   kappa       how surely i goes away when j is resolved (knowledge/couplings.h)
+//   X_i         the probability that one of the others explains i; 0, and so P = 1, if there is
+//   none pi_i        that i has a cause of its own, before anything else is known of it:
+//   kCoincidence; if
+//               the operating system says that the process of a component is gone or stopped that a
+//               strategy of i would replace, kSeenDown
+//
+// This is the posterior of a noisy-or: any present cause is enough, and i's own is one of them.
+//
+// In a circle of failures that may cause each other, one of them was first. Member i of circle C is
+// it with probability omega_i, and otherwise has a cause of its own only by coincidence:
+//
+//     omega_i = w_i / sum_{k in C} w_k
+//     w_i     = (untried_i / all_i) 2^(-rounds_i) (pi_i / pi) 1 / (1 + delay_i)
+//               prod_{k in C, k != i} kappa(i -> k) / kappa0
+//     R_i     = P(root i) (omega_i + (1 - omega_i) pi)
+//
+//   untried_i / all_i   the beliefs in its strategies that were not tried yet, as a share of all:
+//   who
+//                       was adapted in vain is less likely the cause
+//   rounds_i            how often all of them were tried
+//   delay_i             how much later than the first of the circle it was detected, in cycles
+//   kappa(i -> k)       how well it explains the others
+//   pi, kappa0          kCoincidence and Coupling::kUsual
+//
+// Source: the noisy-or and its explaining away are Pearl's (Probabilistic Reasoning in Intelligent
+// Systems, 1988, section 4.3.2); the rest is ours.
+#pragma once
+
+#include <vector>
+
+#include "plan/bayes/failures.h"
+
+namespace culprit::plan {
+
+inline constexpr double kCoincidence = 0.05;
+inline constexpr double kSeenDown = 0.95;
+
+// P(root i) from pi_i and X_i.
+double root_probability(double prior, double explained);
+
+class Responsibility {
+ public:
+  // Both must outlive it.
+  Responsibility(const Knowledge& knowledge, const Failures& failures);
+
+  // R_i: 1 if nothing else can be the cause of failure i.
+  double of(std::size_t i) const { return root_[i]; }
+  // P(root i) alone: what others outside its circle leave unexplained.
+  double against_others(std::size_t i) const { return against_others_[i]; }
+  // Of the part 1 - R_i that others explain, what falls to failure j: in proportion to
+  // kappa(j -> i) R_j.
+  double share(std::size_t j, std::size_t i) const;
+  // The same for all causes of i outside its circle: calls visit(j, share).
+  template <class Visit>
+  void for_each_share(std::size_t i, Visit visit) const {
+    for_each(failures_.causes(i), [&](std::size_t j) { visit(j, share(j, i)); });
+  }
+
+ private:
+  double kappa(std::size_t j, std::size_t i) const;
+  double explained(std::size_t i) const;
+  double own(std::size_t i) const;
+  void divide(const std::vector<std::size_t>& circle);
+  double weight(std::size_t i, const std::vector<std::size_t>& circle, Time first) const;
+
+  const Knowledge& knowledge_;
+  const Failures& failures_;
+  std::vector<double> against_others_;
+  std::vector<double> root_;
+  std::vector<double> claims_;  // of failure i: the sum of kappa(j -> i) R_j over its causes
+};
+
+// Does the operating system say that the process of a component is gone or stopped that a strategy
+// of `rule` would replace?
+bool is_seen_down(RuleId rule, const Knowledge& knowledge);
+
+// Would the strategy replace the process of `component`?
+bool replaces(const Strategy& strategy, ComponentId component);
+
+}  // namespace culprit::plan

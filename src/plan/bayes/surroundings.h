@@ -1,0 +1,78 @@
+// What else is going on around the components that a plan may adapt.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "plan/bayes/failures.h"
+
+namespace culprit::plan {
+
+// Which components a plan looks at: those that active rules and attempts touch, and those of
+// suspicious rules while anyone waits for a verdict.
+std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
+                                                std::span<const RuleId> suspicious);
+
+// The rules whose verdict is pending; none once no failure of `failures` waits for verdicts any
+// more.
+std::vector<RuleId> suspicious_rules(std::span<const RuleId> failures, const Knowledge& knowledge);
+
+// Does it take a component down, if only for a moment?
+bool takes_down(const Adaptation& adaptation);
+bool takes_down(const Strategy& strategy);
+
+// How long a failure waits, from its detection on, for the verdict on a suspicious rule.
+Duration longest_wait(RuleId suspicious, const Knowledge& knowledge);
+
+// Places (see Reach) where something stands against adapting them, and why.
+class Surroundings {
+ public:
+  // `failures` are those to be decided about.
+  Surroundings(const Knowledge& knowledge, const Reach& reach, std::span<const RuleId> failures,
+               std::span<const RuleId> suspicious);
+
+  struct Obstacle {
+    Condition condition = Condition::kAdapting;
+    ComponentId component;  // see Candidate
+    std::optional<RuleId> because;
+  };
+  // What stands against adapting the component at `place` by this strategy, if anything does.
+  // `chance` is u of the strategy (plan/bayes/remedies.h).
+  std::optional<Obstacle> obstacle(std::size_t place, const Strategy& strategy,
+                                   double chance) const;
+
+  // From now on the strategy is carried out as well.
+  void add(const Strategy& strategy);
+  // What the strategies that were added stand against.
+  std::optional<Obstacle> conflict(std::size_t place) const;
+
+ private:
+  // Places, and the failure that each is about.
+  struct Marks {
+    explicit Marks(std::size_t places) : at(1, places), failure(places) {}
+    void mark(std::size_t place, RuleId rule) {
+      if (!has(at[0], place)) failure[place] = rule;
+      set(at[0], place);
+    }
+    std::span<const Word> bits() const { return at[0]; }
+
+    BitRows at;
+    std::vector<RuleId> failure;
+  };
+  std::optional<Obstacle> in_the_way(std::size_t place, const Marks& marks) const;
+  std::optional<Obstacle> found(Condition condition, std::span<const Word> where,
+                                const Marks& marks) const;
+
+  const Knowledge& knowledge_;
+  const Reach& reach_;
+  Marks adapting_;               // reserved by attempts
+  std::vector<Marks> holding_;   // by level: reserved, and holding back what depends on it
+  std::vector<Marks> urgent_;    // by level: of more critical failures that are worked on
+  std::vector<Marks> judged_;    // by level: of those whose strategy waits for its verdict
+  std::vector<Marks> pending_;   // by level: of suspicious rules that are more critical
+  std::vector<Marks> suspects_;  // by level: of suspicious rules at least as critical
+  Duration patience_{};          // with suspicious rules
+  Marks added_;
+};
+
+}  // namespace culprit::plan

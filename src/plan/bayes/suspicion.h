@@ -1,0 +1,30 @@
+// Is a verdict pending? A rule that has not fired may be about to: what it watches looks ill
+// already.
+//
+// The failure downstream is often seen first, because its detector is faster or its last sample
+// came earlier. Who acts on it at once repairs what is not broken.
+#pragma once
+
+#include "knowledge/knowledge.h"
+
+namespace culprit::plan {
+
+// A topic is suspicious when it is silent for so many of its usual intervals.
+inline constexpr int kSuspiciousIntervals = 2;
+// A failure waits for verdicts on others no longer than so many cycles after its detection, or so
+// many times the latency of the signals of suspicious rules if that is longer.
+inline constexpr Cycles kLongestWait{5};
+inline constexpr int kLongestWaitLatencies = 3;
+
+// A strategy that helps at least so likely, and takes nothing down, need not wait for what looks
+// ill downstream of it: whether it helped may not be seen, but hardly matters.
+inline constexpr double kSure = 0.9;
+
+// The rule is quiet, and one of these holds:
+//   - its trigger is true, and its policy's time (FOR, HOLD) is not over;
+//   - a topic whose age, phi or rate its trigger reads is silent for longer than it usually is;
+//   - a signal that its trigger reads was never so near to firing it lately (SignalStore);
+//   - a component of it is known to be gone or stopped.
+bool is_suspicious(RuleId rule, const Knowledge& knowledge);
+
+}  // namespace culprit::plan

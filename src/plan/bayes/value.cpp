@@ -1,0 +1,31 @@
+#include "plan/bayes/value.h"
+
+#include <algorithm>
+
+namespace culprit::plan {
+
+double weight(Criticality level) { return static_cast<double>(1 << static_cast<int>(level)); }
+
+double try_cost(const Effort& effort, const CostWeights& weights, const RuleSet& rules) {
+  const double cycles =
+      static_cast<double>(effort.impact.count) + seconds(effort.latency) / seconds(rules.cycle);
+  return weights.time * cycles / static_cast<double>(rules.heaviest.count) + weights.attempt +
+         weights.redeployment * effort.redeployments + weights.disruption * effort.disruption;
+}
+
+std::vector<double> expected_costs(std::span<const Option> options) {
+  std::vector<double> expected;
+  for (std::size_t s = 0; s < options.size(); ++s) {
+    double cost = options[s].cost;
+    double still_there = 1 - options[s].chance;
+    for (std::size_t k = 0; k < options.size() && still_there > 0; ++k) {
+      if (k == s) continue;
+      cost += options[k].cost * still_there;
+      still_there -= options[k].chance;
+    }
+    expected.push_back(cost);
+  }
+  return expected;
+}
+
+}  // namespace culprit::plan

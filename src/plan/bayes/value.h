@@ -1,0 +1,61 @@
+// What is a strategy worth, and what does it cost? (docs/planning.md)
+//
+// Cost of trying s once, in vain or not, with the weights of the objective:
+//
+//     c_s = a_time (i_exec,s + l) / i_max + a_attempt + a_redeployment r_s + a_disruption d_s
+//
+//   i_exec,s, i_max   the impact of s and the highest of the rule set, in cycles (paper, Eq. 1)
+//   l                 how long the signals of the failure take to show a change, in cycles
+//   r_s               processes that s replaces
+//   d_s               share of all components that s takes down, those that depend on them included
+//
+// Expected cost of repairing the failure beginning with s, and going on with the others in the
+// order of u/c (p/c index), as long as they fail:
+//
+//     E_s = c_s + sum_k c_k max(0, 1 - u_s - sum_{l before k} u_l)
+//
+//   u   the chances of the strategies (plan/bayes/remedies.h), taken to exclude each other
+//
+// For one failure that order is the cheapest (Smith's rule; exchange two neighbours and compare),
+// so the strategy with the highest u/c has the lowest E.
+//
+// Value of beginning to repair failure i:
+//
+//     V_i = R_i Q_i (W_i + sum_k share(i -> k) W_k),    Q_i = min(1, sum_s u_s)
+//
+//   R_i           its responsibility (plan/bayes/responsibility.h)
+//   W             1, 2 or 4: how much worse each level of criticality is than the one below it
+//   share(i -> k) the part of failure k that falls to i, or what else was seen to go away with it
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "knowledge/knowledge.h"
+#include "plan/bayes/objective.h"
+
+namespace culprit::plan {
+
+// W
+double weight(Criticality level);
+
+// What trying a strategy takes.
+struct Effort {
+  Cycles impact;
+  Duration latency{};  // of the failure's signals
+  int redeployments = 0;
+  double disruption = 0;  // 0..1
+};
+// c_s
+double try_cost(const Effort& effort, const CostWeights& weights, const RuleSet& rules);
+
+struct Option {
+  double chance = 0;  // u
+  double cost = 0;    // c > 0
+};
+// u/c
+inline double index(const Option& option) { return option.chance / option.cost; }
+// E_s for each of `options`, which are in the order of their indices, highest first.
+std::vector<double> expected_costs(std::span<const Option> options);
+
+}  // namespace culprit::plan
