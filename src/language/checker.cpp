@@ -387,8 +387,13 @@ class Checker {
 }  // namespace
 
 Checked check(const Source& source, Strictness strictness) {
+  syntax::File file;
+  return check(source, file, strictness);
+}
+
+Checked check(const Source& source, syntax::File& file, Strictness strictness) {
   Checked result;
-  const syntax::File file = parse(source, result.diagnostics);
+  file = parse(source, result.diagnostics);
   RuleSet rules = Checker(file, strictness, result.diagnostics).check();
   std::stable_sort(
       result.diagnostics.begin(), result.diagnostics.end(),

@@ -17,5 +17,8 @@ struct Checked {
 };
 
 Checked check(const Source& source, Strictness strictness = Strictness::kLenient);
+// The same; `file` becomes what the source says, for those who need it too.
+Checked check(const Source& source, syntax::File& file,
+              Strictness strictness = Strictness::kLenient);
 
 }  // namespace culprit
