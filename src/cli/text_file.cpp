@@ -1,6 +1,7 @@
 #include "cli/text_file.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -46,6 +47,15 @@ Expected<std::string> read_text(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return failure("read", path);
   return read_all(file, path);
+}
+
+Expected<void> write_text(const std::string& path, const std::string& text) {
+  std::FILE* file = path.empty() ? stdout : std::fopen(path.c_str(), "wb");
+  if (file == nullptr) return failure("write", path);
+  const bool is_written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  const bool is_flushed = (path.empty() ? std::fflush(file) : std::fclose(file)) == 0;
+  if (is_written && is_flushed) return {};
+  return failure("write", path.empty() ? "the standard output" : path);
 }
 
 Expected<void> replace_text(const std::string& path, const std::string& text) {
