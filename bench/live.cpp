@@ -7,8 +7,10 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
 
 #include "cli/paths.h"
 #include "process/spawn.h"
@@ -84,6 +86,17 @@ void Child::terminate() {
   kill(pid_, SIGTERM);
   waitpid(pid_, nullptr, 0);
   pid_ = 0;
+}
+
+Child::Ended Child::wait() {
+  int status = 0;
+  rusage used{};
+  wait4(std::exchange(pid_, 0), &status, 0, &used);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+          seconds(used.ru_utime) + seconds(used.ru_stime)};
 }
 
 std::string Child::output() const { return read(log_); }

@@ -46,6 +46,12 @@ class Child {
 
   int pid() const { return pid_; }
   void terminate();
+  // Waits until it ends by itself.
+  struct Ended {
+    int exit_code;       // -1: it was killed
+    double cpu_seconds;  // that it used in all
+  };
+  Ended wait();
   // What it has printed.
   std::string output() const;
 

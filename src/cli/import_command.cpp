@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <string_view>
@@ -8,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/text_file.h"
 #include "language/import/importer.h"
+#include "rule_json/from_json.h"
 
 namespace culprit::cli {
 namespace {
@@ -16,6 +16,11 @@ struct ImportOptions {
   std::string file;
   std::string output;
 };
+
+int fail(const std::string& message) {
+  fmt::print(stderr, "culprit: {}\n", message);
+  return kFailed;
+}
 
 // Each note once, with the first line that it is about; the output has it at every place.
 void print_summary(const ImportOptions& options, const Imported& imported) {
@@ -33,21 +38,36 @@ void print_summary(const ImportOptions& options, const Imported& imported) {
   }
 }
 
-int import_file(const ImportOptions& options) {
-  const auto source = Source::read(options.file);
-  const auto imported = source ? import_rules(*source) : Expected<Imported>(Error{source.error()});
-  if (!imported) {
-    fmt::print(stderr, "culprit: {}\n", imported.error());
-    return kFailed;
-  }
-  if (options.output.empty()) {
-    fmt::print("{}", imported->text);
-  } else if (const auto written = write_text(options.output, imported->text); !written) {
-    fmt::print(stderr, "culprit: {}\n", written.error());
-    return kFailed;
-  }
+int import_foreign_rules(const ImportOptions& options, const Source& source) {
+  const auto imported = import_rules(source);
+  if (!imported) return fail(imported.error());
+  if (const auto written = write_text(options.output, imported->text); !written)
+    return fail(written.error());
   print_summary(options, *imported);
   return kOk;
+}
+
+int import_json(const ImportOptions& options, const Source& source) {
+  const auto rules = rule_json::to_rules(source.name(), std::string(source.text()));
+  if (!rules) {
+    fmt::print(stderr, "{}", rules.error());
+    return fail(source.name() + " is not imported");
+  }
+  const auto written = write_text(options.output, *rules);
+  return written ? kOk : fail(written.error());
+}
+
+// No rule file of the reference begins so.
+bool is_json(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '{';
+}
+
+int import_file(const ImportOptions& options) {
+  const auto source = Source::read(options.file);
+  if (!source) return fail(source.error());
+  return is_json(source->text()) ? import_json(options, *source)
+                                 : import_foreign_rules(options, *source);
 }
 
 }  // namespace
@@ -55,7 +75,9 @@ int import_file(const ImportOptions& options) {
 void add_import(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ImportOptions>();
   CLI::App* command = app.add_subcommand(
-      "import", "Convert a rule file of the paper's reference manager (BEGIN CONSTS, BEGIN RULES)");
+      "import",
+      "Convert a rule file of the paper's reference manager (BEGIN CONSTS, BEGIN RULES), or the "
+      "JSON of culprit export");
   command->add_option("FILE", options->file, "The file to convert")->required();
   command->add_option("-o,--output", options->output, "Where to write the rules (default: stdout)");
   command->callback([options, &exit_code] { exit_code = import_file(*options); });

@@ -1,6 +1,7 @@
 #include "cli/text_file.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -46,6 +47,28 @@ bool write_all(int file, const std::string& text) {
   return true;
 }
 
+Expected<void> write_through(const std::filesystem::path& target, const std::string& text) {
+  std::ofstream file(target, std::ios::binary);
+  file << text << std::flush;
+  return file ? Expected<void>() : failure("write", target);
+}
+
+Expected<void> replace(const std::filesystem::path& target, const std::string& text, mode_t mode) {
+  // In the same folder, so that the rename stays within one file system.
+  std::string temporary = target.parent_path() / ("." + target.filename().string() + ".XXXXXX");
+  const int file = mkstemp(temporary.data());
+  if (file < 0) return failure("write beside", target);
+  // On the disk before the name points to it: a power failure leaves one of the two contents.
+  const bool written = write_all(file, text) && fchmod(file, mode) == 0 && fsync(file) == 0;
+  const int reason = errno;
+  const bool closed = close(file) == 0;
+  if (written && closed && rename(temporary.c_str(), target.c_str()) == 0) return {};
+  if (!written) errno = reason;
+  const Error what = failure("write", target);
+  unlink(temporary.c_str());
+  return what;
+}
+
 }  // namespace
 
 Expected<std::string> read_text(const std::string& path) {
@@ -56,24 +79,19 @@ Expected<std::string> read_text(const std::string& path) {
 }
 
 Expected<void> write_text(const std::string& path, const std::string& text) {
+  if (path.empty()) {
+    std::cout << text << std::flush;
+    return std::cout ? Expected<void>() : failure("write", "the standard output");
+  }
   std::error_code error;
   const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
   if (error) return Error{"cannot find '" + path + "': " + error.message()};
-  struct stat old {};
-  const mode_t mode = stat(target.c_str(), &old) == 0 ? old.st_mode & 07777 : mode_of_new_files();
-  // In the same folder, so that the rename stays within one file system.
-  std::string temporary = target.parent_path() / ("." + target.filename().string() + ".XXXXXX");
-  const int file = mkstemp(temporary.data());
-  if (file < 0) return failure("write beside", path);
-  // On the disk before the name points to it: a power failure leaves one of the two contents.
-  const bool written = write_all(file, text) && fchmod(file, mode) == 0 && fsync(file) == 0;
-  const int reason = errno;
-  const bool closed = close(file) == 0;
-  if (written && closed && rename(temporary.c_str(), target.c_str()) == 0) return {};
-  if (!written) errno = reason;
-  const Error what = failure("write", path);
-  unlink(temporary.c_str());
-  return what;
+  const auto status = std::filesystem::status(target, error);
+  const bool is_new = status.type() == std::filesystem::file_type::not_found;
+  if (!is_new && status.type() != std::filesystem::file_type::regular)
+    return write_through(target, text);  // a device or a pipe: nothing to replace
+  const auto mode = is_new ? mode_of_new_files() : static_cast<mode_t>(status.permissions());
+  return replace(target, text, mode);
 }
 
 }  // namespace culprit::cli

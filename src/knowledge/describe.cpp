@@ -107,6 +107,14 @@ std::string_view to_string(Condition condition) {
       return "dependency";
     case Condition::kOneEach:
       return "other_chosen";
+    case Condition::kDownstream:
+      return "downstream";
+    case Condition::kSuspect:
+      return "suspect";
+    case Condition::kSettling:
+      return "settling";
+    case Condition::kInTheWay:
+      return "in_the_way";
   }
   return "";
 }

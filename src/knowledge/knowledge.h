@@ -32,7 +32,9 @@ struct Knowledge {
         graph(other.graph),
         components(other.components),
         states(rules, other.states),
-        beliefs(other.beliefs) {}
+        beliefs(other.beliefs),
+        couplings(other.couplings),
+        now(other.now) {}
   Knowledge(const Knowledge&) = delete;
 
   const RuleSet& rules;

@@ -1,5 +1,7 @@
 #include "language/facts.h"
 
+#include <algorithm>
+
 namespace culprit {
 namespace {
 
@@ -241,8 +243,11 @@ bool is_small_enough(const Typed& expression) {
 bool is_never(bool truth, const Typed& condition, const RuleSet& rules) {
   if (!is_small_enough(condition)) return false;
   Facts facts(rules);
+  if (!facts.assume(condition, truth)) return true;
   // What the second part of a condition says may rule out a case of the first: look twice.
-  return !facts.assume(condition, truth) || !facts.assume(condition, truth);
+  const bool has_parts = std::any_of(condition.children.begin(), condition.children.end(),
+                                     [](const Typed& c) { return c.type == Type::kBool; });
+  return has_parts && !facts.assume(condition, truth);
 }
 
 }  // namespace culprit

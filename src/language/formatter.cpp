@@ -55,12 +55,6 @@ std::uint32_t indentation_of(std::string_view keyword) {
   return keyword == "ADAPTATION" ? 6 : 0;
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 // ---- One statement: which tokens touch
 
 class Spacing {

@@ -44,6 +44,12 @@ Token bad(Span span, std::string message, std::optional<Edit> fix = {}) {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
 bool Scanner::is_comment(std::uint32_t at) const {
   return text_[at] == '#' || (text_[at] == '/' && at + 1 < end_ && text_[at + 1] == '/');
 }

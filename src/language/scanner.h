@@ -92,5 +92,7 @@ class Scanner {
 
 // What stands between the tokens of a line.
 bool is_blank(char c);
+// `text` without what it begins and ends with of that.
+std::string_view trimmed(std::string_view text);
 
 }  // namespace culprit

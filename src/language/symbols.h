@@ -27,7 +27,7 @@ class Symbols {
  public:
   // So many names are compared with one another to find what was meant. A file with more has
   // thousands of names that it does not declare: those are no slips.
-  static constexpr std::size_t kMaxComparisons = 1'000'000;
+  static constexpr std::size_t kMaxComparisons = 200'000;
 
   Symbols(RuleSet& rules, Strictness strictness, std::vector<Diagnostic>& diagnostics)
       : rules_(rules), strictness_(strictness), diagnostics_(diagnostics) {}

@@ -1,0 +1,63 @@
+#include "rule_json/forms.h"
+
+namespace culprit::rule_json {
+
+namespace {
+
+std::vector<Form> table() {
+  using enum Part;
+  const Clause name{"", "name", kWord};
+  const Clause component{"", "component", kName};
+  const Clause type{"", "type", kType};
+  const Clause parameter{"", "parameter", kName};
+  const Clause impact{"", "impact", kNumber};
+  const std::vector<Clause> bounds = {{"STALE", "stale", kDuration}, {"RANGE", "range", kRange}};
+  return {
+      {"ROBOT", {name}, {}, {}},
+      {"CYCLE", {{"", "length", kDuration}}, {}, {}},
+      {"CONST", {name, {"=", "value", kExpression}}, {}, {}},
+      {"COMPONENT", {name}, {{"NODE", "node", kName}, {"LAUNCH", "launch", kText}}, {}},
+      {"DEPENDENCY", {{"", "consumer", kName}, {"ON", "producers", kNames}}, {}, {}},
+      {"IGNORE", {{"TOPIC", "topics", kNames}}, {}, {}},
+      {"SIGNAL", {name, {"DIAGNOSTIC", "diagnostic", kName}, {"KEY", "key", kName}}, bounds, {}},
+      {"SIGNAL", {name, {"TOPIC", "topic", kName}, {"FIELD", "field", kName}}, bounds, {}},
+      {"SIGNAL", {name, {"PARAMETER", "component", kName}, parameter}, bounds, {}},
+      {"RULE", {name}, {}, {}},
+      {"POLICIES",
+       {{"", "criticality", kWord}},
+       {{"FOR", "for", kDuration},
+        {"HOLD", "hold", kHold},
+        {"COOLDOWN", "cooldown", kDuration},
+        {"ATTEMPTS", "attempts", kNumber},
+        {"ON_CHANGE", "on_change", kFlag}},
+       {}},
+      {"TRIGGER", {{"", "expression", kExpression}}, {}, {}},
+      {"STRATEGY",
+       {name, {"", "probability", kNumber}, {"", "confidence", kNumber}},
+       {{"WHEN", "when", kExpression}},
+       {}},
+      {"ADAPTATION",
+       {component, type, parameter, {"", "value", kExpression}, impact},
+       {},
+       {"set_parameter", "increase_parameter", "decrease_parameter"}},
+      {"ADAPTATION",
+       {component, type, parameter, {"", "topic", kName}, impact},
+       {},
+       {"change_communication"}},
+      {"ADAPTATION", {component, type, {"", "mode", kName}, impact}, {}, {"change_mode"}},
+      {"ADAPTATION", {component, type, {"", "service", kName}, impact}, {}, {"call"}},
+      {"ADAPTATION",
+       {component, type, impact},
+       {},
+       {"activate", "deactivate", "restart", "redeploy", "start", "stop"}},
+  };
+}
+
+}  // namespace
+
+std::span<const Form> forms() {
+  static const std::vector<Form> kForms = table();
+  return kForms;
+}
+
+}  // namespace culprit::rule_json

@@ -1,0 +1,46 @@
+// The statements of the rule language as JSON sees them: which words a line is made of, and what
+// members its parts become (docs/rule-json.md).
+//
+// One table for both directions, so that what is written can be read.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace culprit::rule_json {
+
+// A part of a line, and its JSON.
+enum class Part : std::uint8_t {
+  kWord,        // an identifier: a string
+  kType,        // one of the form's types: a string
+  kName,        // a name of any kind: a string
+  kNames,       // names up to the end of the line: an array of strings
+  kText,        // a quoted text: a string
+  kNumber,      // not negative: a number
+  kDuration,    // a string
+  kExpression,  // a string
+  kHold,        // n/k: an array of two numbers
+  kRange,       // low..high: an array of two numbers
+  kFlag         // nothing but the word: true
+};
+
+struct Clause {
+  std::string_view word;  // in front; empty: none
+  std::string_view member;
+  Part part;
+};
+
+// One way to write a statement.
+struct Form {
+  std::string_view keyword;
+  std::vector<Clause> fixed;  // all of them, in this order
+  std::vector<Clause> free;   // behind those, each or not, in any order
+  std::vector<std::string_view> types;
+};
+
+// Statements of one keyword follow each other.
+std::span<const Form> forms();
+
+}  // namespace culprit::rule_json

@@ -1,0 +1,263 @@
+#include "rule_json/line_writer.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "language/diagnostic.h"
+#include "language/expression_parser.h"
+#include "language/syntax.h"
+
+namespace culprit::rule_json {
+namespace {
+
+const char* describe(Part part) {
+  switch (part) {
+    case Part::kWord:
+    case Part::kType:
+      return "a text of letters, digits and '_' that begins with no digit";
+    case Part::kName:
+      return "a name: a text that is not empty";
+    case Part::kNames:
+      return "names: an array of texts that are not empty";
+    case Part::kText:
+      return "a text";
+    case Part::kNumber:
+      return "a number that is not negative";
+    case Part::kDuration:
+      return "a duration: a text such as \"500ms\" or \"2s\"";
+    case Part::kExpression:
+      return "a text with one expression";
+    case Part::kHold:
+      return "two whole numbers: [3, 5] for 3 of the last 5";
+    case Part::kRange:
+      return "two numbers: [low, high]";
+    case Part::kFlag:
+      return "true or false";
+  }
+  return "";
+}
+
+using Words = std::optional<std::string>;  // of a line; nothing: the value is no such part
+
+Words number_words(const Json& value) {
+  std::string text = value.is_number() ? value.dump() : "";
+  if (value.is_string()) text = value.get<std::string>();
+  return is_number(text) ? Words(text) : std::nullopt;
+}
+
+Words signed_words(const Json& value) {
+  std::string text = value.is_number() ? value.dump() : "";
+  if (value.is_string()) text = value.get<std::string>();
+  return is_number(text.starts_with('-') ? text.substr(1) : text) ? Words(text) : std::nullopt;
+}
+
+Words pair_words(const Json& value, Words (*part)(const Json&), const char* between) {
+  if (!value.is_array() || value.size() != 2) return std::nullopt;
+  const Words first = part(value[0]);
+  const Words second = part(value[1]);
+  return first && second ? Words(*first + between + *second) : std::nullopt;
+}
+
+Words name_words(const Json& value) {
+  if (!value.is_string() || value == "") return std::nullopt;
+  const auto& text = value.get_ref<const std::string&>();
+  if (!text.starts_with('"')) return spelled(text);
+  return is_name(text) ? Words(text) : std::nullopt;
+}
+
+Words names_words(const Json& value) {
+  if (!value.is_array() || value.empty()) return std::nullopt;
+  std::string all;
+  for (const Json& name : value) {
+    const Words words = name_words(name);
+    if (!words) return std::nullopt;
+    all += (all.empty() ? "" : " ") + *words;
+  }
+  return all;
+}
+
+Words text_words(const Json& value) {
+  if (!value.is_string()) return std::nullopt;
+  const auto& text = value.get_ref<const std::string&>();
+  if (!text.starts_with('"')) return in_quotes(text);
+  return is_text(text) ? Words(text) : std::nullopt;
+}
+
+Words string_words(const Json& value, bool (*is_good)(std::string_view)) {
+  if (!value.is_string()) return std::nullopt;
+  const auto& text = value.get_ref<const std::string&>();
+  return is_good(text) ? Words(text) : std::nullopt;
+}
+
+Words words(Part part, const Json& value) {
+  switch (part) {
+    case Part::kWord:
+    case Part::kType:
+      return string_words(value, is_word);
+    case Part::kName:
+      return name_words(value);
+    case Part::kNames:
+      return names_words(value);
+    case Part::kText:
+      return text_words(value);
+    case Part::kNumber:
+      return number_words(value);
+    case Part::kDuration:
+      return string_words(value, is_duration);
+    case Part::kExpression:
+      return value.is_string() ? Words(value.get<std::string>()) : std::nullopt;
+    case Part::kHold:
+      return pair_words(value, number_words, "/");
+    case Part::kRange:
+      return pair_words(value, signed_words, " .. ");  // apart, for "0." and ".5"
+    case Part::kFlag:
+      return value == true ? Words("") : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+// Why `text` is not one expression, whole, and nothing else; nothing if it is.
+std::optional<Diagnostic> mistake_in(const std::string& text) {
+  if (text.find('\n') != std::string::npos)
+    return Diagnostic{Code::kSyntax, Severity::kError, {}, "an expression is one line", ""};
+  std::vector<Diagnostic> diagnostics;
+  const auto end = static_cast<std::uint32_t>(text.size());
+  Scanner scanner(text, {0, end});
+  const auto expression = parse_expression(scanner, diagnostics);
+  if (!expression) return diagnostics.front();
+  if (expression->span.end == end) return std::nullopt;
+  return Diagnostic{Code::kExtraText,
+                    Severity::kError,
+                    {},
+                    "the expression ends before '" + text.substr(expression->span.end) + "'",
+                    "give nothing but the expression; comments have a member of their own"};
+}
+
+}  // namespace
+
+std::string pointer(const std::string& at, std::string_view name) {
+  std::string out = at + "/";
+  for (const char c : name) {
+    if (c == '~') {
+      out += "~0";
+    } else if (c == '/') {
+      out += "~1";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string_view>& known) {
+  const std::string near = closest(word, known);
+  if (!near.empty()) return "did you mean '" + near + "'?";
+  std::string all;
+  for (const std::string_view each : known) all += (all.empty() ? "" : ", ") + std::string(each);
+  return "known: " + all;
+}
+
+bool is_comment(const Json& value) {
+  if (!value.is_string()) return false;
+  const auto& text = value.get_ref<const std::string&>();
+  return (text.starts_with('#') || text.starts_with("//")) && text.find('\n') == std::string::npos;
+}
+
+std::string LineWriter::write() {
+  const Form* form = choose_form();
+  if (form == nullptr) {
+    complain_of_kind();
+    return "";
+  }
+  refuse_other_members(*form);
+  line_ = form->keyword;
+  for (const Clause& clause : form->fixed) {
+    if (statement_.contains(clause.member)) {
+      add(clause);
+    } else {
+      complain_(std::string(clause.member), "this member is missing",
+                std::string("it is ") + describe(clause.part));
+    }
+  }
+  for (const auto& [member, value] : statement_.items()) {
+    const bool is_off = value == false;
+    for (const Clause& clause : form->free) {
+      if (clause.member == member && !(is_off && clause.part == Part::kFlag)) add(clause);
+    }
+  }
+  if (!statement_.contains("comment")) return line_;
+  const Json& comment = statement_["comment"];
+  if (is_comment(comment)) return line_ + "  " + comment.get<std::string>();
+  complain_("comment", "this is no comment", "it is a text that begins with # or //");
+  return line_;
+}
+
+// Of those of the statement's keyword, the one of which most is there.
+const Form* LineWriter::choose_form() const {
+  const auto keyword = statement_.find("statement");
+  const Form* best = nullptr;
+  std::size_t best_count = 0;
+  for (const Form& form : forms()) {
+    if (keyword == statement_.end() || *keyword != form.keyword || !has_type_of(form)) continue;
+    const auto count = static_cast<std::size_t>(
+        std::count_if(form.fixed.begin(), form.fixed.end(),
+                      [&](const Clause& clause) { return statement_.contains(clause.member); }));
+    if (best != nullptr && count <= best_count) continue;
+    best = &form;
+    best_count = count;
+  }
+  return best;
+}
+
+bool LineWriter::has_type_of(const Form& form) const {
+  if (form.types.empty()) return true;
+  const auto type = statement_.find("type");
+  return type != statement_.end() &&
+         std::any_of(form.types.begin(), form.types.end(),
+                     [&](std::string_view known) { return *type == known; });
+}
+
+void LineWriter::complain_of_kind() const {
+  const auto text_of = [&](const char* member) {
+    const auto value = statement_.find(member);
+    return value != statement_.end() && value->is_string() ? value->get<std::string>() : "";
+  };
+  const std::string keyword = text_of("statement");
+  std::vector<std::string_view> keywords;
+  for (const Form& form : forms()) {
+    if (keywords.empty() || keywords.back() != form.keyword) keywords.push_back(form.keyword);
+  }
+  if (std::find(keywords.begin(), keywords.end(), keyword) == keywords.end()) {
+    complain_("statement", "there is no statement '" + keyword + "'", nearest(keyword, keywords));
+    return;
+  }
+  const std::string type = text_of("type");
+  complain_("type", "there is no adaptation '" + type + "'",
+            nearest(type, syntax::adaptation_keywords()));
+}
+
+void LineWriter::refuse_other_members(const Form& form) const {
+  std::vector<std::string_view> known = {"statement", "above", "comment"};
+  for (const Clause& clause : form.fixed) known.push_back(clause.member);
+  for (const Clause& clause : form.free) known.push_back(clause.member);
+  for (const auto& [member, value] : statement_.items()) {
+    if (std::find(known.begin(), known.end(), member) == known.end())
+      complain_(member, "this statement has no such member", nearest(member, known));
+  }
+}
+
+void LineWriter::add(const Clause& clause) {
+  const std::string member(clause.member);
+  const Json& value = statement_[member];
+  const Words written = words(clause.part, value);
+  if (!written) return complain_(member, std::string("this must be ") + describe(clause.part), "");
+  if (clause.part == Part::kExpression) {
+    if (const auto mistake = mistake_in(*written))
+      return complain_(member, mistake->cause, mistake->remedy);
+  }
+  for (const std::string_view piece : {clause.word, std::string_view(*written)}) {
+    if (!piece.empty()) line_.append(" ").append(piece);
+  }
+}
+
+}  // namespace culprit::rule_json
