@@ -1,0 +1,57 @@
+// The SUNSET study in virtual time: how long the paper's ablation takes on one core, and whether
+// more runs need more memory.
+#include <chrono>
+#include <fstream>
+#include <string>
+
+#include <benchmark/benchmark.h>
+
+#include "claims.h"
+#include "study/campaign_result.h"
+#include "study/sunset/study.h"
+
+namespace culprit::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Of this process, in MiB.
+double resident() {
+  std::ifstream in("/proc/self/statm");
+  double pages = 0;
+  in >> pages >> pages;
+  return pages * 4096 / (1 << 20);
+}
+
+study::Campaign ablation(std::uint32_t runs) {
+  study::Campaign campaign;
+  for (int row = 0; row < 8; ++row)
+    campaign.rows.push_back(
+        {{(row & 4) != 0, (row & 2) != 0, (row & 1) != 0}, "paper", "paper", {}});
+  campaign.runs = runs;
+  campaign.seed = 1;
+  return campaign;
+}
+
+void play(const study::Campaign& campaign) {
+  const auto study = study::SunsetStudy::make(campaign.rows, campaign.seed);
+  study::CampaignFold fold(campaign);
+  for (std::uint64_t i = 0; i < campaign.size(); ++i) fold.add(study->run(campaign[i]));
+  benchmark::DoNotOptimize(fold.result());
+}
+
+void sunset_study(benchmark::State& state) {
+  for (auto _ : state) {
+    play(ablation(18));
+    const double after_144_runs = resident();
+    const auto begin = Clock::now();
+    play(ablation(162));
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    claim("the paper's ablation, 8 x 162 runs of SUNSET, on one core", seconds, 5, "s");
+    claim("memory that nine times as many runs need more", resident() - after_144_runs, 1, "MiB");
+  }
+}
+BENCHMARK(sunset_study)->Iterations(1)->Unit(benchmark::kSecond);
+
+}  // namespace
+}  // namespace culprit::bench
