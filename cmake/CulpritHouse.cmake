@@ -65,6 +65,20 @@ function(culprit_library folder)
   endif()
 endfunction()
 
+# culprit_embed(<folder> <header> <file>...): makes <header> of <header>.in, with the text of rules/some-name.rules in
+# place of @SOME_NAME_RULES@, so that a program needs no file beside it.
+function(culprit_embed folder header)
+  foreach(file ${ARGN})
+    get_filename_component(name ${file} NAME)
+    string(MAKE_C_IDENTIFIER ${name} name)
+    string(TOUPPER ${name} name)
+    file(READ ${CMAKE_SOURCE_DIR}/${file} ${name})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${file})
+  endforeach()
+  configure_file(${header}.in ${CMAKE_BINARY_DIR}/include/${folder}-generated/${header} @ONLY)
+  target_include_directories(${folder} PRIVATE ${CMAKE_BINARY_DIR}/include/${folder}-generated)
+endfunction()
+
 # culprit_program(<name> <source> USES <folder>...): lands in build/<preset>/bin.
 function(culprit_program name source)
   cmake_parse_arguments(ARG "" "" "USES" ${ARGN})

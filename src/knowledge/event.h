@@ -29,6 +29,7 @@ struct Candidate {
   ComponentId component;              // that the condition is about
   std::optional<RuleId> because;  // kDependency: the failure that `component` may be the cause of
   std::string remark;             // kInvalid: why
+  bool operator==(const Candidate&) const = default;
 };
 
 // A failure was detected.

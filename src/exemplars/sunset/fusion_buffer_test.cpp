@@ -92,8 +92,8 @@ TEST(FusionBuffer, DoesNotPairWhatIsTooFarApart) {
 
 // Against the definition, by brute force, whatever arrives in whatever order.
 RC_GTEST_PROP(ClosestPair, IsTheClosestAllowedOne, (std::vector<int> a, std::vector<int> b)) {
-  Pictures first;
-  Pictures second;
+  Pictures<ros2::msg::Image> first;
+  Pictures<ros2::msg::Image> second;
   for (const int ms : a) first.push_back(stamped((ms % 100 + 100) * 1ms));
   for (const int ms : b) second.push_back(stamped((ms % 100 + 100) * 1ms));
   const Duration forbidden = first.empty() ? 0ms : stamp_of(first.front());

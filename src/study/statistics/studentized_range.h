@@ -9,7 +9,7 @@
 // The difference of powers is taken apart as (a - b)(a^(n-1) + ... + b^(n-1)), where a - b is
 // Phi(z - w): so a tail down to 1e-15 keeps its digits, where 1 - P(Q <= q) would be left with
 // noise. Source: D. E. Lund, J. R. Lund: "Algorithm AS 190", Applied Statistics 32 (1983), for the
-// two integrals; the quadrature is Boost's adaptive Gauss-Kronrod.
+// two integrals; the outer one is done by Boost's adaptive Gauss-Kronrod quadrature.
 #pragma once
 
 namespace culprit::study {

@@ -11,9 +11,8 @@ namespace {
 constexpr int kTolerableRedeployments = 2;
 
 bool redeploys(const Strategy& strategy) {
-  return std::any_of(
-      strategy.adaptations.begin(), strategy.adaptations.end(),
-      [](const Adaptation& a) { return a.type == AdaptationType::kRedeploy; });
+  return std::any_of(strategy.adaptations.begin(), strategy.adaptations.end(),
+                     [](const Adaptation& a) { return a.type == AdaptationType::kRedeploy; });
 }
 
 bool restarts_or_redeploys(const Strategy& strategy) {
@@ -31,8 +30,10 @@ bool needs_redeployment(const sunset::Fault& fault) { return fault.resolved_by.s
 std::int32_t unresolved(const SunsetRun& run) {
   std::set<RuleId> open;
   for (const Event& event : run.events) {
-    if (const auto* detected = std::get_if<FailureDetected>(&event.what)) open.insert(detected->rule);
-    if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) open.erase(resolved->rule);
+    if (const auto* detected = std::get_if<FailureDetected>(&event.what))
+      open.insert(detected->rule);
+    if (const auto* resolved = std::get_if<FailureResolved>(&event.what))
+      open.erase(resolved->rule);
   }
   return static_cast<std::int32_t>(open.size());
 }
@@ -45,7 +46,8 @@ RootCauses root_causes(const SunsetRun& run, const RuleSet& rules) {
   for (const Event& event : run.events) {
     const auto* chosen = std::get_if<StrategyChosen>(&event.what);
     if (chosen == nullptr || !restarts_or_redeploys(rules[chosen->strategy])) continue;
-    for (const ComponentId component : rules[chosen->strategy].components) blamed.push_back(component);
+    for (const ComponentId component : rules[chosen->strategy].components)
+      blamed.push_back(component);
   }
   const std::string culprit = sunset::node_of(outage(run.scenario).member).full();
   causes.asked = 1;
@@ -60,10 +62,11 @@ RootCauses root_causes(const SunsetRun& run, const RuleSet& rules) {
 HonestMetrics honest_metrics(const SunsetRun& run, const RuleSet& rules) {
   HonestMetrics honest;
   honest.downtime_s = seconds(run.honest_downtime);
-  honest.strategies = static_cast<std::int32_t>(run.was_right_place.size());
+  honest.strategies = static_cast<std::int32_t>(run.choices.size());
   honest.faults = static_cast<std::int32_t>(run.scenario.faults.size());
   honest.wrong_component = static_cast<std::int32_t>(
-      std::count(run.was_right_place.begin(), run.was_right_place.end(), false));
+      std::count_if(run.choices.begin(), run.choices.end(),
+                    [](const SunsetRun::Choice& choice) { return !choice.is_right_place; }));
   honest.unresolved = unresolved(run);
   honest.recovery_s = seconds(run.recovery);
   honest.is_recovery_censored = !run.is_recovered;
@@ -91,8 +94,7 @@ RunMetrics measure(const SunsetRun& run, const RuleSet& rules, bool has_d_alone)
   metrics.downtime_s = seconds(run.downtime);
   metrics.unnecessary_redeployments =
       redeployments - (needs_redeployment(outage(run.scenario)) ? 1 : 0);
-  metrics.is_left_out =
-      has_d_alone && metrics.unnecessary_redeployments > kTolerableRedeployments;
+  metrics.is_left_out = has_d_alone && metrics.unnecessary_redeployments > kTolerableRedeployments;
   metrics.honest = honest_metrics(run, rules);
   return metrics;
 }

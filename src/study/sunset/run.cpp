@@ -21,14 +21,24 @@ bool can_be_repaired_at(const Fault& fault, std::string_view node) {
           node == sunset::node_of(Member::kSensorFusion).full());
 }
 
-bool is_right_place(const Strategy& strategy, const RuleSet& rules,
-                    sunset::model::SunsetModel& model, const sunset::Scenario& scenario) {
-  return std::all_of(strategy.components.begin(), strategy.components.end(), [&](ComponentId c) {
-    return std::any_of(
-        scenario.faults.begin(), scenario.faults.end(), [&](const Fault* fault) {
-          return model.has(*fault) && can_be_repaired_at(*fault, rules[c].node);
-        });
-  });
+SunsetRun::Choice judge(StrategyId id, const RuleSet& rules, sunset::model::SunsetModel& model,
+                        const sunset::Scenario& scenario) {
+  const Strategy& strategy = rules[id];
+  std::vector<const Fault*> present;
+  for (const Fault* fault : scenario.faults) {
+    if (model.has(*fault)) present.push_back(fault);
+  }
+  const auto is_faulty = [&](ComponentId component) {
+    return std::any_of(present.begin(), present.end(), [&](const Fault* fault) {
+      return can_be_repaired_at(*fault, rules[component].node);
+    });
+  };
+  const auto is_ended = [&](const Fault* fault) {
+    return std::find(fault->resolved_by.begin(), fault->resolved_by.end(), strategy.name) !=
+           fault->resolved_by.end();
+  };
+  return {id, std::all_of(strategy.components.begin(), strategy.components.end(), is_faulty),
+          std::any_of(present.begin(), present.end(), is_ended)};
 }
 
 }  // namespace
@@ -38,8 +48,9 @@ SunsetRun play(sunset::model::SunsetModel& model, const RuleSet& rules, Managing
   SunsetRun run;
   run.scenario = scenario;
   run.begin = Time{model.profile().manager_start};
-  run.injected = model.inject(scenario);
-  run.end = later(run.injected, model.profile().end_of_run);
+  run.injections = model.inject(scenario);
+  const Time injected = run.injections.front().at;
+  run.end = later(injected, model.profile().end_of_run);
   model.world().run(run.begin);
 
   simulation::SimulatedRobot robot(rules, model.world());
@@ -48,8 +59,7 @@ SunsetRun play(sunset::model::SunsetModel& model, const RuleSet& rules, Managing
     for (const Event& event : events) {
       run.events.push_back(event);
       if (const auto* chosen = std::get_if<StrategyChosen>(&event.what))
-        run.was_right_place.push_back(
-            is_right_place(rules[chosen->strategy], rules, model, scenario));
+        run.choices.push_back(judge(chosen->strategy, rules, model, scenario));
     }
   };
   const std::atomic<bool> never = false;
@@ -59,8 +69,8 @@ SunsetRun play(sunset::model::SunsetModel& model, const RuleSet& rules, Managing
   run.downtime = evaluator.downtime().between_outputs();
   run.honest_downtime = evaluator.downtime().total(run.end);
   run.is_recovered = evaluator.is_well();
-  run.recovery = run.is_recovered ? evaluator.last_unwell().value_or(run.injected) - run.injected
-                                  : run.end - run.injected;
+  run.recovery =
+      run.is_recovered ? evaluator.last_unwell().value_or(injected) - injected : run.end - injected;
   return run;
 }
 

@@ -12,18 +12,22 @@ namespace culprit::study {
 // What happened, as far as metrics ask for it.
 struct SunsetRun {
   sunset::Scenario scenario;
-  Time begin;     // of watching
-  Time injected;  // the first fault
+  Time begin;                                                     // of managing
+  std::vector<sunset::model::SunsetModel::Injection> injections;  // by time
   Time end;
   std::vector<Event> events;
 
-  // Of each StrategyChosen in `events`, in their order: whether it adapts only components where a
-  // fault that was there then can be repaired.
-  std::vector<bool> was_right_place;
+  // How good a choice was, known from the faults that were there when it was made.
+  struct Choice {
+    StrategyId strategy;
+    bool is_right_place = false;  // it adapts only components where a fault can be repaired
+    bool is_remedy = false;       // it ends a fault
+  };
+  std::vector<Choice> choices;  // of each StrategyChosen in `events`, in their order
 
   Duration downtime{};         // as the exemplar counts it (sunset/downtime.h)
   Duration honest_downtime{};  // with what is missing at the begin and at the end
-  Duration recovery{};         // from `injected` until the robot was well for good
+  Duration recovery{};         // from the first fault until the robot was well for good
   bool is_recovered = false;   // otherwise `recovery` lasts until the end
 };
 

@@ -1,5 +1,7 @@
 #include "exemplars/sunset/model/sunset_model.h"
 
+#include <algorithm>
+
 #include "simulation/fault.h"
 
 namespace culprit::sunset::model {
@@ -42,18 +44,21 @@ simulation::Node& SunsetModel::node(Member member) {
   return *world_.node(sunset::node_of(member).full());
 }
 
-Time SunsetModel::inject(const Scenario& scenario) {
+std::vector<SunsetModel::Injection> SunsetModel::inject(const Scenario& scenario) {
   const Time begin{profile_.injection.draw(random_)};
   const simulation::Span race{{}, profile_.injection_jitter};
+  std::vector<Injection> injections;
   for (const Fault* fault : scenario.faults) {
-    const simulation::Fault what{later(begin, race.draw(random_)),
-                                 sunset::node_of(fault->member).full(),
-                                 simulation::BadParameter{std::string(fault->name), fault->value}};
-    // The exemplar's faults are parameters of its nodes.
-    (void)simulation::inject(world_, what);
+    injections.push_back({later(begin, race.draw(random_)), fault});
+    // The exemplar's faults are parameters that its nodes have.
+    (void)simulation::inject(world_,
+                             {injections.back().at, sunset::node_of(fault->member).full(),
+                              simulation::BadParameter{std::string(fault->name), fault->value}});
   }
-  world_.at(begin, [this] { evaluator_.restart(); });
-  return begin;
+  std::sort(injections.begin(), injections.end(),
+            [](const Injection& a, const Injection& b) { return a.at < b.at; });
+  world_.at(injections.front().at, [this] { evaluator_.restart(); });
+  return injections;
 }
 
 bool SunsetModel::has(const Fault& fault) {

@@ -27,9 +27,13 @@ class SunsetModel {
   Evaluator& evaluator() { return evaluator_; }
   simulation::Node& node(Member member);
 
-  // Breaks it, when the profile's evaluation does, and gives when that begins. The three faults
-  // take effect in any order.
-  Time inject(const Scenario& scenario);
+  struct Injection {
+    Time at;
+    const Fault* fault = nullptr;
+  };
+  // Breaks it when the profile's evaluation does: the three faults in any order. Gives them by
+  // time.
+  std::vector<Injection> inject(const Scenario& scenario);
 
   // Whether the fault is in place now.
   bool has(const Fault& fault);

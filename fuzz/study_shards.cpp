@@ -1,0 +1,60 @@
+// Shard files of studies: whatever the bytes are, they are read to their end or refused. What is
+// read can be written and is the same then. To reach what stands behind a checksum, lines are also
+// read as if they had been sealed properly.
+#include <cstddef>
+#include <cstdint>
+#include <sstream>
+#include <string>
+
+#include "study/shards/merge.h"
+#include "study/shards/sealed_line.h"
+#include "study/shards/shard_file.h"
+
+namespace {
+
+using namespace culprit::study;
+
+// Gives each line that is a JSON object a seal that fits.
+std::string sealed(const std::string& text) {
+  std::istringstream in(text);
+  std::string out;
+  for (std::string line; std::getline(in, line);) {
+    const auto json = nlohmann::ordered_json::parse(line, nullptr, false);
+    out += json.is_object() && !json.empty() ? sealed_line(json) : line + "\n";
+  }
+  return out;
+}
+
+void read(const std::string& text) {
+  std::istringstream in(text);
+  auto reader = ShardReader::open(in, "fuzz");
+  if (!reader) return;
+  std::string again = header_line(reader->header());
+  std::uint64_t runs = 0;
+  while (true) {
+    const auto run = reader->next();
+    if (!run || !run->has_value()) break;
+    const ShardHeader& header = reader->header();
+    again += run_line(header.campaign[campaign_index(header.shard, runs++)], **run);
+  }
+  if (runs != reader->runs()) __builtin_trap();
+  std::istringstream second(again);
+  auto repeated = ShardReader::open(second, "again");
+  if (!repeated) __builtin_trap();
+  for (std::uint64_t i = 0; i < runs; ++i) {
+    const auto run = repeated->next();
+    if (!run || !run->has_value()) __builtin_trap();
+  }
+  std::istringstream third(text);
+  const ShardSource source{"fuzz", &third};
+  (void)merge(std::span(&source, 1));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  read(text);
+  read(sealed(text));
+  return 0;
+}

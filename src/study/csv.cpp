@@ -1,0 +1,136 @@
+#include "study/csv.h"
+
+#include <optional>
+
+#include <fmt/core.h>
+
+namespace culprit::study {
+namespace {
+
+std::string quoted(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string field(double value) { return fmt::format("{}", value); }
+std::string field(bool value) { return value ? "true" : "false"; }
+
+class Line {
+ public:
+  explicit Line(std::string& out) : out_(out) {}
+  ~Line() { out_ += '\n'; }
+  Line(const Line&) = delete;
+  Line& operator=(const Line&) = delete;
+
+  Line& text(std::string_view value) {
+    if (!is_first_) out_ += ',';
+    is_first_ = false;
+    out_ += quoted(value);
+    return *this;
+  }
+  Line& number(double value) { return text(field(value)); }
+  Line& truth(bool value) { return text(field(value)); }
+  Line& number_if(bool exists, double value) { return exists ? number(value) : text(""); }
+
+ private:
+  std::string& out_;
+  bool is_first_ = true;
+};
+
+std::string compact(const PaperSwitches& switches) {
+  std::string text;
+  for (const char c : label(switches))
+    if (c != ' ') text += c;
+  return text;
+}
+
+std::string_view name(published::Verdict verdict) {
+  switch (verdict) {
+    case published::Verdict::kNotSignificant:
+      return "none";
+    case published::Verdict::kBetter:
+      return "better";
+    case published::Verdict::kWorse:
+      return "worse";
+  }
+  return "none";
+}
+
+void metric_line(std::string& out, const Row& row, Metric metric,
+                 const MeanComparison* comparison) {
+  const Configuration& configuration = row.configuration;
+  const Summary& summary = row[metric];
+  const bool exists = summary.count() > 0;
+  const std::optional<Interval> interval = summary.interval();
+  Line line(out);
+  line.truth(configuration.switches.dependencies)
+      .truth(configuration.switches.criticality)
+      .truth(configuration.switches.impact)
+      .text(configuration.planner)
+      .text(configuration.profile)
+      .text(configuration.probabilities == Probabilities::kIdeal ? "ideal" : "misspecified")
+      .text(std::to_string(row.runs))
+      .text(traits(metric).key)
+      .text(std::to_string(summary.count()))
+      .number_if(exists, summary.mean())
+      .number_if(exists, summary.sd())
+      .number_if(interval.has_value(), interval ? interval->low : 0)
+      .number_if(interval.has_value(), interval ? interval->high : 0)
+      .text(std::to_string(summary.censored()));
+  if (comparison == nullptr) {
+    line.text("").text("").text("");
+  } else {
+    line.number(comparison->theirs.mean).number(comparison->theirs.sd).truth(comparison->is_within);
+  }
+}
+
+}  // namespace
+
+std::string metrics_csv(const CampaignResult& result) {
+  std::string out =
+      "dependencies,criticality,impact,planner,profile,probabilities,runs,metric,count,mean,sd,"
+      "ci_low,ci_high,censored,published_mean,published_sd,is_within\n";
+  for (const Row& row : result.rows) {
+    const std::vector<MeanComparison> comparisons = compare_means(row);
+    for (std::size_t i = 0; i < kMetricCount; ++i)
+      metric_line(out, row, static_cast<Metric>(i),
+                  i < comparisons.size() ? &comparisons[i] : nullptr);
+  }
+  return out;
+}
+
+std::string effects_csv(const CampaignResult& result) {
+  std::string out =
+      "planner,profile,metric,from,to,difference,ci_low,ci_high,p,percent,verdict,"
+      "published_percent,published_verdict,same_sign\n";
+  for (const Ablation& ablation : ablations(result)) {
+    for (const Effect& effect : ablation.effects) {
+      for (std::size_t i = 0; i < kPublishedMetrics.size(); ++i) {
+        const Change& change = effect.changes[i];
+        Line(out)
+            .text(ablation.planner)
+            .text(ablation.profile)
+            .text(traits(kPublishedMetrics[i]).key)
+            .text(compact(effect.published->without))
+            .text(compact(effect.published->with))
+            .number(change.difference.estimate)
+            .number(change.difference.low)
+            .number(change.difference.high)
+            .number(change.difference.p)
+            .number_if(change.percent.has_value(), change.percent.value_or(0))
+            .text(name(change.verdict))
+            .number(change.theirs.percent)
+            .text(name(change.theirs.verdict))
+            .truth(change.has_same_sign());
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace culprit::study

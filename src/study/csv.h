@@ -1,0 +1,22 @@
+// Findings as CSV (RFC 4180, but with plain line ends), one fact a line, full precision, for R or
+// pandas. A number that does not exist is an empty field.
+#pragma once
+
+#include <string>
+
+#include "study/comparison.h"
+#include "study/findings.h"
+
+namespace culprit::study {
+
+// A line for each metric of each row:
+// dependencies,criticality,impact,planner,profile,probabilities,runs,metric,count,mean,sd,ci_low,ci_high,
+// censored,published_mean,published_sd,is_within
+std::string metrics_csv(const CampaignResult& result);
+
+// A line for each metric of each effect:
+// planner,profile,metric,from,to,difference,ci_low,ci_high,p,percent,verdict,published_percent,
+// published_verdict,same_sign       (from, to: "D-S"; verdict: better, worse, none)
+std::string effects_csv(const CampaignResult& result);
+
+}  // namespace culprit::study

@@ -1,0 +1,28 @@
+// Findings as JSON, for programs.
+//
+//     {"rows": [{"dependencies": true, "criticality": true, "impact": true, "planner": "paper",
+//                "profile": "paper", "runs": 162,
+//                "ratio": {"mean": 1.01, "sd": 0.33}, "reaction_s": {...}, "downtime_s": {...},
+//                "unnecessary_redeployments": {...},
+//                "honest": {"downtime_s": {...}, "strategies_per_fault": {...},
+//                           "wrong_component": {...}, "unresolved": {...},
+//                           "recovery_s": {"mean": 4.2, "sd": 1.1, "censored": 3},
+//                           "root_cause_top1": {...}, "root_cause_exact": {...}}}]}
+//
+// The standard deviation is the population's. Of no values, mean and sd are null. A row with
+// misspecified probabilities has "probabilities": "misspecified"; what was learned is in
+// "learning", if anything was:
+//
+//     "learning": [{"failure": "F1", "rule": "RGBDead", "strategy": "redeploy", "initial": 0.48,
+//                   "truth": 0.6, "learned": [{"mean": 0.5, "sd": 0}, ...]}]
+#pragma once
+
+#include <string>
+
+#include "study/findings.h"
+
+namespace culprit::study {
+
+std::string json(const Findings& findings);
+
+}  // namespace culprit::study

@@ -1,0 +1,22 @@
+// How a learned success probability comes closer to the true rate, experiment by experiment.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/statistics/moments.h"
+
+namespace culprit::study {
+
+// Of one strategy. Probabilities are in [0, 1].
+struct LearningCurve {
+  std::string failure;  // "F1"
+  std::string rule;
+  std::string strategy;
+  double initial = 0;  // what the designer believed
+  double truth = 0;    // the true success rate
+  // After the first, second, ... experiment; each over the repetitions of the whole series.
+  std::vector<Moments> learned;
+};
+
+}  // namespace culprit::study

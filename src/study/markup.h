@@ -1,0 +1,13 @@
+// Text inside XML and HTML.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace culprit::study {
+
+// For text and for values of attributes in quotes: what has a meaning there is spelled out, and
+// control characters, which no document may hold, become U+FFFD.
+std::string markup_escaped(std::string_view text);
+
+}  // namespace culprit::study

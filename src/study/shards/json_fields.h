@@ -1,0 +1,47 @@
+// Reads the fields of a JSON object and remembers the first complaint, so that a reader of many
+// fields needs one check at its end.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace culprit::study {
+
+class JsonFields {
+ public:
+  // `json` lives longer than this.
+  explicit JsonFields(const nlohmann::ordered_json& json);
+
+  // A value of no meaning where there is a complaint.
+  bool truth(std::string_view name);
+  double number(std::string_view name);  // finite
+  std::vector<double> numbers(std::string_view name);
+  std::string text(std::string_view name);
+  std::uint64_t natural(std::string_view name, std::uint64_t most);
+  std::int32_t integer(std::string_view name,
+                       std::int32_t least = std::numeric_limits<std::int32_t>::min());
+  // An empty object or array where there is a complaint.
+  const nlohmann::ordered_json& object(std::string_view name);
+  const nlohmann::ordered_json& array(std::string_view name);
+
+  void complain(std::string_view name, std::string_view what);
+  // Takes over the complaint of what was inside `name`.
+  void complain_inside(std::string_view name, const std::string& complaint);
+
+  // "ratio is missing"; also if there were fields that nobody read. Empty if all is well.
+  std::string complaint() const;
+
+ private:
+  const nlohmann::ordered_json& at(std::string_view name);
+
+  const nlohmann::ordered_json& json_;
+  std::size_t read_ = 0;
+  std::string complaint_;
+};
+
+}  // namespace culprit::study

@@ -1,0 +1,28 @@
+// Puts the shards of a campaign together.
+//
+// Runs are folded in the campaign's order, so the result is the same to the last bit as that of one
+// process. Shards of different campaigns, versions or seeds, shards that are there twice, missing,
+// unfinished or damaged are errors, and there is no result then: nothing is merged by halves.
+#pragma once
+
+#include <istream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "language/expected.h"
+#include "study/campaign_result.h"
+
+namespace culprit::study {
+
+struct ShardSource {
+  std::string name;  // for messages
+  std::istream* in = nullptr;
+};
+
+Expected<CampaignResult> merge(std::span<const ShardSource> shards);
+
+// The same of files.
+Expected<CampaignResult> merge_files(const std::vector<std::string>& paths);
+
+}  // namespace culprit::study

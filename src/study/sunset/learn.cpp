@@ -1,0 +1,78 @@
+// What a manager learns from one experiment after the other (paper, "Learning mechanism").
+#include <algorithm>
+
+#include "manager/manager.h"
+#include "plan/paper_planner.h"
+#include "study/sunset/study.h"
+
+namespace culprit::study {
+namespace {
+
+struct Learner {
+  StrategyId strategy;
+  LearningCurve curve;
+  std::int64_t executed = 0;
+  std::int64_t remedies = 0;
+};
+
+std::vector<Learner> learners(const RuleSet& rules, std::uint32_t experiments) {
+  std::vector<Learner> all;
+  for (std::size_t s = 0; s < rules.strategies.size(); ++s) {
+    const Strategy& strategy = rules.strategies[s];
+    const std::string& rule = rules[strategy.rule].name;
+    const std::string failure = rule == "RGBDead" ? "F1" : rule == "SegmentationBad" ? "F4" : "";
+    if (failure.empty()) continue;
+    Learner learner;
+    learner.strategy = StrategyId(s);
+    learner.curve = {failure, rule, strategy.name, strategy.success.value, 0, {}};
+    learner.curve.learned.resize(experiments);
+    all.push_back(std::move(learner));
+  }
+  return all;
+}
+
+}  // namespace
+
+// The true rate of a strategy is how often it ended a fault, of all the times that it was executed:
+// what comes first meets other faults than what comes second.
+std::vector<LearningCurve> SunsetStudy::learn(std::uint32_t experiments,
+                                              std::uint32_t repetitions) const {
+  const Setting& setting = settings_.front();
+  const RuleSet& rules = *setting.rules;
+  const std::vector<sunset::Scenario> scenarios = sunset::scenarios();
+  std::vector<Learner> all = learners(rules, experiments);
+  for (std::uint32_t repetition = 0; repetition < repetitions; ++repetition) {
+    Beliefs beliefs(rules);
+    simulation::Random order(seed_of({repetition, experiments}));
+    for (std::uint32_t experiment = 0; experiment < experiments; ++experiment) {
+      const std::uint64_t seed = seed_of({repetition, experiment});
+      sunset::model::SunsetModel model(*setting.profile, seed);
+      Manager manager(rules, std::make_unique<PaperPlanner>(setting.configuration.switches),
+                      manager_options(setting));
+      for (std::size_t s = 0; s < rules.strategies.size(); ++s)
+        manager.set_belief(StrategyId(s), beliefs[StrategyId(s)]);
+      const auto scenario =
+          static_cast<std::size_t>(order.below(static_cast<int>(scenarios.size())));
+      const SunsetRun run = study::play(model, rules, manager, scenarios[scenario]);
+      beliefs = manager.knowledge().beliefs;
+      for (Learner& learner : all) {
+        learner.curve.learned[experiment].add(beliefs[learner.strategy].mean().value);
+        for (const SunsetRun::Choice& choice : run.choices) {
+          if (choice.strategy != learner.strategy) continue;
+          ++learner.executed;
+          if (choice.is_remedy) ++learner.remedies;
+        }
+      }
+    }
+  }
+  std::vector<LearningCurve> curves;
+  for (Learner& learner : all) {
+    if (learner.executed > 0)
+      learner.curve.truth =
+          static_cast<double>(learner.remedies) / static_cast<double>(learner.executed);
+    curves.push_back(std::move(learner.curve));
+  }
+  return curves;
+}
+
+}  // namespace culprit::study

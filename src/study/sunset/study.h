@@ -1,0 +1,62 @@
+// The SUNSET study: which rules, which manager and which fault combination each run of a campaign
+// has.
+//
+// A run depends on nothing but its configuration, its number and the campaign's seed. Runs of one
+// number play the same scenario in every configuration; everything that is left to chance is drawn
+// anew in each, so that configurations are independent groups, as the statistics take them to be.
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "language/expected.h"
+#include "language/rule_set.h"
+#include "manager/manager.h"
+#include "study/campaign.h"
+#include "study/learning.h"
+#include "study/sunset/run.h"
+#include "study/timeline.h"
+
+namespace culprit::study {
+
+class SunsetStudy {
+ public:
+  // Errors: a planner or profile that does not exist, or a planner that cannot watch a profile (the
+  // reference needs a blackboard).
+  static Expected<SunsetStudy> make(std::vector<Configuration> rows, std::uint64_t seed);
+
+  // From several threads if you like.
+  RunMetrics run(RunId id) const;
+
+  // The same run, told.
+  Timeline explain(RunId id) const;
+
+  // `experiments` runs after each other with beliefs that are carried on, `repetitions` times: what
+  // row 0 learns. A curve for each strategy of F1 and F4 (rules RGBDead and SegmentationBad).
+  std::vector<LearningCurve> learn(std::uint32_t experiments, std::uint32_t repetitions) const;
+
+ private:
+  // What all runs of a row have in common.
+  struct Setting {
+    Configuration configuration;
+    const sunset::model::Profile* profile = nullptr;
+    std::unique_ptr<const RuleSet> rules;  // managers keep its address
+  };
+
+  SunsetStudy(std::vector<Setting> settings, std::uint64_t seed)
+      : settings_(std::move(settings)), seed_(seed) {}
+
+  std::uint64_t seed_of(RunId id) const;
+  static Manager::Options manager_options(const Setting& setting);
+  std::unique_ptr<ManagingSystem> manager(const Setting& setting, std::uint64_t seed) const;
+  SunsetRun play(const Setting& setting, RunId id) const;
+
+  std::vector<Setting> settings_;
+  std::uint64_t seed_;
+};
+
+// The planners that there are, for messages: "paper", "reference".
+std::vector<std::string_view> sunset_planners();
+
+}  // namespace culprit::study

@@ -1,0 +1,43 @@
+// What the tables of a study have in common.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/campaign_result.h"
+#include "study/published.h"
+#include "study/tables/table.h"
+
+namespace culprit::study {
+
+// "0.75"; a rounded zero has no sign. "–" for what is no number.
+std::string number(double value, int decimals = 2);
+// "0.75 ± 0.20"; "–" of no values.
+std::string mean_sd(const Summary& summary);
+std::string mean_sd(const published::MeanSd& value);
+// "< 0.001", "0.034".
+std::string p_value(double p);
+
+// D, C, S as the paper marks them.
+std::vector<Column> switch_columns();
+std::vector<Cell> switch_cells(const PaperSwitches& switches);
+
+// The switches, and what else tells the campaign's rows apart.
+class ConfigurationColumns {
+ public:
+  explicit ConfigurationColumns(const std::vector<Row>& rows);
+  std::vector<Column> columns() const;
+  std::vector<Cell> cells(const Configuration& configuration) const;
+
+ private:
+  bool has_planners_ = false;
+  bool has_profiles_ = false;
+  bool has_probabilities_ = false;
+};
+
+Column metric_column(Metric metric);
+
+// "paper planner, paper profile", for captions.
+std::string played(const std::string& planner, const std::string& profile);
+
+}  // namespace culprit::study

@@ -1,0 +1,204 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "study/statistics/welch.h"
+#include "study/tables/columns.h"
+#include "study/tables/study_tables.h"
+
+namespace culprit::study {
+namespace {
+
+// The two columns of a metric.
+void add_pair(Table& table, Metric metric) {
+  const MetricTraits& metric_traits = traits(metric);
+  for (const char* title : {"ours", "paper"}) {
+    table.columns.push_back({std::string(metric_traits.title), title,
+                             std::string(metric_traits.latex), "", Align::kRight});
+  }
+}
+
+std::string compact(const PaperSwitches& switches) {
+  std::string text;
+  for (const Cell& cell : switch_cells(switches)) text += cell.text;
+  return text;
+}
+
+std::string_view name(published::Factor factor) {
+  switch (factor) {
+    case published::Factor::kDependencies:
+      return "dependency graph";
+    case published::Factor::kCriticality:
+      return "criticality level";
+    case published::Factor::kImpact:
+      return "system impact";
+  }
+  return "";
+}
+
+Shade shade(published::Verdict verdict) {
+  switch (verdict) {
+    case published::Verdict::kNotSignificant:
+      return Shade::kNotSignificant;
+    case published::Verdict::kBetter:
+      return Shade::kBetter;
+    case published::Verdict::kWorse:
+      return Shade::kWorse;
+  }
+  return Shade::kNone;
+}
+
+// The largest significant changes of a metric, so that colours can tell how large one is.
+struct Largest {
+  double ours = 0;
+  double theirs = 0;
+};
+
+Largest largest(const Ablation& ablation, std::size_t metric) {
+  Largest largest;
+  for (const Effect& effect : ablation.effects) {
+    const Change& change = effect.changes[metric];
+    if (change.verdict != published::Verdict::kNotSignificant && change.percent)
+      largest.ours = std::max(largest.ours, std::abs(*change.percent));
+    if (change.is_significant_for_them())
+      largest.theirs = std::max(largest.theirs, std::abs(change.theirs.percent));
+  }
+  return largest;
+}
+
+Cell change_cell(std::optional<double> percent, published::Verdict verdict, double largest) {
+  Cell cell{percent ? number(*percent) : "–", shade(verdict), 0, false};
+  if (verdict != published::Verdict::kNotSignificant)
+    cell.strength = percent && largest > 0 ? std::max(0.25, std::abs(*percent) / largest) : 1;
+  return cell;
+}
+
+std::vector<Cell> robustness_row(const std::string& name, const Row& row) {
+  std::vector<Cell> cells = {{name}};
+  const std::vector<MeanComparison> theirs = compare_means(row);
+  for (std::size_t i = 0; i < kPublishedMetrics.size(); ++i) {
+    cells.push_back({mean_sd(row[kPublishedMetrics[i]])});
+    cells.push_back({theirs.empty() ? "–" : mean_sd(theirs[i].theirs)});
+  }
+  return cells;
+}
+
+// Their standard deviations are the population's.
+Moments published_moments(const published::MeanSd& value) {
+  const double n = published::kRuns;
+  return Moments::of_summary(value.mean, value.sd * std::sqrt(n / (n - 1)), published::kRuns);
+}
+
+std::string difference(const std::optional<WelchTest>& test) {
+  return test ? "p " + std::string(test->p < 0.001 ? "" : "= ") + p_value(test->p) : "–";
+}
+
+std::vector<Cell> welch_row(const Row& ideal, const Row& misspecified) {
+  std::vector<Cell> cells = {{"difference"}};
+  const auto theirs = published::robustness();
+  for (std::size_t i = 0; i < kPublishedMetrics.size(); ++i) {
+    const Metric metric = kPublishedMetrics[i];
+    cells.push_back(
+        {difference(welch_test(ideal[metric].moments(), misspecified[metric].moments()))});
+    const bool is_count_known = metric != Metric::kReaction;
+    cells.push_back({is_count_known ? difference(welch_test(published_moments(theirs[0].values[i]),
+                                                            published_moments(theirs[1].values[i])))
+                                    : "–"});
+  }
+  return cells;
+}
+
+}  // namespace
+
+Table comparison_table(const Ablation& ablation) {
+  Table table{"comparison",
+              "Ours beside the paper's: " + played(ablation.planner, ablation.profile),
+              switch_columns(),
+              {},
+              {}};
+  for (const Metric metric : kPublishedMetrics) add_pair(table, metric);
+  for (std::size_t i = 0; i < ablation.means.size(); ++i) {
+    const MeanComparison& mean = ablation.means[i];
+    if (i % kPublishedMetrics.size() == 0)
+      table.rows.push_back(switch_cells(mean.row->configuration.switches));
+    const std::string mark = mean.is_within ? " ✓" : " ✗";
+    table.rows.back().push_back({mean_sd((*mean.row)[mean.metric]) + mark});
+    table.rows.back().push_back({mean_sd(mean.theirs)});
+  }
+  const Agreement count = agreement(ablation);
+  table.notes.push_back(fmt::format("✓ our mean lies within the paper's mean ± 1 sd: {} of {} do.",
+                                    count.means_within, count.means));
+  return table;
+}
+
+Table effects_table(const Ablation& ablation) {
+  Table table{
+      "effects",
+      "Change in percent by switching one factor on: " + played(ablation.planner, ablation.profile),
+      {{"", "factor", "", "", Align::kLeft},
+       {"", "from", "", "", Align::kCentre},
+       {"", "to", "", "", Align::kCentre}},
+      {},
+      {}};
+  for (const Metric metric : kPublishedMetrics) add_pair(table, metric);
+  for (const Effect& effect : ablation.effects) {
+    std::vector<Cell> cells = {{std::string(name(effect.published->factor))},
+                               {compact(effect.published->without)},
+                               {compact(effect.published->with)}};
+    for (std::size_t i = 0; i < kPublishedMetrics.size(); ++i) {
+      const Change& change = effect.changes[i];
+      const Largest scale = largest(ablation, i);
+      cells.push_back(change_cell(change.percent, change.verdict, scale.ours));
+      cells.push_back(change_cell(change.theirs.percent, change.theirs.verdict, scale.theirs));
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  const Agreement count = agreement(ablation);
+  table.notes.push_back(
+      fmt::format("Tukey's HSD among the eight configurations at 95 %. Of the {} effects that are "
+                  "significant in "
+                  "the paper, {} have the same sign here; {} of all {} have the same verdict.",
+                  count.significant, count.significant_signs, count.same_verdicts, count.effects));
+  return table;
+}
+
+Table robustness_table(const Row& ideal, const Row& misspecified) {
+  Table table{"robustness",
+              "Probabilities off by 20 %: " +
+                  played(ideal.configuration.planner, ideal.configuration.profile),
+              {{"", "initial P", "", "Initial $P_s$", Align::kLeft}},
+              {},
+              {}};
+  for (const Metric metric : kPublishedMetrics) add_pair(table, metric);
+  table.rows = {robustness_row("ideal", ideal), robustness_row("misspecified", misspecified),
+                welch_row(ideal, misspecified)};
+  table.notes.push_back(
+      "Differences by Welch's t; the paper's from its printed summaries, but for the reaction "
+      "times, "
+      "whose number it does not print. The paper reports none as significant.");
+  return table;
+}
+
+std::vector<Table> tables(const Findings& findings) {
+  const CampaignResult& result = findings.campaign;
+  std::vector<Table> tables;
+  if (!result.rows.empty()) {
+    tables.push_back(results_table(result));
+    tables.push_back(honest_table(result));
+  }
+  for (const Ablation& ablation : ablations(result)) {
+    tables.push_back(comparison_table(ablation));
+    tables.push_back(effects_table(ablation));
+  }
+  for (const Row& row : result.rows) {
+    if (row.configuration.probabilities != Probabilities::kMisspecified) continue;
+    Configuration ideal = row.configuration;
+    ideal.probabilities = Probabilities::kIdeal;
+    if (const Row* beside = result.find(ideal)) tables.push_back(robustness_table(*beside, row));
+  }
+  if (!findings.learning.empty()) tables.push_back(learning_table(findings.learning));
+  return tables;
+}
+
+}  // namespace culprit::study

@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/core.h>
+
+#include "study/tables/columns.h"
+#include "study/tables/study_tables.h"
+
+namespace culprit::study {
+namespace {
+
+// The best mean of a metric; nothing if no row has one.
+std::optional<double> best(const std::vector<Row>& rows, Metric metric) {
+  std::optional<double> best;
+  for (const Row& row : rows) {
+    if (row[metric].count() == 0) continue;
+    const double mean = row[metric].mean();
+    const bool is_better =
+        !best || (traits(metric).better == Better::kHigher ? mean > *best : mean < *best);
+    if (is_better) best = mean;
+  }
+  return best;
+}
+
+Cell result_cell(const Row& row, Metric metric, std::optional<double> best_mean) {
+  const Summary& summary = row[metric];
+  const bool is_best = summary.count() > 0 && best_mean && summary.mean() == *best_mean;
+  return {mean_sd(summary), Shade::kNone, 0, is_best};
+}
+
+std::string with_interval(const Summary& summary) {
+  std::string text = mean_sd(summary);
+  if (const auto interval = summary.interval())
+    text += fmt::format(" [{}, {}]", number(interval->low), number(interval->high));
+  return text;
+}
+
+std::string runs_note(const CampaignResult& result) {
+  return fmt::format("{} runs each, seed {}, culprit {}: {}", result.campaign.runs,
+                     result.campaign.seed, result.campaign.version, result.campaign.command);
+}
+
+}  // namespace
+
+Table results_table(const CampaignResult& result) {
+  const ConfigurationColumns configuration(result.rows);
+  Table table{"ablation",
+              "Results by configuration: the paper's metrics, mean ± sd",
+              configuration.columns(),
+              {},
+              {}};
+  for (const Metric metric : kPublishedMetrics) table.columns.push_back(metric_column(metric));
+  for (const Row& row : result.rows) {
+    std::vector<Cell> cells = configuration.cells(row.configuration);
+    for (const Metric metric : kPublishedMetrics)
+      cells.push_back(result_cell(row, metric, best(result.rows, metric)));
+    table.rows.push_back(std::move(cells));
+  }
+  table.notes.push_back(
+      "D: dependency graph, C: criticality level, S: system impact. The best mean of each metric "
+      "is bold.");
+  table.notes.push_back(runs_note(result));
+  return table;
+}
+
+Table honest_table(const CampaignResult& result) {
+  const ConfigurationColumns configuration(result.rows);
+  Table table{"honest",
+              "Honest metrics: mean ± sd [95 % interval of the mean]",
+              configuration.columns(),
+              {},
+              {}};
+  for (const Metric metric : kHonestMetrics) table.columns.push_back(metric_column(metric));
+  table.columns.push_back({"", "not recovered", "", "", Align::kRight});
+  for (const Row& row : result.rows) {
+    std::vector<Cell> cells = configuration.cells(row.configuration);
+    for (const Metric metric : kHonestMetrics) cells.push_back({with_interval(row[metric])});
+    cells.push_back({fmt::format("{} of {}", row[Metric::kRecovery].censored(), row.runs)});
+    table.rows.push_back(std::move(cells));
+  }
+  table.notes.push_back(
+      "A run that did not recover counts with all the time that it was watched, so its mean time "
+      "to "
+      "recovery is a lower bound. Intervals by bootstrap over runs.");
+  return table;
+}
+
+Table learning_table(const std::vector<LearningCurve>& curves) {
+  Table table{"learning",
+              "Learned success probabilities beside the true rates",
+              {{"", "failure", "", "", Align::kLeft},
+               {"", "rule", "", "", Align::kLeft},
+               {"", "strategy", "", "", Align::kLeft},
+               {"", "initial P", "", "Initial $P_s$"},
+               {"", "learned P", "", "Learned $P_s$"},
+               {"", "true rate"},
+               {"", "error"}},
+              {},
+              {}};
+  for (const LearningCurve& curve : curves) {
+    const Moments last = curve.learned.empty() ? Moments() : curve.learned.back();
+    const bool is_repeated = last.count() > 1;
+    const std::string learned = last.count() == 0 ? "–"
+                                : is_repeated
+                                    ? number(last.mean()) + " ± " + number(last.population_sd())
+                                    : number(last.mean());
+    table.rows.push_back({{curve.failure},
+                          {curve.rule},
+                          {curve.strategy},
+                          {number(curve.initial)},
+                          {learned},
+                          {number(curve.truth)},
+                          {last.count() == 0 ? "–" : number(std::abs(last.mean() - curve.truth))}});
+  }
+  table.notes.push_back(fmt::format(
+      "After {} experiments, c_p = {:g}. The paper prints a figure of F1 and F4 without numbers.",
+      curves.front().learned.size(), published::kLearning.confidence));
+  return table;
+}
+
+}  // namespace culprit::study
