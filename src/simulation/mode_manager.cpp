@@ -100,6 +100,15 @@ std::string ModeManager::mode_of(const std::string& system) const {
   return first == nullptr ? kUnknown : first->name;
 }
 
+// A new process declares its parameters, and that is announced as well.
+void ModeManager::on_node(const Node& node, bool is_there) {
+  if (!is_there || !is_part(node.name())) return;
+  hear(node.name(), [lifecycle = node.lifecycle(), all = node.parameters()](Heard& h) {
+    h.lifecycle = lifecycle;
+    h.parameters = all;
+  });
+}
+
 void ModeManager::on_lifecycle(const Node& node) {
   if (!is_part(node.name())) return;
   hear(node.name(), [lifecycle = node.lifecycle()](Heard& h) { h.lifecycle = lifecycle; });

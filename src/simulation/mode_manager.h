@@ -60,6 +60,7 @@ class ModeManager : public Node, private Watcher {
   };
 
   void on_start() override;
+  void on_node(const Node& node, bool is_there) override;
   void on_lifecycle(const Node& node) override;
   void on_parameter(const Node& node, const std::string& name, const Value& value) override;
 

@@ -32,7 +32,8 @@ void SimulatedRobot::index_rules() {
   for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
     const Signal& signal = rules_.signals[s];
     if (const auto* source = std::get_if<DiagnosticKey>(&signal.source)) {
-      signals_[source->status + "\n" + source->key].push_back(SignalId(s));
+      const bool is_any = source->status == "*";
+      signals_[is_any ? source->key : source->status + "\n" + source->key].push_back(SignalId(s));
     } else if (const auto* field = std::get_if<TopicField>(&signal.source)) {
       const std::string& topic = rules_[field->topic].name;
       signals_[topic + "\n" + field->field].push_back(SignalId(s));

@@ -61,7 +61,8 @@ void FollowNode::on_start() {
   has_path_ = false;
   path_.clear();
   goal_.reset();
-  every(from_seconds(0.5 * random().uniform()), milliseconds(500), [this] { poll(); });
+  constexpr Duration kPeriod = seconds(2);
+  every(from_seconds(culprit::seconds(kPeriod) * random().uniform()), kPeriod, [this] { poll(); });
 }
 
 void FollowNode::on_activate() {
@@ -83,7 +84,7 @@ bool FollowNode::is_there() const {
   return is_near(autopilot_.vehicle().seen(), *goal_, kTolerance);
 }
 
-// Every half second: whoever waits for the vehicle looks whether it arrived.
+// Every two seconds: whoever waits for the vehicle looks whether it arrived.
 void FollowNode::poll() {
   constexpr int kPatience = 10;
   if (!is_active() || !goal_) return;

@@ -1,6 +1,7 @@
 #include "exemplars/suave/model/metrics.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "exemplars/suave/model/visibility.h"
 
@@ -50,17 +51,19 @@ void Metrics::on_visibility(double metres) {
   const simulation::Node* search = world_.node(nodes::kSearch);
   const Value* altitude = search->is_in_graph() ? search->parameter(kAltitude) : nullptr;
   if (altitude == nullptr || *altitude == Value(expected_altitude_)) return;
-  if (!mismatch_ && !low_battery_) mismatch_ = world_.now();
+  if (mismatch_ || low_battery_) return;
+  mismatch_ = world_.now();
+  is_mismatch_over_ = !search->is_active();
 }
 
 void Metrics::on_battery(double level) {
   if (level > kLowBattery) {
-    if (low_battery_ && !is_battery_answered_)
-      battery_.unanswered_s.push_back(seconds(world_.now() - *low_battery_));
+    if (!is_battery_answered_) give_up(low_battery_, battery_);
     low_battery_.reset();
   } else if (level < kLowBattery && !low_battery_) {
     low_battery_ = world_.now();
     is_battery_answered_ = false;
+    give_up_mismatch();
     mismatch_.reset();
   }
 }
@@ -78,7 +81,10 @@ void Metrics::on_parameter(const simulation::Node& node, const std::string& name
 }
 
 void Metrics::on_lifecycle(const simulation::Node& node) {
-  if (!node.is_active()) return;
+  if (!node.is_active()) {
+    if (node.name() == nodes::kSearch) give_up_mismatch();
+    return;
+  }
   if (node.name() == nodes::kMotion) {
     answer(failed_thruster_, thruster_);
   } else if (node.name() == nodes::kRecharge && low_battery_) {
@@ -87,11 +93,16 @@ void Metrics::on_lifecycle(const simulation::Node& node) {
   }
 }
 
+void Metrics::give_up(const std::optional<Time>& open, Reactions& reactions) {
+  if (open) reactions.unanswered_s.push_back(seconds(world_.now() - *open));
+}
+
+void Metrics::give_up_mismatch() {
+  if (!std::exchange(is_mismatch_over_, true)) give_up(mismatch_, visibility_);
+}
+
 void Metrics::finish() {
-  const auto give_up = [&](const std::optional<Time>& open, Reactions& reactions) {
-    if (open) reactions.unanswered_s.push_back(seconds(world_.now() - *open));
-  };
-  give_up(mismatch_, visibility_);
+  give_up_mismatch();
   give_up(failed_thruster_, thruster_);
   if (!is_battery_answered_) give_up(low_battery_, battery_);
 }

@@ -17,7 +17,8 @@ namespace culprit::suave::model {
 
 struct Reactions {
   std::vector<double> answered_s;
-  // What nobody had answered at the end: how long it had been there. Lower bounds.
+  // What nobody answered: how long it had been there when it was over, or when the mission was.
+  // Lower bounds. A mismatch is over when nobody searches any more.
   std::vector<double> unanswered_s;
 };
 
@@ -51,6 +52,8 @@ class Metrics : private simulation::Watcher {
   void on_visibility(double metres);
   void on_battery(double level);
   void answer(std::optional<Time>& open, Reactions& reactions);
+  void give_up(const std::optional<Time>& open, Reactions& reactions);
+  void give_up_mismatch();
 
   simulation::World& world_;
   Topics& topics_;
@@ -58,7 +61,8 @@ class Metrics : private simulation::Watcher {
   double distance_ = 0;
   double earlier_distance_ = 0;
   double expected_altitude_ = 0;
-  std::optional<Time> mismatch_;  // since
+  std::optional<Time> mismatch_;   // since
+  bool is_mismatch_over_ = false;  // it was counted as unanswered
   std::optional<Time> failed_thruster_;
   std::optional<Time> low_battery_;
   bool is_battery_answered_ = false;

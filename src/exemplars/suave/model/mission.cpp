@@ -58,8 +58,7 @@ void Mission::on_start() {
 void Mission::begin() {
   constexpr Duration kTimePoll = std::chrono::milliseconds(500);
   every(from_seconds(seconds(kTimePoll) * random().uniform()), kTimePoll, [this] {
-    if (!ended_ && world().now() >= later(autopilot_.guided(), plan_.time_limit))
-      ended_ = world().now();
+    if (world().now() >= later(autopilot_.guided(), plan_.time_limit)) end();
   });
   if (leader_ == Leader::kManager) return;
   begin_task("search");
@@ -86,7 +85,13 @@ void Mission::ground(const char* system, const char* mode) {
 
 // Whoever leads: what is inspected wholly is done.
 void Mission::on_field(const simulation::TopicBase& topic, const std::string&, const Value&) {
-  if (&topic == &inspected_topic_ && !ended_) ended_ = world().now();
+  if (&topic == &inspected_topic_) end();
+}
+
+void Mission::end() {
+  if (ended_) return;
+  ended_ = world().now();
+  if (on_end) on_end();
 }
 
 }  // namespace culprit::suave::model

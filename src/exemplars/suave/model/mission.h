@@ -26,6 +26,8 @@ class Mission : public simulation::Node, private simulation::Watcher {
 
   // When it ended; nothing while it goes on.
   std::optional<Time> ended() const { return ended_; }
+  // Called when it ends.
+  std::function<void()> on_end;
 
  private:
   void on_start() override;
@@ -33,6 +35,7 @@ class Mission : public simulation::Node, private simulation::Watcher {
                 const Value& value) override;
   void begin();
   void poll();
+  void end();
   void begin_task(const char* task);
   void ground(const char* system, const char* mode);
 

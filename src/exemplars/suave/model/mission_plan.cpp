@@ -50,16 +50,16 @@ MissionPlan extended() {
   return plan;
 }
 
-// Faults that come together and on top of each other: the search dies; the mode manager hangs when
-// the first thruster fails, so that no mode can be changed; the second thruster fails while the
-// first is being recovered; following the pipeline dies; and an empty battery is the end.
+// Faults that come together and on top of each other: the search dies; the mode manager hangs just
+// before the first thruster fails, so that no mode can be changed; a second thruster fails when the
+// water begins to clear; later whatever follows the pipeline dies; and an empty battery is the end.
 MissionPlan stress() {
   MissionPlan plan = extended();
   plan.name = "stress";
   plan.summary =
       "two thrusters, a dead search, a hung mode manager, a dead inspection, a battery "
       "that must not run empty";
-  plan.thruster_events.push_back({3, true, seconds(50)});
+  plan.thruster_events.push_back({3, true, seconds(66)});
   plan.stops_when_empty = true;
   plan.faults = {{Time{seconds(20)}, nodes::kSearch, simulation::Killed{}},
                  {Time{seconds(34)}, nodes::kModeManager, simulation::Hung{}},

@@ -29,7 +29,7 @@ class SuaveModel {
   Time guided() const { return autopilot_.guided(); }  // the mission's begin
   // The mission is over by then at the latest.
   Time latest_end() const;
-  const Mission& mission() const { return mission_; }
+  Mission& mission() { return mission_; }
   const BatteryMonitor& battery() const { return battery_; }
   Metrics& metrics() { return metrics_; }
 
