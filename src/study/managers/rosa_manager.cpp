@@ -22,6 +22,9 @@ constexpr int kFeasible = 1;
 constexpr int kRequestAction = 4;
 constexpr int kCancelAction = 6;
 
+// A subscription keeps the last ten messages (ROS 2's default); who is too slow loses the oldest.
+constexpr std::size_t kQueue = 10;
+
 constexpr Duration kTick = std::chrono::milliseconds(150);
 constexpr Duration kStartCheck = std::chrono::seconds(1);
 constexpr Duration kTimeout = std::chrono::seconds(5);
@@ -53,7 +56,9 @@ void RosaManager::on_signal(const std::string& name, const Value& value) {
   const bool is_status = name.starts_with("thruster_") &&
                          (value == Value(std::string(suave::model::diagnostics::kFailed)) ||
                           value == Value(std::string(suave::model::diagnostics::kRecovered)));
-  if (is_attribute || is_status) inbox_.push_back({name, value});
+  if (!is_attribute && !is_status) return;
+  inbox_.push_back({name, value});
+  if (inbox_.size() > kQueue) inbox_.pop_front();
 }
 
 Routine RosaManager::monitor() {
