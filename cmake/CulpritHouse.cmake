@@ -66,7 +66,7 @@ function(culprit_library folder)
 endfunction()
 
 # culprit_embed(<folder> <header> <file>...): makes <header> of <header>.in, with the text of rules/some-name.rules in
-# place of @SOME_NAME_RULES@, so that a program needs no file beside it.
+# place of @SOME_NAME_RULES@ (of report.css in place of @REPORT_CSS@), so that a program needs no file beside it.
 function(culprit_embed folder header)
   foreach(file ${ARGN})
     get_filename_component(name ${file} NAME)

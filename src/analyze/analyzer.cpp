@@ -12,6 +12,14 @@ bool is_false(const Slot& slot) { return slot.known && !slot.b; }
 
 }  // namespace
 
+Duration longest_detection(const RuleSet& rules) {
+  Duration longest{};
+  for (const Rule& rule : rules.rules)
+    longest = std::max(
+        {longest, rule.policies.hold_for, rules.cycle * std::int64_t{rule.policies.hold_window}});
+  return longest;
+}
+
 Analyzer::Analyzer(Knowledge& knowledge)
     : knowledge_(knowledge), deadlines_(knowledge.rules.rules.size()) {}
 
@@ -166,10 +174,7 @@ void Analyzer::succeed(RuleId id, Time now) {
 void Analyzer::fail(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   Attempt& attempt = *state.attempt;
-  const auto& siblings = knowledge_.rules[id].strategies;
-  const auto place =
-      std::find(siblings.begin(), siblings.end(), attempt.strategy) - siblings.begin();
-  state.tried[static_cast<std::size_t>(place)] = true;
+  knowledge_.states.set_tried(attempt.strategy, true);
   ++state.attempts;
   // An unknown trigger proves nothing, nor does an overlap with another strategy.
   if (!attempt.is_ambiguous && state.trigger.known)

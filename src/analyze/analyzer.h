@@ -29,6 +29,9 @@
 
 namespace culprit {
 
+// How long a trigger has to hold at most until its failure is detected (FOR, HOLD).
+Duration longest_detection(const RuleSet& rules);
+
 class Analyzer {
  public:
   static constexpr Duration kFirstBackoff = std::chrono::seconds(1);

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <memory>
+#include <thread>
 #include <unistd.h>
 
 #include <fmt/core.h>
@@ -6,7 +8,8 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/diagnostic_report.h"
-#include "language/checker.h"
+#include "cli/robot_survey.h"
+#include "language/live_checks.h"
 
 namespace culprit::cli {
 namespace {
@@ -15,6 +18,8 @@ struct CheckOptions {
   std::vector<std::string> files;
   std::string format = "text";
   bool strict = false;
+  bool robot = false;
+  double wait_seconds = 3;
 };
 
 // For people: what is wrong goes to stderr, a line for each good file to stdout.
@@ -30,28 +35,65 @@ void print_text(const Source& source, const Checked& checked) {
              rules.strategies.size(), rules.components.size());
 }
 
-int check_files(const CheckOptions& options) {
+// What the robot has, of what the files name.
+Expected<LiveInventory> look(const std::vector<Source>& sources, Duration wait) {
+  LiveInterest interest;
+  for (const Source& source : sources) {
+    const Checked checked = check(source);
+    if (checked.rules) interest.nodes.merge(interest_of(*checked.rules).nodes);
+  }
+  auto survey = open_survey();
+  if (!survey) return Error{survey.error()};
+  (*survey)->ask_for(std::move(interest));
+  std::this_thread::sleep_for(wait);
+  LiveInventory robot = (*survey)->inventory();
+  if (robot.nodes.empty())
+    return Error{
+        "no nodes were seen, so nothing was checked against them; is ROS_DOMAIN_ID the "
+        "robot's?"};
+  return robot;
+}
+
+int check_sources(std::vector<Source> sources, const CheckOptions& options) {
   const Strictness strictness = options.strict ? Strictness::kStrict : Strictness::kLenient;
+  std::optional<LiveInventory> robot;
+  if (options.robot) {
+    auto seen = look(sources, from_seconds(options.wait_seconds));
+    if (!seen) {
+      fmt::print(stderr, "culprit: {}\n", seen.error());
+      return kFailed;
+    }
+    robot = std::move(*seen);
+  }
   int exit_code = kOk;
   std::vector<CheckedFile> files;
-  for (const std::string& path : options.files) {
-    auto source = Source::read(path);
-    if (!source) {
-      fmt::print(stderr, "culprit: {}\n", source.error());
-      exit_code = kFailed;
-      continue;
-    }
-    Checked checked = check(*source, strictness);
+  for (Source& source : sources) {
+    Checked checked = robot ? check_against(*robot, source, strictness) : check(source, strictness);
     if (!checked.rules) exit_code = kFailed;
     if (options.format == "text") {
-      print_text(*source, checked);
+      print_text(source, checked);
     } else {
-      files.push_back({std::move(*source), std::move(checked.diagnostics)});
+      files.push_back({std::move(source), std::move(checked.diagnostics)});
     }
   }
   if (options.format == "json") fmt::print("{}\n", to_text(json_report(files)));
   if (options.format == "sarif") fmt::print("{}\n", to_text(sarif_report(files)));
   return exit_code;
+}
+
+int check_files(const CheckOptions& options) {
+  int exit_code = kOk;
+  std::vector<Source> sources;
+  for (const std::string& path : options.files) {
+    auto source = Source::read(path);
+    if (source) {
+      sources.push_back(std::move(*source));
+    } else {
+      fmt::print(stderr, "culprit: {}\n", source.error());
+      exit_code = kFailed;
+    }
+  }
+  return std::max(exit_code, check_sources(std::move(sources), options));
 }
 
 }  // namespace
@@ -62,6 +104,14 @@ void add_check(CLI::App& app, int& exit_code) {
       "check", "Check rule files: every mistake with its place, cause and remedy");
   command->add_option("RULES", options->files, "Rule files")->required();
   command->add_flag("--strict", options->strict, "Every component and signal must be declared");
+  auto* robot = command->add_flag(
+      "--robot", options->robot,
+      "Check also against the live robot: nodes, topics, parameters, diagnostics and services "
+      "that it has not");
+  command->add_option("--wait", options->wait_seconds, "How long to look at the robot, in seconds")
+      ->needs(robot)
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
   command
       ->add_option("--format", options->format,
                    "text for people; json or sarif (2.1.0) for programs, on stdout")

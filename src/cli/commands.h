@@ -18,9 +18,11 @@ void add_check(CLI::App& app, int& exit_code);
 void add_explain(CLI::App& app, int& exit_code);
 void add_fmt(CLI::App& app, int& exit_code);
 void add_test(CLI::App& app, int& exit_code);
+void add_plan(CLI::App& app, int& exit_code);
 void add_graph(CLI::App& app, int& exit_code);
 void add_demo(CLI::App& app, int& exit_code);
 void add_lsp(CLI::App& app, const std::string& version, int& exit_code);
 void add_import(CLI::App& app, int& exit_code);
+void add_study(CLI::App& app, const std::string& version, int& exit_code);
 
 }  // namespace culprit::cli

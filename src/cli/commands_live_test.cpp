@@ -93,6 +93,46 @@ TEST_F(Commands, CheckPrintsNothingButTheDocumentForPrograms) {
   EXPECT_EQ(nonsense.wait(), 2);
 }
 
+TEST_F(Commands, CheckComparesWithTheRobot) {
+  const std::string good = world.write("good.rules", R"(
+COMPONENT camera NODE /managed_subsystem/camera
+RULE CameraSlow
+  POLICIES WARNING
+  TRIGGER rate(/managed_subsystem/rgb_camera) < 1 && lifecycle(camera) == "active"
+    STRATEGY tune 50 10
+      ADAPTATION camera set_parameter image_degradation 0.1 2
+)");
+  const std::string bad = world.write("bad.rules", R"(
+COMPONENT camera NODE /managed_subsystem/camrea
+COMPONENT depth
+RULE CameraSlow
+  POLICIES WARNING
+  TRIGGER rate(/managed_subsystem/rgb_camra) < 1
+    STRATEGY restart 50 10
+      ADAPTATION camera restart 2
+    STRATEGY tune 50 10
+      ADAPTATION /managed_subsystem/camera set_parameter image_degradaton 0.1 2
+)");
+  auto alone = culprit({"check", "--robot", "--wait", "0.5", good});
+  EXPECT_EQ(alone.wait(), 1) << "there is no robot yet";
+  EXPECT_THAT(alone.output(), HasSubstr("ROS_DOMAIN_ID"));
+
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  auto right = culprit({"check", "--robot", good});
+  EXPECT_EQ(right.wait(), 0);
+  EXPECT_THAT(right.output(), Not(HasSubstr("warning"))) << right.output();
+  auto wrong = culprit({"check", "--robot", "--format", "json", bad});
+  EXPECT_EQ(wrong.wait(), 0) << "a robot changes: these are warnings";
+  std::vector<std::string> found;
+  for (const auto& d : nlohmann::json::parse(wrong.output())) {
+    found.push_back(d["code"].get<std::string>() + " " +
+                    (d.contains("fix") ? d["fix"]["text"].get<std::string>() : "-"));
+  }
+  EXPECT_THAT(found,
+              testing::ElementsAre("R060 /managed_subsystem/camera", "R060 -",
+                                   "R061 /managed_subsystem/rgb_camera", "R062 image_degradation"));
+}
+
 TEST_F(Commands, ExplainShowsThePageOfACode) {
   auto page = culprit({"explain", "R012"});
   EXPECT_EQ(page.wait(), 0);
@@ -115,6 +155,22 @@ TEST_F(Commands, GraphShowsTheRobot) {
   auto dot = culprit({"graph", "--dot"});
   ASSERT_EQ(dot.wait(), 0);
   EXPECT_THAT(dot.output(), HasSubstr("digraph"));
+}
+
+TEST_F(Commands, PlanLooksAtTheRobotAndLeavesItAsItIs) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  auto plan = culprit({"plan", world.write("two.rules", kRules), "--robot", "--format", "json"});
+  ASSERT_EQ(plan.wait(), 0) << plan.output();
+  const auto json = nlohmann::json::parse(plan.output().substr(plan.output().find('{')));
+  ASSERT_EQ(json["failures"].size(), 1u) << json;
+  EXPECT_EQ(json["failures"][0]["rule"], "DepthGone");
+  EXPECT_EQ(json["failures"][0]["chosen"], "depth_redeploy");
+  EXPECT_GT(json["failures"][0]["failing_s"], 0.0);
+  auto graph = culprit({"graph"});
+  ASSERT_EQ(graph.wait(), 0);
+  EXPECT_THAT(graph.output(), Not(HasSubstr("/managed_subsystem/depth"))) << "it was started";
+  EXPECT_THAT(graph.output(), HasSubstr("/managed_subsystem/camera  (process " +
+                                        std::to_string(camera.pid()) + ")"));
 }
 
 TEST_F(Commands, RunAdoptsWhatRunsStartsWhatIsMissingAndLeavesTheRobotAsItIs) {

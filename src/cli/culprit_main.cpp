@@ -17,10 +17,12 @@ int main(int argc, char** argv) {
   culprit::cli::add_explain(app, exit_code);
   culprit::cli::add_fmt(app, exit_code);
   culprit::cli::add_test(app, exit_code);
+  culprit::cli::add_plan(app, exit_code);
   culprit::cli::add_graph(app, exit_code);
   culprit::cli::add_demo(app, exit_code);
   culprit::cli::add_lsp(app, CULPRIT_VERSION, exit_code);
   culprit::cli::add_import(app, exit_code);
+  culprit::cli::add_study(app, CULPRIT_VERSION, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

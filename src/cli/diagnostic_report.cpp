@@ -39,6 +39,15 @@ Json sarif_rules() {
   return rules;
 }
 
+Json json_place(const Source& source, Span span) {
+  const Position begin = source.position(span.begin);
+  const Position end = source.position(span.end);
+  return {{"line", begin.line},
+          {"column", begin.column},
+          {"end_line", end.line},
+          {"end_column", end.column}};
+}
+
 Json sarif_region(const Source& source, Span span) {
   const Position begin = source.position(span.begin);
   const Position end = source.position(span.end);
@@ -48,15 +57,32 @@ Json sarif_region(const Source& source, Span span) {
           {"endColumn", end.column}};
 }
 
+Json sarif_fix(const Source& source, const Diagnostic& d) {
+  Json replacement{{"deletedRegion", sarif_region(source, d.fix->span)},
+                   {"insertedContent", {{"text", d.fix->text}}}};
+  Json change{{"artifactLocation", {{"uri", uri_of(source.name())}}},
+              {"replacements", Json::array({std::move(replacement)})}};
+  return {{"description", {{"text", title_of(*d.fix, source)}}},
+          {"artifactChanges", Json::array({std::move(change)})}};
+}
+
 Json sarif_result(const Source& source, const Diagnostic& d) {
   const std::string message = d.remedy.empty() ? d.cause : d.cause + "\n" + d.remedy;
   Json location{{"physicalLocation",
                  {{"artifactLocation", {{"uri", uri_of(source.name())}}},
                   {"region", sarif_region(source, d.span)}}}};
-  return {{"ruleId", to_string(d.code)},
-          {"level", severity_of(d)},
-          {"message", {{"text", message}}},
-          {"locations", Json::array({std::move(location)})}};
+  Json result{{"ruleId", to_string(d.code)},
+              {"level", severity_of(d)},
+              {"message", {{"text", message}}},
+              {"locations", Json::array({std::move(location)})}};
+  if (d.fix) result["fixes"] = Json::array({sarif_fix(source, d)});
+  return result;
+}
+
+Json json_fix(const Source& source, const Edit& edit) {
+  Json fix = json_place(source, edit.span);
+  fix["text"] = edit.text;
+  return fix;
 }
 
 }  // namespace
@@ -65,17 +91,13 @@ Json json_report(const std::vector<CheckedFile>& files) {
   Json report = Json::array();
   for (const auto& [source, diagnostics] : files) {
     for (const Diagnostic& d : diagnostics) {
-      const Position begin = source.position(d.span.begin);
-      const Position end = source.position(d.span.end);
-      report.push_back({{"file", source.name()},
-                        {"code", to_string(d.code)},
-                        {"severity", severity_of(d)},
-                        {"line", begin.line},
-                        {"column", begin.column},
-                        {"end_line", end.line},
-                        {"end_column", end.column},
-                        {"cause", d.cause},
-                        {"remedy", d.remedy}});
+      Json entry{
+          {"file", source.name()}, {"code", to_string(d.code)}, {"severity", severity_of(d)}};
+      entry.update(json_place(source, d.span));
+      entry["cause"] = d.cause;
+      entry["remedy"] = d.remedy;
+      if (d.fix) entry["fix"] = json_fix(source, *d.fix);
+      report.push_back(std::move(entry));
     }
   }
   return report;

@@ -20,15 +20,27 @@ TEST(DiagnosticReport, JsonHoldsPlaceCauseAndRemedy) {
   const auto report = json_report(
       {checked("a.rules", "ROBOT good\n"), checked("b.rules", "ROBOT good\nrobot bad\n")});
   ASSERT_EQ(report.size(), 1u);
-  EXPECT_EQ(report[0], nlohmann::ordered_json({{"file", "b.rules"},
-                                               {"code", "R001"},
-                                               {"severity", "error"},
-                                               {"line", 2},
-                                               {"column", 1},
-                                               {"end_line", 2},
-                                               {"end_column", 6},
-                                               {"cause", "no statement begins with 'robot'"},
-                                               {"remedy", "did you mean ROBOT?"}}));
+  EXPECT_EQ(
+      report[0],
+      nlohmann::ordered_json(
+          {{"file", "b.rules"},
+           {"code", "R001"},
+           {"severity", "error"},
+           {"line", 2},
+           {"column", 1},
+           {"end_line", 2},
+           {"end_column", 6},
+           {"cause", "no statement begins with 'robot'"},
+           {"remedy", "did you mean ROBOT?"},
+           {"fix",
+            {{"line", 2}, {"column", 1}, {"end_line", 2}, {"end_column", 6}, {"text", "ROBOT"}}}}));
+}
+
+TEST(DiagnosticReport, OffersAFixOnlyWhereThereIsOne) {
+  const CheckedFile file = checked("a.rules", "CYCLE 200\n");
+  ASSERT_EQ(json_report({file}).size(), 1u);
+  EXPECT_FALSE(json_report({file})[0].contains("fix"));
+  EXPECT_FALSE(sarif_report({file})["runs"][0]["results"][0].contains("fixes"));
 }
 
 TEST(DiagnosticReport, JsonOfNothingWrongIsAnEmptyArray) {
@@ -67,6 +79,12 @@ TEST(DiagnosticReport, SarifPointsAtARuleOfItsDriverAndAtTheText) {
   EXPECT_EQ(place["region"],
             nlohmann::ordered_json(
                 {{"startLine", 2}, {"startColumn", 1}, {"endLine", 2}, {"endColumn", 6}}));
+  ASSERT_EQ(result["fixes"].size(), 1u);
+  EXPECT_EQ(result["fixes"][0]["description"]["text"], "change 'robot' to 'ROBOT'");
+  const auto& change = result["fixes"][0]["artifactChanges"][0];
+  EXPECT_EQ(change["artifactLocation"], place["artifactLocation"]);
+  EXPECT_EQ(change["replacements"][0]["deletedRegion"], place["region"]);
+  EXPECT_EQ(change["replacements"][0]["insertedContent"]["text"], "ROBOT");
 }
 
 TEST(DiagnosticReport, SarifSaysWhatIsOnlyAWarning) {

@@ -1,18 +1,87 @@
 #include <iostream>
+#include <poll.h>
+#include <unistd.h>
 
 #include <fmt/core.h>
 
 #include "cli/commands.h"
+#include "cli/robot_survey.h"
 #include "lsp/message_stream.h"
 #include "lsp/server.h"
+#include "robot/inbox.h"
 
 namespace culprit::cli {
 namespace {
 
-int serve(const std::string& version) {
+using namespace std::chrono_literals;
+
+// How long the robot's graph takes until it can be called incomplete, and how often it is looked at
+// from there on.
+constexpr Duration kDiscovery = 3s;
+constexpr Duration kRefresh = 500ms;
+
+struct LspOptions {
+  bool robot = false;
+  std::vector<std::filesystem::path> message_path;
+};
+
+// Whether the client has sent something by then, or has gone.
+bool input_by(Time end) {
+  if (std::cin.rdbuf()->in_avail() > 0) return true;
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  const Duration left = std::max(end - live_now(), Duration::zero());
+  const auto wait = std::chrono::ceil<std::chrono::milliseconds>(left).count();
+  return poll(&input, 1, static_cast<int>(wait)) > 0;
+}
+
+// Shows the server what the robot has, between two messages: the survey has threads of its own, the
+// server needs none.
+class Watch {
+ public:
+  Watch(lsp::Server& server, ros2::Survey& survey)
+      : server_(server), survey_(survey), next_(live_now() + kDiscovery) {}
+
+  // Returns when the client has sent something.
+  void wait_for_input() {
+    do {
+      ask();
+      if (live_now() < next_) continue;
+      server_.see(survey_.inventory());
+      next_ = live_now() + kRefresh;
+    } while (!input_by(next_));
+  }
+
+ private:
+  void ask() {
+    LiveInterest interest = server_.interest();
+    if (interest == asked_) return;
+    survey_.ask_for(interest);
+    asked_ = std::move(interest);
+  }
+
+  lsp::Server& server_;
+  ros2::Survey& survey_;
+  Time next_;
+  LiveInterest asked_;
+};
+
+int serve(const std::string& version, const LspOptions& options) {
+  std::ios::sync_with_stdio(false);  // so that std::cin tells what it holds already
   lsp::Server server(version,
                      [](const nlohmann::json& message) { lsp::write_message(std::cout, message); });
+  std::unique_ptr<ros2::Survey> survey;
+  std::optional<Watch> watch;
+  if (options.robot) {
+    auto opened = open_survey(options.message_path);
+    if (!opened) {
+      fmt::print(stderr, "culprit: {}\n", opened.error());
+      return kFailed;
+    }
+    survey = std::move(*opened);
+    watch.emplace(server, *survey);
+  }
   while (true) {
+    if (watch) watch->wait_for_input();
     const auto message = lsp::read_message(std::cin);
     if (!message) {
       fmt::print(stderr, "culprit: the client sent {}\n", message.error());
@@ -25,9 +94,14 @@ int serve(const std::string& version) {
 }  // namespace
 
 void add_lsp(CLI::App& app, const std::string& version, int& exit_code) {
+  auto options = std::make_shared<LspOptions>();
   CLI::App* command = app.add_subcommand(
       "lsp", "Serve an editor: the Language Server Protocol on standard input and output");
-  command->callback([version, &exit_code] { exit_code = serve(version); });
+  command->add_flag("--robot", options->robot,
+                    "Show also what the live robot has: its names, values, and what it has not");
+  command->add_option("--message-path", options->message_path,
+                      "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
+  command->callback([version, options, &exit_code] { exit_code = serve(version, *options); });
 }
 
 }  // namespace culprit::cli

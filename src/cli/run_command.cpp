@@ -8,11 +8,11 @@
 #include "cli/health.h"
 #include "cli/live_robot.h"
 #include "cli/paths.h"
+#include "cli/planner_options.h"
 #include "cli/rule_file.h"
 #include "knowledge/describe.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
-#include "plan/paper_planner.h"
 
 namespace culprit::cli {
 namespace {
@@ -21,9 +21,7 @@ struct RunOptions {
   std::string rules;
   bool dry_run = false;
   bool launch = false;
-  bool no_dependencies = false;
-  bool no_criticality = false;
-  bool no_impact = false;
+  PlannerOptions planner;
   double settle_seconds = seconds(Manager::kDiscovery);
   std::string state_folder;
   std::vector<std::filesystem::path> message_path;
@@ -103,13 +101,11 @@ int run(const RunOptions& options) {
     seen = discover(**robot, signals.stopped());
     launch_missing(**robot, *rules, seen);
   }
-  const PaperSwitches switches{!options.no_dependencies, !options.no_criticality,
-                               !options.no_impact};
   Manager::Options manager_options;
   manager_options.autonomy = options.dry_run ? Autonomy::kAdvise : Autonomy::kAct;
   manager_options.start = (*robot)->now();
   manager_options.settling = from_seconds(options.settle_seconds);
-  Manager manager(*rules, std::make_unique<PaperPlanner>(switches), manager_options);
+  Manager manager(*rules, options.planner.planner(), manager_options);
 
   const Colour colour = colour_of(STDOUT_FILENO);
   Runtime runtime(manager, **robot);
@@ -153,17 +149,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->default_str("~/.local/state/culprit");
   command->add_option("--message-path", options->message_path,
                       "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
-  const std::string kFactors = "The paper's factors";
-  command
-      ->add_flag("--no-dependencies", options->no_dependencies,
-                 "Do not look for root causes in the dependency graph")
-      ->group(kFactors);
-  command
-      ->add_flag("--no-criticality", options->no_criticality,
-                 "Treat all failures as equally critical")
-      ->group(kFactors);
-  command->add_flag("--no-impact", options->no_impact, "Do not count a strategy's impact as cost")
-      ->group(kFactors);
+  options->planner.add_to(*command);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -1,6 +1,7 @@
 #include "execute/goal.h"
 
 #include "language/evaluate.h"
+#include "language/ros_names.h"
 
 namespace culprit::execute {
 namespace {
@@ -14,12 +15,6 @@ struct Overload : F... {
 // clang before 17 does not deduce this by itself, and the fuzzers are built by it.
 template <class... F>
 Overload(F...) -> Overload<F...>;
-
-// "~/recalibrate" and "recalibrate" are the component's own.
-std::string absolute(const std::string& service, const std::string& node) {
-  if (service.starts_with('/')) return service;
-  return node + "/" + (service.starts_with("~/") ? service.substr(2) : service);
-}
 
 Value negated(const Value& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value))
@@ -89,7 +84,7 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       return std::vector<Goal>{ModeGoal{adaptation.subject}};
     case AdaptationType::kCall:
       return std::vector<Goal>{ServiceGoal{
-          absolute(adaptation.subject, knowledge.graph.node_name(adaptation.component))}};
+          service_of(adaptation.subject, knowledge.graph.node_name(adaptation.component))}};
   }
   return std::vector<Goal>{};
 }

@@ -6,15 +6,6 @@
 namespace culprit {
 namespace {
 
-std::string joined(const std::vector<std::string>& items) {
-  std::string out;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (i > 0) out += i + 1 == items.size() ? " and " : ", ";
-    out += items[i];
-  }
-  return out;
-}
-
 std::string two_decimals(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f", value);
@@ -51,8 +42,8 @@ class Describer {
     for (const Candidate& candidate : e.candidates) {
       if (candidate.strategy == e.strategy) cost = candidate.cost;
     }
-    return joined(blamed) + (blamed.size() == 1 ? " is" : " are") + " held responsible for " +
-           joined(failures) + ": " + (e.dry_run ? "would " : "") + joined(actions) + " (" +
+    return listed(blamed) + (blamed.size() == 1 ? " is" : " are") + " held responsible for " +
+           listed(failures) + ": " + (e.dry_run ? "would " : "") + listed(actions) + " (" +
            strategy.name + ", cost " + two_decimals(cost) + ")";
   }
   std::string operator()(const FailureHeldBack& e) const {
@@ -101,6 +92,81 @@ class Describer {
 };
 
 }  // namespace
+
+std::string_view to_string(Condition condition) {
+  switch (condition) {
+    case Condition::kTried:
+      return "tried";
+    case Condition::kInvalid:
+      return "invalid";
+    case Condition::kAdapting:
+      return "adapting";
+    case Condition::kAffected:
+      return "affected";
+    case Condition::kDependency:
+      return "dependency";
+    case Condition::kOneEach:
+      return "other_chosen";
+  }
+  return "";
+}
+
+std::string describe(const Input& input, const RuleSet& rules) {
+  const auto call = [&](std::string_view function, const std::string& subject) {
+    const bool has_window = input.window > Duration::zero();
+    return std::string(function) + "(" + subject +
+           (has_window ? ", " + to_string(input.window) : "") + ")";
+  };
+  using enum Input::Kind;
+  switch (input.kind) {
+    case kSignal:
+      return rules[input.signal].name;
+    case kRate:
+      return call("rate", rules[input.topic].name);
+    case kAge:
+      return call("age", rules[input.topic].name);
+    case kPhi:
+      return call("phi", rules[input.topic].name);
+    case kAlive:
+      return call("alive", rules[input.component].name);
+    case kLifecycle:
+      return call("lifecycle", rules[input.component].name);
+    case kParameter: {
+      const Parameter& parameter = rules[input.parameter];
+      return call("parameter", rules[parameter.component].name + ", " + parameter.name);
+    }
+    case kLevel:
+      return call("level", rules.diagnostics[input.diagnostic.index].name);
+    case kMean:
+      return call("mean", rules[input.signal].name);
+    case kMin:
+      return call("min", rules[input.signal].name);
+    case kMax:
+      return call("max", rules[input.signal].name);
+    case kStddev:
+      return call("stddev", rules[input.signal].name);
+    case kChanged:
+      return call("changed", rules[input.signal].name);
+  }
+  return "";
+}
+
+std::string listed(const std::vector<std::string>& items) {
+  std::string out;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) out += i + 1 == items.size() ? " and " : ", ";
+    out += items[i];
+  }
+  return out;
+}
+
+std::string to_string(Probability probability) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", 100 * probability.value);
+  std::string number = text;
+  if (number.ends_with(".0")) number.resize(number.size() - 2);
+  return number + " %";
+}
 
 std::string_view to_string(Criticality criticality) {
   switch (criticality) {

@@ -9,6 +9,18 @@ namespace culprit {
 
 std::string_view to_string(Criticality criticality);
 
+// The word of rule tests and documents for it: "tried", "dependency", "other_chosen".
+std::string_view to_string(Condition condition);
+
+// As an expression has it: "segmentation_entropy", "age(/rgb)", "mean(load, 2s)"
+std::string describe(const Input& input, const RuleSet& rules);
+
+// "87.3 %", "60 %"
+std::string to_string(Probability probability);
+
+// "a, b and c"
+std::string listed(const std::vector<std::string>& items);
+
 // "restart camera", "set exposure of camera"
 std::string describe(const Adaptation& adaptation, const RuleSet& rules);
 

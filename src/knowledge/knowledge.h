@@ -23,6 +23,16 @@ struct Knowledge {
         states(rules),
         beliefs(rules) {}
 
+  // What `other` knows, for `rule_set`: a copy of its rules. Its events are left out.
+  Knowledge(const RuleSet& rule_set, const Knowledge& other)
+      : rules(rule_set),
+        signals(rules, other.signals),
+        graph(other.graph),
+        components(other.components),
+        states(rules, other.states),
+        beliefs(other.beliefs) {}
+  Knowledge(const Knowledge&) = delete;
+
   const RuleSet& rules;
   SignalStore signals;
   DependencyGraph graph;

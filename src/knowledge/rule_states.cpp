@@ -14,6 +14,23 @@ RuleStates::RuleStates(const RuleSet& rules)
   active_.reserve(rules.rules.size());
 }
 
+RuleStates::RuleStates(const RuleSet& rules, const RuleStates& other)
+    : rules_(rules), states_(other.states_), active_(other.active_), failing_(other.failing_) {}
+
+std::size_t RuleStates::place_of(StrategyId id) const {
+  const auto& siblings = rules_[rules_[id].rule].strategies;
+  return static_cast<std::size_t>(std::find(siblings.begin(), siblings.end(), id) -
+                                  siblings.begin());
+}
+
+bool RuleStates::is_tried(StrategyId id) const {
+  return states_[rules_[id].rule.index].tried[place_of(id)];
+}
+
+void RuleStates::set_tried(StrategyId id, bool tried) {
+  states_[rules_[id].rule.index].tried[place_of(id)] = tried;
+}
+
 void RuleStates::enter(RuleId id, RulePhase phase) {
   RuleState& state = states_[id.index];
   const bool was = is_active(state.phase);

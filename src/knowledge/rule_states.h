@@ -50,10 +50,16 @@ struct RuleState {
 class RuleStates {
  public:
   explicit RuleStates(const RuleSet& rules);
+  // As `other` is, for `rules`: the same rules at another address.
+  RuleStates(const RuleSet& rules, const RuleStates& other);
 
   const RuleState& operator[](RuleId id) const { return states_[id.index]; }
   // For everything but `phase`, which enter() changes.
   RuleState& state(RuleId id) { return states_[id.index]; }
+
+  // Was it tried in this round?
+  bool is_tried(StrategyId id) const;
+  void set_tried(StrategyId id, bool tried);
 
   // Moves a rule to another phase and keeps the health of its components.
   void enter(RuleId id, RulePhase phase);
@@ -75,6 +81,7 @@ class RuleStates {
   static bool is_active(RulePhase phase) {
     return phase == RulePhase::kFailing || phase == RulePhase::kAttempting;
   }
+  std::size_t place_of(StrategyId id) const;
 
   const RuleSet& rules_;
   std::vector<RuleState> states_;

@@ -14,6 +14,18 @@ SignalStore::SignalStore(const RuleSet& rules)
   taken_.reserve(rules.rules.size());
 }
 
+SignalStore::SignalStore(const RuleSet& rules, const SignalStore& other)
+    : rules_(rules),
+      slots_(other.slots_),
+      texts_(other.texts_),
+      latencies_(other.latencies_),
+      touched_(other.touched_),
+      is_touched_(other.is_touched_) {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (rules_.inputs[i].type == Type::kString) slots_[i].s = texts_[i];
+  }
+}
+
 void SignalStore::set(InputId id, const Slot& value) {
   if (same(slots_[id.index], value, rules_[id].type)) return;
   set_quietly(id, value);

@@ -18,6 +18,8 @@ class SignalStore {
  public:
   // `rules` must outlive the store. Every input begins unknown.
   explicit SignalStore(const RuleSet& rules);
+  // As `other` is, for `rules`: the same rules at another address.
+  SignalStore(const RuleSet& rules, const SignalStore& other);
 
   std::span<const Slot> slots() const { return slots_; }
   const Slot& operator[](InputId id) const { return slots_[id.index]; }

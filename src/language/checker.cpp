@@ -1,11 +1,13 @@
 #include "language/checker.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "language/compiler.h"
 #include "language/condition_checks.h"
 #include "language/conflict_checks.h"
 #include "language/evaluate.h"
+#include "language/facts.h"
 #include "language/parser.h"
 #include "language/rule_checks.h"
 #include "language/typing.h"
@@ -31,6 +33,8 @@ class Checker {
     infer();
     for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
     for (const syntax::Rule& rule : file_.rules) add_rule(rule);
+    symbols_.drop_forgotten_reports();
+    for (Input& input : rules_.inputs) sort_unique(input.thresholds);
     for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
     for (std::size_t r = 0; r < rules_.rules.size(); ++r) link_readers(RuleId(r));
     check_circles(file_, rules_, diagnostics_);
@@ -126,20 +130,15 @@ class Checker {
   }
 
   void infer() {
-    bool learned = true;
-    while (learned) {
-      learned = false;
-      for (const syntax::Rule& rule : file_.rules) {
-        if (rule.trigger) infer_types(*rule.trigger, Type::kBool, symbols_, learned);
-        for (const syntax::Strategy& strategy : rule.strategies) {
-          if (strategy.when) infer_types(*strategy.when, Type::kBool, symbols_, learned);
-          for (const syntax::Adaptation& a : strategy.adaptations) {
-            const bool number = a.type == AdaptationType::kIncreaseParameter ||
-                                a.type == AdaptationType::kDecreaseParameter;
-            if (a.value)
-              infer_types(*a.value, number ? std::optional(Type::kDouble) : std::nullopt, symbols_,
-                          learned);
-          }
+    for (const syntax::Rule& rule : file_.rules) {
+      if (rule.trigger) infer_types(*rule.trigger, Type::kBool, symbols_);
+      for (const syntax::Strategy& strategy : rule.strategies) {
+        if (strategy.when) infer_types(*strategy.when, Type::kBool, symbols_);
+        for (const syntax::Adaptation& a : strategy.adaptations) {
+          const bool number = a.type == AdaptationType::kIncreaseParameter ||
+                              a.type == AdaptationType::kDecreaseParameter;
+          if (a.value)
+            infer_types(*a.value, number ? std::optional(Type::kDouble) : std::nullopt, symbols_);
         }
       }
     }
@@ -166,7 +165,11 @@ class Checker {
         rule.trigger = compile(*typed);
         check_constant_trigger(written, rule.trigger, diagnostics_);
         collect_thresholds(*typed, rules_.inputs);
-        conditions_.push_back({&written, id, std::move(*typed), {}});
+        RuleConditions conditions;
+        conditions.written = &written;
+        conditions.rule = id;
+        conditions.trigger = std::move(*typed);
+        conditions_.push_back(std::move(conditions));
       }
     }
     rules_.rules.push_back(std::move(rule));
@@ -182,6 +185,7 @@ class Checker {
       }
       add_strategy(strategy, id);
     }
+    sort_unique(rules_.rules[id.index].components);
     if (!written.has_broken_part) check_launches(written, rules_, id, diagnostics_);
   }
 
@@ -191,7 +195,8 @@ class Checker {
     const bool failed = std::any_of(diagnostics_.begin(), diagnostics_.end(),
                                     [](const auto& d) { return d.severity == Severity::kError; });
     if (failed) return;
-    for (const RuleConditions& rule : conditions_) {
+    for (RuleConditions& rule : conditions_) {
+      rule.never_fires = is_never(true, rule.trigger, rules_);
       check_conditions(rule, rules_, diagnostics_);
       check_last_resort(rule, rules_, diagnostics_);
     }
@@ -243,6 +248,8 @@ class Checker {
 
   void add_strategy(const syntax::Strategy& written, RuleId rule) {
     const StrategyId id(rules_.strategies.size());
+    const bool has_trigger = !conditions_.empty() && conditions_.back().rule == rule;
+    if (has_trigger) conditions_.back().strategies.push_back(&written);
     Strategy strategy;
     strategy.name = written.name.text;
     strategy.rule = rule;
@@ -256,7 +263,8 @@ class Checker {
     if (written.probability.value > 0 && written.probability.value < 1) {
       diagnostics_.push_back({Code::kProbabilityRange, Severity::kWarning, written.probability.span,
                               "this success probability is less than one percent",
-                              "probabilities are in percent: write 90 for 0.9"});
+                              "probabilities are in percent: write 90 for 0.9",
+                              in_percent_fix(written.probability)});
     }
     if (!in_percent(written.confidence)) {
       report(Code::kConfidenceRange, written.confidence.span,
@@ -267,7 +275,6 @@ class Checker {
     if (written.when) {
       if (auto typed = boolean(*written.when, "a WHEN condition")) {
         strategy.when = compile(*typed);
-        const bool has_trigger = !conditions_.empty() && conditions_.back().rule == rule;
         if (has_trigger) conditions_.back().whens.push_back({id, std::move(*typed)});
       }
     }
@@ -283,10 +290,17 @@ class Checker {
     sort_unique(strategy.components);
     auto& touched = rules_.rules[rule.index].components;
     touched.insert(touched.end(), strategy.components.begin(), strategy.components.end());
-    sort_unique(touched);
     rules_.heaviest = std::max(rules_.heaviest, strategy.impact);
     rules_.rules[rule.index].strategies.push_back(id);
     rules_.strategies.push_back(std::move(strategy));
+  }
+
+  // Nothing where a hundred times as much is no whole percent either.
+  static std::optional<Edit> in_percent_fix(const syntax::Number& fraction) {
+    if (fraction.value < 0.01) return std::nullopt;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", fraction.value * 100);
+    return Edit{fraction.span, text};
   }
 
   void add_adaptation(const syntax::Adaptation& written, Strategy& strategy) {

@@ -10,6 +10,7 @@
 
 #include "language/evaluate.h"
 #include "language/explanations.h"
+#include "language/live_checks.h"
 
 namespace culprit {
 namespace {
@@ -185,6 +186,20 @@ RULE R
   EXPECT_EQ(type("later"), Type::kDouble);  // learned from a comparison that comes after
 }
 
+// However far away the rule is that tells of it.
+TEST(Checker, LearnsTypesAlongChainsOfComparisons) {
+  constexpr int kRules = 1000;
+  std::string text;
+  for (int i = kRules; i >= 0; --i) {
+    const std::string n = std::to_string(i);
+    const std::string other = i == 0 ? "(late ? s0 : \"dock\")" : "s" + std::to_string(i - 1);
+    text += "RULE R" + n + "\n POLICIES ERROR\n TRIGGER s" + n + " == " + other +
+            "\n  STRATEGY s 50 10\n   ADAPTATION c restart 1\n";
+  }
+  for (const Signal& s : rules_of(text).signals)
+    EXPECT_EQ(s.type, s.name == "late" ? Type::kBool : Type::kString) << s.name;
+}
+
 TEST(Checker, FindsTheThresholdsOfInputs) {
   const RuleSet rules = rules_of(R"(
 CONST slow = 5
@@ -232,8 +247,9 @@ TEST(Checker, SplitsLaunchCommandsWithoutAShell) {
 }
 
 // Each file in golden/ holds mistakes, and beside it what is said about them.
-// strict_* are checked strictly; newcomer_* are what people write who come from elsewhere.
-// CULPRIT_WRITE_GOLDEN=1 writes what is said now, for a person to read and commit.
+// strict_* are checked strictly, live_* against example_robot(); newcomer_* are what people write
+// who come from elsewhere. CULPRIT_WRITE_GOLDEN=1 writes what is said now, for a person to read and
+// commit.
 TEST(Checker, SaysWhatTheGoldenFilesSay) {
   const std::filesystem::path folder = "src/language/golden";
   std::set<Code> unseen;
@@ -247,8 +263,10 @@ TEST(Checker, SaysWhatTheGoldenFilesSay) {
     };
     const Source source(entry.path().filename().string(), read(entry.path()));
     const bool is_strict = source.name().starts_with("strict_");
-    const std::string said =
-        all_messages(source, check(source, is_strict ? Strictness::kStrict : Strictness::kLenient));
+    const Strictness strictness = is_strict ? Strictness::kStrict : Strictness::kLenient;
+    const bool has_robot = source.name().starts_with("live_");
+    const std::string said = all_messages(
+        source, has_robot ? check_against(example_robot(), source) : check(source, strictness));
     for (const Explanation& e : explanations()) {
       if (said.find("[" + to_string(e.code) + "]") != std::string::npos) unseen.erase(e.code);
     }
@@ -278,6 +296,12 @@ TEST(Checker, RefusesRunTimeValuesWhereConstantsBelong) {
             std::vector<std::string>{"R020"});
 }
 
+TEST(Checker, SeesCirclesWhateverTheComponentsAreCalled) {
+  EXPECT_EQ(codes_of("COMPONENT a NODE /a\nCOMPONENT b NODE /b\n"
+                     "DEPENDENCY /a ON b\nDEPENDENCY /b ON a\n"),
+            std::vector<std::string>{"R053"});
+}
+
 TEST(Checker, SurvivesHostileNesting) {
   for (const char* open : {"(", "!", "-", "1 ? ", "abs(", "1 + (", "x && !("}) {
     std::string expression;
@@ -287,6 +311,9 @@ TEST(Checker, SurvivesHostileNesting) {
   std::string chain = "x";
   for (int i = 0; i < 100000; ++i) chain += " + x";
   EXPECT_FALSE(codes_of("RULE R\nPOLICIES ERROR\nTRIGGER " + chain + " > 1\n").empty());
+  std::string choices = "x";  // of a type that nothing tells
+  for (int i = 0; i < 40; ++i) choices = "a ? (" + choices + ") : y";
+  EXPECT_FALSE(codes_of("RULE R\nPOLICIES ERROR\nTRIGGER (" + choices + ") == z\n").empty());
 }
 
 }  // namespace

@@ -75,10 +75,7 @@ void collect_thresholds(const Typed& trigger, std::vector<Input>& inputs) {
       const Typed& there = trigger.children[static_cast<std::size_t>(1 - side)];
       if (!is_plain_input(here) || reads_inputs(there)) continue;
       const Typed& leaf = here.op == Op::kInput ? here : here.children[0];
-      auto& known = inputs[leaf.input.index].thresholds;
-      const double value = threshold(there);
-      const auto place = std::lower_bound(known.begin(), known.end(), value);
-      if (place == known.end() || *place != value) known.insert(place, value);
+      inputs[leaf.input.index].thresholds.push_back(threshold(there));
       return;
     }
   }

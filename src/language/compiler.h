@@ -15,8 +15,8 @@ std::size_t stack_need(const Typed& expression);
 
 bool reads_inputs(const Typed& expression);
 
-// Enters into `inputs` the constants that `trigger` compares its inputs with, and which inputs it
-// uses in other ways.
+// Enters into `inputs` the constants that `trigger` compares its inputs with, in any order and also
+// twice, and which inputs it uses in other ways.
 void collect_thresholds(const Typed& trigger, std::vector<Input>& inputs);
 
 }  // namespace culprit

@@ -189,8 +189,7 @@ void check_conditions(const RuleConditions& rule, const RuleSet& rules,
          f.is_by_range ? "correct the condition, or the RANGE if the value can be another"
                        : "correct the condition, or remove it"});
   }
-  const bool never_fires = is_never(true, rule.trigger, rules);
-  if (never_fires) return;  // with which every WHEN would be at odds
+  if (rule.never_fires) return;  // with which every WHEN would be at odds
   for (const RuleConditions::When& when : rule.whens) check_when(rule, when, rules, diagnostics);
 }
 

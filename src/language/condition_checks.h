@@ -20,7 +20,9 @@ struct RuleConditions {
   const syntax::Rule* written = nullptr;
   RuleId rule;
   Typed trigger;
-  std::vector<When> whens;  // of the strategies that have one
+  bool never_fires = false;                         // certainly
+  std::vector<When> whens;                          // of the strategies that have one
+  std::vector<const syntax::Strategy*> strategies;  // as written, in the order of the rule's
 };
 
 // Triggers, or parts of one, that are always or never true; WHEN conditions that are never true, or

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <unordered_map>
 
 #include "language/compiler.h"
 #include "language/evaluate.h"
@@ -91,25 +92,48 @@ std::optional<Effect> effect_of(const Adaptation& a) {
   }
 }
 
+// An adaptation that leaves something behind.
 struct Doing {
   const RuleConditions* rule;
   StrategyId strategy;
+  ComponentId component;
+  Span span;
   Effect effect;
 };
 
-bool take_turns(const Doing& a, const Doing& b, const RuleSet& rules) {
-  const Typed& one = a.rule->trigger;
-  const Typed& other = b.rule->trigger;
-  return is_possible(one, true, other, true, rules) ||
-         !is_possible(one, false, other, false, rules);
+std::vector<Doing> doings_of(const RuleConditions& rule, const RuleSet& rules) {
+  std::vector<Doing> doings;
+  for (std::size_t s = 0; s < rule.strategies.size(); ++s) {
+    const StrategyId strategy = rules[rule.rule].strategies[s];
+    const auto& adaptations = rules[strategy].adaptations;
+    for (std::size_t i = 0; i < adaptations.size(); ++i) {
+      auto effect = effect_of(adaptations[i]);
+      if (!effect) continue;
+      const Span span = rule.strategies[s]->adaptations[i].span;
+      doings.push_back({&rule, strategy, adaptations[i].component, span, std::move(*effect)});
+    }
+  }
+  return doings;
 }
 
-Span span_of(const Doing& doing, std::size_t adaptation, const RuleSet& rules) {
-  const auto& strategies = doing.rule->written->strategies;
-  const auto written = std::find_if(strategies.begin(), strategies.end(), [&](const auto& s) {
-    return s.name.text == rules[doing.strategy].name;
-  });
-  return written->adaptations[adaptation].span;
+bool take_turns(const RuleConditions& a, const RuleConditions& b, const RuleSet& rules) {
+  return is_possible(a.trigger, true, b.trigger, true, rules) ||
+         !is_possible(a.trigger, false, b.trigger, false, rules);
+}
+
+// @pre both are about the same thing
+bool undo_one_another(const Doing& a, const Doing& b, const RuleSet& rules) {
+  return a.rule != b.rule && a.effect.state != b.effect.state &&
+         take_turns(*a.rule, *b.rule, rules);
+}
+
+Diagnostic oscillation(const Doing& earlier, const Doing& later, const RuleSet& rules) {
+  return {Code::kOscillation, Severity::kWarning, later.span,
+          "rules '" + rules[earlier.rule->rule].name + "' and '" + rules[later.rule->rule].name +
+              "' can undo one another for ever: strategy '" + rules[earlier.strategy].name +
+              "' of the one " + earlier.effect.verb + ", this one " + later.effect.verb +
+              " (component '" + rules[later.component].name + "')",
+          "leave a band between their triggers, or make the two strategies of one rule"};
 }
 
 }  // namespace
@@ -119,8 +143,7 @@ void check_covered_rules(const std::vector<RuleConditions>& conditions, const Ru
   std::map<InputId, std::vector<const RuleConditions*>> by_input;
   for (const RuleConditions& rule : conditions) {
     const auto input = only_input(rule.trigger);
-    if (!input || is_never(true, rule.trigger, rules) || is_never(false, rule.trigger, rules))
-      continue;
+    if (!input || rule.never_fires || is_never(false, rule.trigger, rules)) continue;
     auto& group = by_input[*input];
     if (group.size() < kMaxCompared) group.push_back(&rule);
   }
@@ -145,35 +168,22 @@ void check_covered_rules(const std::vector<RuleConditions>& conditions, const Ru
 
 void check_oscillation(const std::vector<RuleConditions>& conditions, const RuleSet& rules,
                        std::vector<Diagnostic>& diagnostics) {
-  std::map<std::string, std::vector<Doing>> by_thing;
-  std::set<std::pair<RuleId, std::string>> reported;  // a rule and a thing: once is enough
-  const auto compare = [&](const Doing& later, std::size_t adaptation, const Adaptation& a) {
-    for (const Doing& earlier : by_thing[later.effect.thing]) {
-      const bool undoes = earlier.rule->rule != later.rule->rule &&
-                          earlier.effect.state != later.effect.state &&
-                          take_turns(earlier, later, rules);
-      if (!undoes || !reported.emplace(later.rule->rule, later.effect.thing).second) continue;
-      diagnostics.push_back(
-          {Code::kOscillation, Severity::kWarning, span_of(later, adaptation, rules),
-           "rules '" + rules[earlier.rule->rule].name + "' and '" + rules[later.rule->rule].name +
-               "' can undo one another for ever: strategy '" + rules[earlier.strategy].name +
-               "' of the one " + earlier.effect.verb + ", this one " + later.effect.verb +
-               " (component '" + rules[a.component].name + "')",
-           "leave a band between their triggers, or make the two strategies of one rule"});
-    }
-  };
+  std::unordered_map<std::string, std::vector<Doing>> by_thing;
   for (const RuleConditions& rule : conditions) {
-    if (is_never(true, rule.trigger, rules)) continue;
-    for (const StrategyId s : rules[rule.rule].strategies) {
-      const auto& adaptations = rules[s].adaptations;
-      for (std::size_t i = 0; i < adaptations.size(); ++i) {
-        auto effect = effect_of(adaptations[i]);
-        if (!effect) continue;
-        const Doing doing{&rule, s, std::move(*effect)};
-        compare(doing, i, adaptations[i]);
-        auto& known = by_thing[doing.effect.thing];
-        if (known.size() < kMaxCompared) known.push_back(doing);
+    if (rule.never_fires) continue;
+    std::set<std::string> reported;  // of one rule and one thing, once is enough
+    for (Doing& doing : doings_of(rule, rules)) {
+      auto& known = by_thing[doing.effect.thing];
+      if (!reported.contains(doing.effect.thing)) {
+        const auto earlier = std::find_if(known.begin(), known.end(), [&](const Doing& other) {
+          return undo_one_another(other, doing, rules);
+        });
+        if (earlier != known.end()) {
+          diagnostics.push_back(oscillation(*earlier, doing, rules));
+          reported.insert(doing.effect.thing);
+        }
       }
+      if (known.size() < kMaxCompared) known.push_back(std::move(doing));
     }
   }
 }

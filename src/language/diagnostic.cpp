@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 
 namespace culprit {
 namespace {
 
 // Damerau-Levenshtein with adjacent transpositions: a typo is mostly one slip of the fingers.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
+// Some number above `limit` if the distance is more than that.
+std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t limit) {
   std::vector<std::size_t> before(b.size() + 1), row(b.size() + 1), next(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -22,8 +26,27 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
     before.swap(row);
     row.swap(next);
+    // No later row is below both of the last two.
+    const auto lowest = [](const auto& r) { return *std::min_element(r.begin(), r.end()); };
+    if (lowest(row) > limit && lowest(before) > limit) return limit + 1;
   }
   return row[b.size()];
+}
+
+// A bit for each letter that occurs, other characters folded onto them.
+std::uint64_t letters(std::string_view text) {
+  std::uint64_t mask = 0;
+  for (const char c : text) mask |= std::uint64_t{1} << (static_cast<unsigned char>(c) & 63);
+  return mask;
+}
+
+// Below this no edit distance can be: each letter that only one of them has takes an edit.
+std::size_t least_distance(std::string_view a, std::string_view b) {
+  const std::uint64_t in_a = letters(a);
+  const std::uint64_t in_b = letters(b);
+  const auto unshared = std::max(std::popcount(in_a & ~in_b), std::popcount(in_b & ~in_a));
+  const std::size_t longer = std::max(a.size(), b.size());
+  return std::max(static_cast<std::size_t>(unshared), longer - std::min(a.size(), b.size()));
 }
 
 struct Paint {
@@ -58,6 +81,13 @@ std::string to_string(Code code) {
   return text;
 }
 
+std::string title_of(const Edit& edit, const Source& source) {
+  const std::string before = "'" + std::string(source.text(edit.span)) + "'";
+  const std::string after = "'" + edit.text + "'";
+  if (edit.span.begin == edit.span.end) return "insert " + after;
+  return edit.text.empty() ? "remove " + before : "change " + before + " to " + after;
+}
+
 std::string render(const Diagnostic& diagnostic, const Source& source, Colour colour) {
   const Paint& paint = colour == Colour::kOn ? kColoured : kPlain;
   const bool is_error = diagnostic.severity == Severity::kError;
@@ -88,20 +118,22 @@ std::string render(const Diagnostic& diagnostic, const Source& source, Colour co
 
 std::string closest(std::string_view name, const std::vector<std::string_view>& known) {
   std::string_view best;
-  std::size_t best_distance = 0;
+  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
   for (const std::string_view candidate : known) {
-    const std::size_t longer = std::max(name.size(), candidate.size());
-    // The difference in length is a lower bound of the distance: most names need no closer look.
-    const std::size_t shorter = std::min(name.size(), candidate.size());
-    if (3 * (longer - shorter) > longer) continue;
-    const std::size_t distance = edit_distance(name, candidate);
-    if (3 * distance > longer || distance == 0) continue;
-    if (best.empty() || distance < best_distance) {
-      best = candidate;
-      best_distance = distance;
-    }
+    const std::size_t limit =
+        std::min(std::max(name.size(), candidate.size()) / 3, best_distance - 1);
+    if (least_distance(name, candidate) > limit) continue;
+    const std::size_t distance = edit_distance(name, candidate, limit);
+    if (distance > limit || distance == 0) continue;
+    best = candidate;
+    best_distance = distance;
+    if (best_distance == 1) break;
   }
   return std::string(best);
+}
+
+std::optional<Edit> replacement(Span span, const std::string& near) {
+  return near.empty() ? std::nullopt : std::optional(Edit{span, near});
 }
 
 }  // namespace culprit

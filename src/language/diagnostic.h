@@ -1,6 +1,7 @@
 // What a check says about a rule file: one mistake, one diagnostic.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,12 @@ enum class Code : std::uint16_t {
   kWhenNeverTrue = 57,
   kWhenContradictsTrigger = 58,
   kNoLastResort = 59,
+  // What the robot at hand has not
+  kNoSuchNode = 60,
+  kNoSuchTopic = 61,
+  kNoSuchParameter = 62,
+  kNoSuchDiagnostic = 63,
+  kNoSuchService = 64,
 };
 
 // "R011"
@@ -62,13 +69,27 @@ std::string to_string(Code code);
 
 enum class Severity : std::uint8_t { kError, kWarning };
 
+// `text` instead of what stands at `span`; an empty span is the place of an insertion.
+struct Edit {
+  Span span;
+  std::string text;
+  bool operator==(const Edit&) const = default;
+};
+
 struct Diagnostic {
   Code code;
   Severity severity = Severity::kError;
   Span span;
   std::string cause;   // one line: what is wrong
   std::string remedy;  // one line: what to do about it; may be empty where the cause says it
+  // The remedy for programs: after this edit the diagnostic is gone. Only where it is one exact
+  // edit, and where nothing else is as likely to be meant.
+  std::optional<Edit> fix = std::nullopt;
+  bool operator==(const Diagnostic&) const = default;
 };
+
+// What the edit does, for people who choose it: "change 'robot' to 'ROBOT'".
+std::string title_of(const Edit& edit, const Source& source);
 
 enum class Colour : std::uint8_t { kOff, kOn };
 
@@ -79,5 +100,8 @@ std::string render(const Diagnostic& diagnostic, const Source& source,
 // The known name that `name` was probably meant to be; empty if none is near.
 // Near is an edit distance of at most a third of the longer name.
 std::string closest(std::string_view name, const std::vector<std::string_view>& known);
+
+// The edit that puts the name found by closest() in its place; nothing if none was found.
+std::optional<Edit> replacement(Span span, const std::string& near);
 
 }  // namespace culprit

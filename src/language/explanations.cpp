@@ -18,6 +18,10 @@ std::string rule_with(std::string_view trigger, std::string_view policies = "ERR
   return out;
 }
 
+constexpr const char* kExampleRobot =
+    "the managed node /robot/camera with a parameter `exposure` and a routine `recalibrate`, which "
+    "publishes /robot/image and the diagnostic status `camera` with the key `entropy`.";
+
 std::vector<Explanation> syntax_explanations() {
   return {
       {Code::kUnknownStatement, "a line begins with a word that is no statement",
@@ -280,6 +284,54 @@ std::vector<Explanation> meaning_explanations() {
   };
 }
 
+std::vector<Explanation> robot_explanations() {
+  const auto against_robot = [](Code code, std::string title, std::string why, std::string wrong,
+                                std::string right) {
+    return Explanation{code,
+                       std::move(title),
+                       std::move(why) +
+                           " Found by `culprit check --robot`. The robot of the "
+                           "example: " +
+                           kExampleRobot,
+                       std::move(wrong),
+                       std::move(right),
+                       Strictness::kLenient,
+                       true};
+  };
+  const std::string camera = "COMPONENT camera NODE /robot/camera\n";
+  return {
+      against_robot(Code::kNoSuchNode, "no node of the robot is this component",
+                    "The graph of the robot was read, and it holds no node of this name: it is not "
+                    "started, it died, or its name or namespace is another one. Nothing can be "
+                    "observed of the component and nothing asked of it.",
+                    "COMPONENT camera NODE /camera\n", camera),
+      against_robot(Code::kNoSuchTopic, "nobody publishes this topic",
+                    "Its rate would be 0, its age and its fields unknown for ever; a node that is "
+                    "told to read it would hear nothing.",
+                    rule_with("rate(/robot/imag) < 1"), rule_with("rate(/robot/image) < 1")),
+      against_robot(
+          Code::kNoSuchParameter, "the node has no such parameter",
+          "The node listed its parameters. Reading another one stays unknown, and setting it is "
+          "refused, unless the node allows undeclared parameters.",
+          camera + rule_with("parameter(camera, exposre) > 1"),
+          camera + rule_with("parameter(camera, exposure) > 1")),
+      against_robot(Code::kNoSuchDiagnostic, "no such diagnostic was heard",
+                    "Nothing on /diagnostics carried this status or key while culprit listened, so "
+                    "the signal would stay unknown and its rule quiet. What is published seldom "
+                    "needs a longer --wait.",
+                    "SIGNAL entropy DIAGNOSTIC camera KEY entropi\n",
+                    "SIGNAL entropy DIAGNOSTIC camera KEY entropy\n"),
+      against_robot(Code::kNoSuchService, "nobody offers the service that this needs",
+                    "A call needs its service, a lifecycle adaptation the node's change_state, a "
+                    "mode its change_mode, a parameter its set_parameters. Without it the "
+                    "adaptation is unreachable whenever it is tried.",
+                    rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY mode 50 10",
+                              "ADAPTATION camera change_mode night 5"),
+                    rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY calibrate 50 10",
+                              "ADAPTATION camera call ~/recalibrate 5")),
+  };
+}
+
 std::string indented(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -309,7 +361,7 @@ const std::vector<Explanation>& explanations() {
   static const std::vector<Explanation> kAll = [] {
     std::vector<Explanation> all;
     for (const auto& part : {syntax_explanations(), name_explanations(), value_explanations(),
-                             rule_explanations(), meaning_explanations()}) {
+                             rule_explanations(), meaning_explanations(), robot_explanations()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     std::sort(all.begin(), all.end(),
@@ -317,6 +369,24 @@ const std::vector<Explanation>& explanations() {
     return all;
   }();
   return kAll;
+}
+
+const LiveInventory& example_robot() {
+  static const LiveInventory kRobot = [] {
+    LiveInventory robot;
+    LiveInventory::Node& camera = robot.nodes["/robot/camera"];
+    camera.parameters = {{"exposure", Value(0.5)}};
+    camera.lifecycle = "active";
+    robot.topics["/robot/image"] = {"sensor_msgs/msg/Image", true, {}, {}};
+    robot.topics["/diagnostics"] = {"diagnostic_msgs/msg/DiagnosticArray", true, {}, {}};
+    robot.services = {{"/robot/camera/change_state", "lifecycle_msgs/srv/ChangeState"},
+                      {"/robot/camera/get_state", "lifecycle_msgs/srv/GetState"},
+                      {"/robot/camera/set_parameters", "rcl_interfaces/srv/SetParameters"},
+                      {"/robot/camera/recalibrate", "std_srvs/srv/Trigger"}};
+    robot.diagnostics = {{"camera", "camera_0", 0, {{"entropy", "0.03"}}}};
+    return robot;
+  }();
+  return kRobot;
 }
 
 const Explanation* find_explanation(std::string_view code) {

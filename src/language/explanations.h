@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "language/diagnostic.h"
+#include "language/live_inventory.h"
 #include "language/symbols.h"
 
 namespace culprit {
@@ -18,7 +19,11 @@ struct Explanation {
   std::string wrong;
   std::string right;
   Strictness strictness = Strictness::kLenient;  // of the check that finds it
+  bool needs_robot = false;                      // found by checking against example_robot()
 };
+
+// A robot with one camera.
+const LiveInventory& example_robot();
 
 // One for each code, ascending.
 const std::vector<Explanation>& explanations();

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "language/checker.h"
+#include "language/live_checks.h"
 
 namespace culprit {
 namespace {
@@ -52,6 +52,11 @@ bool exists(Code code) {
     case Code::kWhenNeverTrue:
     case Code::kWhenContradictsTrigger:
     case Code::kNoLastResort:
+    case Code::kNoSuchNode:
+    case Code::kNoSuchTopic:
+    case Code::kNoSuchParameter:
+    case Code::kNoSuchDiagnostic:
+    case Code::kNoSuchService:
       return true;
   }
   return false;
@@ -59,8 +64,10 @@ bool exists(Code code) {
 
 std::vector<std::string> codes_of(const Explanation& e, const std::string& text) {
   std::vector<std::string> codes;
-  for (const Diagnostic& d : check(Source("example.rules", text), e.strictness).diagnostics)
-    codes.push_back(to_string(d.code));
+  const Source source("example.rules", text);
+  const Checked checked = e.needs_robot ? check_against(example_robot(), source, e.strictness)
+                                        : check(source, e.strictness);
+  for (const Diagnostic& d : checked.diagnostics) codes.push_back(to_string(d.code));
   return codes;
 }
 

@@ -34,6 +34,13 @@ const BinaryOperator* binary_operator(const Token& token) {
   return nullptr;
 }
 
+// Moved one by one: a list in braces would copy whole trees.
+template <class... Children>
+void adopt(Expression& parent, Children... children) {
+  parent.children.reserve(sizeof...(children));
+  (parent.children.push_back(std::move(children)), ...);
+}
+
 class ExpressionParser {
  public:
   ExpressionParser(Scanner& scanner, std::vector<Diagnostic>& diagnostics)
@@ -51,7 +58,7 @@ class ExpressionParser {
     Expression e;
     e.kind = Kind::kConditional;
     e.span = {condition->span.begin, no->span.end};
-    e.children = {std::move(*condition), std::move(*yes), std::move(*no)};
+    adopt(e, std::move(*condition), std::move(*yes), std::move(*no));
     return e;
   }
 
@@ -72,7 +79,7 @@ class ExpressionParser {
       e.kind = Kind::kBinary;
       e.op = found->op;
       e.span = {left->span.begin, right->span.end};
-      e.children = {std::move(*left), std::move(*right)};
+      adopt(e, std::move(*left), std::move(*right));
       left = std::move(e);
     }
     return left;
@@ -89,7 +96,7 @@ class ExpressionParser {
     e.kind = Kind::kUnary;
     e.op = token.is("!") ? Operator::kNot : Operator::kNegate;
     e.span = {token.span.begin, operand->span.end};
-    e.children = {std::move(*operand)};
+    adopt(e, std::move(*operand));
     return e;
   }
 
@@ -110,7 +117,8 @@ class ExpressionParser {
         }
         if (token.text == "not" && continues(scanner_.peek())) {
           return fail(Code::kSyntax, token.span, "'not' is no operator",
-                      "write ! for 'not', as in !docked");
+                      "write ! for 'not', as in !docked",
+                      Edit{{token.span.begin, scanner_.position()}, "!"});
         }
         e.kind = Kind::kName;
         e.name = {token.text, token.span};
@@ -119,7 +127,7 @@ class ExpressionParser {
         if (token.is("(")) return parenthesis(token, depth);
         break;
       case Token::Kind::kBad:
-        return fail(Code::kBadToken, token.span, token.text, "");
+        return fail(Code::kBadToken, token.span, token.text, "", token.fix);
       case Token::Kind::kEnd:
         break;
     }
@@ -138,8 +146,7 @@ class ExpressionParser {
     auto inner = conditional(depth + 1);
     if (!inner) return std::nullopt;
     const Token close = scanner_.next();
-    if (!close.is(")"))
-      return fail(Code::kSyntax, open.span, "this '(' is never closed", "add a ')'");
+    if (!close.is(")")) return not_closed(open, close.kind, inner->span.end);
     inner->span = {open.span.begin, close.span.end};
     return inner;
   }
@@ -153,7 +160,8 @@ class ExpressionParser {
           near.empty()
               ? "known functions: rate age phi alive lifecycle parameter level mean min max stddev "
                 "changed abs pow sqrt"
-              : "did you mean '" + near + "'?");
+              : "did you mean '" + near + "'?",
+          replacement(e.name.span, near));
     }
     if (depth >= kMaxNesting) return too_deep();
     e.kind = Kind::kCall;
@@ -163,8 +171,7 @@ class ExpressionParser {
       auto argument = this->argument(*function, e.children.size(), depth);
       if (!argument) return std::nullopt;
       e.children.push_back(std::move(*argument));
-      if (scanner_.at_end())
-        return fail(Code::kSyntax, open.span, "this '(' is never closed", "add a ')'");
+      if (scanner_.at_end()) return not_closed(open, Token::Kind::kEnd, e.children.back().span.end);
     }
     e.span.end = scanner_.next().span.end;
     if (e.children.size() < function->min_arguments ||
@@ -197,13 +204,22 @@ class ExpressionParser {
     return false;
   }
 
+  // `next` is what stands where the ')' was missed, `end` where it would have come.
+  std::nullopt_t not_closed(const Token& open, Token::Kind next, std::uint32_t end) {
+    std::optional<Edit> fix;
+    if (next == Token::Kind::kEnd) fix = {{end, end}, ")"};
+    return fail(Code::kSyntax, open.span, "this '(' is never closed", "add a ')'", std::move(fix));
+  }
+
   std::nullopt_t too_deep() {
     return fail(Code::kTooDeep, scanner_.rest(), "this expression is nested too deeply",
                 "split it into several rules, or name parts of it with CONST");
   }
 
-  std::nullopt_t fail(Code code, Span span, std::string cause, std::string remedy) {
-    diagnostics_.push_back({code, Severity::kError, span, std::move(cause), std::move(remedy)});
+  std::nullopt_t fail(Code code, Span span, std::string cause, std::string remedy,
+                      std::optional<Edit> fix = {}) {
+    diagnostics_.push_back(
+        {code, Severity::kError, span, std::move(cause), std::move(remedy), std::move(fix)});
     return std::nullopt;
   }
 

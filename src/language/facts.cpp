@@ -74,8 +74,24 @@ Interval all_but(const Interval& single, const Interval& of) {
 }  // namespace
 
 ValueSet Facts::values_of(InputId input) const {
-  const auto known = values_.find(input);
-  return known != values_.end() ? known->second : first_values((*rules_)[input], *rules_);
+  const ValueSet* known = find(input);
+  return known != nullptr ? *known : first_values((*rules_)[input], *rules_);
+}
+
+void Facts::know(InputId input, ValueSet set) {
+  for (auto& [known, values] : values_) {
+    if (known != input) continue;
+    values = std::move(set);
+    return;
+  }
+  values_.emplace_back(input, std::move(set));
+}
+
+const ValueSet* Facts::find(InputId input) const {
+  for (const auto& [known, values] : values_) {
+    if (known == input) return &values;
+  }
+  return nullptr;
 }
 
 bool Facts::assume(const Typed& e, bool truth) {
@@ -120,15 +136,8 @@ bool Facts::either(First first, Second second) {
 }
 
 void Facts::join(const Facts& other) {
-  for (auto known = values_.begin(); known != values_.end();) {
-    const auto theirs = other.values_.find(known->first);
-    if (theirs == other.values_.end()) {
-      known = values_.erase(known);
-    } else {
-      known->second = hull(known->second, theirs->second);
-      ++known;
-    }
-  }
+  std::erase_if(values_, [&](const auto& known) { return other.find(known.first) == nullptr; });
+  for (auto& [input, values] : values_) values = hull(values, *other.find(input));
 }
 
 bool Facts::compare(const Typed& e, bool truth) {
@@ -203,7 +212,7 @@ bool Facts::narrow(const Typed& e, const ValueSet& set) {
   const bool is_whole = leaf.type == Type::kInt || leaf.type == Type::kDuration;
   if (is_whole) narrowed = whole_numbers(std::get<Interval>(narrowed));
   const bool possible = !is_empty(narrowed);
-  values_[leaf.input] = std::move(narrowed);
+  know(leaf.input, std::move(narrowed));
   return possible;
 }
 

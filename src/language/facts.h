@@ -9,7 +9,8 @@
 // for which an expression is known to be true or false.
 #pragma once
 
-#include <map>
+#include <utility>
+#include <vector>
 
 #include "language/rule_set.h"
 #include "language/typing.h"
@@ -28,7 +29,7 @@ class Facts {
 
   ValueSet values_of(InputId input) const;
   // `set` holds all values that the input has from now on.
-  void know(InputId input, ValueSet set) { values_[input] = std::move(set); }
+  void know(InputId input, ValueSet set);
 
  private:
   // A comparison as "left before right", "left not after right" or "left equals right".
@@ -45,8 +46,11 @@ class Facts {
   ValueSet values_of(const Typed& expression) const;
   Interval interval_of(const Typed& expression) const;
 
+  const ValueSet* find(InputId input) const;  // null: not more is known than at first
+
   const RuleSet* rules_;
-  std::map<InputId, ValueSet> values_;  // of inputs of which more is known than at first
+  // Of inputs of which more is known than at first. They are few, for expressions are small.
+  std::vector<std::pair<InputId, ValueSet>> values_;
 };
 
 // Expressions larger than this are not reasoned about, so that checking a hostile file takes time

@@ -1,3 +1,5 @@
+#include <variant>
+
 #include "language/functions.h"
 #include "language/typing.h"
 
@@ -14,11 +16,16 @@ Type type_of_literal(const syntax::Literal& literal) {
   return kTypes[literal.index()];
 }
 
+// What an expression has told of its type so far: nothing, the type, or whose type it is.
+using Inferred = std::variant<std::monostate, Type, TypeClasses::Variable>;
+
+bool is_duration(const Inferred& inferred) { return inferred == Inferred(Type::kDuration); }
+
 class Inference {
  public:
-  Inference(Symbols& symbols, bool& learned) : symbols_(symbols), learned_(learned) {}
+  explicit Inference(Symbols& symbols) : symbols_(symbols) {}
 
-  std::optional<Type> infer(const Expression& e, std::optional<Type> wanted) {
+  Inferred infer(const Expression& e, std::optional<Type> wanted) {
     switch (e.kind) {
       case Kind::kLiteral:
         return type_of_literal(e.literal);
@@ -31,34 +38,51 @@ class Inference {
         return binary(e);
       case Kind::kConditional: {
         infer(e.children[0], Type::kBool);
-        const auto yes = infer(e.children[1], wanted);
-        const auto no = infer(e.children[2], yes ? yes : wanted);
-        return yes ? yes : infer(e.children[1], no);
+        const Inferred yes = infer(e.children[1], wanted);
+        const Inferred no = infer(e.children[2], wanted);
+        return alike(yes, no);
       }
       case Kind::kCall:
         return call(e, wanted);
     }
-    return std::nullopt;
+    return {};
   }
 
  private:
-  std::optional<Type> name(const Expression& e, std::optional<Type> wanted) {
+  Inferred name(const Expression& e, std::optional<Type> wanted) {
     if (const auto* constant = symbols_.constant(e.name.text)) {
-      return constant->broken ? wanted : type_of_literal(constant->value);
+      if (!constant->broken) return type_of_literal(constant->value);
+      return wanted ? Inferred(*wanted) : Inferred();
     }
-    return variable(symbols_.type_of(symbols_.signal(e.name)), wanted);
+    return variable(symbols_.type_variable(symbols_.signal(e.name)), wanted);
   }
 
-  // A signal or a parameter takes the type that is wanted of it; all numbers are doubles, and none
-  // are durations.
-  std::optional<Type> variable(std::optional<Type>& type, std::optional<Type> wanted) {
-    if (type || !wanted || *wanted == Type::kDuration) return type;
-    type = *wanted == Type::kInt ? Type::kDouble : *wanted;
-    learned_ = true;
-    return type;
+  // A signal or a parameter takes the type that is wanted of it.
+  Inferred variable(TypeClasses::Variable v, std::optional<Type> wanted) {
+    if (wanted) symbols_.types().learn(v, *wanted);
+    const auto type = symbols_.types().type_of(v);
+    return type ? Inferred(*type) : Inferred(v);
   }
 
-  std::optional<Type> binary(const Expression& e) {
+  // Both are of one type, which is what this gives as far as it is known.
+  Inferred alike(const Inferred& a, const Inferred& b) {
+    const auto* x = std::get_if<TypeClasses::Variable>(&a);
+    const auto* y = std::get_if<TypeClasses::Variable>(&b);
+    if (x != nullptr && y != nullptr) {
+      symbols_.types().unify(*x, *y);
+      return a;
+    }
+    if (x != nullptr) return taught(*x, b);
+    if (y != nullptr) return taught(*y, a);
+    return std::holds_alternative<Type>(a) ? a : b;
+  }
+
+  Inferred taught(TypeClasses::Variable v, const Inferred& by) {
+    const Type* type = std::get_if<Type>(&by);
+    return variable(v, type != nullptr ? std::optional(*type) : std::nullopt);
+  }
+
+  Inferred binary(const Expression& e) {
     const Expression& left = e.children[0];
     const Expression& right = e.children[1];
     switch (e.op) {
@@ -73,23 +97,21 @@ class Inference {
       case Operator::kLessEqual:
       case Operator::kGreater:
       case Operator::kGreaterEqual: {
-        const auto type = infer(left, std::nullopt);
-        const auto other = infer(right, type);
-        if (!type) infer(left, other);
+        const Inferred a = infer(left, std::nullopt);
+        alike(a, infer(right, std::nullopt));
         return Type::kBool;
       }
       default:
         break;
     }
-    const auto a = infer(left, Type::kDouble);
-    const auto b = infer(right, Type::kDouble);
-    const bool durations = a == Type::kDuration && b == Type::kDuration;
-    if (e.op == Operator::kDivide && durations) return Type::kDouble;
-    if (a == Type::kDuration || b == Type::kDuration) return Type::kDuration;
-    return a == Type::kInt && b == Type::kInt ? Type::kInt : Type::kDouble;
+    const Inferred a = infer(left, Type::kDouble);
+    const Inferred b = infer(right, Type::kDouble);
+    if (e.op == Operator::kDivide && is_duration(a) && is_duration(b)) return Type::kDouble;
+    if (is_duration(a) || is_duration(b)) return Type::kDuration;
+    return a == Inferred(Type::kInt) && b == a ? Type::kInt : Type::kDouble;
   }
 
-  std::optional<Type> call(const Expression& e, std::optional<Type> wanted) {
+  Inferred call(const Expression& e, std::optional<Type> wanted) {
     const FunctionInfo* function = find_function(e.name.text);
     switch (function->function) {
       case Function::kRate:
@@ -105,8 +127,8 @@ class Inference {
         return Type::kInt;
       case Function::kParameter: {
         const ComponentId component = symbols_.component(e.children[0].name);
-        return variable(symbols_.type_of(symbols_.parameter(component, e.children[1].name.text)),
-                        wanted);
+        const ParameterId parameter = symbols_.parameter(component, e.children[1].name.text);
+        return variable(symbols_.type_variable(parameter), wanted);
       }
       case Function::kChanged:
         infer(e.children[0], std::nullopt);
@@ -120,8 +142,8 @@ class Inference {
         return infer(e.children[0], Type::kDouble);
       case Function::kMin:
       case Function::kMax: {
-        const auto a = infer(e.children[0], Type::kDouble);
-        const auto b = infer(e.children[1], Type::kDouble);
+        const Inferred a = infer(e.children[0], Type::kDouble);
+        const Inferred b = infer(e.children[1], Type::kDouble);
         return a == b ? a : Type::kDouble;
       }
       case Function::kPow:
@@ -129,18 +151,16 @@ class Inference {
         for (const Expression& child : e.children) infer(child, Type::kDouble);
         return Type::kDouble;
     }
-    return std::nullopt;
+    return {};
   }
 
   Symbols& symbols_;
-  bool& learned_;
 };
 
 }  // namespace
 
-std::optional<Type> infer_types(const Expression& expression, std::optional<Type> wanted,
-                                Symbols& symbols, bool& learned) {
-  return Inference(symbols, learned).infer(expression, wanted);
+void infer_types(const Expression& expression, std::optional<Type> wanted, Symbols& symbols) {
+  Inference(symbols).infer(expression, wanted);
 }
 
 }  // namespace culprit

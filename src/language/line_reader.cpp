@@ -32,13 +32,22 @@ bool is_ros_name(std::string_view name) {
   return true;
 }
 
+// `word` in lower case, or with a slip of the fingers.
+bool is_nearly(const Token& token, std::string_view word) {
+  std::string upper = token.text;
+  std::transform(upper.begin(), upper.end(), upper.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
+  return token.kind == Token::Kind::kIdentifier &&
+         (upper == word || !closest(upper, {word}).empty());
+}
+
 }  // namespace
 
 std::span<const std::string_view> reserved_words() { return kReservedWords; }
 
 std::optional<Name> LineReader::identifier(Scanner& s, std::string_view what) {
-  const Token token = s.next();
-  if (token.kind == Token::Kind::kIdentifier) return Name{token.text, token.span};
+  Token token = s.next();
+  if (token.kind == Token::Kind::kIdentifier) return Name{std::move(token.text), token.span};
   fail_token(token, what, "a name is made of letters, digits and '_', and begins with no digit");
   return std::nullopt;
 }
@@ -79,11 +88,14 @@ std::optional<Duration> LineReader::duration(Scanner& s, std::string_view what) 
   const Token token = s.next();
   if (token.kind == Token::Kind::kDuration) return std::get<Duration>(token.literal);
   std::string remedy = "a duration is a number and its unit, as in 500ms or 2s";
+  std::optional<Edit> fix;
   const Token unit = s.peek();
   const std::string one_word = std::string(source_.text(token.span)) + unit.text;
-  if (unit.kind == Token::Kind::kIdentifier && parse_duration(one_word))
+  if (unit.kind == Token::Kind::kIdentifier && parse_duration(one_word)) {
     remedy = "write " + one_word + ", without the blank";
-  fail_token(token, what, std::move(remedy));
+    fix = {{token.span.begin, unit.span.end}, one_word};
+  }
+  fail_token(token, what, std::move(remedy), std::move(fix));
   return std::nullopt;
 }
 
@@ -104,9 +116,14 @@ std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view wh
     return syntax::Number{std::get<double>(token.literal), false, token.span};
   }
   std::string remedy;
+  std::optional<Edit> fix;
   if (token.kind == Token::Kind::kEnd) remedy = "a number is missing at the end of this line";
-  if (token.is("%")) remedy = "the number counts in percent already: write it without the %";
-  fail_token(token, what, std::move(remedy));
+  if (token.is("%")) {
+    remedy = "the number counts in percent already: write it without the %";
+    const bool separates = s.position() == token.span.end;  // the next number follows at once
+    fix = {token.span, separates ? " " : ""};
+  }
+  fail_token(token, what, std::move(remedy), std::move(fix));
   return std::nullopt;
 }
 
@@ -127,7 +144,10 @@ std::optional<double> LineReader::signed_number(Scanner& s) {
 
 bool LineReader::expect_word(Scanner& s, std::string_view word) {
   const Token token = s.next();
-  return token.text == word || fail_token(token, word, "");
+  if (token.text == word) return true;
+  std::optional<Edit> fix;
+  if (is_nearly(token, word)) fix = {token.span, std::string(word)};
+  return fail_token(token, word, "", std::move(fix));
 }
 
 bool LineReader::expect_symbol(Scanner& s, std::string_view symbol) {
@@ -135,24 +155,28 @@ bool LineReader::expect_symbol(Scanner& s, std::string_view symbol) {
   return token.is(symbol) || fail_token(token, "'" + std::string(symbol) + "'", "");
 }
 
-bool LineReader::fail(Code code, Span span, std::string cause, std::string remedy) {
-  diagnostics_.push_back({code, Severity::kError, span, std::move(cause), std::move(remedy)});
+bool LineReader::fail(Code code, Span span, std::string cause, std::string remedy,
+                      std::optional<Edit> fix) {
+  diagnostics_.push_back(
+      {code, Severity::kError, span, std::move(cause), std::move(remedy), std::move(fix)});
   return false;
 }
 
-bool LineReader::fail_token(const Token& token, std::string_view expected, std::string remedy) {
+bool LineReader::fail_token(const Token& token, std::string_view expected, std::string remedy,
+                            std::optional<Edit> fix) {
   if (token.kind == Token::Kind::kBad)
-    return fail(Code::kBadToken, token.span, token.text, std::move(remedy));
+    return fail(Code::kBadToken, token.span, token.text, std::move(remedy), token.fix);
   const std::string got = token.kind == Token::Kind::kEnd
                               ? ""
                               : ", not '" + std::string(source_.text(token.span)) + "'";
   return fail(Code::kSyntax, token.span, "expected " + std::string(expected) + got,
-              std::move(remedy));
+              std::move(remedy), std::move(fix));
 }
 
 bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_view> known,
                                    std::string remedy, Code code) {
-  if (token.kind == Token::Kind::kBad) return fail(Code::kBadToken, token.span, token.text, "");
+  if (token.kind == Token::Kind::kBad)
+    return fail(Code::kBadToken, token.span, token.text, "", token.fix);
   if (std::find(known.begin(), known.end(), token.text) != known.end()) {
     return fail(code, token.span, token.text + " is given twice", "keep one of them");
   }
@@ -163,20 +187,30 @@ bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_v
   const std::string got = token.kind == Token::Kind::kEnd
                               ? ""
                               : ", not '" + std::string(source_.text(token.span)) + "'";
-  return fail(code, token.span, "expected one of " + list + got, std::move(remedy));
+  return fail(code, token.span, "expected one of " + list + got, std::move(remedy),
+              replacement(token.span, near));
 }
 
 bool LineReader::line_ends(Scanner& s) {
   const Token token = s.peek();
   if (token.kind == Token::Kind::kEnd) return true;
-  if (token.kind == Token::Kind::kBad) return fail(Code::kBadToken, token.span, token.text, "");
-  std::string remedy = "remove it, or begin a comment with #";
-  if (token.is("=")) remedy = "write == to compare";
-  if (token.is(":")) remedy = "remove the ':'";
-  if (token.text == "and") remedy = "write && for 'and'";
-  if (token.text == "or") remedy = "write || for 'or'";
-  return fail(Code::kExtraText, s.rest(), "this text does not belong to the line",
-              std::move(remedy));
+  if (token.kind == Token::Kind::kBad)
+    return fail(Code::kBadToken, token.span, token.text, "", token.fix);
+  struct Slip {
+    std::string_view written, meant, remedy;
+  };
+  constexpr std::array<Slip, 4> kSlips = {{{"=", "==", "write == to compare"},
+                                           {":", "", "remove the ':'"},
+                                           {"and", "&&", "write && for 'and'"},
+                                           {"or", "||", "write || for 'or'"}}};
+  constexpr std::string_view kCause = "this text does not belong to the line";
+  for (const Slip& slip : kSlips) {
+    if (token.text == slip.written)
+      return fail(Code::kExtraText, s.rest(), std::string(kCause), std::string(slip.remedy),
+                  Edit{token.span, std::string(slip.meant)});
+  }
+  return fail(Code::kExtraText, s.rest(), std::string(kCause),
+              "remove it, or begin a comment with #");
 }
 
 std::optional<syntax::Expression> LineReader::expression(Scanner& s) {

@@ -49,8 +49,10 @@ class LineReader {
   bool line_ends(Scanner& s);
 
   // Complaints. All give false, for `return fail(...)`.
-  bool fail(Code code, Span span, std::string cause, std::string remedy);
-  bool fail_token(const Token& token, std::string_view expected, std::string remedy);
+  bool fail(Code code, Span span, std::string cause, std::string remedy,
+            std::optional<Edit> fix = {});
+  bool fail_token(const Token& token, std::string_view expected, std::string remedy,
+                  std::optional<Edit> fix = {});
   bool unexpected_clause(const Token& token, std::vector<std::string_view> known,
                          std::string remedy = "", Code code = Code::kSyntax);
 

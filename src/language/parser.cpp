@@ -41,7 +41,7 @@ class Parser {
     };
     const Token head = s.next();
     if (head.kind == Token::Kind::kBad) {
-      read_.fail(Code::kBadToken, head.span, head.text, "");
+      read_.fail(Code::kBadToken, head.span, head.text, "", head.fix);
       return broken();
     }
     for (const Statement& candidate : kStatements) {
@@ -69,7 +69,8 @@ class Parser {
         !near.empty()
             ? "did you mean " + near + "?"
             : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY IGNORE SIGNAL RULE "
-              "POLICIES TRIGGER STRATEGY ADAPTATION");
+              "POLICIES TRIGGER STRATEGY ADAPTATION",
+        replacement(head.span, near));
     broken();
     broken_declaration(near, s);
   }
@@ -94,7 +95,7 @@ class Parser {
     const Token token = s.peek();
     if (!token.is(":")) return false;
     read_.fail(Code::kExtraText, token.span, "no ':' stands behind the word of a statement",
-               "remove the ':'");
+               "remove the ':'", Edit{token.span, ""});
     return true;
   }
 
@@ -307,7 +308,7 @@ class Parser {
     if (level.text == "CRITICAL" || level.text == "FATAL") {
       // The nearest word would be NON_CRITICAL.
       return read_.fail(Code::kSyntax, level.span, "there is no criticality " + level.text,
-                        "did you mean ERROR? It is the highest");
+                        "did you mean ERROR? It is the highest", Edit{level.span, "ERROR"});
     }
     if (level.text == "ERROR" || level.text == "FAILURE") {
       policies.criticality = kError;
@@ -455,7 +456,8 @@ class Parser {
         near.empty()
             ? "known: set_parameter increase_parameter decrease_parameter change_communication "
               "activate deactivate restart redeploy start stop change_mode call"
-            : "did you mean '" + near + "'?");
+            : "did you mean '" + near + "'?",
+        replacement(word.span, near));
   }
 
   bool inside_rule(const std::string& keyword) {

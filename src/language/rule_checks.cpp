@@ -1,8 +1,11 @@
 #include "language/rule_checks.h"
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "language/evaluate.h"
 
@@ -50,20 +53,48 @@ const char* contradiction(const Adaptation& first, const Adaptation& second) {
   return nullptr;
 }
 
+// What a strategy has done to one component so far: of adaptations that contradict the same ones,
+// the first.
+class Done {
+ public:
+  // Why the earliest of those that contradict `next` does so; null if none does.
+  const char* contradiction_of(const Adaptation& next) const {
+    const Adaptation* earliest = nullptr;
+    const auto consider = [&](const Adaptation* a) {
+      if (a != nullptr && (earliest == nullptr || a < earliest) && contradiction(*a, next))
+        earliest = a;
+    };
+    for (const Adaptation* a : of_type_) consider(a);
+    const auto same_parameter = by_parameter_.find(next.subject.text);
+    if (sets_parameter(next) && same_parameter != by_parameter_.end())
+      consider(same_parameter->second);
+    return earliest == nullptr ? nullptr : contradiction(*earliest, next);
+  }
+
+  // They are parts of one vector, added in its order.
+  void add(const Adaptation& adaptation) {
+    const Adaptation*& first = of_type_[static_cast<std::size_t>(adaptation.type)];
+    if (first == nullptr) first = &adaptation;
+    if (sets_parameter(adaptation)) by_parameter_.emplace(adaptation.subject.text, &adaptation);
+  }
+
+ private:
+  std::array<const Adaptation*, static_cast<std::size_t>(kCall) + 1> of_type_{};
+  std::map<std::string_view, const Adaptation*> by_parameter_;
+};
+
 }  // namespace
 
 void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnostic>& diagnostics) {
-  const auto& all = strategy.adaptations;
-  for (std::size_t second = 1; second < all.size(); ++second) {
-    for (std::size_t first = 0; first < second; ++first) {
-      if (all[first].component.text != all[second].component.text) continue;
-      if (const char* why = contradiction(all[first], all[second])) {
-        diagnostics.push_back({Code::kContradiction, Severity::kError, all[second].span,
-                               "strategy '" + strategy.name.text + "' contradicts itself: " + why,
-                               "split it into two strategies, or remove one of the adaptations"});
-        break;
-      }
+  std::map<std::string_view, Done> done_by_component;
+  for (const syntax::Adaptation& adaptation : strategy.adaptations) {
+    Done& done = done_by_component[adaptation.component.text];
+    if (const char* why = done.contradiction_of(adaptation)) {
+      diagnostics.push_back({Code::kContradiction, Severity::kError, adaptation.span,
+                             "strategy '" + strategy.name.text + "' contradicts itself: " + why,
+                             "split it into two strategies, or remove one of the adaptations"});
     }
+    done.add(adaptation);
   }
 }
 
@@ -143,15 +174,14 @@ void check_circles(const syntax::File& file, const RuleSet& rules,
       }
     }
   }
+  std::size_t next = 0;  // the first of rules.dependencies that the line gave
   for (const syntax::Dependency& d : file.dependencies) {
-    const auto consumer = std::find_if(in_circle.begin(), in_circle.end(), [&](std::size_t c) {
-      return rules.components[c].name == d.consumer.text;
-    });
-    if (consumer == in_circle.end()) continue;
+    const ComponentId consumer = rules.dependencies[next].consumer;
+    next += d.producers.size();
+    if (in_circle.erase(consumer.index) == 0) continue;
     diagnostics.push_back({Code::kCircularDependency, Severity::kError, d.consumer.span,
                            "the declared dependencies of '" + d.consumer.text + "' lead back to it",
                            "remove the DEPENDENCY that closes the circle"});
-    in_circle.erase(consumer);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "language/scanner.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -7,16 +8,36 @@
 namespace culprit {
 namespace {
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+constexpr bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// A table, because most characters of a file are looked at here.
+constexpr auto kIsNameCharacter = [] {
+  std::array<bool, 256> table{};
+  for (int c = 0; c < 128; ++c)
+    table[static_cast<std::size_t>(c)] =
+        is_letter(static_cast<char>(c)) || is_digit(static_cast<char>(c));
+  return table;
+}();
+bool is_name_character(char c) { return kIsNameCharacter[static_cast<unsigned char>(c)]; }
 
 Lexeme::Kind lexeme_kind(Token::Kind kind) {
   if (kind == Token::Kind::kIdentifier) return Lexeme::Kind::kWord;
   return kind == Token::Kind::kSymbol ? Lexeme::Kind::kSymbol : Lexeme::Kind::kLiteral;
 }
 
-Token bad(Span span, std::string message) {
-  return {Token::Kind::kBad, span, std::move(message), {}};
+// Of the symbol that `text`, one or two characters, begins with; 0 if with none.
+std::uint32_t symbol_length(std::string_view text) {
+  constexpr std::array<std::string_view, 7> kPairs = {"<=", ">=", "==", "!=", "&&", "||", ".."};
+  constexpr std::string_view kSingles = "<>!-+*/%()?:,=";
+  if (text.size() == 2 && std::find(kPairs.begin(), kPairs.end(), text) != kPairs.end()) return 2;
+  return kSingles.find(text[0]) != std::string_view::npos ? 1 : 0;
+}
+
+Token bad(Span span, std::string message, std::optional<Edit> fix = {}) {
+  return {Token::Kind::kBad, span, std::move(message), {}, std::move(fix)};
 }
 
 }  // namespace
@@ -70,7 +91,7 @@ Token Scanner::peek() const {
 
 Token Scanner::identifier(std::uint32_t at) const {
   std::uint32_t end = at;
-  while (end < end_ && (is_letter(text_[end]) || is_digit(text_[end]))) ++end;
+  while (end < end_ && is_name_character(text_[end])) ++end;
   if (end - at > kMaxName) return bad({at, end}, "this name is longer than 255 characters");
   std::string text(text_.substr(at, end - at));
   if (text == "true" || text == "false") {
@@ -103,7 +124,7 @@ Token Scanner::number(std::uint32_t at) const {
     }
   }
   const std::uint32_t number_end = end;
-  while (end < end_ && (is_letter(text_[end]) || is_digit(text_[end]))) ++end;
+  while (end < end_ && is_name_character(text_[end])) ++end;
 
   const std::string_view text = text_.substr(at, end - at);
   if (end > number_end) {
@@ -141,32 +162,49 @@ Token Scanner::quoted(std::uint32_t at) const {
     }
     out += c;
   }
-  return bad({at, end_}, "this string has no closing '\"'");
+  return unclosed(at);
+}
+
+Token Scanner::unclosed(std::uint32_t at) const {
+  std::uint32_t end = end_;
+  while (end > at + 1 && is_blank(text_[end - 1])) --end;
+  return bad({at, end_}, "this string has no closing '\"'", Edit{{end, end}, "\""});
 }
 
 Token Scanner::symbol(std::uint32_t at) const {
-  constexpr std::array<std::string_view, 21> kSymbols = {"<=", ">=", "==", "!=", "&&", "||", "..",
-                                                         "<",  ">",  "!",  "-",  "+",  "*",  "/",
-                                                         "%",  "(",  ")",  "?",  ":",  ",",  "="};
-  for (const std::string_view s : kSymbols) {
-    if (text_.substr(at, s.size()) == s && at + s.size() <= end_) {
-      return {Token::Kind::kSymbol,
-              {at, static_cast<std::uint32_t>(at + s.size())},
-              std::string(s),
-              {}};
-    }
+  if (const std::uint32_t length = symbol_length(text_.substr(at, std::min(2u, end_ - at)))) {
+    return {Token::Kind::kSymbol, {at, at + length}, std::string(text_.substr(at, length)), {}};
   }
+  return meaningless(at);
+}
+
+Token Scanner::meaningless(std::uint32_t at) const {
   std::uint32_t end = at + 1;
   while (end < end_ && (static_cast<unsigned char>(text_[end]) & 0xC0) == 0x80)
     ++end;  // one whole character
   const bool control = static_cast<unsigned char>(text_[at]) < 0x20 || text_[at] == 0x7f;
   if (control) return bad({at, end}, "a control character has no place in a rule file");
   std::string_view advice;
-  if (text_[at] == '\'') advice = "; a text stands in double quotes: \"active\"";
-  if (text_[at] == '&') advice = "; write && for 'and'";
-  if (text_[at] == '|') advice = "; write || for 'or'";
-  return bad({at, end}, "'" + std::string(text_.substr(at, end - at)) + "' means nothing here" +
-                            std::string(advice));
+  std::optional<Edit> fix;
+  if (text_[at] == '\'') {
+    advice = "; a text stands in double quotes: \"active\"";
+    const auto close = text_.substr(0, end_).find('\'', end);
+    const std::string_view inside = text_.substr(end, std::min<std::size_t>(close, end_) - end);
+    if (close != std::string_view::npos && inside.find_first_of("\"\\") == std::string_view::npos)
+      fix = {{at, static_cast<std::uint32_t>(close) + 1}, "\"" + std::string(inside) + "\""};
+  }
+  if (text_[at] == '&') {
+    advice = "; write && for 'and'";
+    fix = {{at, end}, "&&"};
+  }
+  if (text_[at] == '|') {
+    advice = "; write || for 'or'";
+    fix = {{at, end}, "||"};
+  }
+  return bad(
+      {at, end},
+      "'" + std::string(text_.substr(at, end - at)) + "' means nothing here" + std::string(advice),
+      std::move(fix));
 }
 
 syntax::Name Scanner::next_name() {

@@ -7,10 +7,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "language/diagnostic.h"
 #include "language/source.h"
 #include "language/syntax.h"
 
@@ -30,6 +32,7 @@ struct Token {
   Span span;
   std::string text;  // identifier, symbol, or the message of kBad
   syntax::Literal literal;
+  std::optional<Edit> fix = std::nullopt;  // that makes a kBad one good
 
   bool is(std::string_view symbol) const { return kind == Kind::kSymbol && text == symbol; }
 };
@@ -75,8 +78,10 @@ class Scanner {
   bool is_comment(std::uint32_t at) const;
   Token number(std::uint32_t at) const;
   Token quoted(std::uint32_t at) const;
+  Token unclosed(std::uint32_t at) const;
   Token identifier(std::uint32_t at) const;
   Token symbol(std::uint32_t at) const;
+  Token meaningless(std::uint32_t at) const;
   void enter(Lexeme::Kind kind, Span span);
 
   std::string_view text_;

@@ -61,53 +61,62 @@ void Symbols::declare(const syntax::File& file) {
     // Its value follows, in file order: a constant may use the ones before it.
     if (first_declaration(c.name, "constant")) constants_[c.name.text] = {{}, true};
   }
-  std::map<std::string, std::string> owner_of_node;
   for (const syntax::Component& c : file.components) {
-    if (!first_declaration(c.name, "component")) continue;
-    Component component{c.name.text, c.node ? c.node->text : "", {}, true};
-    if (c.node) {
-      const auto [owner, is_first] = owner_of_node.emplace(c.node->text, c.name.text);
-      if (!is_first) {
-        diagnostics_.push_back({Code::kDuplicateName, Severity::kError, c.node->span,
-                                "this node is component '" + owner->second + "' already",
-                                "declare each node once"});
-      }
-    }
-    if (c.launch) {
-      if (auto command = split_command(c.launch->text)) {
-        component.launch = std::move(*command);
-      } else {
-        diagnostics_.push_back({Code::kSyntax, Severity::kError, c.launch->span,
-                                "this is no command",
-                                "write the program and its arguments; close every quote"});
-      }
-    }
-    components_[c.name.text] = ComponentId(rules_.components.size());
-    rules_.components.push_back(std::move(component));
+    if (first_declaration(c.name, "component")) declare_component(c);
   }
   for (const syntax::Signal& s : file.signals) {
-    if (!first_declaration(s.name, "signal")) continue;
-    Signal signal{s.name.text, LookedUp{}, Type::kDouble, s.stale, {}};
-    if (const auto* d = std::get_if<syntax::DiagnosticSource>(&s.source)) {
-      signal.source = DiagnosticKey{d->status.text, d->key.text};
-    } else if (const auto* t = std::get_if<syntax::TopicSource>(&s.source)) {
-      signal.source = TopicField{topic(t->topic.text), t->field.text};
-    } else {
-      const auto& p = std::get<syntax::ParameterSource>(s.source);
-      signal.source = parameter(component(p.component), p.parameter.text);
-    }
-    if (s.range) {
-      if (s.range->low >= s.range->high) {
-        diagnostics_.push_back({Code::kEmptyRange, Severity::kError, s.range->span,
-                                "this range holds no values", "write the smaller number first"});
-      }
-      signal.range = {s.range->low, s.range->high};
-    }
-    signals_[s.name.text] = SignalId(rules_.signals.size());
-    signal_types_.push_back(s.range ? std::optional(Type::kDouble) : std::nullopt);
-    rules_.signals.push_back(std::move(signal));
+    if (first_declaration(s.name, "signal")) declare_signal(s);
   }
   for (const syntax::BrokenDeclaration& broken : file.broken_declarations) declare_broken(broken);
+  for (const auto& [constant, value] : constants_) declared_values_.push_back(constant);
+  std::sort(declared_values_.begin(), declared_values_.end());
+}
+
+void Symbols::declare_component(const syntax::Component& written) {
+  Component component{written.name.text, written.node ? written.node->text : "", {}, true};
+  const ComponentId id(rules_.components.size());
+  if (written.node) {
+    const auto [owner, is_first] = components_by_node_.emplace(written.node->text, id);
+    if (!is_first) {
+      diagnostics_.push_back({Code::kDuplicateName, Severity::kError, written.node->span,
+                              "this node is component '" + rules_[owner->second].name + "' already",
+                              "declare each node once"});
+    }
+  }
+  if (written.launch) {
+    if (auto command = split_command(written.launch->text)) {
+      component.launch = std::move(*command);
+    } else {
+      diagnostics_.push_back({Code::kSyntax, Severity::kError, written.launch->span,
+                              "this is no command",
+                              "write the program and its arguments; close every quote"});
+    }
+  }
+  declared_components_.push_back(components_.emplace(component.name, id).first->first);
+  rules_.components.push_back(std::move(component));
+}
+
+void Symbols::declare_signal(const syntax::Signal& s) {
+  Signal signal{s.name.text, LookedUp{}, Type::kDouble, s.stale, {}};
+  if (const auto* d = std::get_if<syntax::DiagnosticSource>(&s.source)) {
+    signal.source = DiagnosticKey{d->status.text, d->key.text};
+  } else if (const auto* t = std::get_if<syntax::TopicSource>(&s.source)) {
+    signal.source = TopicField{topic(t->topic.text), t->field.text};
+  } else {
+    const auto& p = std::get<syntax::ParameterSource>(s.source);
+    signal.source = parameter(component(p.component), p.parameter.text);
+  }
+  if (s.range) {
+    if (s.range->low >= s.range->high) {
+      diagnostics_.push_back({Code::kEmptyRange, Severity::kError, s.range->span,
+                              "this range holds no values", "write the smaller number first"});
+    }
+    signal.range = {s.range->low, s.range->high};
+  }
+  const SignalId id(rules_.signals.size());
+  declared_values_.push_back(signals_.emplace(signal.name, id).first->first);
+  signal_types_.push_back(types_.add(s.range ? std::optional(Type::kDouble) : std::nullopt));
+  rules_.signals.push_back(std::move(signal));
 }
 
 // There is an error, so the rule set will not be used; only the names have to be there.
@@ -119,7 +128,10 @@ void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
       constants_.try_emplace(name, Constant{{}, true});
       return;
     case Kind::kComponent:
-      if (components_.try_emplace(name, ComponentId(rules_.components.size())).second) {
+      if (const auto [entry, is_new] =
+              components_.try_emplace(name, ComponentId(rules_.components.size()));
+          is_new) {
+        declared_components_.push_back(entry->first);
         // Whether it has a LAUNCH command is not known, so nobody may miss it.
         rules_.components.push_back({name, "", {""}, true});
       }
@@ -127,7 +139,7 @@ void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
     case Kind::kSignal:
       if (signals_.try_emplace(name, SignalId(rules_.signals.size())).second) {
         rules_.signals.push_back({name, LookedUp{}, Type::kDouble, {}, {}});
-        signal_types_.emplace_back();
+        signal_types_.push_back(types_.add(std::nullopt));
       }
       return;
   }
@@ -142,20 +154,29 @@ void Symbols::define_constant(const syntax::Name& name, Constant value) {
   constants_[name.text] = std::move(value);
 }
 
+std::string Symbols::near_name(const std::string& name,
+                               const std::vector<std::string_view>& declared) {
+  if (declared.size() > comparisons_left_) return "";
+  comparisons_left_ -= declared.size();
+  return closest(name, declared);
+}
+
 void Symbols::report_undeclared(const syntax::Name& name, const char* what,
                                 const std::vector<std::string_view>& declared) {
-  const std::string near = closest(name.text, declared);
+  const std::string near = near_name(name.text, declared);
+  const auto fix = replacement(name.span, near);
   if (strictness_ == Strictness::kStrict) {
     diagnostics_.push_back(
         {Code::kUndeclared, Severity::kError, name.span,
          std::string(what) + " '" + name.text + "' is not declared",
-         near.empty() ? "declare it, or check without --strict" : "did you mean '" + near + "'?"});
+         near.empty() ? "declare it, or check without --strict" : "did you mean '" + near + "'?",
+         fix});
   } else if (!near.empty()) {
-    near_misses_[name.text] = {near, name.span};
+    near_misses_[name.text] = {near, diagnostics_.size()};
     diagnostics_.push_back({Code::kUnknownName, Severity::kWarning, name.span,
                             std::string(what) + " '" + name.text +
                                 "' is not declared and will be looked up on the robot",
-                            "did you mean '" + near + "'?"});
+                            "did you mean '" + near + "'?", fix});
   }
 }
 
@@ -164,17 +185,11 @@ ComponentId Symbols::component(const syntax::Name& name) {
   if (found != components_.end()) return found->second;
   // A full node name may stand for the component that is declared with it.
   const bool is_node = name.text.starts_with('/');
-  const auto same_node =
-      std::find_if(rules_.components.begin(), rules_.components.end(),
-                   [&](const Component& c) { return is_node && c.node == name.text; });
-  if (same_node != rules_.components.end())
-    return ComponentId(same_node - rules_.components.begin());
-
-  std::vector<std::string_view> declared;
-  for (const Component& c : rules_.components) {
-    if (c.declared) declared.push_back(c.name);
+  if (is_node) {
+    const auto declared = components_by_node_.find(name.text);
+    if (declared != components_by_node_.end()) return declared->second;
   }
-  report_undeclared(name, "component", declared);
+  report_undeclared(name, "component", declared_components_);
   const ComponentId id(rules_.components.size());
   rules_.components.push_back({name.text, is_node ? name.text : "", {}, false});
   components_[name.text] = id;
@@ -184,16 +199,10 @@ ComponentId Symbols::component(const syntax::Name& name) {
 SignalId Symbols::signal(const syntax::Name& name) {
   const auto found = signals_.find(name.text);
   if (found != signals_.end()) return found->second;
-  std::vector<std::string_view> declared;
-  for (const auto& [constant, value] : constants_) declared.push_back(constant);
-  for (const Signal& s : rules_.signals) {
-    if (!std::holds_alternative<LookedUp>(s.source)) declared.push_back(s.name);
-  }
-  std::sort(declared.begin(), declared.end());
-  report_undeclared(name, "signal", declared);
+  report_undeclared(name, "signal", declared_values_);
   const SignalId id(rules_.signals.size());
   rules_.signals.push_back({name.text, LookedUp{}, Type::kDouble, {}, {}});
-  signal_types_.emplace_back();
+  signal_types_.push_back(types_.add(std::nullopt));
   signals_[name.text] = id;
   return id;
 }
@@ -209,10 +218,18 @@ std::string Symbols::forget_near_miss(const std::string& signal) {
   if (found == near_misses_.end()) return "";
   const NearMiss miss = found->second;
   near_misses_.erase(found);
-  std::erase_if(diagnostics_, [&](const Diagnostic& d) {
-    return d.code == Code::kUnknownName && d.span == miss.span;
-  });
+  forgotten_reports_.insert(miss.report);
   return miss.near;
+}
+
+void Symbols::drop_forgotten_reports() {
+  if (forgotten_reports_.empty()) return;
+  std::vector<Diagnostic> kept;
+  for (std::size_t i = 0; i < diagnostics_.size(); ++i) {
+    if (!forgotten_reports_.contains(i)) kept.push_back(std::move(diagnostics_[i]));
+  }
+  diagnostics_ = std::move(kept);
+  forgotten_reports_.clear();
 }
 
 TopicId Symbols::topic(const std::string& name) {
@@ -232,7 +249,7 @@ ParameterId Symbols::parameter(ComponentId component, const std::string& name) {
       parameters_.emplace(std::pair(component, name), ParameterId(rules_.parameters.size()));
   if (is_new) {
     rules_.parameters.push_back({component, name});
-    parameter_types_.emplace_back();
+    parameter_types_.push_back(types_.add(std::nullopt));
   }
   return found->second;
 }

@@ -9,12 +9,15 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "language/diagnostic.h"
 #include "language/rule_set.h"
 #include "language/syntax.h"
+#include "language/type_classes.h"
 
 namespace culprit {
 
@@ -22,6 +25,10 @@ enum class Strictness : std::uint8_t { kLenient, kStrict };
 
 class Symbols {
  public:
+  // So many names are compared with one another to find what was meant. A file with more has
+  // thousands of names that it does not declare: those are no slips.
+  static constexpr std::size_t kMaxComparisons = 1'000'000;
+
   Symbols(RuleSet& rules, Strictness strictness, std::vector<Diagnostic>& diagnostics)
       : rules_(rules), strictness_(strictness), diagnostics_(diagnostics) {}
 
@@ -48,35 +55,50 @@ class Symbols {
   // If `signal` was reported as a near miss of a declared name: takes that report back, since its
   // caller has a better one, and gives the declared name. Otherwise empty.
   std::string forget_near_miss(const std::string& signal);
+  // Drops the reports that were taken back. To be called once, when all names were looked up.
+  void drop_forgotten_reports();
 
   // Types of signals and parameters are found by use; nothing until then.
-  std::optional<Type>& type_of(SignalId id) { return signal_types_[id.index]; }
-  std::optional<Type>& type_of(ParameterId id) { return parameter_types_[id.index]; }
+  TypeClasses& types() { return types_; }
+  TypeClasses::Variable type_variable(SignalId id) const { return signal_types_[id.index]; }
+  TypeClasses::Variable type_variable(ParameterId id) const { return parameter_types_[id.index]; }
+  std::optional<Type> type_of(SignalId id) const { return types_.type_of(type_variable(id)); }
+  std::optional<Type> type_of(ParameterId id) const { return types_.type_of(type_variable(id)); }
 
  private:
   void declare_broken(const syntax::BrokenDeclaration& broken);
   bool first_declaration(const syntax::Name& name, const char* what);
+  void declare_component(const syntax::Component& component);
+  void declare_signal(const syntax::Signal& signal);
   void report_undeclared(const syntax::Name& name, const char* what,
                          const std::vector<std::string_view>& declared);
+  std::string near_name(const std::string& name, const std::vector<std::string_view>& declared);
 
   RuleSet& rules_;
   Strictness strictness_;
   std::vector<Diagnostic>& diagnostics_;
-  std::set<std::string, std::less<>> declared_;
+  std::unordered_set<std::string> declared_;
   std::unordered_map<std::string, Constant> constants_;
   std::unordered_map<std::string, ComponentId> components_;
+  std::unordered_map<std::string, ComponentId> components_by_node_;
   std::unordered_map<std::string, SignalId> signals_;
   std::unordered_map<std::string, TopicId> topics_;
   std::unordered_map<std::string, DiagnosticId> level_names_;
   std::map<std::pair<ComponentId, std::string>, ParameterId> parameters_;
   std::unordered_map<std::string, InputId> inputs_;
+  // What undeclared names may have been meant to be; views into the keys of the maps above.
+  std::vector<std::string_view> declared_components_;
+  std::vector<std::string_view> declared_values_;  // constants and signals
+  std::size_t comparisons_left_ = kMaxComparisons;
   struct NearMiss {
     std::string near;
-    Span span;
+    std::size_t report = 0;  // index into diagnostics_
   };
   std::unordered_map<std::string, NearMiss> near_misses_;
-  std::vector<std::optional<Type>> signal_types_;
-  std::vector<std::optional<Type>> parameter_types_;
+  std::set<std::size_t> forgotten_reports_;
+  TypeClasses types_;
+  std::vector<TypeClasses::Variable> signal_types_;
+  std::vector<TypeClasses::Variable> parameter_types_;
 };
 
 }  // namespace culprit

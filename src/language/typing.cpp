@@ -17,11 +17,14 @@ using Kind = Expression::Kind;
 bool is_number(Type type) { return type == Type::kInt || type == Type::kDouble; }
 bool is_exact(Type type) { return type == Type::kInt || type == Type::kDuration; }
 
-Typed node(Op op, Type type, std::vector<Typed> children) {
+template <class... Children>
+Typed node(Op op, Type type, Children... children) {
   Typed typed;
   typed.op = op;
   typed.type = type;
-  typed.children = std::move(children);
+  // Moved one by one: a list in braces would copy whole trees.
+  typed.children.reserve(sizeof...(children));
+  (typed.children.push_back(std::move(children)), ...);
   return typed;
 }
 
@@ -123,7 +126,7 @@ class Typer {
     const std::string near = symbols_.forget_near_miss(e.name.text);
     if (!near.empty()) {
       return fail(Code::kUnknownName, e.span, "signal '" + e.name.text + "' is not declared",
-                  "did you mean '" + near + "'?");
+                  "did you mean '" + near + "'?", Edit{e.span, near});
     }
     return fail(Code::kUnknownType, e.span, "nothing tells what kind of value this is",
                 "compare it with a constant; a text needs quotes: \"" + e.name.text + "\"");
@@ -143,12 +146,12 @@ class Typer {
     if (!operand) return std::nullopt;
     const Type t = operand->type;
     if (e.op == Operator::kNot) {
-      if (t == Type::kBool) return node(Op::kNot, t, {std::move(*operand)});
+      if (t == Type::kBool) return node(Op::kNot, t, std::move(*operand));
       return fail(Code::kTypeMismatch, e.children[0].span,
                   std::string("! needs true or false; this is ") + describe(t), "");
     }
-    if (is_exact(t)) return node(Op::kNegateInt, t, {std::move(*operand)});
-    if (t == Type::kDouble) return node(Op::kNegateDouble, t, {std::move(*operand)});
+    if (is_exact(t)) return node(Op::kNegateInt, t, std::move(*operand));
+    if (t == Type::kDouble) return node(Op::kNegateDouble, t, std::move(*operand));
     return fail(Code::kTypeMismatch, e.children[0].span,
                 std::string("- needs a number; this is ") + describe(t), "");
   }
@@ -170,7 +173,7 @@ class Typer {
       return std::nullopt;
     }
     const Type result = yes->type;
-    return node(Op::kSelect, result, {std::move(*condition), std::move(*yes), std::move(*no)});
+    return node(Op::kSelect, result, std::move(*condition), std::move(*yes), std::move(*no));
   }
 
   std::optional<Typed> binary(const Expression& e) {
@@ -196,7 +199,7 @@ class Typer {
       case Operator::kNotEqual: {
         auto equal = compare(e, kEqual, std::move(*left), std::move(*right));
         if (!equal) return std::nullopt;
-        return node(Op::kNot, Type::kBool, {std::move(*equal)});
+        return node(Op::kNot, Type::kBool, std::move(*equal));
       }
       default:
         return arithmetic(e, std::move(*left), std::move(*right));
@@ -205,7 +208,7 @@ class Typer {
 
   std::optional<Typed> logic(const Expression& e, Op op, Typed left, Typed right) {
     if (left.type == Type::kBool && right.type == Type::kBool) {
-      return node(op, Type::kBool, {std::move(left), std::move(right)});
+      return node(op, Type::kBool, std::move(left), std::move(right));
     }
     const bool left_wrong = left.type != Type::kBool;
     return fail(Code::kTypeMismatch, e.children[left_wrong ? 0 : 1].span,
@@ -225,7 +228,7 @@ class Typer {
       return fail(Code::kTypeMismatch, e.span, "true and false have no order",
                   "compare them with == or !=");
     }
-    return node(op, Type::kBool, {std::move(left), std::move(right)});
+    return node(op, Type::kBool, std::move(left), std::move(right));
   }
 
   // `lifecycle(camera) == active` would wait for a signal of that name.
@@ -239,7 +242,8 @@ class Typer {
       diagnostics_.push_back(
           {Code::kUnknownName, Severity::kWarning, side.span,
            "signal '" + name + "' is not declared and will be looked up on the robot",
-           "a text needs quotes: did you mean \"" + name + "\"?"});
+           "a text needs quotes: did you mean \"" + name + "\"?",
+           Edit{side.span, "\"" + name + "\""}});
     }
   }
 
@@ -262,7 +266,7 @@ class Typer {
     alike(left, right);
     const bool exact = left.type == Type::kInt;
     const Type result = left.type;
-    return node(arithmetic_op(e.op, exact), result, {std::move(left), std::move(right)});
+    return node(arithmetic_op(e.op, exact), result, std::move(left), std::move(right));
   }
 
   static Op arithmetic_op(Operator op, bool exact) {
@@ -283,16 +287,16 @@ class Typer {
   std::optional<Typed> duration_arithmetic(const Expression& e, Typed left, Typed right) {
     const bool both = left.type == right.type;
     if (both && e.op == Operator::kDivide)
-      return node(Op::kRatio, Type::kDouble, {std::move(left), std::move(right)});
+      return node(Op::kRatio, Type::kDouble, std::move(left), std::move(right));
     if (both && e.op != Operator::kMultiply) {
-      return node(arithmetic_op(e.op, true), Type::kDuration, {std::move(left), std::move(right)});
+      return node(arithmetic_op(e.op, true), Type::kDuration, std::move(left), std::move(right));
     }
     if (e.op == Operator::kMultiply && right.type == Type::kDuration) std::swap(left, right);
     const bool scales = e.op == Operator::kMultiply || e.op == Operator::kDivide;
     if (scales && left.type == Type::kDuration && is_number(right.type)) {
       auto factor = converted(std::move(right), Type::kDouble);
       const Op op = e.op == Operator::kMultiply ? Op::kScale : Op::kShrink;
-      return node(op, Type::kDuration, {std::move(left), std::move(*factor)});
+      return node(op, Type::kDuration, std::move(left), std::move(*factor));
     }
     return mismatch(e, left.type, right.type, "calculate with");
   }
@@ -432,21 +436,21 @@ class Typer {
     const bool ordered = a->type != Type::kBool && a->type != Type::kString;
     if (!ordered || !alike(*a, *b)) return mismatch(e, a->type, b->type, "calculate with");
     const Type result = a->type;
-    return node(is_exact(result) ? exact : real, result, {std::move(*a), std::move(*b)});
+    return node(is_exact(result) ? exact : real, result, std::move(*a), std::move(*b));
   }
 
   std::optional<Typed> absolute(const Expression& e) {
     auto a = type(e.children[0]);
     if (!a) return std::nullopt;
     const Type t = a->type;
-    if (is_exact(t)) return node(Op::kAbsInt, t, {std::move(*a)});
-    if (t == Type::kDouble) return node(Op::kAbsDouble, t, {std::move(*a)});
+    if (is_exact(t)) return node(Op::kAbsInt, t, std::move(*a));
+    if (t == Type::kDouble) return node(Op::kAbsDouble, t, std::move(*a));
     return fail(Code::kTypeMismatch, e.children[0].span,
                 std::string("abs needs a number; this is ") + describe(t), "");
   }
 
   std::optional<Typed> real_function(const Expression& e, Op op) {
-    std::vector<Typed> operands;
+    Typed result = node(op, Type::kDouble);
     for (const Expression& child : e.children) {
       auto typed = type(child);
       if (!typed) return std::nullopt;
@@ -456,9 +460,9 @@ class Typer {
         return fail(Code::kTypeMismatch, child.span,
                     e.name.text + " needs a number; this is " + describe(t), "");
       }
-      operands.push_back(std::move(*real));
+      result.children.push_back(std::move(*real));
     }
-    return node(op, Type::kDouble, std::move(operands));
+    return result;
   }
 
   // Makes both of one type if a whole number may become a number.
@@ -484,8 +488,10 @@ class Typer {
                 std::move(remedy));
   }
 
-  std::nullopt_t fail(Code code, Span span, std::string cause, std::string remedy) {
-    diagnostics_.push_back({code, Severity::kError, span, std::move(cause), std::move(remedy)});
+  std::nullopt_t fail(Code code, Span span, std::string cause, std::string remedy,
+                      std::optional<Edit> fix = {}) {
+    diagnostics_.push_back(
+        {code, Severity::kError, span, std::move(cause), std::move(remedy), std::move(fix)});
     return std::nullopt;
   }
 
@@ -503,7 +509,7 @@ std::optional<Typed> type_expression(const Expression& expression, Symbols& symb
 std::optional<Typed> converted(Typed typed, Type wanted) {
   if (typed.type == wanted) return typed;
   if (typed.type == Type::kInt && wanted == Type::kDouble) {
-    return node(Op::kIntToDouble, Type::kDouble, {std::move(typed)});
+    return node(Op::kIntToDouble, Type::kDouble, std::move(typed));
   }
   return std::nullopt;
 }

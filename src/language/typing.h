@@ -1,9 +1,9 @@
 // Expressions get their types: syntax tree -> typed tree, in two passes.
 //
 // Constants, literals and functions have types of their own; signals and parameters get theirs from
-// how they are used (`x > 0.5` makes x a number, `x == "dock"` a text, `x` alone true or false). So
-// all expressions of a file are first walked to learn (`infer_types`), until nothing new is
-// learned, and then typed one by one (`type_expression`).
+// how they are used (`x > 0.5` makes x a number, `x == "dock"` a text, `x` alone true or false, and
+// `x == y` whatever the other one is). So all expressions of a file are first walked to learn
+// (`infer_types`), and then typed one by one (`type_expression`).
 #pragma once
 
 #include <optional>
@@ -28,10 +28,9 @@ struct Typed {
 };
 
 // Learns types of signals and parameters from `expression`, which is wanted to be of type `wanted`
-// (nothing: any). `learned` is set when something new was learned. Gives the expression's type as
-// far as it is known.
-std::optional<Type> infer_types(const syntax::Expression& expression, std::optional<Type> wanted,
-                                Symbols& symbols, bool& learned);
+// (nothing: any).
+void infer_types(const syntax::Expression& expression, std::optional<Type> wanted,
+                 Symbols& symbols);
 
 // Reports the first mistake and gives nothing if the expression has no type.
 std::optional<Typed> type_expression(const syntax::Expression& expression, Symbols& symbols,

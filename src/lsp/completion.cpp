@@ -1,9 +1,12 @@
 #include "lsp/completion.h"
 
+#include <algorithm>
 #include <set>
 #include <sstream>
 
 #include "language/functions.h"
+#include "language/scanner.h"
+#include "lsp/live_names.h"
 
 namespace culprit::lsp {
 namespace {
@@ -25,40 +28,6 @@ void add_named(const Document& document, Occurrence::Kind kind, Kind as,
   }
 }
 
-std::vector<Proposal> in_expression(const Document& document) {
-  std::vector<Proposal> out;
-  add_named(document, Occurrence::Kind::kSignal, Kind::kSignal, out);
-  add_named(document, Occurrence::Kind::kConstant, Kind::kConstant, out);
-  for (const std::string_view name : function_names())
-    out.push_back({Kind::kFunction, std::string(name), std::string(find_function(name)->usage)});
-  return out;
-}
-
-// The function in whose parentheses the text ends; null if in none.
-const FunctionInfo* open_call(std::string_view text) {
-  int depth = 0;
-  for (std::size_t i = text.size(); i-- > 0;) {
-    if (text[i] == ')') ++depth;
-    if (text[i] != '(' || depth-- > 0) continue;
-    std::size_t begin = i;
-    while (begin > 0 && (std::isalnum(static_cast<unsigned char>(text[begin - 1])) != 0 ||
-                         text[begin - 1] == '_'))
-      --begin;
-    return find_function(text.substr(begin, i - begin));
-  }
-  return nullptr;
-}
-
-std::vector<Proposal> in_adaptation(const Document& document, std::size_t words) {
-  std::vector<Proposal> out;
-  if (words == 1) add_named(document, Occurrence::Kind::kComponent, Kind::kComponent, out);
-  if (words == 2) {
-    for (const std::string_view type : syntax::adaptation_keywords())
-      out.push_back({Kind::kKeyword, std::string(type), "adaptation"});
-  }
-  return words > 2 ? in_expression(document) : out;
-}
-
 std::vector<std::string> words_of(std::string_view text) {
   std::istringstream in{std::string(text)};
   std::vector<std::string> words;
@@ -66,49 +35,187 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
+bool is_identifier_part(std::string_view text) {
+  return std::all_of(text.begin(), text.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+}
+
+// The call in whose parentheses a text ends.
+struct OpenCall {
+  const FunctionInfo* function = nullptr;  // null if in none
+  std::size_t index = 0;                   // of the argument
+  std::string first;                       // argument, if it is complete
+};
+
+OpenCall open_call(std::string_view text) {
+  OpenCall call;
+  int depth = 0;
+  std::size_t first_comma = text.size();
+  for (std::size_t i = text.size(); i-- > 0;) {
+    if (text[i] == ')') ++depth;
+    if (text[i] == ',' && depth == 0) {
+      ++call.index;
+      first_comma = i;
+    }
+    if (text[i] != '(' || depth-- > 0) continue;
+    std::size_t begin = i;
+    while (begin > 0 && is_identifier_part(text.substr(begin - 1, 1))) --begin;
+    call.function = find_function(text.substr(begin, i - begin));
+    const auto first = words_of(text.substr(i + 1, first_comma - i - 1));
+    if (call.index > 0 && first.size() == 1) call.first = first[0];
+    return call;
+  }
+  return call;
+}
+
+// What fits at the end of one line's text.
+class Completion {
+ public:
+  Completion(const Document& document, std::string_view before, const LiveInventory* robot)
+      : document_(document), before_(before), robot_(robot), words_(words_of(before)) {
+    // The word under the cursor is what is being typed.
+    const bool is_typing = !before.empty() && before.back() != ' ' && before.back() != '\t';
+    if (is_typing && !words_.empty()) words_.pop_back();
+  }
+
+  std::vector<Proposal> find() {
+    if (words_.empty()) {
+      return keywords({"RULE", "POLICIES", "TRIGGER", "STRATEGY", "ADAPTATION", "COMPONENT",
+                       "SIGNAL", "CONST", "DEPENDENCY", "IGNORE", "ROBOT", "CYCLE"});
+    }
+    if (const OpenCall call = open_call(before_); call.function != nullptr) return argument(call);
+    const std::string& statement = words_.front();
+    if (statement == "ADAPTATION") return adaptation();
+    if (statement == "COMPONENT") {
+      return words_.back() == "NODE" ? names(&live_nodes) : keywords({"NODE", "LAUNCH"});
+    }
+    if (statement == "SIGNAL") return signal();
+    if (statement == "IGNORE") {
+      return words_.size() == 1 ? keywords({"TOPIC"}) : names(&live_topics);
+    }
+    if (statement == "POLICIES") {
+      return words_.size() == 1 ? keywords({"ERROR", "WARNING", "NON_CRITICAL"})
+                                : keywords({"FOR", "HOLD", "COOLDOWN", "ATTEMPTS", "ON_CHANGE"});
+    }
+    if (statement == "STRATEGY" && words_.size() == 4) return keywords({"WHEN"});
+    if (statement == "DEPENDENCY") {
+      if (words_.size() == 2) return keywords({"ON"});
+      return components();
+    }
+    const bool has_expression =
+        statement == "TRIGGER" || statement == "CONST" || statement == "STRATEGY";
+    return has_expression ? expression() : std::vector<Proposal>{};
+  }
+
+ private:
+  std::vector<Proposal> expression() {
+    std::vector<Proposal> out;
+    add_named(document_, Occurrence::Kind::kSignal, Kind::kSignal, out);
+    add_named(document_, Occurrence::Kind::kConstant, Kind::kConstant, out);
+    for (const std::string_view name : function_names())
+      out.push_back({Kind::kFunction, std::string(name), std::string(find_function(name)->usage)});
+    return out;
+  }
+
+  std::vector<Proposal> argument(const OpenCall& call) {
+    const bool has_place = call.index < call.function->arguments.size();
+    switch (has_place ? call.function->arguments[call.index] : Argument::kExpression) {
+      case Argument::kTopic:
+        return topics();
+      case Argument::kComponent:
+        return components();
+      case Argument::kParameter:
+        return parameters(call.first);
+      case Argument::kDiagnostic:
+        return names(&live_statuses);
+      case Argument::kExpression:
+        break;
+    }
+    return expression();
+  }
+
+  std::vector<Proposal> adaptation() {
+    if (words_.size() == 1) return components();
+    if (words_.size() == 2) {
+      std::vector<Proposal> out;
+      for (const std::string_view type : syntax::adaptation_keywords())
+        out.push_back({Kind::kKeyword, std::string(type), "adaptation"});
+      return out;
+    }
+    const std::string& type = words_[2];
+    if (words_.size() == 3) return type == "call" ? names(&live_routines) : parameters(words_[1]);
+    return type == "change_communication" ? topics() : expression();
+  }
+
+  std::vector<Proposal> signal() {
+    const std::string& last = words_.back();
+    const std::size_t count = words_.size();
+    if (last == "TOPIC") return topics();
+    if (last == "DIAGNOSTIC") return names(&live_statuses);
+    if (last == "PARAMETER") return components();
+    if (last == "KEY" && robot_ != nullptr) return live_keys(*robot_, words_[count - 2]);
+    if (count > 2 && words_[count - 2] == "PARAMETER") return parameters(last);
+    return keywords({"DIAGNOSTIC", "TOPIC", "PARAMETER", "KEY", "FIELD", "STALE", "RANGE"});
+  }
+
+  // ---- names of the file, then of the robot
+
+  std::vector<Proposal> names(std::vector<Proposal> (*live)(const LiveInventory&)) {
+    return robot_ == nullptr ? std::vector<Proposal>{} : live(*robot_);
+  }
+
+  std::vector<Proposal> components() {
+    return with_live(Occurrence::Kind::kComponent, Kind::kComponent, names(&live_nodes));
+  }
+  std::vector<Proposal> topics() {
+    return with_live(Occurrence::Kind::kTopic, Kind::kTopic, names(&live_topics));
+  }
+
+  std::vector<Proposal> with_live(Occurrence::Kind kind, Kind as, std::vector<Proposal> live) {
+    std::vector<Proposal> out;
+    add_named(document_, kind, as, out);
+    for (Proposal& proposal : live) {
+      const auto known = std::find_if(out.begin(), out.end(),
+                                      [&](const Proposal& p) { return p.text == proposal.text; });
+      if (known == out.end()) {
+        out.push_back(std::move(proposal));
+      } else {
+        known->detail = proposal.detail;
+      }
+    }
+    return out;
+  }
+
+  std::vector<Proposal> parameters(const std::string& component) {
+    if (robot_ == nullptr) return {};
+    return live_parameters(*robot_, document_.component_called(component));
+  }
+
+  const Document& document_;
+  const std::string_view before_;
+  const LiveInventory* robot_;
+  std::vector<std::string> words_;
+};
+
 }  // namespace
 
-std::vector<Proposal> proposals(const Document& document, std::uint32_t offset) {
+std::vector<Proposal> proposals(const Document& document, std::uint32_t offset,
+                                const LiveInventory* robot) {
   const std::uint32_t line_begin =
       document.source.line(document.source.position(offset).line).begin;
-  const std::string_view before = document.source.text({line_begin, offset});
-  auto words = words_of(before);
-  // The word under the cursor is what is being typed.
-  const bool is_typing = !before.empty() && before.back() != ' ' && before.back() != '\t';
-  if (is_typing && !words.empty()) words.pop_back();
-  if (words.empty())
-    return keywords({"RULE", "POLICIES", "TRIGGER", "STRATEGY", "ADAPTATION", "COMPONENT", "SIGNAL",
-                     "CONST", "DEPENDENCY", "IGNORE", "ROBOT", "CYCLE"});
+  return Completion(document, document.source.text({line_begin, offset}), robot).find();
+}
 
-  if (const FunctionInfo* function = open_call(before)) {
-    std::vector<Proposal> out;
-    if (function->arguments[0] == Argument::kTopic)
-      add_named(document, Occurrence::Kind::kTopic, Kind::kTopic, out);
-    else if (function->arguments[0] == Argument::kComponent)
-      add_named(document, Occurrence::Kind::kComponent, Kind::kComponent, out);
-    else
-      out = in_expression(document);
-    return out;
-  }
-  const std::string& statement = words.front();
-  if (statement == "ADAPTATION") return in_adaptation(document, words.size());
-  if (statement == "POLICIES") {
-    return words.size() == 1 ? keywords({"ERROR", "WARNING", "NON_CRITICAL"})
-                             : keywords({"FOR", "HOLD", "COOLDOWN", "ATTEMPTS", "ON_CHANGE"});
-  }
-  if (statement == "COMPONENT") return keywords({"NODE", "LAUNCH"});
-  if (statement == "SIGNAL")
-    return keywords({"DIAGNOSTIC", "TOPIC", "PARAMETER", "KEY", "FIELD", "STALE", "RANGE"});
-  if (statement == "IGNORE") return keywords({"TOPIC"});
-  if (statement == "STRATEGY" && words.size() == 4) return keywords({"WHEN"});
-  if (statement == "DEPENDENCY") {
-    std::vector<Proposal> out = keywords({"ON"});
-    add_named(document, Occurrence::Kind::kComponent, Kind::kComponent, out);
-    return out;
-  }
-  const bool has_expression =
-      statement == "TRIGGER" || statement == "CONST" || statement == "STRATEGY";
-  return has_expression ? in_expression(document) : std::vector<Proposal>{};
+Span typed_part(const Document& document, std::uint32_t offset, const Proposal& proposal) {
+  const std::string_view text = document.source.text();
+  const bool is_identifier = is_identifier_part(proposal.text);
+  const auto belongs = [&](char c) {
+    return is_identifier ? is_identifier_part({&c, 1})
+                         : !is_blank(c) && c != '\n' && c != '(' && c != ',';
+  };
+  std::uint32_t begin = offset;
+  while (begin > 0 && belongs(text[begin - 1])) --begin;
+  return {begin, offset};
 }
 
 }  // namespace culprit::lsp

@@ -4,19 +4,35 @@
 #include <string>
 #include <vector>
 
+#include "language/live_inventory.h"
 #include "lsp/document.h"
 
 namespace culprit::lsp {
 
 struct Proposal {
-  enum class Kind : std::uint8_t { kKeyword, kFunction, kConstant, kSignal, kComponent, kTopic };
+  enum class Kind : std::uint8_t {
+    kKeyword,
+    kFunction,
+    kConstant,
+    kSignal,
+    kComponent,
+    kTopic,
+    kParameter,
+    kService,
+    kStatus
+  };
   Kind kind = Kind::kKeyword;
   std::string text;
   std::string detail;  // may be empty
   bool operator==(const Proposal&) const = default;
 };
 
-// Sorted by what fits, without regard to what is typed already: editors filter.
-std::vector<Proposal> proposals(const Document& document, std::uint32_t offset);
+// Sorted by what fits, without regard to what is typed already: editors filter. `robot` may be
+// null.
+std::vector<Proposal> proposals(const Document& document, std::uint32_t offset,
+                                const LiveInventory* robot = nullptr);
+
+// What an editor has to replace by the proposal: what is typed of it already.
+Span typed_part(const Document& document, std::uint32_t offset, const Proposal& proposal);
 
 }  // namespace culprit::lsp

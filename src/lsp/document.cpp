@@ -1,5 +1,6 @@
 #include "lsp/document.h"
 
+#include "language/live_checks.h"
 #include "language/parser.h"
 
 namespace culprit::lsp {
@@ -8,6 +9,23 @@ Document::Document(std::string text) : source("", std::move(text)), checked(chec
   std::vector<Diagnostic> already_in_checked;
   file = parse(source, already_in_checked);
   names = occurrences(file);
+  diagnostics = checked.diagnostics;
+}
+
+Component Document::component_called(const std::string& name) const {
+  for (const syntax::Component& c : file.components) {
+    if (c.name.text == name) return {name, c.node ? c.node->text : "", {}, true};
+  }
+  return {name, name.starts_with('/') ? name : "", {}, false};
+}
+
+bool Document::compare_with(const LiveInventory& robot) {
+  std::vector<Diagnostic> all = checked.diagnostics;
+  // A robot without any node is one that is not there, and says nothing about the rules.
+  if (checked.rules && !robot.nodes.empty()) check_live(file, *checked.rules, robot, all);
+  if (all == diagnostics) return false;
+  diagnostics = std::move(all);
+  return true;
 }
 
 }  // namespace culprit::lsp

@@ -5,18 +5,25 @@
 #include <vector>
 
 #include "language/checker.h"
+#include "language/live_inventory.h"
+#include "language/occurrences.h"
 #include "language/source.h"
 #include "language/syntax.h"
-#include "lsp/occurrences.h"
 
 namespace culprit::lsp {
 
 struct Document {
   explicit Document(std::string text);
 
+  // The component of this name: as the file declares it, or the node of this name.
+  Component component_called(const std::string& name) const;
+  // Checks against the robot too, from now on. False if that changes nothing.
+  bool compare_with(const LiveInventory& robot);
+
   Source source;
   syntax::File file;
   Checked checked;
+  std::vector<Diagnostic> diagnostics;  // of the check, and of the robot
   std::vector<Occurrence> names;
 };
 

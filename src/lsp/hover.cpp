@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "language/functions.h"
+#include "lsp/live_hover.h"
 
 namespace culprit::lsp {
 namespace {
@@ -54,9 +55,8 @@ std::string of_component(const Document& document, const Occurrence& thing) {
   return strategies.empty() ? text : text + "\n\nAdapted by " + strategies + ".";
 }
 
-}  // namespace
-
-std::string hover(const Document& document, const Occurrence& thing) {
+// What the file and the language say.
+std::string meaning(const Document& document, const Occurrence& thing) {
   switch (thing.kind) {
     case Kind::kFunction: {
       const FunctionInfo* function = find_function(thing.name);
@@ -72,10 +72,22 @@ std::string hover(const Document& document, const Occurrence& thing) {
       return declaration(document, thing);
     case Kind::kTopic:
       return "Topic `" + thing.name + "`";
+    case Kind::kDiagnostic:
+      return "Diagnostic status `" + thing.name + "`";
+    case Kind::kService:
+      return "Service `" + thing.name + "`";
     case Kind::kParameter:
       return "Parameter `" + thing.name + "` of `" + thing.scope + "`";
   }
   return "";
+}
+
+}  // namespace
+
+std::string hover(const Document& document, const Occurrence& thing, const LiveInventory* robot) {
+  const std::string text = meaning(document, thing);
+  const std::string now = robot == nullptr ? "" : live_facts(document, thing, *robot);
+  return now.empty() ? text : text + "\n\n" + now;
 }
 
 }  // namespace culprit::lsp

@@ -7,7 +7,8 @@
 
 namespace culprit::lsp {
 
-// In Markdown; empty if there is nothing to say.
-std::string hover(const Document& document, const Occurrence& thing);
+// In Markdown; empty if there is nothing to say. What it is now is added if `robot` is not null.
+std::string hover(const Document& document, const Occurrence& thing,
+                  const LiveInventory* robot = nullptr);
 
 }  // namespace culprit::lsp

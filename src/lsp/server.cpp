@@ -20,9 +20,12 @@ constexpr int kInvalidRequest = -32600;
 constexpr int kMethodNotFound = -32601;
 constexpr int kRequestFailed = -32803;
 
+constexpr const char* kQuickFix = "quickfix";  // CodeActionKind
+
 // The value at a path of members; null if it is not there. What a client sends is not trusted to
 // have any shape.
-const Json* at(const Json& value, std::initializer_list<const char*> path) {
+using JsonPath = std::initializer_list<const char*>;
+const Json* at(const Json& value, const JsonPath& path) {
   const Json* here = &value;
   for (const char* member : path) {
     const auto found = here->find(member);
@@ -32,19 +35,33 @@ const Json* at(const Json& value, std::initializer_list<const char*> path) {
   return here;
 }
 
-std::string text_at(const Json& value, std::initializer_list<const char*> path) {
+std::string text_at(const Json& value, const JsonPath& path) {
   const Json* found = at(value, path);
   return found != nullptr && found->is_string() ? found->get<std::string>() : "";
 }
 
-std::uint32_t number_at(const Json& value, std::initializer_list<const char*> path) {
+std::uint32_t number_at(const Json& value, const JsonPath& path) {
   const Json* found = at(value, path);
   return found != nullptr && found->is_number_unsigned() ? found->get<std::uint32_t>() : 0;
 }
 
+// The offset of the position in `params` that `path` leads to.
+std::uint32_t place_in(const Document& document, const Json& params, const JsonPath& path) {
+  const Json* position = at(params, path);
+  if (position == nullptr) return 0;
+  return offset_of(document.source,
+                   {number_at(*position, {"line"}), number_at(*position, {"character"})});
+}
+
 std::uint32_t place_in(const Document& document, const Json& params) {
-  return offset_of(document.source, {number_at(params, {"position", "line"}),
-                                     number_at(params, {"position", "character"})});
+  return place_in(document, params, {"position"});
+}
+
+// CodeActionContext.only: the kinds that the client wants, all if it does not say.
+bool wants_quick_fixes(const Json& params) {
+  const Json* only = at(params, {"context", "only"});
+  if (only == nullptr || !only->is_array()) return true;
+  return std::find(only->begin(), only->end(), kQuickFix) != only->end();
 }
 
 Json to_json(TextPosition position) {
@@ -85,14 +102,19 @@ int item_kind(Proposal::Kind kind) {
     case Proposal::Kind::kComponent:
       return 7;
     case Proposal::Kind::kTopic:
+    case Proposal::Kind::kStatus:
       return 12;
+    case Proposal::Kind::kParameter:
+      return 10;
+    case Proposal::Kind::kService:
+      return 2;
   }
   return 1;
 }
 
 // What editors colour names by; the order is that of Occurrence::Kind.
-constexpr std::array kTokenTypes = {"enumMember", "class",     "variable", "string",
-                                    "property",   "namespace", "method",   "function"};
+constexpr std::array kTokenTypes = {"enumMember", "class",  "variable", "string", "property",
+                                    "namespace",  "method", "function", "string", "string"};
 
 // SymbolKind, for things that a file declares.
 int symbol_kind(Kind kind) {
@@ -169,6 +191,7 @@ void Server::notice(const std::string& method, const Json& params) {
       open(uri, text_at(changes->back(), {"text"}));
   } else if (method == "textDocument/didClose") {
     documents_.erase(uri);
+    interests_.erase(uri);
     send_({{"jsonrpc", "2.0"},
            {"method", "textDocument/publishDiagnostics"},
            {"params", {{"uri", uri}, {"diagnostics", Json::array()}}}});
@@ -176,14 +199,33 @@ void Server::notice(const std::string& method, const Json& params) {
 }
 
 void Server::open(const std::string& uri, std::string text) {
-  documents_.insert_or_assign(uri, Document(std::move(text)));
+  Document& document = documents_.insert_or_assign(uri, Document(std::move(text))).first->second;
+  if (document.checked.rules) interests_[uri] = interest_of(*document.checked.rules);
+  if (robot_) document.compare_with(*robot_);
   publish(uri);
+}
+
+void Server::see(LiveInventory robot) {
+  robot_ = std::move(robot);
+  for (auto& [uri, document] : documents_) {
+    if (document.compare_with(*robot_)) publish(uri);
+  }
+}
+
+LiveInterest Server::interest() const {
+  LiveInterest all;
+  for (const auto& [uri, interest] : interests_) {
+    all.nodes.insert(interest.nodes.begin(), interest.nodes.end());
+    for (const auto& [topic, fields] : interest.fields_of_topics)
+      all.fields_of_topics[topic].insert(fields.begin(), fields.end());
+  }
+  return all;
 }
 
 void Server::publish(const std::string& uri) {
   const Document& document = documents_.at(uri);
   Json diagnostics = Json::array();
-  for (const Diagnostic& d : document.checked.diagnostics)
+  for (const Diagnostic& d : document.diagnostics)
     diagnostics.push_back(to_json(d, document.source));
   send_({{"jsonrpc", "2.0"},
          {"method", "textDocument/publishDiagnostics"},
@@ -209,6 +251,8 @@ Json Server::answer(const std::string& method, const Json& params) {
   if (method == "textDocument/definition") return succeeded(definition(uri, found->second, params));
   if (method == "textDocument/references") return succeeded(references(uri, found->second, params));
   if (method == "textDocument/formatting") return succeeded(formatting(found->second));
+  if (method == "textDocument/codeAction")
+    return succeeded(code_actions(uri, found->second, params));
   if (method == "textDocument/documentSymbol") return succeeded(symbols(found->second));
   if (method == "textDocument/semanticTokens/full")
     return succeeded(semantic_tokens(found->second));
@@ -223,12 +267,13 @@ Json Server::capabilities() const {
   constexpr int kWholeText = 1;
   Json legend{{"tokenTypes", kTokenTypes}, {"tokenModifiers", {"declaration"}}};
   return {{"textDocumentSync", {{"openClose", true}, {"change", kWholeText}}},
-          {"completionProvider", {{"triggerCharacters", {" ", "("}}}},
+          {"completionProvider", {{"triggerCharacters", {" ", "(", "/"}}}},
           {"hoverProvider", true},
           {"definitionProvider", true},
           {"referencesProvider", true},
           {"renameProvider", true},
           {"documentFormattingProvider", true},
+          {"codeActionProvider", {{"codeActionKinds", {kQuickFix}}}},
           {"documentSymbolProvider", true},
           {"semanticTokensProvider", {{"legend", std::move(legend)}, {"full", true}}}};
 }
@@ -239,8 +284,12 @@ const Occurrence* Server::pointed_at(const Document& document, const Json& param
 
 Json Server::completion(const Document& document, const Json& params) const {
   Json items = Json::array();
-  for (const Proposal& p : proposals(document, place_in(document, params))) {
-    Json item{{"label", p.text}, {"kind", item_kind(p.kind)}};
+  const std::uint32_t place = place_in(document, params);
+  for (const Proposal& p : proposals(document, place, robot())) {
+    // Editors do not know what belongs to the name of a topic.
+    Json edit{{"range", to_json(document.source, typed_part(document, place, p))},
+              {"newText", p.text}};
+    Json item{{"label", p.text}, {"kind", item_kind(p.kind)}, {"textEdit", std::move(edit)}};
     if (!p.detail.empty()) item["detail"] = p.detail;
     items.push_back(std::move(item));
   }
@@ -249,7 +298,7 @@ Json Server::completion(const Document& document, const Json& params) const {
 
 Json Server::hover_at(const Document& document, const Json& params) const {
   const Occurrence* thing = pointed_at(document, params);
-  const std::string text = thing == nullptr ? "" : hover(document, *thing);
+  const std::string text = thing == nullptr ? "" : hover(document, *thing, robot());
   if (text.empty()) return nullptr;
   return {{"contents", {{"kind", "markdown"}, {"value", text}}},
           {"range", to_json(document.source, thing->span)}};
@@ -309,6 +358,27 @@ Json Server::formatting(const Document& document) const {
   if (!text || *text == document.source.text()) return Json::array();
   const auto end = static_cast<std::uint32_t>(document.source.text().size());
   return Json::array({{{"range", to_json(document.source, {0, end})}, {"newText", *text}}});
+}
+
+// The fixes of what is wrong within the range that the client asks about.
+Json Server::code_actions(const std::string& uri, const Document& document,
+                          const Json& params) const {
+  Json actions = Json::array();
+  if (!wants_quick_fixes(params)) return actions;
+  const std::uint32_t begin = place_in(document, params, {"range", "start"});
+  const std::uint32_t end = place_in(document, params, {"range", "end"});
+  for (const Diagnostic& d : document.diagnostics) {
+    const bool touches = d.span.begin <= end && begin <= d.span.end;
+    if (!d.fix || !touches) continue;
+    Json edit{{"range", to_json(document.source, d.fix->span)}, {"newText", d.fix->text}};
+    actions.push_back({{"title", title_of(*d.fix, document.source)},
+                       {"kind", kQuickFix},
+                       {"diagnostics", Json::array({to_json(d, document.source)})},
+                       {"edit", {{"changes", {{uri, Json::array({std::move(edit)})}}}}}});
+  }
+  // An editor applies the preferred one unasked, so there is none where there is a choice.
+  if (actions.size() == 1) actions[0]["isPreferred"] = true;
+  return actions;
 }
 
 // Rules hold their strategies; everything else that is declared stands beside them.

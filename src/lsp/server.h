@@ -22,6 +22,13 @@ class Server {
   // the client said that the server has to end.
   bool handle(const nlohmann::json& message);
 
+  // What the robot has now, for completion, hover and diagnostics. Diagnostics that change are
+  // published.
+  void see(LiveInventory robot);
+  // What of a robot the open documents name. A document that does not parse names what it named
+  // before.
+  LiveInterest interest() const;
+
   // 0 if the client asked for the shutdown first, as it has to.
   int exit_code() const { return is_shut_down_ ? 0 : 1; }
 
@@ -39,17 +46,21 @@ class Server {
   Json references(const std::string& uri, const Document& document, const Json& params) const;
   Expected<Json> rename(const std::string& uri, const Document& document, const Json& params) const;
   Json formatting(const Document& document) const;
+  Json code_actions(const std::string& uri, const Document& document, const Json& params) const;
   Json symbols(const Document& document) const;
   Json semantic_tokens(const Document& document) const;
 
   void open(const std::string& uri, std::string text);
   void publish(const std::string& uri);
+  const LiveInventory* robot() const { return robot_ ? &*robot_ : nullptr; }
   // The thing that the request's position points at; null if at none.
   const Occurrence* pointed_at(const Document& document, const Json& params) const;
 
   const std::string version_;
   const Send send_;
-  std::map<std::string, Document> documents_;  // by URI
+  std::map<std::string, Document> documents_;      // by URI
+  std::map<std::string, LiveInterest> interests_;  // by URI
+  std::optional<LiveInventory> robot_;             // nothing while none was seen
   bool is_shut_down_ = false;
 };
 

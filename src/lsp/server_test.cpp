@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "language/explanations.h"
 #include "lsp/message_stream.h"
 #include "lsp/text_position.h"
 
@@ -169,6 +170,145 @@ TEST(LspServer, LaysOutTheFile) {
   EXPECT_EQ(format(), Json::array()) << "it is laid out already";
   session.change("RULE\n");
   EXPECT_EQ(format(), Json::array()) << "what does not parse is left alone";
+}
+
+TEST(LspServer, OffersTheFixOfWhatIsPointedAt) {
+  Session session("ROBOT r\n# Bäume 🌳\nrobot x\nCONTS a = 3\nCYCLE 200\n");
+  const auto actions = [&](std::uint32_t line, Json context = Json::object()) {
+    const Json place{{"line", line}, {"character", 0}};
+    return session.request("textDocument/codeAction",
+                           {{"textDocument", {{"uri", kUri}}},
+                            {"range", {{"start", place}, {"end", place}}},
+                            {"context", std::move(context)}})["result"];
+  };
+  EXPECT_EQ(actions(0), Json::array());
+  EXPECT_EQ(actions(4), Json::array()) << "which unit is meant is not known";
+  ASSERT_EQ(actions(3).size(), 1u);
+  const Json action = actions(3)[0];
+  EXPECT_EQ(action["title"], "change 'CONTS' to 'CONST'");
+  EXPECT_EQ(action["isPreferred"], true);
+  EXPECT_EQ(action["diagnostics"][0]["code"], "R001");
+  const Json edit = action["edit"]["changes"][kUri][0];
+  EXPECT_EQ(edit["newText"], "CONST");
+  EXPECT_EQ(edit["range"]["start"], (Json{{"line", 3}, {"character", 0}}));
+  EXPECT_EQ(edit["range"]["end"], (Json{{"line", 3}, {"character", 5}}));
+  EXPECT_EQ(actions(3, {{"only", {"refactor"}}}), Json::array());
+  EXPECT_EQ(actions(3, {{"only", {"quickfix"}}}).size(), 1u);
+}
+
+TEST(LspServer, PrefersNoFixWhereThereIsAChoice) {
+  Session session("robot x\nCONTS a = 3\n");
+  const Json actions = session.request("textDocument/codeAction",
+                                       {{"textDocument", {{"uri", kUri}}},
+                                        {"range",
+                                         {{"start", {{"line", 0}, {"character", 0}}},
+                                          {"end", {{"line", 9u}, {"character", 0u}}}}}})["result"];
+  ASSERT_EQ(actions.size(), 2u);
+  EXPECT_FALSE(actions[0].contains("isPreferred"));
+}
+
+// The robot of explanations.h, with a topic that is watched.
+LiveInventory robot() {
+  LiveInventory robot = example_robot();
+  robot.topics["/robot/image"].rate = 29.96;
+  robot.topics["/robot/image"].fields["width"] = Value(std::int64_t{640});
+  return robot;
+}
+
+TEST(LspServer, SaysWhatTheRobotHasNotAndTakesItBack) {
+  Session session("COMPONENT camera NODE /camera\n");
+  EXPECT_EQ(session.diagnostics(), Json::array()) << "no robot was seen";
+  session.server.see({});
+  EXPECT_EQ(session.diagnostics(), Json::array()) << "a robot that is not there says nothing";
+
+  session.server.see(robot());
+  ASSERT_EQ(session.diagnostics().size(), 1u);
+  EXPECT_EQ(session.diagnostics()[0]["code"], "R060");
+  EXPECT_EQ(session.diagnostics()[0]["severity"], 2);
+
+  const std::size_t sent = session.sent.size();
+  session.server.see(robot());
+  EXPECT_EQ(session.sent.size(), sent) << "nothing has changed";
+
+  session.change("COMPONENT camera NODE /robot/camera\n");
+  EXPECT_EQ(session.diagnostics(), Json::array());
+  session.change("COMPONENT camera NODE /camera\n");
+  EXPECT_EQ(session.diagnostics().size(), 1u);
+  LiveInventory with_camera = robot();
+  with_camera.nodes["/camera"];
+  session.server.see(with_camera);
+  EXPECT_EQ(session.diagnostics(), Json::array()) << "it was started meanwhile";
+}
+
+TEST(LspServer, ProposesWhatTheRobotHas) {
+  Session session(
+      "COMPONENT cam NODE /robot/camera\nCOMPONENT x NODE \nSIGNAL s TOPIC /rob\n"
+      "SIGNAL s DIAGNOSTIC camera KEY \nSIGNAL s PARAMETER cam \n  TRIGGER rate(\n"
+      "  TRIGGER parameter(cam, \n  TRIGGER level(\n      ADAPTATION \n"
+      "      ADAPTATION cam set_parameter \n      ADAPTATION cam call \n"
+      "      ADAPTATION cam change_communication exposure \n");
+  const auto offers = [&](std::uint32_t line) {
+    return labels(session.ask("completion", line, 1000));
+  };
+  EXPECT_THAT(offers(1), testing::IsEmpty()) << "no robot was seen";
+  session.server.see(robot());
+  EXPECT_THAT(offers(1), testing::ElementsAre("/robot/camera"));
+  EXPECT_THAT(offers(2), Contains("/robot/image"));
+  EXPECT_THAT(offers(3), testing::ElementsAre("entropy"));
+  EXPECT_THAT(offers(4), testing::ElementsAre("exposure"));
+  EXPECT_THAT(offers(5), Contains("/robot/image"));
+  EXPECT_THAT(offers(6), testing::ElementsAre("exposure"));
+  EXPECT_THAT(offers(7), testing::ElementsAre("camera"));
+  EXPECT_THAT(offers(8), testing::IsSupersetOf({"cam", "/robot/camera"}));
+  EXPECT_THAT(offers(9), testing::ElementsAre("exposure"));
+  EXPECT_THAT(offers(10), testing::ElementsAre("/robot/camera/recalibrate"));
+  EXPECT_THAT(offers(11), Contains("/robot/image"));
+}
+
+TEST(LspServer, ReplacesWhatIsTypedOfAName) {
+  Session session("SIGNAL s TOPIC /robot/im\n  TRIGGER rate(/robot/image)>rat\n");
+  session.server.see(robot());
+  const auto edit = [&](std::uint32_t line, const std::string& label) {
+    const Json reply = session.ask("completion", line, 1000);
+    for (const Json& item : reply["result"]) {
+      if (item["label"] == label) return item["textEdit"]["range"];
+    }
+    return Json();
+  };
+  EXPECT_EQ(edit(0, "/robot/image")["start"], (Json{{"line", 0}, {"character", 15}}));
+  EXPECT_EQ(edit(1, "rate")["start"], (Json{{"line", 1}, {"character", 29}}));
+}
+
+TEST(LspServer, ShowsWhatThingsAreNow) {
+  Session session(
+      "COMPONENT camera NODE /robot/camera\nCOMPONENT gone NODE /gone\n"
+      "SIGNAL entropy DIAGNOSTIC camera KEY entropy\nSIGNAL width TOPIC /robot/image FIELD width\n"
+      "SIGNAL exposure PARAMETER camera exposure\n"
+      "RULE r\n  POLICIES ERROR\n  TRIGGER entropy + width + exposure > level(camera)\n"
+      "    STRATEGY s 50 10\n      ADAPTATION camera call recalibrate 2\n");
+  session.server.see(robot());
+  const auto hover = [&](std::uint32_t line, std::uint32_t character) {
+    return session.ask("hover", line, character)["result"]["contents"]["value"].get<std::string>();
+  };
+  EXPECT_THAT(hover(0, 12), HasSubstr("On the robot as `/robot/camera`, active."));
+  EXPECT_THAT(hover(1, 12), HasSubstr("Not on the robot now."));
+  EXPECT_THAT(hover(7, 12), HasSubstr("Now `0.03`."));
+  EXPECT_THAT(hover(7, 22), HasSubstr("Now `640`."));
+  EXPECT_THAT(hover(7, 30), HasSubstr("Now `0.5`."));
+  EXPECT_THAT(hover(3, 25), HasSubstr("`sensor_msgs/msg/Image`, 30.0 Hz now."));
+  EXPECT_THAT(hover(4, 35), HasSubstr("Now `0.5`."));
+  EXPECT_THAT(hover(2, 28), HasSubstr("Level 0 (OK) now."));
+  EXPECT_THAT(hover(9, 32), HasSubstr("std_srvs/srv/Trigger"));
+}
+
+TEST(LspServer, AsksForWhatTheDocumentsName) {
+  Session session("COMPONENT camera NODE /robot/camera\nSIGNAL w TOPIC /robot/image FIELD width\n");
+  const LiveInterest wanted{{"/robot/camera"}, {{"/robot/image", {"width"}}}};
+  EXPECT_EQ(session.server.interest(), wanted);
+  session.change("COMPONENT camera NODE\n");
+  EXPECT_EQ(session.server.interest(), wanted) << "while a line is being typed";
+  session.notify("textDocument/didClose", {{"textDocument", {{"uri", kUri}}}});
+  EXPECT_EQ(session.server.interest(), LiveInterest{});
 }
 
 TEST(LspServer, OutlinesTheFile) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "plan/explained_by.h"
+
 namespace culprit {
 namespace {
 
@@ -106,8 +108,8 @@ void Manager::carry_out(const Verdict& verdict, Time now) {
   const StrategyId strategy = *verdict.chosen;
   held_back_[verdict.rule.index] = {};
   const bool is_dry = autonomy_ == Autonomy::kAdvise;
-  knowledge_.tell(now,
-                  StrategyChosen{strategy, verdict.candidates, explained_by(strategy), is_dry});
+  knowledge_.tell(now, StrategyChosen{strategy, verdict.candidates,
+                                      plan::explained_by(strategy, knowledge_), is_dry});
   if (is_dry) {
     knowledge_.states.state(verdict.rule).is_advised = true;
     return;
@@ -123,24 +125,6 @@ void Manager::hold_back(const Verdict& verdict, Time now) {
   if (said.failing_since == since && same_reasons(said.candidates, verdict.candidates)) return;
   said = {since, verdict.candidates};
   knowledge_.tell(now, FailureHeldBack{verdict.rule, verdict.candidates});
-}
-
-// Other failures of components that depend on what `strategy` adapts.
-std::vector<RuleId> Manager::explained_by(StrategyId strategy) const {
-  std::vector<RuleId> explained;
-  for (const RuleId id : knowledge_.states.active()) {
-    if (id == knowledge_.rules[strategy].rule) continue;
-    const auto& touched = knowledge_.rules[id].components;
-    const auto is_downstream = [&](ComponentId adapted) {
-      const auto& downstream = knowledge_.graph.downstream(adapted);
-      return std::any_of(downstream.begin(), downstream.end(), [&](ComponentId c) {
-        return std::binary_search(touched.begin(), touched.end(), c);
-      });
-    };
-    const auto& adapted = knowledge_.rules[strategy].components;
-    if (std::any_of(adapted.begin(), adapted.end(), is_downstream)) explained.push_back(id);
-  }
-  return explained;
 }
 
 Time Manager::next_deadline() const {

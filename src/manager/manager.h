@@ -45,6 +45,9 @@ class Manager : public ManagingSystem {
   std::span<const Event> events() const override { return knowledge_.events; }
   const Knowledge& knowledge() const { return knowledge_; }
 
+  // The failures that wait for a decision now, ascending.
+  std::vector<RuleId> plannable() const { return analyzer_.plannable(now_); }
+
   // For beliefs from an earlier run.
   void set_belief(StrategyId id, Belief belief) { knowledge_.beliefs.set(id, belief); }
 
@@ -52,7 +55,6 @@ class Manager : public ManagingSystem {
   void plan(Time now);
   void carry_out(const Verdict& verdict, Time now);
   void hold_back(const Verdict& verdict, Time now);
-  std::vector<RuleId> explained_by(StrategyId strategy) const;
   Time next_planning(Time now) const;
 
   Knowledge knowledge_;

@@ -80,10 +80,7 @@ void PaperPlanner::select(std::span<const RuleId> failures, Criticality level,
 void PaperPlanner::examine(Candidate& candidate, Criticality level, const Knowledge& knowledge,
                            const std::vector<ComponentId>& affected) const {
   const Strategy& strategy = knowledge.rules[candidate.strategy];
-  const auto& siblings = knowledge.rules[strategy.rule].strategies;
-  const auto place =
-      std::find(siblings.begin(), siblings.end(), candidate.strategy) - siblings.begin();
-  if (knowledge.states[strategy.rule].tried[static_cast<std::size_t>(place)]) {
+  if (knowledge.states.is_tried(candidate.strategy)) {
     candidate.excluded = Condition::kTried;
     return;
   }

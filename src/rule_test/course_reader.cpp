@@ -37,6 +37,12 @@ class CourseReader {
         return std::nullopt;
       }
     }
+    if (begins_with_value()) {
+      Stretch always;
+      if (!value(subject, always)) return std::nullopt;
+      course.stretches.push_back(std::move(always));
+      if (s_.at_end()) return course;
+    }
     do {
       if (!stretch(course)) return std::nullopt;
     } while (!s_.at_end());
@@ -44,6 +50,14 @@ class CourseReader {
   }
 
  private:
+  // "10Hz" without a time: from the start on. A number before a ':' is a time without its unit.
+  bool begins_with_value() const {
+    if (s_.at_end()) return false;
+    Scanner ahead = s_;
+    const Token first = ahead.next();
+    return first.kind != Token::Kind::kDuration && !ahead.peek().is(":") && !ahead.peek().is("..");
+  }
+
   // "2s: value", "2s..5s: value"
   bool stretch(Course& course) {
     Stretch stretch;

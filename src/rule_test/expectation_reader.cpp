@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "knowledge/describe.h"
+
 namespace culprit::rule_test {
 namespace {
 
@@ -28,15 +30,9 @@ constexpr std::array kVerbs = {
     Verb{"BLAMED", Kind::kBlamed, About::kComponent},
 };
 
-struct Reason {
-  std::string_view word;
-  Condition condition;
-};
-constexpr std::array kReasons = {
-    Reason{"tried", Condition::kTried},           Reason{"invalid", Condition::kInvalid},
-    Reason{"adapting", Condition::kAdapting},     Reason{"affected", Condition::kAffected},
-    Reason{"dependency", Condition::kDependency}, Reason{"other_chosen", Condition::kOneEach},
-};
+constexpr std::array kConditions = {Condition::kTried,      Condition::kInvalid,
+                                    Condition::kAdapting,   Condition::kAffected,
+                                    Condition::kDependency, Condition::kOneEach};
 
 class ExpectationReader {
  public:
@@ -174,9 +170,9 @@ class ExpectationReader {
   bool because() {
     const Token word = s_.next();
     std::vector<std::string_view> known;
-    for (const Reason& reason : kReasons) {
-      known.push_back(reason.word);
-      if (word.text == reason.word) e_.condition = reason.condition;
+    for (const Condition condition : kConditions) {
+      known.push_back(to_string(condition));
+      if (word.text == to_string(condition)) e_.condition = condition;
     }
     if (!e_.condition) return read_.unexpected_clause(word, known);
     return !took("ON") || names_clause(About::kComponent, "a component");

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rule_test/state.h"
 #include "rule_test/test_suite.h"
 
 namespace culprit::rule_test {
@@ -18,8 +19,12 @@ std::string read_file(const std::filesystem::path& path) {
 
 std::string messages(const Source& source) {
   std::vector<Diagnostic> diagnostics;
-  rule_files(source, diagnostics);
-  read_suite(source, pipeline_rules(), diagnostics);
+  if (source.name().ends_with(".state")) {
+    read_state(source, pipeline_rules(), diagnostics);
+  } else {
+    rule_files(source, diagnostics);
+    read_suite(source, pipeline_rules(), diagnostics);
+  }
   std::string out;
   for (const Diagnostic& d : diagnostics) out += render(d, source);
   return out;
@@ -30,7 +35,7 @@ std::string messages(const Source& source) {
 TEST(Reader, SaysWhatTheGoldenFilesSay) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator("src/rule_test/golden")) {
-    if (entry.path().extension() != ".test") continue;
+    if (entry.path().extension() == ".expected") continue;
     ++files;
     const Source source(entry.path().filename().string(), read_file(entry.path()));
     const auto expected = std::filesystem::path(entry.path()).replace_extension(".expected");
@@ -39,6 +44,21 @@ TEST(Reader, SaysWhatTheGoldenFilesSay) {
     EXPECT_EQ(messages(source), read_file(expected)) << entry.path();
   }
   EXPECT_GT(files, 0);
+}
+
+TEST(Reader, TakesAValueWithoutATimeForTheOneFromTheStart) {
+  std::vector<Diagnostic> diagnostics;
+  const State state =
+      read_state(Source("x.state", "TOPIC /rgb 10Hz 8s: silent\nSIGNAL blur -0.5\n"),
+                 pipeline_rules(), diagnostics);
+  EXPECT_TRUE(diagnostics.empty());
+  ASSERT_EQ(state.scenario.courses.size(), 2u);
+  const auto& rgb = state.scenario.courses[0].stretches;
+  ASSERT_EQ(rgb.size(), 2u);
+  EXPECT_EQ(rgb[0].from, Duration::zero());
+  EXPECT_EQ(rgb[0].value, Value(10.0));
+  EXPECT_EQ(rgb[1].from, std::chrono::seconds(8));
+  EXPECT_EQ(state.scenario.courses[1].stretches.at(0).value, Value(-0.5));
 }
 
 TEST(Reader, SharesWhatStandsBeforeTheFirstTest) {

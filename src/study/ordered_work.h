@@ -12,15 +12,15 @@
 
 namespace culprit::study {
 
-// Calls `compute(i)` for i in [first, end) on `jobs` >= 1 threads, and `consume(i, result)` for each
-// in ascending order on the calling thread. If `consume` gives false, no more work is begun.
+// Calls `compute(i)` for i in [first, end) on `jobs` >= 1 threads, and `consume(i, result)` for
+// each in ascending order on the calling thread. If `consume` gives false, no more work is begun.
 // `compute` may be called from several threads at once.
 template <class Compute, class Consume>
 void work_in_order(std::uint64_t first, std::uint64_t end, unsigned jobs, Compute compute,
                    Consume consume) {
   using Result = decltype(compute(first));
   const std::uint64_t ahead = std::uint64_t{jobs} * 4;  // beyond what is consumed
-  std::mutex mutex;  // guards what follows
+  std::mutex mutex;                                     // guards what follows
   std::condition_variable changed;
   std::vector<std::optional<Result>> done(ahead);  // result i in place i % ahead
   std::uint64_t begun = first;

@@ -93,7 +93,7 @@ class ExpressionReader {
     Expression e;
     e.kind = Kind::kUnary;
     e.op = token.is("!") ? Operator::kNot : Operator::kNegate;
-    e.children = {std::move(*operand)};
+    e.children.push_back(std::move(*operand));
     return e;
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "language/line_reader.h"
+#include "language/ros_names.h"
 
 namespace culprit::foreign {
 namespace {
@@ -14,12 +15,7 @@ constexpr std::string_view kFrequency = "_freq";
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// "/a/b/c" -> "c", and "a_b_" for its namespace.
-std::string own_name(const std::string& node) { return node.substr(node.rfind('/') + 1); }
-std::string namespace_of(const std::string& node) {
-  const auto slash = node.rfind('/');
-  return slash == std::string::npos ? "" : node.substr(0, slash);
-}
+// "/a/b" -> "a_b_"
 std::string as_prefix(std::string name_space) {
   if (name_space.empty()) return "";
   std::replace(name_space.begin(), name_space.end(), '/', '_');

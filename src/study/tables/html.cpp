@@ -25,8 +25,9 @@ std::string_view shade_class(Shade shade) {
 std::string_view spoken(Shade shade) {
   switch (shade) {
     case Shade::kNone:
-    case Shade::kNotSignificant:
       return "";
+    case Shade::kNotSignificant:
+      return "<span class=\"mark\"></span>";  // so that numbers stay below one another
     case Shade::kBetter:
       return "<span class=\"mark\" title=\"significantly better\" "
              "aria-label=\"significantly better\">+</span>";

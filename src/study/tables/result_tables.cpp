@@ -30,10 +30,11 @@ Cell result_cell(const Row& row, Metric metric, std::optional<double> best_mean)
 }
 
 std::string with_interval(const Summary& summary) {
-  std::string text = mean_sd(summary);
-  if (const auto interval = summary.interval())
-    text += fmt::format(" [{}, {}]", number(interval->low), number(interval->high));
-  return text;
+  if (summary.count() == 0) return "–";
+  const auto interval = summary.interval();
+  if (!interval) return number(summary.mean());
+  return fmt::format("{} [{}, {}]", number(summary.mean()), number(interval->low),
+                     number(interval->high));
 }
 
 std::string runs_note(const CampaignResult& result) {
@@ -67,7 +68,7 @@ Table results_table(const CampaignResult& result) {
 Table honest_table(const CampaignResult& result) {
   const ConfigurationColumns configuration(result.rows);
   Table table{"honest",
-              "Honest metrics: mean ± sd [95 % interval of the mean]",
+              "Honest metrics: mean [95 % interval of the mean]",
               configuration.columns(),
               {},
               {}};

@@ -8,6 +8,7 @@ namespace culprit::sunset::model {
 namespace {
 
 constexpr Duration kFramePeriod = std::chrono::milliseconds(100);
+constexpr Duration kWatchedBefore = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -57,7 +58,8 @@ std::vector<SunsetModel::Injection> SunsetModel::inject(const Scenario& scenario
   }
   std::sort(injections.begin(), injections.end(),
             [](const Injection& a, const Injection& b) { return a.at < b.at; });
-  world_.at(injections.front().at, [this] { evaluator_.restart(); });
+  // A gap counts from the last picture before the fault.
+  world_.at(injections.front().at - kWatchedBefore, [this] { evaluator_.restart(); });
   return injections;
 }
 

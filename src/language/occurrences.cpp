@@ -1,11 +1,11 @@
-#include "lsp/occurrences.h"
+#include "language/occurrences.h"
 
 #include <algorithm>
 #include <set>
 
 #include "language/functions.h"
 
-namespace culprit::lsp {
+namespace culprit {
 namespace {
 
 using Kind = Occurrence::Kind;
@@ -41,9 +41,15 @@ class Collector {
       all_.push_back({kind, name.text, std::move(scope), name.span, declares});
   }
 
+  void add_ros_name(Kind kind, const syntax::Name& name, const syntax::Name& component) {
+    add(kind, name, false, name.text.starts_with('/') ? "" : component.text);
+  }
+
   void signal(const syntax::Signal& s) {
     add(Kind::kSignal, s.name, true);
-    if (const auto* topic = std::get_if<syntax::TopicSource>(&s.source)) {
+    if (const auto* diagnostic = std::get_if<syntax::DiagnosticSource>(&s.source)) {
+      add(Kind::kDiagnostic, diagnostic->status);
+    } else if (const auto* topic = std::get_if<syntax::TopicSource>(&s.source)) {
       add(Kind::kTopic, topic->topic);
     } else if (const auto* parameter = std::get_if<syntax::ParameterSource>(&s.source)) {
       add(Kind::kComponent, parameter->component);
@@ -67,7 +73,8 @@ class Collector {
     const bool has_parameter = a.type == kSetParameter || a.type == kIncreaseParameter ||
                                a.type == kDecreaseParameter || a.type == kChangeCommunication;
     if (has_parameter) add(Kind::kParameter, a.subject, false, a.component.text);
-    add(Kind::kTopic, a.topic);
+    if (a.type == kCall) add_ros_name(Kind::kService, a.subject, a.component);
+    add_ros_name(Kind::kTopic, a.topic, a.component);
     if (a.value) expression(*a.value);
   }
 
@@ -98,7 +105,7 @@ class Collector {
       case Argument::kParameter:
         return add(Kind::kParameter, e.name, false, call.children[0].name.text);
       case Argument::kDiagnostic:
-        return;
+        return add(Kind::kDiagnostic, e.name);
       case Argument::kExpression:
         return expression(e);
     }
@@ -120,4 +127,4 @@ const Occurrence* occurrence_at(const std::vector<Occurrence>& all, std::uint32_
   return found == all.end() ? nullptr : &*found;
 }
 
-}  // namespace culprit::lsp
+}  // namespace culprit

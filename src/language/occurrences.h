@@ -1,4 +1,5 @@
-// Every place where a rule file names something: for going to a definition, finding uses, renaming.
+// Every place where a rule file names something: for going to a definition, finding uses, renaming,
+// and for looking everything up on a robot.
 #pragma once
 
 #include <string>
@@ -6,18 +7,20 @@
 
 #include "language/syntax.h"
 
-namespace culprit::lsp {
+namespace culprit {
 
 struct Occurrence {
   enum class Kind : std::uint8_t {
     kConstant,
     kComponent,
     kSignal,
-    kTopic,
+    kTopic,      // its scope is the component whose namespace it is relative to; or empty
     kParameter,  // its scope is the component
     kRule,
     kStrategy,  // its scope is the rule
-    kFunction
+    kFunction,
+    kDiagnostic,  // a status
+    kService      // its scope as a topic's
   };
   Kind kind = Kind::kConstant;
   std::string name;
@@ -38,4 +41,4 @@ std::vector<Occurrence> occurrences(const syntax::File& file);
 // The one that holds the byte `offset` or ends there; null if there is none.
 const Occurrence* occurrence_at(const std::vector<Occurrence>& all, std::uint32_t offset);
 
-}  // namespace culprit::lsp
+}  // namespace culprit

@@ -1,0 +1,156 @@
+#include <filesystem>
+#include <memory>
+#include <unistd.h>
+
+#include <fmt/core.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/diagnostic_report.h"
+#include "cli/live_robot.h"
+#include "cli/paths.h"
+#include "cli/plan_report.h"
+#include "cli/planner_options.h"
+#include "cli/rule_file.h"
+#include "manager/runtime.h"
+#include "plan/onlooker.h"
+#include "rule_test/state.h"
+
+namespace culprit::cli {
+namespace {
+
+struct PlanOptions {
+  std::string rules;
+  std::string state;
+  bool robot = false;
+  std::string format = "text";
+  double settle_seconds = seconds(Manager::kDiscovery);
+  std::vector<std::filesystem::path> message_path;
+  PlannerOptions planner;
+};
+
+void print(const PlanReport& report, const PlanOptions& options) {
+  if (options.format == "json") {
+    fmt::print("{}\n", to_text(plan_as_json(report)));
+  } else {
+    fmt::print("{}", plan_as_text(report));
+  }
+}
+
+int plan_for_state(const RuleSet& rules, const PlanOptions& options) {
+  const auto source = Source::read(options.state);
+  if (!source) {
+    fmt::print(stderr, "culprit: {}\n", source.error());
+    return kUsage;
+  }
+  std::vector<Diagnostic> diagnostics;
+  const rule_test::State state = rule_test::read_state(*source, rules, diagnostics);
+  for (const Diagnostic& d : diagnostics)
+    fmt::print(stderr, "{}", render(d, *source, colour_of(STDERR_FILENO)));
+  if (!diagnostics.empty()) {
+    fmt::print(stderr, "culprit: {} cannot be used\n", options.state);
+    return kUsage;
+  }
+  const rule_test::Watched watched = rule_test::watch(state, rules);
+  PlanReport report(*options.planner.planner(), watched.failures, *watched.knowledge);
+  if (state.moment) report.now = watched.now;
+  print(report, options);
+  return kOk;
+}
+
+// ---- a live robot
+
+bool all_is_known(const Knowledge& knowledge) {
+  for (std::size_t i = 0; i < knowledge.rules.inputs.size(); ++i) {
+    const bool matters = !knowledge.rules.inputs[i].readers.empty();
+    if (matters && !knowledge.signals[InputId(i)].known) return false;
+  }
+  return true;
+}
+
+// Until discovery has settled and all that triggers read is known (or has had as long again to
+// come), and as long as rules wait until they call something a failure.
+void watch(Manager& manager, LiveRobot& robot, const RuleSet& rules, Duration settling,
+           const std::atomic<bool>& stop) {
+  Runtime runtime(manager, robot);
+  const Time settled = later(robot.now(), settling);
+  runtime.run(stop, settled);
+  for (const Time limit = later(settled, settling);
+       !stop && robot.now() < limit && !all_is_known(manager.knowledge());)
+    runtime.run(stop, later(robot.now(), rules.cycle));
+  runtime.run(stop, later(robot.now(), longest_detection(rules)));
+}
+
+int plan_for_robot(const RuleSet& rules, const PlanOptions& options) {
+  auto participant = ros2::options_from_environment();
+  if (!participant) {
+    fmt::print(stderr, "culprit: {}\n", participant.error());
+    return kUsage;
+  }
+  LiveRobot::Options robot_options;
+  robot_options.link.participant = *participant;
+  robot_options.link.name = {"/", "_culprit_plan"};  // hidden, as tools are
+  robot_options.link.message_path =
+      ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH"));
+  StopSignals signals;
+  auto robot = LiveRobot::open(rules, std::move(robot_options));
+  if (!robot) {
+    fmt::print(stderr, "culprit: {}\n", robot.error());
+    return kFailed;
+  }
+  signals.on_stop([&] { (*robot)->interrupt(); });
+
+  // An onlooker decides nothing, so nothing is asked of the robot.
+  Manager::Options manager_options;
+  manager_options.start = (*robot)->now();
+  manager_options.settling = from_seconds(options.settle_seconds);
+  Manager manager(rules, std::make_unique<Onlooker>(), manager_options);
+  fmt::print(stderr, "culprit: watching {} for {:g} s or more; nothing is changed on it\n",
+             rules.robot.empty() ? "the robot" : rules.robot,
+             seconds(manager_options.settling + longest_detection(rules)));
+  watch(manager, **robot, rules, manager_options.settling, signals.stopped());
+  const bool is_stopped = signals.stopped();
+  signals.on_stop({});
+  if (is_stopped) {
+    fmt::print(stderr, "culprit: stopped before the robot was seen; nothing is planned\n");
+    return kFailed;
+  }
+  PlanReport report(*options.planner.planner(), manager.plannable(), manager.knowledge());
+  report.now = (*robot)->now();
+  print(report, options);
+  return kOk;
+}
+
+int plan(const PlanOptions& options) {
+  const auto rules = load_rules(options.rules);
+  if (rules == nullptr) return kFailed;
+  return options.robot ? plan_for_robot(*rules, options) : plan_for_state(*rules, options);
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<PlanOptions>();
+  CLI::App* command = app.add_subcommand(
+      "plan", "Show what would be decided now, why, and what would have changed the decision");
+  command->add_option("RULES", options->rules, "The rule file")->required();
+  CLI::Option_group* what = command->add_option_group("What is the case");
+  what->add_option("--state", options->state, "A file that says how the robot is (docs/plan.md)");
+  what->add_flag("--robot", options->robot,
+                 "The live robot is watched for a moment; nothing is changed on it");
+  what->require_option(1);
+  command->add_option("--format", options->format, "text for people, json for programs")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+  command
+      ->add_option("--settle", options->settle_seconds,
+                   "With --robot: so many seconds are given to discovery")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  command->add_option("--message-path", options->message_path,
+                      "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
+  options->planner.add_to(*command);
+  command->callback([options, &exit_code] { exit_code = plan(*options); });
+}
+
+}  // namespace culprit::cli

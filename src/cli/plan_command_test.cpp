@@ -1,0 +1,122 @@
+// culprit plan --state as a user runs it: files, output and exit codes.
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+
+namespace culprit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kSunset = "rules/sunset.rules";
+constexpr const char* kSunsetState = "rules/tests/sunset.state";
+
+struct Plan : testing::Test {
+  // Gives the exit code; what was printed is in `out` and `err`.
+  int plan(std::vector<std::string> arguments) {
+    CLI::App app;
+    int exit_code = -1;
+    add_plan(app, exit_code);
+    arguments.insert(arguments.begin(), "plan");
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    app.parse(arguments);
+    out = testing::internal::GetCapturedStdout();
+    err = testing::internal::GetCapturedStderr();
+    return exit_code;
+  }
+  int plan_for(const std::string& state) {
+    const std::string path = testing::TempDir() + "plan_command_test.state";
+    std::ofstream(path, std::ios::binary) << state;
+    return plan({kSunset, "--state", path});
+  }
+
+  std::string out;
+  std::string err;
+};
+
+std::string indented(const std::string& text) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at) + 1;
+    if (end - at > 1) result += "    ";
+    result += text.substr(at, end - at);
+    at = end;
+  }
+  return result;
+}
+
+TEST_F(Plan, SaysWhatTheManualSays) {
+  ASSERT_EQ(plan({kSunset, "--state", kSunsetState}), kOk) << err;
+  std::ifstream in("docs/plan.md");
+  const std::string manual(std::istreambuf_iterator<char>(in), {});
+  EXPECT_THAT(manual, HasSubstr(indented(out)));
+}
+
+TEST_F(Plan, GivesTheSameAsData) {
+  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--format", "json"}), kOk) << err;
+  const auto json = nlohmann::json::parse(out);
+  ASSERT_EQ(json["failures"].size(), 4u);
+  const auto& dead = json["failures"][0];
+  EXPECT_EQ(dead["rule"], "RGBDead");
+  EXPECT_EQ(dead["chosen"], "rgb_restart");
+  EXPECT_EQ(dead["blamed"], nlohmann::json({"camera"}));
+  EXPECT_FALSE(dead.contains("failing_s")) << "the state says no moment";
+  const auto& redeploy = dead["candidates"][1];
+  EXPECT_EQ(redeploy["excluded"]["condition"], "other_chosen");
+  EXPECT_EQ(redeploy["flips"][0]["kind"], "impact");
+  EXPECT_EQ(redeploy["flips"][0]["impact"], 7);
+  const auto& segmentation = json["failures"][2];
+  EXPECT_TRUE(segmentation["chosen"].is_null());
+  EXPECT_EQ(segmentation["candidates"][0]["excluded"]["because"], "SensorFusionDead");
+  EXPECT_EQ(segmentation["candidates"][0]["flips"][0]["rules"],
+            nlohmann::json({"SensorFusionDead", "RGBDead"}));
+}
+
+TEST_F(Plan, TakesTheSwitchesOfRun) {
+  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--no-impact", "--no-dependencies"}), kOk);
+  EXPECT_THAT(out, HasSubstr("would redeploy camera (rgb_redeploy, cost 0.10)"));
+  EXPECT_THAT(out, HasSubstr("would redeploy segmentation"));
+}
+
+TEST_F(Plan, OfARobotThatIsWellNamesWhatIsNearest) {
+  ASSERT_EQ(plan_for("TOPIC /managed_subsystem/rgb_camera    10Hz\n"
+                     "TOPIC /managed_subsystem/depth_camera  10Hz\n"
+                     "TOPIC /managed_subsystem/sensors_fused 10Hz\n"
+                     "TOPIC /managed_subsystem/segmentation  10Hz\n"
+                     "SIGNAL segmentation_entropy            0.05\n"),
+            kOk);
+  EXPECT_EQ(out,
+            "Nothing waits for a decision.\n"
+            "Nearest to a failure:\n"
+            "  SegmentationBad: segmentation_entropy is 0.05, compared with 0.06\n"
+            "Unknown, and so no failure yet: autofocus_needed\n");
+}
+
+TEST_F(Plan, SaysHowLongAFailureHasBeenThereAtAMoment) {
+  ASSERT_EQ(plan_for("TOPIC /managed_subsystem/rgb_camera 10Hz 6s: silent\nRUN 8s\n"), kOk);
+  EXPECT_THAT(out, HasSubstr("RGBDead (ERROR, for 1.7 s)"));
+}
+
+TEST_F(Plan, NamesEveryMistakeOfAState) {
+  EXPECT_EQ(plan_for("COMPONENT camra KILLED\nSTRATEGY rgb_restart FAILED\n"), kUsage);
+  EXPECT_EQ(out, "");
+  EXPECT_THAT(err, HasSubstr(":1:11: error[R011]"));
+  EXPECT_THAT(err, HasSubstr("did you mean camera?"));
+  EXPECT_THAT(err, HasSubstr(":2:22: error[R002]"));
+  EXPECT_EQ(plan({kSunset, "--state", "no/such.state"}), kUsage);
+  EXPECT_THAT(err, HasSubstr("no/such.state"));
+  EXPECT_EQ(plan({"no/such.rules", "--state", kSunsetState}), kFailed);
+  EXPECT_THROW(plan({kSunset}), CLI::ParseError) << "a plan is about something";
+  testing::internal::GetCapturedStdout();
+  testing::internal::GetCapturedStderr();
+}
+
+}  // namespace
+}  // namespace culprit::cli

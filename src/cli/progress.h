@@ -1,0 +1,36 @@
+// How far a long piece of work is, on one line of a terminal.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace culprit::cli {
+
+// "[#######.............]  35 %  454/1296, 4 s left". `elapsed` is what `done - done_before` of
+// them took. @pre total > 0
+std::string progress_line(std::uint64_t done, std::uint64_t total, std::uint64_t done_before,
+                          std::chrono::duration<double> elapsed);
+
+// Draws the line on the standard error stream if that is a terminal, a few times a second.
+class Progress {
+ public:
+  // `done` of `total` were done before.
+  Progress(std::uint64_t done, std::uint64_t total);
+  ~Progress();  // clears the line
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void show(std::uint64_t done);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  const std::uint64_t done_before_;
+  const std::uint64_t total_;
+  const bool is_shown_;
+  const Clock::time_point begin_ = Clock::now();
+  Clock::time_point next_ = begin_;
+};
+
+}  // namespace culprit::cli

@@ -1,0 +1,261 @@
+// culprit study: campaigns over an exemplar.
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include <fmt/core.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/progress.h"
+#include "cli/study_output.h"
+#include "study/ordered_work.h"
+#include "study/shards/merge.h"
+#include "study/shards/shard_writer.h"
+#include "study/sunset/study.h"
+
+namespace culprit::cli {
+namespace {
+
+struct StudyOptions {
+  bool ablation = false;
+  bool robustness = false;
+  bool learning = false;
+  std::vector<std::string> planners = {"paper"};
+  std::string profile = "paper";
+  std::uint32_t runs = 162;
+  std::uint32_t repetitions = 20;
+  std::uint64_t seed = 1;
+  unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
+  std::string shard = "1/1";
+  std::string shard_file;
+  std::optional<std::uint32_t> explained_run;
+  std::string switches = "DCS";
+  std::string version;
+  StudyOutput output;
+
+  bool has_everything() const { return !ablation && !robustness && !learning; }
+  bool has_ablation() const { return ablation || has_everything(); }
+  bool has_robustness() const { return robustness || has_everything(); }
+  bool has_learning() const { return learning || has_everything(); }
+};
+
+// "D-S"
+Expected<PaperSwitches> parse_switches(const std::string& text) {
+  const auto is = [&](std::size_t place, char letter) {
+    return text.size() == 3 && (text[place] == letter || text[place] == '-');
+  };
+  if (!is(0, 'D') || !is(1, 'C') || !is(2, 'S'))
+    return Error{"'" + text + "' is no configuration: write DCS with a - for what is off, as D-S"};
+  return PaperSwitches{text[0] == 'D', text[1] == 'C', text[2] == 'S'};
+}
+
+// The rows of the paper's tables, in the paper's order.
+std::vector<study::Configuration> rows_of(const StudyOptions& options) {
+  using study::Probabilities;
+  std::vector<study::Configuration> rows;
+  for (const std::string& planner : options.planners) {
+    for (const bool d : {false, true}) {
+      for (const bool c : {false, true}) {
+        for (const bool s : {false, true}) {
+          const bool is_full = d && c && s;
+          if (options.has_ablation() || (options.has_robustness() && is_full))
+            rows.push_back({{d, c, s}, planner, options.profile, Probabilities::kIdeal});
+        }
+      }
+    }
+    if (options.has_robustness())
+      rows.push_back({{}, planner, options.profile, Probabilities::kMisspecified});
+  }
+  return rows;
+}
+
+std::string command_of(const StudyOptions& options) {
+  std::string command = "culprit study sunset";
+  if (options.ablation) command += " --ablation";
+  if (options.robustness) command += " --robustness";
+  if (options.learning) command += fmt::format(" --learning --repetitions {}", options.repetitions);
+  for (const std::string& planner : options.planners) command += " --planner " + planner;
+  return command + fmt::format(" --profile {} --runs {} --seed {}", options.profile, options.runs,
+                               options.seed);
+}
+
+int fail(const std::string& what, int code) {
+  fmt::print(stderr, "culprit: {}\n", what);
+  return code;
+}
+
+// Works off what is left of `total` runs, in order; `take` gets each and says whether it was kept.
+template <class Id, class Take>
+void work_off(const study::SunsetStudy& study, const StudyOptions& options, std::uint64_t done,
+              std::uint64_t total, const StopSignals& signals, Id id, Take take) {
+  Progress progress(done, total);
+  study::work_in_order(
+      done, total, options.jobs, [&](std::uint64_t i) { return study.run(id(i)); },
+      [&](std::uint64_t i, const study::RunMetrics& run) {
+        progress.show(i + 1);
+        return take(run) && !signals.stopped();
+      });
+}
+
+int fill_shard(const study::SunsetStudy& study, const study::Campaign& campaign,
+               const StudyOptions& options) {
+  const auto shard = study::parse_shard(options.shard);
+  if (!shard) return fail(shard.error(), kUsage);
+  if (options.shard_file.empty())
+    return fail("--shard needs --shard-file, where its runs are kept for `culprit study merge`",
+                kUsage);
+  const StopSignals signals;
+  auto writer = study::ShardWriter::open(options.shard_file, {campaign, *shard});
+  if (!writer) return fail(writer.error(), kFailed);
+  if (writer->done() > 0)
+    fmt::print(stderr, "culprit: {} of {} runs are there already\n", writer->done(),
+               writer->size());
+  std::string trouble;
+  work_off(
+      study, options, writer->done(), writer->size(), signals,
+      [&](std::uint64_t i) { return campaign[study::campaign_index(*shard, i)]; },
+      [&](const study::RunMetrics& run) {
+        const auto appended = writer->append(run);
+        if (!appended) trouble = appended.error();
+        return appended.has_value();
+      });
+  if (!trouble.empty()) return fail(trouble, kFailed);
+  if (!writer->is_complete())
+    return fail(fmt::format("interrupted after {} of {} runs; the same command goes on from there",
+                            writer->done(), writer->size()),
+                kFailed);
+  fmt::print(stderr, "culprit: {} has its {} runs\n", options.shard_file, writer->size());
+  return kOk;
+}
+
+Expected<std::vector<study::LearningCurve>> learn(const StudyOptions& options) {
+  auto study = study::SunsetStudy::make(
+      {{{}, "paper", options.profile, study::Probabilities::kMisspecified}}, options.seed);
+  if (!study) return Error{study.error()};
+  return study->learn(options.runs, options.repetitions);
+}
+
+int run_campaign(const study::SunsetStudy& study, const study::Campaign& campaign,
+                 const StudyOptions& options) {
+  const StopSignals signals;
+  study::CampaignFold fold(campaign);
+  work_off(
+      study, options, 0, campaign.size(), signals, [&](std::uint64_t i) { return campaign[i]; },
+      [&](const study::RunMetrics& run) {
+        fold.add(run);
+        return true;
+      });
+  if (!fold.is_complete())
+    return fail("interrupted; with --shard-file the same command could go on", kFailed);
+  study::Findings findings{std::move(fold).result(), {}, {}};
+  if (options.has_learning()) {
+    auto curves = learn(options);
+    if (!curves) return fail(curves.error(), kUsage);
+    findings.learning = std::move(*curves);
+  }
+  const auto written = write(findings, options.output);
+  return written ? kOk : fail(written.error(), kFailed);
+}
+
+int explain(const StudyOptions& options) {
+  const auto switches = parse_switches(options.switches);
+  if (!switches) return fail(switches.error(), kUsage);
+  const study::Configuration wanted{*switches, options.planners.front(), options.profile,
+                                    study::Probabilities::kIdeal};
+  // The same row as in the campaign, so that it is the same run.
+  std::vector<study::Configuration> rows = rows_of(options);
+  const auto row = std::find(rows.begin(), rows.end(), wanted);
+  if (row == rows.end()) return fail("the campaign has no such configuration", kUsage);
+  const auto index = static_cast<std::uint32_t>(row - rows.begin());
+  const auto study = study::SunsetStudy::make(std::move(rows), options.seed);
+  if (!study) return fail(study.error(), kUsage);
+  fmt::print("{}", timeline_text(study->explain({index, *options.explained_run})));
+  return kOk;
+}
+
+int study_sunset(const StudyOptions& options) {
+  if (options.explained_run) return explain(options);
+  const bool is_sharded = options.shard != "1/1" || !options.shard_file.empty();
+  if (is_sharded && options.learning)
+    return fail("learning goes from run to run and cannot be spread over shards", kUsage);
+  study::Campaign campaign{rows_of(options), options.runs, options.seed, options.version,
+                           command_of(options)};
+  const auto study = study::SunsetStudy::make(campaign.rows, campaign.seed);
+  if (!study) return fail(study.error(), kUsage);
+  return is_sharded ? fill_shard(*study, campaign, options)
+                    : run_campaign(*study, campaign, options);
+}
+
+int merge(const std::vector<std::string>& files, const StudyOutput& output) {
+  auto result = study::merge_files(files);
+  if (!result) return fail(result.error(), kFailed);
+  const auto written = write({std::move(*result), {}, {}}, output);
+  return written ? kOk : fail(written.error(), kFailed);
+}
+
+void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
+  auto options = std::make_shared<StudyOptions>();
+  options->version = version;
+  CLI::App* command = study.add_subcommand(
+      "sunset", "The paper's evaluation on SUNSET, in virtual time; without a choice, all of it");
+  command->add_flag("--ablation", options->ablation, "Eight configurations of D, C and S");
+  command->add_flag("--robustness", options->robustness,
+                    "Success probabilities that are 20 % off, beside ideal ones");
+  command->add_flag("--learning", options->learning,
+                    "What the paper's planner learns of F1 and F4");
+  command
+      ->add_option("--planner", options->planners,
+                   "paper (Algorithm 1 as meant), reference (the authors' public code with its "
+                   "slips); several, one after the other")
+      ->capture_default_str();
+  command
+      ->add_option("--profile", options->profile,
+                   "Which SUNSET: paper, head, october (versions of the exemplar) or live (ours)")
+      ->capture_default_str();
+  command->add_option("--runs", options->runs, "Of each configuration")
+      ->check(CLI::Range(1U, 1'000'000'000U))
+      ->capture_default_str();
+  command->add_option("--repetitions", options->repetitions, "Of the series that is learned from")
+      ->check(CLI::Range(1U, 1'000'000U))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of all that is left to chance")
+      ->capture_default_str();
+  command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
+      ->check(CLI::Range(1U, 1024U));
+  command->add_option("--shard", options->shard, "Only the i-th of n parts, as 2/4")
+      ->capture_default_str();
+  command->add_option("--shard-file", options->shard_file,
+                      "Keep each run there as it ends, and go on from there if interrupted");
+  command->add_option("--run", options->explained_run,
+                      "With --explain: one run, from 0, and what happened in it");
+  command->add_flag("--explain")->needs("--run");
+  command->add_option("--switches", options->switches, "With --run: of this configuration")
+      ->capture_default_str();
+  options->output.add_to(*command);
+  command->callback([options, &exit_code] { exit_code = study_sunset(*options); });
+}
+
+void add_merge(CLI::App& study, int& exit_code) {
+  struct MergeOptions {
+    std::vector<std::string> files;
+    StudyOutput output;
+  };
+  auto options = std::make_shared<MergeOptions>();
+  CLI::App* command = study.add_subcommand("merge", "Put the shards of a campaign together");
+  command->add_option("FILES", options->files, "All shard files")->required();
+  options->output.add_to(*command);
+  command->callback([options, &exit_code] { exit_code = merge(options->files, options->output); });
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, const std::string& version, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "study", "Campaigns over an exemplar: metrics, statistics and tables beside the paper's");
+  command->require_subcommand(1);
+  add_sunset(*command, version, exit_code);
+  add_merge(*command, exit_code);
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,60 @@
+#include "cli/study_output.h"
+
+#include <fmt/core.h>
+
+#include "cli/text_file.h"
+#include "study/csv.h"
+#include "study/json.h"
+#include "study/tables/render.h"
+#include "study/tables/study_tables.h"
+
+namespace culprit::cli {
+namespace {
+
+std::string tables_as(const study::Findings& findings, std::string (*render)(const study::Table&)) {
+  std::string out;
+  for (const study::Table& table : study::tables(findings))
+    out += (out.empty() ? "" : "\n") + render(table);
+  return out;
+}
+
+std::string in_format(const study::Findings& findings, const std::string& format) {
+  if (format == "json") return study::json(findings) + "\n";
+  if (format == "csv") return study::metrics_csv(findings.campaign);
+  if (format == "effects-csv") return study::effects_csv(findings.campaign);
+  if (format == "markdown") return tables_as(findings, study::markdown);
+  if (format == "latex") return tables_as(findings, study::latex);
+  return tables_as(findings, study::text);
+}
+
+}  // namespace
+
+void StudyOutput::add_to(CLI::App& command) {
+  command
+      .add_option("--format", format,
+                  "text (tables, ours beside the paper's), markdown, latex, csv (each mean), "
+                  "effects-csv (each pairwise effect) or json")
+      ->check(CLI::IsMember({"text", "markdown", "latex", "csv", "effects-csv", "json"}))
+      ->capture_default_str();
+  command.add_flag_callback(
+      "--json", [this] { format = "json"; }, "The same as --format json");
+  command.add_option("-o,--output", output, "Write there (default: the terminal)");
+}
+
+Expected<void> write(const study::Findings& findings, const StudyOutput& output) {
+  const std::string text = in_format(findings, output.format);
+  if (!output.output.empty()) return replace_text(output.output, text);
+  fmt::print("{}", text);
+  return std::fflush(stdout) == 0 ? Expected<void>() : Error{"the output cannot be written"};
+}
+
+std::string timeline_text(const study::Timeline& timeline) {
+  std::string out = fmt::format("run {} of {}: {}\n", timeline.run,
+                                study::label(timeline.configuration), timeline.scenario);
+  for (const study::TimelineEntry& entry : timeline.entries) {
+    out += fmt::format("{:8.3f}  {:<10}  {}\n", entry.time_s, study::name(entry.kind), entry.text);
+  }
+  return out;
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,354 @@
+#include "language/live_checks.h"
+
+#include <algorithm>
+#include <set>
+#include <unordered_map>
+
+#include "language/occurrences.h"
+#include "language/parser.h"
+#include "language/ros_names.h"
+
+namespace culprit {
+namespace {
+
+using Kind = Occurrence::Kind;
+using Names = std::vector<std::string_view>;
+
+template <class Table>
+Names names_of(const Table& table) {
+  Names names;
+  for (const auto& [name, thing] : table) names.push_back(name);
+  return names;
+}
+
+std::vector<std::string> segments(std::string_view name) {
+  std::vector<std::string> out;
+  for (std::size_t begin = 1; begin <= name.size();) {
+    const std::size_t end = std::min(name.find('/', begin), name.size());
+    out.emplace_back(name.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return out;
+}
+
+// Segment by segment, for long namespaces make any two names near as a whole.
+bool are_near(std::string_view a, std::string_view b) {
+  const auto left = segments(a);
+  const auto right = segments(b);
+  return std::equal(left.begin(), left.end(), right.begin(), right.end(),
+                    [](const std::string& x, const std::string& y) {
+                      return x == y || !closest(x, {y}).empty();
+                    });
+}
+
+// The full name that was probably meant: the only one in another namespace, or one with a slip of
+// the fingers. Empty if there is none.
+std::string closest_full_name(const std::string& name, const Names& known) {
+  Names namesakes;
+  Names near;
+  for (const std::string_view candidate : known) {
+    if (own_name(std::string(candidate)) == own_name(name)) namesakes.push_back(candidate);
+    if (are_near(name, candidate)) near.push_back(candidate);
+  }
+  return namesakes.size() == 1 ? std::string(namesakes[0]) : closest(name, near);
+}
+
+bool is_identifier(std::string_view name) {
+  const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0 || c == '_'; };
+  return !name.empty() && is_letter(name[0]) &&
+         std::all_of(name.begin(), name.end(),
+                     [&](unsigned char c) { return is_letter(c) || std::isdigit(c) != 0; });
+}
+
+class LiveChecks {
+ public:
+  LiveChecks(const syntax::File& file, const RuleSet& rules, const LiveInventory& robot)
+      : file_(file), rules_(rules), robot_(robot) {
+    for (const syntax::Name& topic : file.ignored_topics) ignored_.insert(topic.span.begin);
+    for (const syntax::Component& c : file.components) declarations_.emplace(c.name.text, &c);
+    for (const Component& c : rules.components) {
+      components_.emplace(c.name, &c);
+      if (!c.node.empty()) components_.emplace(c.node, &c);
+    }
+    for (const Signal& s : rules.signals) {
+      if (std::holds_alternative<LookedUp>(s.source)) looked_up_.emplace(s.name, &s);
+    }
+  }
+
+  std::vector<Diagnostic> find() {
+    const Occurrence* before = nullptr;
+    const auto all = occurrences(file_);
+    for (const Occurrence& o : all) {
+      look_up(o);
+      const bool asks_state = before != nullptr && before->kind == Kind::kFunction &&
+                              before->name == "lifecycle" && o.kind == Kind::kComponent;
+      if (asks_state) managed_node(o.name, o.span);
+      before = &o;
+    }
+    for (const syntax::Signal& signal : file_.signals) key(signal);
+    for (const syntax::Rule& rule : file_.rules) {
+      for (const syntax::Strategy& strategy : rule.strategies) {
+        for (const syntax::Adaptation& a : strategy.adaptations) services(a);
+      }
+    }
+    return std::move(found_);
+  }
+
+ private:
+  void look_up(const Occurrence& o) {
+    switch (o.kind) {
+      case Kind::kComponent:
+        return component(o);
+      case Kind::kTopic:
+        return topic(o);
+      case Kind::kParameter:
+        return parameter(o);
+      case Kind::kSignal:
+        return looked_up_signal(o);
+      case Kind::kDiagnostic:
+        return status(o);
+      case Kind::kService:
+        return routine(o);
+      default:
+        return;
+    }
+  }
+
+  // ---- the graph
+
+  void component(const Occurrence& o) {
+    const Component* c = component_of(o.name);
+    if (c == nullptr || !node_of(o.name).empty() || !is_first(Kind::kComponent, c->name)) return;
+    const auto declared = declarations_.find(c->name);
+    const std::string remedy = c->launch.empty()
+                                   ? "start it, or correct the name"
+                                   : "start it (culprit run --launch does), or correct the name";
+    if (!c->node.empty()) {
+      const bool has_node = declared != declarations_.end() && declared->second->node;
+      warn(Code::kNoSuchNode, has_node ? declared->second->node->span : o.span,
+           "the robot has no node '" + c->node + "'", remedy,
+           closest_full_name(c->node, names_of(robot_.nodes)));
+      return;
+    }
+    const std::string cause = "no node of the robot is called '" + c->name + "'";
+    const std::string near = closest(c->name, own_names());
+    if (declared == declarations_.end())
+      return warn(Code::kNoSuchNode, o.span, cause, remedy, near);
+    // The component keeps its name, by which the rest of the file knows it.
+    const Span name = declared->second->name.span;
+    const std::string node = near.empty() ? "" : " NODE " + robot_.node_of({near, "", {}, false});
+    warn(Code::kNoSuchNode, name, cause, remedy, node, {name.end, name.end});
+  }
+
+  void topic(const Occurrence& o) {
+    if (ignored_.contains(o.span.begin)) return;
+    std::string name = o.name;
+    if (!o.scope.empty()) {
+      const std::string node = node_of(o.scope);
+      if (node.empty()) return;
+      name = topic_of(o.name, node);
+    }
+    const auto found = robot_.topics.find(name);
+    if (found != robot_.topics.end() && found->second.is_published) return;
+    if (!is_first(Kind::kTopic, name)) return;
+    if (found != robot_.topics.end()) {
+      warn(Code::kNoSuchTopic, o.span, "no node publishes '" + name + "' now",
+           "start its publisher, or name a topic that is published");
+      return;
+    }
+    Names published;
+    for (const auto& [other, topic] : robot_.topics) {
+      if (topic.is_published) published.push_back(other);
+    }
+    std::string near = closest_full_name(name, published);
+    const bool same_namespace = namespace_of(near) == namespace_of(name);
+    if (!o.scope.empty() && same_namespace && !o.name.starts_with('~')) near = own_name(near);
+    warn(Code::kNoSuchTopic, o.span, "the robot has no topic '" + name + "'",
+         "start its publisher, or correct the name", near);
+  }
+
+  void routine(const Occurrence& o) {
+    const std::string node = node_of(o.scope);
+    if (!o.scope.empty() && node.empty()) return;
+    const std::string name = service_of(o.name, node);
+    if (robot_.services.contains(name) || !is_first(Kind::kService, name)) return;
+    constexpr const char* kRoutine = "std_srvs/srv/Trigger";
+    Names routines;
+    for (const auto& [service, type] : robot_.services) {
+      if (type == kRoutine) routines.push_back(service);
+    }
+    warn(Code::kNoSuchService, o.span, "the robot has no service '" + name + "'",
+         "start its server, or correct the name", closest_full_name(name, routines));
+  }
+
+  // What every node of its kind offers.
+  void services(const syntax::Adaptation& a) {
+    using enum AdaptationType;
+    switch (a.type) {
+      case kActivate:
+      case kDeactivate:
+      case kRestart:
+        return managed_node(a.component.text, a.span);
+      case kChangeMode:
+        return offers(a.component.text, "change_mode", a.span, "has no modes",
+                      "only nodes with a change_mode service can change their mode");
+      case kSetParameter:
+      case kIncreaseParameter:
+      case kDecreaseParameter:
+      case kChangeCommunication:
+        return offers(a.component.text, "set_parameters", a.span, "has no parameters to set",
+                      "only nodes with a set_parameters service can be told new values");
+      default:
+        return;
+    }
+  }
+
+  void managed_node(const std::string& component, Span place) {
+    offers(component, "change_state", place, "is no managed node",
+           "only nodes with a lifecycle can be activated, deactivated or restarted; redeploy works "
+           "for every node");
+  }
+
+  void offers(const std::string& component, const std::string& service, Span place,
+              const std::string& lack, std::string remedy) {
+    const std::string node = node_of(component);
+    if (node.empty() || robot_.services.contains(node + "/" + service)) return;
+    if (!is_first(Kind::kService, node + "/" + service)) return;
+    warn(Code::kNoSuchService, place,
+         "node '" + node + "' " + lack + ": it offers no service '" + service + "'",
+         std::move(remedy));
+  }
+
+  void parameter(const Occurrence& o) {
+    const auto node = robot_.nodes.find(node_of(o.scope));
+    if (node == robot_.nodes.end() || !node->second.parameters) return;
+    const auto& parameters = *node->second.parameters;
+    if (parameters.contains(o.name) || !is_first(Kind::kParameter, node->first + "\n" + o.name))
+      return;
+    warn(Code::kNoSuchParameter, o.span,
+         "node '" + node->first + "' has no parameter '" + o.name + "'",
+         "correct the name, or declare the parameter in the node",
+         as_written(closest(o.name, names_of(parameters))));
+  }
+
+  // ---- diagnostics
+
+  void status(const Occurrence& o) {
+    Names known;
+    for (const auto& s : robot_.diagnostics) {
+      if (s.is_called(o.name)) return;
+      known.push_back(s.name);
+      known.push_back(s.hardware_id);
+    }
+    if (!is_first(Kind::kDiagnostic, o.name)) return;
+    warn(Code::kNoSuchDiagnostic, o.span, "no diagnostic status '" + o.name + "' was heard",
+         kListenLonger, as_written(closest(o.name, known)));
+  }
+
+  void key(const syntax::Signal& signal) {
+    const auto* source = std::get_if<syntax::DiagnosticSource>(&signal.source);
+    if (source == nullptr) return;
+    Names known;
+    bool is_heard = false;
+    for (const auto& s : robot_.diagnostics) {
+      if (!s.is_called(source->status.text)) continue;
+      if (s.values.contains(source->key.text)) return;
+      is_heard = true;
+      for (const auto& [key, value] : s.values) known.push_back(key);
+    }
+    const std::string both = source->status.text + "\n" + source->key.text;
+    if (!is_heard || !is_first(Kind::kDiagnostic, both)) return;
+    warn(Code::kNoSuchDiagnostic, source->key.span,
+         "status '" + source->status.text + "' has no key '" + source->key.text + "'",
+         "correct the key", as_written(closest(source->key.text, known)));
+  }
+
+  // The key of a diagnostic, or "<status>_<key>" (ros2/diagnostics_watch.h).
+  void looked_up_signal(const Occurrence& o) {
+    const auto signal = looked_up_.find(o.name);
+    if (signal == looked_up_.end() || !is_first(Kind::kSignal, o.name)) return;
+    if (robot_.value_of(*signal->second, rules_)) return;
+    Names known;
+    for (const auto& s : robot_.diagnostics) {
+      for (const auto& [key, value] : s.values) {
+        if (is_identifier(key)) known.push_back(key);
+      }
+    }
+    warn(Code::kNoSuchDiagnostic, o.span, "no diagnostic with the key '" + o.name + "' was heard",
+         kListenLonger, closest(o.name, known));
+  }
+
+  // ---- tools
+
+  const Component* component_of(const std::string& name) const {
+    const auto found = components_.find(name);
+    return found == components_.end() ? nullptr : found->second;
+  }
+
+  // Empty while it is not there.
+  std::string node_of(const std::string& component) const {
+    const Component* found = component_of(component);
+    return found == nullptr ? "" : robot_.node_of(*found);
+  }
+
+  const Names& own_names() {
+    if (own_names_.empty()) {
+      for (const auto& [name, node] : robot_.nodes)
+        own_names_.push_back(std::string_view(name).substr(name.rfind('/') + 1));
+    }
+    return own_names_;
+  }
+
+  bool is_first(Kind kind, const std::string& name) { return said_.emplace(kind, name).second; }
+
+  // `near` is what was probably meant at `where`; empty if that is not known.
+  void warn(Code code, Span place, std::string cause, std::string remedy, const std::string& near,
+            Span where) {
+    if (!near.empty()) remedy = "did you mean '" + near.substr(near.find_first_not_of(' ')) + "'?";
+    found_.push_back({code, Severity::kWarning, place, std::move(cause), std::move(remedy),
+                      replacement(where, near)});
+  }
+  void warn(Code code, Span place, std::string cause, std::string remedy,
+            const std::string& near = "") {
+    warn(code, place, std::move(cause), std::move(remedy), near, place);
+  }
+
+  static constexpr const char* kListenLonger =
+      "correct the name, or listen for longer: some are published seldom";
+
+  const syntax::File& file_;
+  const RuleSet& rules_;
+  const LiveInventory& robot_;
+  std::set<std::uint32_t> ignored_;  // topics, by where they stand
+  std::unordered_map<std::string, const syntax::Component*> declarations_;
+  std::unordered_map<std::string, const Component*> components_;  // by name and by node
+  std::unordered_map<std::string, const Signal*> looked_up_;
+  std::set<std::pair<Kind, std::string>> said_;
+  Names own_names_;
+  std::vector<Diagnostic> found_;
+};
+
+}  // namespace
+
+void check_live(const syntax::File& file, const RuleSet& rules, const LiveInventory& robot,
+                std::vector<Diagnostic>& diagnostics) {
+  std::set<std::uint32_t> places;
+  for (const Diagnostic& d : diagnostics) places.insert(d.span.begin);
+  for (Diagnostic& d : LiveChecks(file, rules, robot).find()) {
+    if (!places.contains(d.span.begin)) diagnostics.push_back(std::move(d));
+  }
+  std::stable_sort(
+      diagnostics.begin(), diagnostics.end(),
+      [](const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; });
+}
+
+Checked check_against(const LiveInventory& robot, const Source& source, Strictness strictness) {
+  Checked checked = check(source, strictness);
+  if (!checked.rules) return checked;
+  std::vector<Diagnostic> already_in_checked;
+  const syntax::File file = parse(source, already_in_checked);
+  check_live(file, *checked.rules, robot, checked.diagnostics);
+  return checked;
+}
+
+}  // namespace culprit

@@ -1,0 +1,27 @@
+// Rule file x robot -> warnings: what the file names and this robot has not.
+//
+// A thing is reported once, where it is named first (a node where it is declared), and nothing that
+// follows from it: the parameters of a node that is not there are missing for no reason of theirs.
+// All are warnings, for a robot changes: a node may only not be started yet.
+#pragma once
+
+#include <vector>
+
+#include "language/checker.h"
+#include "language/diagnostic.h"
+#include "language/live_inventory.h"
+#include "language/rule_set.h"
+#include "language/syntax.h"
+
+namespace culprit {
+
+// Adds to `diagnostics`, which are those of check(), and keeps them in the order of the text. Where
+// something is wrong already, nothing is added.
+void check_live(const syntax::File& file, const RuleSet& rules, const LiveInventory& robot,
+                std::vector<Diagnostic>& diagnostics);
+
+// check(), and check_live() if there is no error.
+Checked check_against(const LiveInventory& robot, const Source& source,
+                      Strictness strictness = Strictness::kLenient);
+
+}  // namespace culprit

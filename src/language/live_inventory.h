@@ -1,0 +1,71 @@
+// What a robot has at the moment, as far as rules can name it. An adapter sees it, checks and
+// editors compare it with what rule files say.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "language/value.h"
+
+namespace culprit {
+
+struct LiveInventory {
+  struct Node {
+    // By name; without a value where it is an array or not set. Nothing while the node has not told
+    // them.
+    std::optional<std::map<std::string, std::optional<Value>>> parameters;
+    std::string lifecycle;  // "active"; empty where it is not managed, or has not told
+    bool operator==(const Node&) const = default;
+  };
+  struct Topic {
+    std::string type;  // "sensor_msgs/msg/Image"
+    bool is_published = false;
+    // Of topics that are watched only.
+    std::optional<double> rate;  // Hz
+    std::map<std::string, Value> fields;
+    bool operator==(const Topic&) const = default;
+  };
+  // A diagnostic status.
+  struct Status {
+    std::string name;
+    std::string hardware_id;
+    std::uint8_t level = 0;  // 0 OK, 1 WARN, 2 ERROR, 3 STALE
+    std::map<std::string, std::string> values;
+    // Rules name a status by its name or its hardware id.
+    bool is_called(const std::string& what) const { return name == what || hardware_id == what; }
+    bool operator==(const Status&) const = default;
+  };
+
+  // All by their full names.
+  std::map<std::string, Node> nodes;
+  std::map<std::string, Topic> topics;
+  std::map<std::string, std::string> services;  // with their types
+  std::vector<Status> diagnostics;
+  bool operator==(const LiveInventory&) const = default;
+
+  // The full name of the component's node, empty if it is not there: the NODE that it is declared
+  // with, or else the first one whose own name is the component's.
+  std::string node_of(const Component& component) const;
+  // What a signal reads now. Nothing if there is nothing to read, or nobody watches it.
+  std::optional<Value> value_of(const Signal& signal, const RuleSet& rules) const;
+  std::optional<Value> value_of_parameter(const std::string& node,
+                                          const std::string& parameter) const;
+};
+
+// What of a robot somebody cares for: to look at more would disturb it for nothing.
+struct LiveInterest {
+  std::set<std::string> nodes;  // whose parameters and state are read; by full or own name
+  std::map<std::string, std::set<std::string>> fields_of_topics;  // watched, also without a field
+  bool operator==(const LiveInterest&) const = default;
+
+  bool includes_node(const std::string& full_name) const;
+};
+
+// What the rules name.
+LiveInterest interest_of(const RuleSet& rules);
+
+}  // namespace culprit

@@ -1,0 +1,22 @@
+// The robot's own names, proposed where they fit.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "language/live_inventory.h"
+#include "lsp/completion.h"
+
+namespace culprit::lsp {
+
+std::vector<Proposal> live_nodes(const LiveInventory& robot);
+std::vector<Proposal> live_topics(const LiveInventory& robot);
+// Of the node that `component` is.
+std::vector<Proposal> live_parameters(const LiveInventory& robot, const Component& component);
+// Routines that can be called (std_srvs/srv/Trigger).
+std::vector<Proposal> live_routines(const LiveInventory& robot);
+std::vector<Proposal> live_statuses(const LiveInventory& robot);
+// Of the statuses of this name or hardware id.
+std::vector<Proposal> live_keys(const LiveInventory& robot, const std::string& status);
+
+}  // namespace culprit::lsp

@@ -1,0 +1,26 @@
+// A plan with its reasons: what is decided about each failure, what is expected of it, and what
+// would have changed it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plan/flip.h"
+
+namespace culprit::plan {
+
+struct Decision {
+  Verdict verdict;
+  std::vector<RuleId> explains;            // failures that are expected to go away with it
+  std::vector<std::vector<Change>> flips;  // by candidate; empty: chosen, or no single change found
+};
+
+// What `planner` decides about `failures`, in the order of the decisions.
+std::vector<Decision> decide(const Planner& planner, std::vector<RuleId> failures,
+                             const Knowledge& knowledge);
+
+// How things would be with `change`, behind "`loser` would be chosen if": "its success probability
+// were at least 87.3 % (is 60 %)". `knowledge` is how they are.
+std::string describe(const Change& change, StrategyId loser, const Knowledge& knowledge);
+
+}  // namespace culprit::plan

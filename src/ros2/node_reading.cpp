@@ -1,0 +1,95 @@
+#include "ros2/node_reading.h"
+
+#include <algorithm>
+
+#include "ros2/lifecycle.h"
+
+namespace culprit::ros2 {
+namespace {
+
+// How long a node that was just seen may take until its services answer.
+constexpr Duration kPatience = std::chrono::seconds(5);
+
+}  // namespace
+
+LiveInventory::Node NodeReading::told() const {
+  const std::lock_guard lock(mutex_);
+  return told_;
+}
+
+void NodeReading::service_seen(const std::string& service) {
+  if (service == node_ + "/list_parameters") list_parameters();
+  if (service == node_ + "/get_state") read_lifecycle();
+}
+
+void NodeReading::list_parameters() {
+  if (list_) return;
+  auto client =
+      self_.create_client<srv::ListParameters>(node_ + "/list_parameters", qos::kParameterServices);
+  if (!client) return;
+  list_ = std::move(*client);
+  list_->call({}, Repeat::kUntilAnswered, kPatience,
+              [this](const Client<srv::ListParameters>::Answer& answer) {
+                if (answer.response) get_parameters(answer.response->names);
+              });
+}
+
+void NodeReading::get_parameters(std::vector<std::string> names) {
+  names.resize(std::min(names.size(), kMaxParameters));
+  {
+    const std::lock_guard lock(mutex_);
+    told_.parameters.emplace();
+    for (const std::string& name : names) (*told_.parameters)[name];
+  }
+  auto client =
+      self_.create_client<srv::GetParameters>(node_ + "/get_parameters", qos::kParameterServices);
+  if (!client) return;
+  get_ = std::move(*client);
+  get_->call({names}, Repeat::kUntilAnswered, kPatience,
+             [this, names](const Client<srv::GetParameters>::Answer& answer) {
+               if (!answer.response) return;
+               const auto& values = answer.response->values;
+               const std::lock_guard lock(mutex_);
+               for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i)
+                 (*told_.parameters)[names[i]] = to_value(values[i]);
+             });
+}
+
+void NodeReading::parameters_changed(const msg::ParameterEvent& event) {
+  const std::lock_guard lock(mutex_);
+  if (!told_.parameters) return;  // they will be read as they are then
+  for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
+    for (const msg::Parameter& changed : *changes) {
+      const bool has_room = told_.parameters->size() < kMaxParameters;
+      if (has_room || told_.parameters->contains(changed.name))
+        (*told_.parameters)[changed.name] = to_value(changed.value);
+    }
+  }
+  for (const msg::Parameter& deleted : event.deleted_parameters)
+    told_.parameters->erase(deleted.name);
+}
+
+void NodeReading::read_lifecycle() {
+  if (state_) return;
+  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 10};
+  auto transitions = self_.create_subscription<msg::TransitionEvent>(
+      node_ + "/transition_event", kQos,
+      [this](const msg::TransitionEvent& event) { set_lifecycle(event.goal_state.id); });
+  if (transitions) transitions_ = std::move(*transitions);
+  auto client = self_.create_client<srv::GetState>(node_ + "/get_state");
+  if (!client) return;
+  state_ = std::move(*client);
+  state_->call({}, Repeat::kUntilAnswered, kPatience,
+               [this](const Client<srv::GetState>::Answer& answer) {
+                 if (answer.response) set_lifecycle(answer.response->current_state.id);
+               });
+}
+
+void NodeReading::set_lifecycle(std::uint8_t state) {
+  const auto known = lifecycle_states();
+  const auto found = std::find(known.begin(), known.end(), static_cast<LifecycleState>(state));
+  const std::lock_guard lock(mutex_);
+  told_.lifecycle = found == known.end() ? "" : label_of(*found);
+}
+
+}  // namespace culprit::ros2

@@ -1,0 +1,49 @@
+// Reads what one node tells of itself: its parameters and, if it is managed, its lifecycle state.
+//
+// Each parameter is read once, and then followed by what /parameter_events says; the state is read
+// once, and then followed by the node's transition events.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "language/live_inventory.h"
+#include "ros2/node.h"
+#include "ros2/services.h"
+
+namespace culprit::ros2 {
+
+// On the executor's thread, but for told().
+class NodeReading {
+ public:
+  // More parameters of one node are left out.
+  static constexpr std::size_t kMaxParameters = 10'000;
+
+  // `self` is our own node and outlives the reading; `node` is the full name of the other one.
+  NodeReading(Node& self, std::string node) : self_(self), node_(std::move(node)) {}
+
+  // The node was seen to offer a service.
+  void service_seen(const std::string& service);
+  // It announced changes.
+  void parameters_changed(const msg::ParameterEvent& event);
+
+  // From any thread.
+  LiveInventory::Node told() const;
+
+ private:
+  void list_parameters();
+  void get_parameters(std::vector<std::string> names);
+  void read_lifecycle();
+  void set_lifecycle(std::uint8_t state);
+
+  Node& self_;
+  const std::string node_;
+  mutable std::mutex mutex_;  // guards told_
+  LiveInventory::Node told_;
+  std::unique_ptr<Client<srv::ListParameters>> list_;
+  std::unique_ptr<Client<srv::GetParameters>> get_;
+  std::unique_ptr<Client<srv::GetState>> state_;
+  std::unique_ptr<Subscription> transitions_;
+};
+
+}  // namespace culprit::ros2

@@ -1,0 +1,198 @@
+#include "ros2/survey.h"
+
+namespace culprit::ros2 {
+namespace {
+
+constexpr std::size_t kMaxStatuses = 10'000;  // the network decides how many there are
+
+}  // namespace
+
+Expected<std::unique_ptr<Survey>> Survey::open(Options options) {
+  std::unique_ptr<Survey> survey(new Survey(std::move(options)));
+  if (auto started = survey->start(); !started) return Error{started.error()};
+  return survey;
+}
+
+Survey::Survey(Options options)
+    : options_(std::move(options)),
+      library_(options_.message_path),
+      tasks_(std::make_unique<TaskGroup>(executor_)) {}
+
+Survey::~Survey() {
+  executor_.stop();
+  if (thread_.joinable()) thread_.join();
+  // Clients and readers go before the node that they belong to.
+  tasks_.reset();
+  topics_read_.clear();
+  nodes_read_.clear();
+  diagnostics_.reset();
+  parameter_events_.reset();
+  node_.reset();
+  context_.reset();
+}
+
+Expected<void> Survey::start() {
+  Graph::Options graph;
+  graph.listener = [this](const GraphChange& change) { on_change(change); };
+  auto context = Context::create(executor_, options_.participant, std::move(graph));
+  if (!context) return Error{context.error()};
+  context_ = std::move(*context);
+  auto node = Node::create(*context_, options_.name);
+  if (!node) return Error{node.error()};
+  node_ = std::move(*node);
+  if (auto listening = listen(); !listening) return listening;
+  thread_ = std::thread([this] { executor_.run(); });
+  return {};
+}
+
+Expected<void> Survey::listen() {
+  // Best effort and deep: many nodes announce at once when a robot starts.
+  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 100};
+  auto events = node_->create_subscription<msg::ParameterEvent>(
+      "/parameter_events", kQos,
+      [this](const msg::ParameterEvent& event) { on_parameter_event(event); });
+  if (!events) return Error{events.error()};
+  parameter_events_ = std::move(*events);
+  auto diagnostics = node_->create_subscription<msg::DiagnosticArray>(
+      "/diagnostics", kQos,
+      [this](const msg::DiagnosticArray& message) { on_diagnostics(message); });
+  if (!diagnostics) return Error{diagnostics.error()};
+  diagnostics_ = std::move(*diagnostics);
+  return {};
+}
+
+void Survey::ask_for(LiveInterest interest) {
+  tasks_->post([this, interest = std::move(interest)] { on_interest(interest); });
+}
+
+LiveInventory Survey::inventory() const {
+  LiveInventory all;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [node, services] : services_) {
+    all.nodes[node];
+    all.services.insert(services.begin(), services.end());
+  }
+  for (const auto& [node, reading] : nodes_read_) all.nodes[node] = reading->told();
+  for (const auto& [topic, use] : topics_) {
+    LiveInventory::Topic& entry = all.topics[topic];
+    entry.type = use.type;
+    entry.is_published = use.publishers > 0;
+    const auto reading = topics_read_.find(topic);
+    if (reading != topics_read_.end()) reading->second->tell(entry);
+  }
+  for (const auto& [key, status] : statuses_) all.diagnostics.push_back(status);
+  return all;
+}
+
+// ---- the graph
+
+void Survey::on_change(const GraphChange& change) {
+  if (const auto* joined = std::get_if<NodeJoined>(&change)) {
+    if (joined->node.name == options_.name.full()) return;
+    {
+      const std::lock_guard lock(mutex_);
+      services_[joined->node.name];
+    }
+    read_node(joined->node.name);
+  } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
+    const std::lock_guard lock(mutex_);
+    services_.erase(left->node);
+    nodes_read_.erase(left->node);
+  } else if (const auto* endpoint = std::get_if<EndpointJoined>(&change)) {
+    if (endpoint->node != options_.name.full()) on_endpoint(endpoint->node, endpoint->endpoint);
+  } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
+    if (gone->node != options_.name.full()) on_endpoint_left(*gone);
+  }
+}
+
+void Survey::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
+  if (endpoint.kind == EndpointKind::kClient) return;
+  if (endpoint.kind == EndpointKind::kServer) {
+    {
+      const std::lock_guard lock(mutex_);
+      services_[node][endpoint.name] = endpoint.type;
+    }
+    const auto reading = nodes_read_.find(node);
+    if (reading != nodes_read_.end()) reading->second->service_seen(endpoint.name);
+    return;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    TopicUse& use = topics_[endpoint.name];
+    const bool publishes = endpoint.kind == EndpointKind::kPublisher;
+    if (publishes || use.type.empty()) use.type = endpoint.type;
+    ++(publishes ? use.publishers : use.subscribers);
+  }
+  read_topic(endpoint.name);
+}
+
+void Survey::on_endpoint_left(const EndpointLeft& gone) {
+  const std::lock_guard lock(mutex_);
+  if (gone.kind == EndpointKind::kServer) {
+    const auto node = services_.find(gone.node);
+    if (node != services_.end()) node->second.erase(gone.name);
+    return;
+  }
+  const auto topic = topics_.find(gone.name);
+  if (gone.kind == EndpointKind::kClient || topic == topics_.end()) return;
+  TopicUse& use = topic->second;
+  --(gone.kind == EndpointKind::kPublisher ? use.publishers : use.subscribers);
+  if (use.publishers == 0) topics_read_.erase(gone.name);
+  if (use.publishers == 0 && use.subscribers == 0) topics_.erase(topic);
+}
+
+// ---- what was asked for
+
+void Survey::on_interest(LiveInterest interest) {
+  const LiveInterest before = std::exchange(interest_, std::move(interest));
+  {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(nodes_read_, [&](const auto& n) { return !interest_.includes_node(n.first); });
+    std::erase_if(topics_read_, [&](const auto& t) {
+      const auto wanted = interest_.fields_of_topics.find(t.first);
+      return wanted == interest_.fields_of_topics.end() ||
+             wanted->second != before.fields_of_topics.at(t.first);
+    });
+  }
+  for (const auto& [node, services] : services_) read_node(node);
+  for (const auto& [topic, fields] : interest_.fields_of_topics) read_topic(topic);
+}
+
+void Survey::read_node(const std::string& node) {
+  if (!interest_.includes_node(node) || nodes_read_.contains(node)) return;
+  auto reading = std::make_unique<NodeReading>(*node_, node);
+  for (const auto& [service, type] : services_[node]) reading->service_seen(service);
+  const std::lock_guard lock(mutex_);
+  nodes_read_.emplace(node, std::move(reading));
+}
+
+void Survey::read_topic(const std::string& topic) {
+  const auto wanted = interest_.fields_of_topics.find(topic);
+  const auto use = topics_.find(topic);
+  const bool can_be_read = use != topics_.end() && use->second.publishers > 0;
+  if (wanted == interest_.fields_of_topics.end() || !can_be_read || topics_read_.contains(topic))
+    return;
+  auto reading =
+      TopicReading::open(node_->entry(), topic, use->second.type, wanted->second, library_);
+  if (!reading) return;
+  const std::lock_guard lock(mutex_);
+  topics_read_.emplace(topic, std::move(reading));
+}
+
+void Survey::on_parameter_event(const msg::ParameterEvent& event) {
+  const auto reading = nodes_read_.find(event.node);
+  if (reading != nodes_read_.end()) reading->second->parameters_changed(event);
+}
+
+void Survey::on_diagnostics(const msg::DiagnosticArray& message) {
+  const std::lock_guard lock(mutex_);
+  for (const msg::DiagnosticStatus& heard : message.status) {
+    const StatusKey key{heard.name, heard.hardware_id};
+    if (statuses_.size() >= kMaxStatuses && !statuses_.contains(key)) continue;
+    LiveInventory::Status& status = statuses_[key];
+    status = {heard.name, heard.hardware_id, heard.level, {}};
+    for (const msg::KeyValue& pair : heard.values) status.values[pair.key] = pair.value;
+  }
+}
+
+}  // namespace culprit::ros2

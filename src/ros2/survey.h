@@ -1,0 +1,86 @@
+// What a robot has at the moment, for checks and editors: its graph, its diagnostics, and of what
+// somebody asked for also parameters, lifecycle states, and the rates and fields of topics.
+//
+// It joins as a hidden node, as tools do. It does no harm: readers are best effort, and what nobody
+// asked for is not read.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "language/live_inventory.h"
+#include "ros2/node.h"
+#include "ros2/node_reading.h"
+#include "ros2/topic_reading.h"
+
+namespace culprit::ros2 {
+
+// ask_for() and inventory() may be called from any thread.
+class Survey {
+ public:
+  struct Options {
+    ParticipantOptions participant;
+    NodeName name{"/", "_culprit_survey"};
+    std::vector<std::filesystem::path> message_path;  // where to find .msg files
+  };
+
+  // Errors: the domain cannot be joined.
+  static Expected<std::unique_ptr<Survey>> open(Options options);
+  ~Survey();
+
+  // Instead of what was asked for before.
+  void ask_for(LiveInterest interest);
+
+  // What is known by now.
+  LiveInventory inventory() const;
+
+ private:
+  struct TopicUse {
+    int publishers = 0;
+    int subscribers = 0;
+    std::string type;
+  };
+  using StatusKey = std::pair<std::string, std::string>;  // name and hardware id
+
+  explicit Survey(Options options);
+  Expected<void> start();
+  Expected<void> listen();
+
+  // On the executor's thread.
+  void on_change(const GraphChange& change);
+  void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
+  void on_endpoint_left(const EndpointLeft& gone);
+  void on_parameter_event(const msg::ParameterEvent& event);
+  void on_diagnostics(const msg::DiagnosticArray& message);
+  void on_interest(LiveInterest interest);
+  void read_node(const std::string& node);
+  void read_topic(const std::string& topic);
+
+  const Options options_;
+  MessageLibrary library_;  // of the executor's thread, as is the interest
+  LiveInterest interest_;
+
+  Executor executor_;
+  std::unique_ptr<Context> context_;
+  std::unique_ptr<Node> node_;
+  std::unique_ptr<Subscription> parameter_events_;
+  std::unique_ptr<Subscription> diagnostics_;
+
+  // Guards what follows, which only the executor's thread changes: it may read without it.
+  mutable std::mutex mutex_;
+  std::map<std::string, std::map<std::string, std::string>> services_;  // of each node, with types
+  std::map<std::string, TopicUse> topics_;
+  std::map<StatusKey, LiveInventory::Status> statuses_;
+  std::map<std::string, std::unique_ptr<NodeReading>> nodes_read_;
+  std::map<std::string, std::unique_ptr<TopicReading>> topics_read_;
+
+  std::unique_ptr<TaskGroup> tasks_;
+  std::thread thread_;
+};
+
+}  // namespace culprit::ros2

@@ -1,0 +1,126 @@
+#include "ros2/survey.h"
+
+#include <gtest/gtest.h>
+
+#include "ros2/lifecycle_node.h"
+#include "ros2/live_test.h"
+#include "ros2/timer.h"
+
+namespace culprit::ros2 {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A managed node with a parameter, a topic and a diagnostic.
+struct Robot {
+  explicit Robot(const TestDomain& domain) : context(domain.options()) {
+    context.run([&] {
+      managed = std::move(*LifecycleNode::create(*context, {"/", "robot"}, {}));
+      EXPECT_TRUE(managed->node().parameters().declare("gain", Value(1.5)));
+      visibility.emplace(publisher<msg::Float64>("/visibility"));
+      diagnostics.emplace(publisher<msg::DiagnosticArray>("/diagnostics"));
+      ticking = std::make_unique<Timer>(context->executor(), 20ms, [this] { tick(); });
+    });
+  }
+  ~Robot() {
+    context.run([&] { ticking.reset(); });
+  }
+  template <class Message>
+  Publisher<Message> publisher(const std::string& topic) {
+    return std::move(*managed->node().create_publisher<Message>(topic));
+  }
+  void tick() {
+    visibility->publish({2.5});
+    msg::DiagnosticArray array;
+    array.status = {{1, "motor", "", "m1", {{"temperature", "60.5"}}}};
+    diagnostics->publish(array);
+  }
+
+  LiveContext context;
+  std::unique_ptr<LifecycleNode> managed;
+  std::optional<Publisher<msg::Float64>> visibility;
+  std::optional<Publisher<msg::DiagnosticArray>> diagnostics;
+  std::unique_ptr<Timer> ticking;
+};
+
+std::unique_ptr<Survey> survey_of(const TestDomain& domain) {
+  Survey::Options options;
+  options.participant = domain.options();
+  auto survey = Survey::open(std::move(options));
+  if (!survey) throw std::runtime_error(survey.error());
+  return std::move(*survey);
+}
+
+// Looks again and again until the inventory is as wanted.
+template <class Predicate>
+bool shows(const Survey& survey, Predicate wanted) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!wanted(survey.inventory())) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(5ms);
+  }
+  return true;
+}
+
+TEST(Survey, SeesTheGraphAndTheDiagnosticsButNotItself) {
+  const TestDomain domain;
+  const Robot robot(domain);
+  const auto survey = survey_of(domain);
+  EXPECT_TRUE(shows(*survey, [](const LiveInventory& seen) {
+    const auto topic = seen.topics.find("/visibility");
+    return seen.nodes.contains("/robot") && seen.services.contains("/robot/change_state") &&
+           topic != seen.topics.end() && topic->second.is_published &&
+           topic->second.type == "std_msgs/msg/Float64" && seen.diagnostics.size() == 1;
+  }));
+  const LiveInventory seen = survey->inventory();
+  EXPECT_EQ(seen.nodes.size(), 1u);
+  EXPECT_FALSE(seen.nodes.at("/robot").parameters) << "nobody asked for them";
+  EXPECT_TRUE(seen.topics.at("/visibility").fields.empty());
+  EXPECT_EQ(seen.diagnostics[0].values.at("temperature"), "60.5");
+}
+
+TEST(Survey, ReadsWhatIsAskedForAndFollowsIt) {
+  const TestDomain domain;
+  Robot robot(domain);
+  const auto survey = survey_of(domain);
+  survey->ask_for({{"robot"}, {{"/visibility", {"data", "no.such.field"}}}});
+  const auto has = [](const LiveInventory& seen, double gain, const char* state) {
+    const auto node = seen.nodes.find("/robot");
+    return node != seen.nodes.end() && node->second.lifecycle == state &&
+           seen.value_of_parameter("/robot", "gain") == Value(gain);
+  };
+  EXPECT_TRUE(shows(*survey, [&](const auto& seen) { return has(seen, 1.5, "unconfigured"); }));
+  EXPECT_TRUE(shows(*survey, [](const LiveInventory& seen) {
+    const auto topic = seen.topics.find("/visibility");
+    return topic != seen.topics.end() && topic->second.rate && *topic->second.rate > 0 &&
+           topic->second.fields == std::map<std::string, Value>{{"data", Value(2.5)}};
+  }));
+
+  robot.context.run([&] {
+    const msg::Parameter gain{"gain", to_parameter_value(Value(2.5))};
+    EXPECT_TRUE(robot.managed->node().parameters().set({&gain, 1}).successful);
+  });
+  EXPECT_TRUE(shows(*survey, [&](const auto& seen) { return has(seen, 2.5, "unconfigured"); }));
+
+  survey->ask_for({});
+  EXPECT_TRUE(shows(*survey, [](const LiveInventory& seen) {
+    return !seen.nodes.at("/robot").parameters && !seen.topics.at("/visibility").rate;
+  })) << "what nobody asks for any more is not read any more";
+}
+
+TEST(Survey, ForgetsWhatIsGone) {
+  const TestDomain domain;
+  const auto survey = survey_of(domain);
+  {
+    const Robot robot(domain);
+    ASSERT_TRUE(shows(*survey, [](const LiveInventory& seen) {
+      return seen.nodes.contains("/robot") && seen.topics.contains("/visibility");
+    }));
+  }
+  EXPECT_TRUE(shows(*survey, [](const LiveInventory& seen) {
+    return seen.nodes.empty() && seen.topics.empty() && seen.services.empty();
+  }));
+}
+
+}  // namespace
+}  // namespace culprit::ros2

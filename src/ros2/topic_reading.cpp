@@ -1,0 +1,52 @@
+#include "ros2/topic_reading.h"
+
+#include <algorithm>
+
+#include "robot/inbox.h"
+
+namespace culprit::ros2 {
+
+std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::string& topic,
+                                                 const std::string& type,
+                                                 const std::set<std::string>& fields,
+                                                 MessageLibrary& library) {
+  std::unique_ptr<TopicReading> reading(new TopicReading);
+  for (const std::string& path : fields) {
+    if (auto reader = FieldReader::compile(library, type, path))
+      reading->readers_.push_back({path, std::move(*reader)});
+  }
+  reading->since_ = live_now();
+  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
+  auto subscription = RawSubscription::create(
+      self, topic, type, kQos, reading->readers_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
+      [raw = reading.get()](const Sample& sample) { raw->on_sample(sample); });
+  if (!subscription) return nullptr;
+  reading->subscription_ = std::move(*subscription);
+  return reading;
+}
+
+void TopicReading::on_sample(const Sample& sample) {
+  constexpr std::size_t kMaxArrivals = 100'000;  // a flood must not eat the memory
+  const Time now = live_now();
+  const std::lock_guard lock(mutex_);
+  arrivals_.push_back(now);
+  while (arrivals_.front() < now - kWindow || arrivals_.size() > kMaxArrivals)
+    arrivals_.pop_front();
+  for (const Field& field : readers_) {
+    Value value;
+    if (field.reader.read(sample.payload, value) == FieldStatus::kRead)
+      values_[field.path] = std::move(value);
+  }
+}
+
+void TopicReading::tell(LiveInventory::Topic& topic) const {
+  const Time now = live_now();
+  const std::lock_guard lock(mutex_);
+  topic.fields = values_;
+  if (now - since_ < kWindow) return;  // too early to tell
+  const auto recent = std::count_if(arrivals_.begin(), arrivals_.end(),
+                                    [&](Time at) { return at >= now - kWindow; });
+  topic.rate = static_cast<double>(recent) / seconds(kWindow);
+}
+
+}  // namespace culprit::ros2

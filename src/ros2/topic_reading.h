@@ -1,0 +1,52 @@
+// Listens to one topic: its rate now, and the last values of some of its fields.
+//
+// One best effort reader that keeps one sample; without fields no payload is copied.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "language/live_inventory.h"
+#include "robot/time.h"
+#include "ros2/field_reader.h"
+#include "ros2/subscription.h"
+
+namespace culprit::ros2 {
+
+class TopicReading {
+ public:
+  // Rates are counted over this time.
+  static constexpr Duration kWindow = std::chrono::seconds(2);
+
+  // `self` outlives the reading. Fields that the type has not are left out. Nothing if the topic
+  // cannot be read with this type.
+  static std::unique_ptr<TopicReading> open(NodeEntry& self, const std::string& topic,
+                                            const std::string& type,
+                                            const std::set<std::string>& fields,
+                                            MessageLibrary& library);
+
+  // Enters rate and fields. From any thread.
+  void tell(LiveInventory::Topic& topic) const;
+
+ private:
+  struct Field {
+    std::string path;
+    FieldReader reader;
+  };
+
+  TopicReading() = default;
+  void on_sample(const Sample& sample);
+
+  std::vector<Field> readers_;
+  Time since_{};
+  mutable std::mutex mutex_;  // guards the two below
+  std::deque<Time> arrivals_;
+  std::map<std::string, Value> values_;
+  std::unique_ptr<RawSubscription> subscription_;
+};
+
+}  // namespace culprit::ros2

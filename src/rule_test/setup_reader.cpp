@@ -1,0 +1,215 @@
+#include "rule_test/setup_reader.h"
+
+#include <algorithm>
+#include <array>
+
+#include "knowledge/component_states.h"
+#include "rule_test/course_reader.h"
+
+namespace culprit::rule_test {
+namespace {
+
+using syntax::Name;
+
+const std::vector<std::string_view> kComponentClauses = {
+    "PUBLISHES", "SUBSCRIBES", "SERVES", "CALLS", "NEEDS", "STATE", "KILLED", "STOPPED", "HUNG"};
+
+bool is_component_clause(std::string_view word) {
+  return std::find(kComponentClauses.begin(), kComponentClauses.end(), word) !=
+         kComponentClauses.end();
+}
+
+std::optional<Lifecycle> lifecycle_of(std::string_view word) {
+  for (const Lifecycle state : {Lifecycle::kActive, Lifecycle::kInactive, Lifecycle::kUnconfigured,
+                                Lifecycle::kFinalized}) {
+    if (word == to_string(state)) return state;
+  }
+  return std::nullopt;
+}
+
+// What can befall a process.
+std::optional<Incident::Kind> incident_of(std::string_view word) {
+  if (word == "KILLED") return Incident::Kind::kKilled;
+  if (word == "STOPPED") return Incident::Kind::kStopped;
+  if (word == "HUNG") return Incident::Kind::kHung;
+  return std::nullopt;
+}
+
+}  // namespace
+
+const std::vector<std::string_view>& SetupReader::keywords() {
+  static const std::vector<std::string_view> kKeywords = {"COMPONENT", "TOPIC",     "SIGNAL",
+                                                          "LEVEL",     "PARAMETER", "AT"};
+  return kKeywords;
+}
+
+bool SetupReader::read(std::string_view keyword, Scanner& s, Scenario& scenario) {
+  scenario_ = &scenario;
+  if (keyword == "COMPONENT") return component(s);
+  if (keyword == "TOPIC") return topic(s);
+  if (keyword == "SIGNAL") return signal(s);
+  if (keyword == "LEVEL") return level(s);
+  if (keyword == "PARAMETER") return parameter(s);
+  return at(s);
+}
+
+// ---- the graph
+
+bool SetupReader::component(Scanner& s) {
+  const auto name = read_.component_reference(s);
+  const auto id = name ? names_.component(*name) : std::nullopt;
+  if (!id) return false;
+  while (!s.at_end()) {
+    if (!component_clause(s, *id)) return false;
+  }
+  return true;
+}
+
+bool SetupReader::component_clause(Scanner& s, ComponentId id) {
+  const Token clause = s.next();
+  if (clause.text == "PUBLISHES")
+    return each_name(s, [&](const Name& n) { return publishes(id, n); });
+  if (clause.text == "SUBSCRIBES")
+    return each_endpoint(s, id, EndpointKind::kSubscriber, "a topic");
+  if (clause.text == "SERVES") return each_endpoint(s, id, EndpointKind::kServer, "a service");
+  if (clause.text == "CALLS") return each_endpoint(s, id, EndpointKind::kClient, "a service");
+  if (clause.text == "NEEDS") return each_name(s, [&](const Name& n) { return needs(id, n); });
+  if (clause.text == "STATE") return initial_state(s, id);
+  const auto incident = incident_of(clause.text);
+  if (!incident) return read_.unexpected_clause(clause, kComponentClauses);
+  scenario_->incidents.push_back({Duration::zero(), id, *incident, Lifecycle::kUnknown});
+  return true;
+}
+
+// One name and all that follow, up to the next clause.
+template <class Take>
+bool SetupReader::each_name(Scanner& s, Take take) {
+  do {
+    const auto name = read_.name_or_text(s, "a name");
+    if (!name || !take(*name)) return false;
+  } while (!s.at_end() && !is_component_clause(s.peek().text));
+  return true;
+}
+
+bool SetupReader::each_endpoint(Scanner& s, ComponentId id, EndpointKind kind, const char* what) {
+  return each_name(s, [&](const Name& name) {
+    Scanner again(source_.text(), name.span);
+    if (!read_.ros_name(again, what)) return false;
+    scenario_->endpoints.push_back({id, kind, name.text});
+    return true;
+  });
+}
+
+// A topic that no rule reads still is an edge of the graph.
+bool SetupReader::publishes(ComponentId id, const Name& name) {
+  const bool is_topic = name.text.starts_with('/');
+  if (is_topic) scenario_->endpoints.push_back({id, EndpointKind::kPublisher, name.text});
+  const bool is_read =
+      !is_topic || std::any_of(rules_.topics.begin(), rules_.topics.end(),
+                               [&](const Topic& t) { return t.name == name.text; });
+  if (!is_read) return true;
+  const auto subject = names_.topic_or_signal(name);
+  if (subject) scenario_->origins.push_back({id, *subject});
+  return subject.has_value();
+}
+
+bool SetupReader::needs(ComponentId consumer, const Name& name) {
+  const auto producer = names_.component(name);
+  if (!producer) return false;
+  if (*producer == consumer)
+    return read_.fail(Code::kContradiction, name.span, "a component cannot need itself", "");
+  scenario_->needs.push_back({consumer, *producer});
+  return true;
+}
+
+bool SetupReader::initial_state(Scanner& s, ComponentId id) {
+  const Token word = s.next();
+  if (word.text == "absent") {
+    scenario_->states.push_back({id, Presence::kAbsent, Lifecycle::kActive});
+  } else if (word.text == "unmanaged") {
+    scenario_->states.push_back({id, Presence::kThere, Lifecycle::kUnknown});
+  } else if (const auto lifecycle = lifecycle_of(word.text)) {
+    scenario_->states.push_back({id, Presence::kThere, *lifecycle});
+  } else {
+    return read_.unexpected_clause(
+        word, {"active", "inactive", "unconfigured", "finalized", "unmanaged", "absent"});
+  }
+  return true;
+}
+
+// ---- courses
+
+bool SetupReader::topic(Scanner& s) {
+  const auto name = read_.ros_name(s, "a topic");
+  const auto id = name ? names_.topic(*name) : std::nullopt;
+  return id && course(s, *id);
+}
+
+bool SetupReader::signal(Scanner& s) {
+  const auto name = read_.identifier(s, "a signal");
+  const auto id = name ? names_.signal(*name) : std::nullopt;
+  return id && course(s, *id);
+}
+
+bool SetupReader::level(Scanner& s) {
+  const auto name = read_.name_or_text(s, "a diagnostic status");
+  const auto id = name ? names_.diagnostic(*name) : std::nullopt;
+  return id && course(s, *id);
+}
+
+bool SetupReader::parameter(Scanner& s) {
+  const auto name = read_.component_reference(s);
+  const auto component = name ? names_.component(*name) : std::nullopt;
+  if (!component) return false;
+  const auto parameter = read_.name_or_text(s, "a parameter");
+  const auto id = parameter ? names_.parameter(*component, *parameter) : std::nullopt;
+  return id && course(s, *id);
+}
+
+bool SetupReader::course(Scanner& s, Subject subject) {
+  auto course = read_course(s, read_, rules_, subject);
+  if (!course) return false;
+  scenario_->courses.push_back(std::move(*course));
+  return true;
+}
+
+// ---- what happens
+
+bool SetupReader::at(Scanner& s) {
+  const auto time = read_.duration(s, "a time");
+  if (!time) return false;
+  const auto name = read_.component_reference(s);
+  const auto id = name ? names_.component(*name) : std::nullopt;
+  if (!id) return false;
+  Incident incident{*time, *id, Incident::Kind::kState, Lifecycle::kUnknown};
+  const Token what = s.next();
+  if (const auto kind = incident_of(what.text)) {
+    incident.kind = *kind;
+  } else if (what.text == "STATE") {
+    const Token word = s.next();
+    const auto state = lifecycle_of(word.text);
+    if (!state)
+      return read_.unexpected_clause(word, {"active", "inactive", "unconfigured", "finalized"});
+    incident.lifecycle = *state;
+  } else {
+    return read_.unexpected_clause(what, {"KILLED", "STOPPED", "HUNG", "STATE"});
+  }
+  scenario_->incidents.push_back(incident);
+  return true;
+}
+
+void fail_unknown_statement(LineReader& read, const Source& source, const Token& head,
+                            const std::vector<std::string_view>& keywords) {
+  std::string upper = head.text;
+  std::transform(upper.begin(), upper.end(), upper.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  const bool lower_case = std::find(keywords.begin(), keywords.end(), upper) != keywords.end();
+  const std::string near = lower_case ? upper : closest(upper, keywords);
+  std::string all;
+  for (const std::string_view keyword : keywords) all += " " + std::string(keyword);
+  read.fail(Code::kUnknownStatement, head.span,
+            "no statement begins with '" + std::string(source.text(head.span)) + "'",
+            near.empty() ? "a line begins with one of" + all : "did you mean " + near + "?");
+}
+
+}  // namespace culprit::rule_test

@@ -1,0 +1,75 @@
+#include "study/plot/plots.h"
+
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+
+#include "study/plot/distribution_plot.h"
+#include "study/plot/learning_plot.h"
+#include "study/plot/style.h"
+
+namespace culprit::study {
+namespace {
+
+// What a file name and an anchor may hold.
+std::string safe_id(std::string text) {
+  for (char& c : text) {
+    const bool is_safe = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                         (c >= '0' && c <= '9') || c == '_' || c == '-';
+    if (!is_safe) c = '-';
+  }
+  return text;
+}
+
+// Curves of one failure, in the order in which failures occur.
+std::vector<std::vector<LearningCurve>> by_failure(const std::vector<LearningCurve>& curves) {
+  std::vector<std::vector<LearningCurve>> groups;
+  for (const LearningCurve& curve : curves) {
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& candidate) {
+      return candidate.front().failure == curve.failure;
+    });
+    if (group == groups.end()) {
+      groups.push_back({curve});
+    } else {
+      group->push_back(curve);
+    }
+  }
+  return groups;
+}
+
+}  // namespace
+
+std::vector<NamedPlot> plots(const Findings& findings) {
+  std::vector<NamedPlot> plots;
+  for (std::size_t i = 0; i < kMetricCount; ++i) {
+    const auto metric = static_cast<Metric>(i);
+    if (!has_values(findings.campaign, metric)) continue;
+    plots.push_back({std::string(traits(metric).key), std::string(traits(metric).title),
+                     std::string(traits(metric).explanation) +
+                         " Bars are relative to the highest of their row.",
+                     distribution_plot(findings.campaign, metric)});
+  }
+  for (const auto& curves : by_failure(findings.learning)) {
+    plots.push_back({"learning-" + safe_id(curves.front().failure),
+                     "learned success probabilities, " + curves.front().failure,
+                     "Of the strategies of " + curves.front().rule + ".", learning_plot(curves)});
+  }
+  return plots;
+}
+
+Expected<void> write_plots(const Findings& findings, const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem) return Error{folder.string() + ": the folder cannot be made: " + problem.message()};
+  const std::string style = plot_style(Surroundings::kLight);
+  for (const NamedPlot& plot : plots(findings)) {
+    const std::filesystem::path path = folder / (plot.id + ".svg");
+    std::ofstream file(path, std::ios::binary);
+    file << plot.svg.file(style);
+    file.close();
+    if (!file) return Error{path.string() + ": cannot be written"};
+  }
+  return {};
+}
+
+}  // namespace culprit::study

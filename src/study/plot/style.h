@@ -1,0 +1,16 @@
+// How plots look: one style sheet, with the colours of light or dark surroundings.
+//
+// The colours of curves are Okabe and Ito's, which people with any colour vision tell apart.
+#pragma once
+
+#include <string>
+
+namespace culprit::study {
+
+inline constexpr int kCurveColours = 5;  // classes curve0..., band0..., name0...
+
+enum class Surroundings { kLight, kDark };
+
+std::string plot_style(Surroundings surroundings);
+
+}  // namespace culprit::study
