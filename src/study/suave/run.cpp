@@ -17,7 +17,6 @@ namespace {
 
 using suave::model::SuaveModel;
 
-constexpr const char* kCulprit = "culprit";
 constexpr double kWorthwhileMetres = 10;
 
 // The rules are the project's own, and a test checks them.

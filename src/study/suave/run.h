@@ -25,7 +25,9 @@ struct SuaveRun {
   bool is_success = false;      // found, inspected for 10 m at least, and never out of power
 };
 
-// Which manager: of the baselines, or "culprit".
+inline constexpr const char* kCulprit = "culprit";
+
+// Who manages: the baselines (managers/suave_manager.h), and culprit.
 struct SuaveContender {
   std::string name;
   std::string summary;
