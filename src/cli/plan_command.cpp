@@ -12,6 +12,7 @@
 #include "cli/plan_report.h"
 #include "cli/planner_options.h"
 #include "cli/rule_file.h"
+#include "manager/manager.h"
 #include "manager/runtime.h"
 #include "plan/onlooker.h"
 #include "rule_test/state.h"

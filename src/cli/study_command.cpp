@@ -137,6 +137,25 @@ Expected<std::vector<study::LearningCurve>> learn(const StudyOptions& options) {
   return study->learn(options.runs, options.repetitions);
 }
 
+// Of the paper's full configuration, or of the first row if it has no such.
+std::uint32_t told_row(const study::Campaign& campaign) {
+  const auto row = std::find_if(campaign.rows.begin(), campaign.rows.end(),
+                                [](const auto& each) { return each.switches == PaperSwitches{}; });
+  return row == campaign.rows.end() ? 0 : static_cast<std::uint32_t>(row - campaign.rows.begin());
+}
+
+// Each scenario once, for the report.
+std::vector<study::Timeline> timelines(const study::SunsetStudy& study,
+                                       const study::Campaign& campaign,
+                                       const StudyOptions& options) {
+  std::vector<study::Timeline> told;
+  if (options.output.html.empty()) return told;
+  const auto scenarios = static_cast<std::uint32_t>(sunset::scenarios().size());
+  for (std::uint32_t run = 0; run < std::min(campaign.runs, scenarios); ++run)
+    told.push_back(study.explain({told_row(campaign), run}));
+  return told;
+}
+
 int run_campaign(const study::SunsetStudy& study, const study::Campaign& campaign,
                  const StudyOptions& options) {
   const StopSignals signals;
@@ -149,7 +168,7 @@ int run_campaign(const study::SunsetStudy& study, const study::Campaign& campaig
       });
   if (!fold.is_complete())
     return fail("interrupted; with --shard-file the same command could go on", kFailed);
-  study::Findings findings{std::move(fold).result(), {}, {}};
+  study::Findings findings{std::move(fold).result(), {}, timelines(study, campaign, options)};
   if (options.has_learning()) {
     auto curves = learn(options);
     if (!curves) return fail(curves.error(), kUsage);

@@ -5,6 +5,8 @@
 #include "cli/text_file.h"
 #include "study/csv.h"
 #include "study/json.h"
+#include "study/plot/plots.h"
+#include "study/report/html_report.h"
 #include "study/tables/render.h"
 #include "study/tables/study_tables.h"
 
@@ -39,9 +41,19 @@ void StudyOutput::add_to(CLI::App& command) {
   command.add_flag_callback(
       "--json", [this] { format = "json"; }, "The same as --format json");
   command.add_option("-o,--output", output, "Write there (default: the terminal)");
+  command.add_option("--html", html, "Also write a report: one page that needs nothing else");
+  command.add_option("--svg", plot_folder, "Also write each plot into this folder, for papers");
 }
 
 Expected<void> write(const study::Findings& findings, const StudyOutput& output) {
+  if (!output.html.empty()) {
+    auto written = replace_text(output.html, study::html_report(findings, "SUNSET"));
+    if (!written) return written;
+  }
+  if (!output.plot_folder.empty()) {
+    auto written = study::write_plots(findings, output.plot_folder);
+    if (!written) return written;
+  }
   const std::string text = in_format(findings, output.format);
   if (!output.output.empty()) return replace_text(output.output, text);
   fmt::print("{}", text);

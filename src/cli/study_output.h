@@ -12,9 +12,11 @@ namespace culprit::cli {
 
 struct StudyOutput {
   std::string format = "text";
-  std::string output;  // empty: the standard output
+  std::string output;       // empty: the standard output
+  std::string html;         // a report; empty: none
+  std::string plot_folder;  // empty: no plots
 
-  // --format, --json, --output
+  // --format, --json, --output, --html, --svg
   void add_to(CLI::App& command);
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "manager/manager.h"
 #include "manager/runtime.h"
 #include "plan/onlooker.h"
 #include "rule_test/reader.h"

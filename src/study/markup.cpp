@@ -26,4 +26,13 @@ std::string markup_escaped(std::string_view text) {
   return out;
 }
 
+std::string safe_id(std::string text) {
+  for (char& c : text) {
+    const bool is_safe = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                         (c >= '0' && c <= '9') || c == '_' || c == '-';
+    if (!is_safe) c = '-';
+  }
+  return text;
+}
+
 }  // namespace culprit::study

@@ -14,9 +14,9 @@ namespace culprit::study {
 namespace {
 
 // Pixels.
-constexpr double kWidth = 760;
-constexpr double kLeft = 190;  // of the axis; labels are before it
-constexpr double kRight = kWidth - 60;
+constexpr double kAxisWidth = 420;
+constexpr double kMargin = 56;        // behind the axis
+constexpr double kLetterWidth = 6.7;  // at most, on average
 constexpr double kTop = 40;
 constexpr double kRowHeight = 58;
 constexpr double kBarHeight = 30;
@@ -71,15 +71,24 @@ Bins bins_of(const Range& range, Metric metric) {
   return {range.low, (range.high - range.low) / kContinuousBins, kContinuousBins + 1};
 }
 
+// Of the axis: the labels of the rows are before it.
+double left_of(const CampaignResult& result) {
+  std::size_t longest = 0;
+  for (const Row& row : result.rows) longest = std::max(longest, label(row.configuration).size());
+  return 24 + kLetterWidth * static_cast<double>(longest);
+}
+
 class Plot {
  public:
   Plot(const CampaignResult& result, Metric metric)
       : result_(result),
         metric_(metric),
         bins_(bins_of(shown_range(result, metric), metric)),
-        x_{bins_.low, bins_.high(), kLeft, kRight},
+        left_(left_of(result)),
+        right_(left_ + kAxisWidth),
+        x_{bins_.low, bins_.high(), left_, right_},
         bottom_(kTop + kRowHeight * static_cast<double>(result.rows.size())),
-        svg_(kWidth, bottom_ + kBottom, traits(metric).title,
+        svg_(right_ + kMargin, bottom_ + kBottom, traits(metric).title,
              std::string("Histogram for each configuration. ") +
                  std::string(traits(metric).explanation)) {}
 
@@ -94,16 +103,16 @@ class Plot {
  private:
   void legend() {
     constexpr double kY = 16;
-    svg_.circle({kLeft + 8, kY}, 4, "ours");
-    svg_.line({kLeft, kY}, {kLeft + 16, kY}, "ours");
-    svg_.text({kLeft + 24, kY + 4}, Anchor::kStart, "small", "our mean, 95 % interval");
+    svg_.circle({left_ + 8, kY}, 4, "ours");
+    svg_.line({left_, kY}, {left_ + 16, kY}, "ours");
+    svg_.text({left_ + 24, kY + 4}, Anchor::kStart, "small", "our mean, 95 % interval");
     const bool has_theirs =
         std::any_of(result_.rows.begin(), result_.rows.end(),
                     [&](const Row& r) { return theirs(r, metric_).has_value(); });
     if (!has_theirs) return;
-    whisker(kLeft + 190, kLeft + 206, kY, "theirs");
-    diamond({kLeft + 198, kY});
-    svg_.text({kLeft + 214, kY + 4}, Anchor::kStart, "small", "the paper's mean ± 1 sd");
+    whisker(left_ + 190, left_ + 206, kY, "theirs");
+    diamond({left_ + 198, kY});
+    svg_.text({left_ + 214, kY + 4}, Anchor::kStart, "small", "the paper's mean ± 1 sd");
   }
 
   void axis() {
@@ -112,16 +121,16 @@ class Plot {
       svg_.line({x_(tick), kTop - 6}, {x_(tick), bottom_}, "grid");
       svg_.text({x_(tick), bottom_ + 16}, Anchor::kMiddle, "small", tick_label(tick));
     }
-    svg_.text({kRight, bottom_ + 31}, Anchor::kEnd, "small", traits(metric_).title);
+    svg_.text({right_, bottom_ + 31}, Anchor::kEnd, "small", traits(metric_).title);
   }
 
   void row(const Row& row, double top) {
     const double base = top + kBarHeight + 4;
-    svg_.text({kLeft - 12, base - 8}, Anchor::kEnd, "label", label(row.configuration));
-    svg_.line({kLeft, base}, {kRight, base}, "axis");
+    svg_.text({left_ - 12, base - 8}, Anchor::kEnd, "label", label(row.configuration));
+    svg_.line({left_, base}, {right_, base}, "axis");
     const Summary& summary = row[metric_];
     if (summary.count() == 0) {
-      svg_.text({kLeft + 6, base - 8}, Anchor::kStart, "small", "no values");
+      svg_.text({left_ + 6, base - 8}, Anchor::kStart, "small", "no values");
       return;
     }
     bars(summary, base);
@@ -151,9 +160,9 @@ class Plot {
   void notes(const Summary& summary, double base) {
     const std::int64_t beyond = histogram(summary.distribution(), bins_).beyond;
     if (beyond > 0)
-      svg_.text({kRight + 4, base - 14}, Anchor::kStart, "small", fmt::format("+{} ▸", beyond));
+      svg_.text({right_ + 4, base - 14}, Anchor::kStart, "small", fmt::format("+{} ▸", beyond));
     if (summary.censored() > 0)
-      svg_.text({kRight + 4, base}, Anchor::kStart, "small",
+      svg_.text({right_ + 4, base}, Anchor::kStart, "small",
                 fmt::format("{} never", summary.censored()));
   }
 
@@ -164,8 +173,8 @@ class Plot {
   }
 
   void whisker(double begin, double end, double y, std::string_view css_class) {
-    const double left = std::max(begin, kLeft);
-    const double right = std::min(end, kRight);
+    const double left = std::max(begin, left_);
+    const double right = std::min(end, right_);
     svg_.line({left, y}, {right, y}, css_class);
     if (left == begin) svg_.line({left, y - 3}, {left, y + 3}, css_class);
     if (right == end) svg_.line({right, y - 3}, {right, y + 3}, css_class);
@@ -179,6 +188,8 @@ class Plot {
   const CampaignResult& result_;
   Metric metric_;
   Bins bins_;
+  double left_;
+  double right_;
   Scale x_;
   double bottom_;
   Svg svg_;

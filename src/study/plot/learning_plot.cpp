@@ -11,10 +11,10 @@ namespace culprit::study {
 namespace {
 
 // Pixels.
-constexpr double kWidth = 760;
-constexpr double kHeight = 330;
+constexpr double kHeight = 300;
 constexpr double kLeft = 50;
-constexpr double kRight = kWidth - 230;  // names of the strategies are behind it
+constexpr double kRight = 400;
+constexpr double kLetterWidth = 6.7;  // at most, on average
 constexpr double kTop = 16;
 constexpr double kBottom = kHeight - 44;
 constexpr double kLeastDistance = 15;  // of two names
@@ -33,12 +33,27 @@ std::vector<double> apart(const std::vector<double>& wanted) {
   return places;
 }
 
+double last(const LearningCurve& curve) {
+  return curve.learned.empty() ? curve.initial : curve.learned.back().mean();
+}
+
+std::string label(const LearningCurve& curve) {
+  return fmt::format("{} {:.2f} (true {:.2f})", curve.strategy, last(curve), curve.truth);
+}
+
+// The labels are behind the axis.
+double width(const std::vector<LearningCurve>& curves) {
+  std::size_t longest = 0;
+  for (const LearningCurve& curve : curves) longest = std::max(longest, label(curve).size());
+  return kRight + 20 + kLetterWidth * static_cast<double>(longest);
+}
+
 class Plot {
  public:
   explicit Plot(const std::vector<LearningCurve>& curves)
       : curves_(curves),
         x_{0, std::max(1.0, static_cast<double>(curves.front().learned.size())), kLeft, kRight},
-        svg_(kWidth, kHeight, "Learned success probabilities of " + curves.front().failure,
+        svg_(width(curves), kHeight, "Learned success probabilities of " + curves.front().failure,
              "Probability over experiments for each strategy, with the true rate as a dotted "
              "line.") {}
 
@@ -54,10 +69,6 @@ class Plot {
   }
 
  private:
-  static double last(const LearningCurve& curve) {
-    return curve.learned.empty() ? curve.initial : curve.learned.back().mean();
-  }
-
   void axes() {
     for (const double tick : ticks(0, 1, 5)) {
       svg_.line({kLeft, y_(tick)}, {kRight, y_(tick)}, "grid");
@@ -96,8 +107,7 @@ class Plot {
       svg_.line({kRight + 2, y_(last(curves_[i]))}, {kRight + 12, places[i]},
                 fmt::format("truth{}", colour));
       svg_.text({kRight + 16, places[i] + 4}, Anchor::kStart, fmt::format("name{}", colour),
-                fmt::format("{} {:.2f} (true {:.2f})", curves_[i].strategy, last(curves_[i]),
-                            curves_[i].truth));
+                label(curves_[i]));
     }
   }
 

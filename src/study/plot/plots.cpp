@@ -4,22 +4,13 @@
 #include <fstream>
 #include <system_error>
 
+#include "study/markup.h"
 #include "study/plot/distribution_plot.h"
 #include "study/plot/learning_plot.h"
 #include "study/plot/style.h"
 
 namespace culprit::study {
 namespace {
-
-// What a file name and an anchor may hold.
-std::string safe_id(std::string text) {
-  for (char& c : text) {
-    const bool is_safe = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                         (c >= '0' && c <= '9') || c == '_' || c == '-';
-    if (!is_safe) c = '-';
-  }
-  return text;
-}
 
 // Curves of one failure, in the order in which failures occur.
 std::vector<std::vector<LearningCurve>> by_failure(const std::vector<LearningCurve>& curves) {

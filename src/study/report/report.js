@@ -106,7 +106,8 @@
 
   const show = () => {
     const run = runs[chooser.selectedIndex];
-    draw(run);
+    if (run.entries.length > 0) draw(run);
+    else drawing.textContent = "Nothing happened.";
     tell(run);
   };
   for (const run of runs) chooser.append(new Option(run.label));

@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "study/markup.h"
+
 namespace culprit::study {
 
 std::string number(double value, int decimals) {
@@ -76,6 +78,11 @@ Column metric_column(Metric metric) {
 
 std::string played(const std::string& planner, const std::string& profile) {
   return planner + " planner, " + profile + " profile";
+}
+
+std::string id_of(const std::string& table, const std::string& planner,
+                  const std::string& profile) {
+  return safe_id(table + "-" + planner + "-" + profile);
 }
 
 }  // namespace culprit::study

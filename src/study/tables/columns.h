@@ -40,4 +40,7 @@ Column metric_column(Metric metric);
 // "paper planner, paper profile", for captions.
 std::string played(const std::string& planner, const std::string& profile);
 
+// The id of a table of which there is one for each planner and profile: "effects-paper-paper".
+std::string id_of(const std::string& table, const std::string& planner, const std::string& profile);
+
 }  // namespace culprit::study

@@ -74,6 +74,23 @@ Cell change_cell(std::optional<double> percent, published::Verdict verdict, doub
   return cell;
 }
 
+// "p < 0.001", "p = 0.034".
+std::string stated(double p) { return (p < 0.001 ? "p " : "p = ") + p_value(p); }
+
+// "resolved / executed F(7, 1288) = 52.10, p < 0.001; ..."
+std::string anova_note(const Ablation& ablation) {
+  std::string out = "One-way ANOVA:";
+  for (std::size_t i = 0; i < kPublishedMetrics.size(); ++i) {
+    const std::string_view title = traits(kPublishedMetrics[i]).title;
+    const std::optional<Anova>& anova = ablation.anovas[i];
+    out += i == 0 ? " " : "; ";
+    out += anova ? fmt::format("{} F({:g}, {:g}) = {}, {}", title, anova->degrees_between,
+                               anova->degrees_within, number(anova->f), stated(anova->p))
+                 : fmt::format("{} too few values", title);
+  }
+  return out + ".";
+}
+
 std::vector<Cell> robustness_row(const std::string& name, const Row& row) {
   std::vector<Cell> cells = {{name}};
   const std::vector<MeanComparison> theirs = compare_means(row);
@@ -91,7 +108,7 @@ Moments published_moments(const published::MeanSd& value) {
 }
 
 std::string difference(const std::optional<WelchTest>& test) {
-  return test ? "p " + std::string(test->p < 0.001 ? "" : "= ") + p_value(test->p) : "–";
+  return test ? stated(test->p) : "–";
 }
 
 std::vector<Cell> welch_row(const Row& ideal, const Row& misspecified) {
@@ -112,7 +129,7 @@ std::vector<Cell> welch_row(const Row& ideal, const Row& misspecified) {
 }  // namespace
 
 Table comparison_table(const Ablation& ablation) {
-  Table table{"comparison",
+  Table table{id_of("comparison", ablation.planner, ablation.profile),
               "Ours beside the paper's: " + played(ablation.planner, ablation.profile),
               switch_columns(),
               {},
@@ -134,7 +151,7 @@ Table comparison_table(const Ablation& ablation) {
 
 Table effects_table(const Ablation& ablation) {
   Table table{
-      "effects",
+      id_of("effects", ablation.planner, ablation.profile),
       "Change in percent by switching one factor on: " + played(ablation.planner, ablation.profile),
       {{"", "factor", "", "", Align::kLeft},
        {"", "from", "", "", Align::kCentre},
@@ -160,11 +177,12 @@ Table effects_table(const Ablation& ablation) {
                   "significant in "
                   "the paper, {} have the same sign here; {} of all {} have the same verdict.",
                   count.significant, count.significant_signs, count.same_verdicts, count.effects));
+  table.notes.push_back(anova_note(ablation));
   return table;
 }
 
 Table robustness_table(const Row& ideal, const Row& misspecified) {
-  Table table{"robustness",
+  Table table{id_of("robustness", ideal.configuration.planner, ideal.configuration.profile),
               "Probabilities off by 20 %: " +
                   played(ideal.configuration.planner, ideal.configuration.profile),
               {{"", "initial P", "", "Initial $P_s$", Align::kLeft}},
@@ -186,6 +204,7 @@ std::vector<Table> tables(const Findings& findings) {
   if (!result.rows.empty()) {
     tables.push_back(results_table(result));
     tables.push_back(honest_table(result));
+    tables.push_back(root_cause_table(result));
   }
   for (const Ablation& ablation : ablations(result)) {
     tables.push_back(comparison_table(ablation));

@@ -11,7 +11,7 @@
 namespace culprit::study {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kSpelled = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 19> kSpelled = {{
     {"\\", "\\textbackslash{}"},
     {"{", "\\{"},
     {"}", "\\}"},
@@ -24,7 +24,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kSpelled
     {"~", "\\~{}"},
     {"±", "$\\pm$"},
     {"−", "$-$"},
-    {"–", "--"},
+    {"–", "\\textendash{}"},  // dashes in a row would become another sign
+    {"<", "$<$"},
+    {">", "$>$"},
+    {"|", "$|$"},
     {"✓", "\\checkmark"},
     {"✗", "$\\times$"},
     {"Δ", "$\\Delta$"},

@@ -57,7 +57,7 @@ TEST(Tables, AreLatexLikeThePapers) {
             R"(% needs \usepackage{amsmath,amssymb,booktabs} and \usepackage[table]{xcolor}
 \begin{table}[ht]
 \centering
-\caption{What 50 \% of <all> find}
+\caption{What 50 \% of $<$all$>$ find}
 \label{tab:sample}
 \begin{tabular}{lrr}
 \toprule
@@ -65,9 +65,9 @@ TEST(Tables, AreLatexLikeThePapers) {
 \cmidrule(lr){2-3}
 name & ours & paper \\
 \midrule
-a\_b|c & \textbf{1.00 $\pm$ 0.20} & \checkmark \\
+a\_b$|$c & \textbf{1.00 $\pm$ 0.20} & \checkmark \\
 d & \cellcolor{red!50}$-$2.00 & \cellcolor{green!100}3.00 \\
-e & \cellcolor{gray!25}0.00 & -- \\
+e & \cellcolor{gray!25}0.00 & \textendash{} \\
 \bottomrule
 \end{tabular}
 
@@ -94,8 +94,9 @@ TEST(Tables, OfAStudyAreAllThere) {
     ids.push_back(table.id);
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size()) << table.id;
   }
-  EXPECT_EQ(ids, (std::vector<std::string>{"ablation", "honest", "comparison", "effects",
-                                           "robustness", "learning"}));
+  EXPECT_EQ(
+      ids, (std::vector<std::string>{"ablation", "honest", "root-causes", "comparison-paper-paper",
+                                     "effects-paper-paper", "robustness-paper-paper", "learning"}));
   EXPECT_TRUE(tables({}).empty());
 }
 

@@ -37,6 +37,23 @@ std::string with_interval(const Summary& summary) {
                      number(interval->high));
 }
 
+Table interval_table(const CampaignResult& result, std::string id, const std::string& caption,
+                     const std::vector<Metric>& metrics) {
+  const ConfigurationColumns configuration(result.rows);
+  Table table{std::move(id),
+              caption + ": mean [95 % interval of the mean]",
+              configuration.columns(),
+              {},
+              {"Intervals by bootstrap over runs."}};
+  for (const Metric metric : metrics) table.columns.push_back(metric_column(metric));
+  for (const Row& row : result.rows) {
+    std::vector<Cell> cells = configuration.cells(row.configuration);
+    for (const Metric metric : metrics) cells.push_back({with_interval(row[metric])});
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
 std::string runs_note(const CampaignResult& result) {
   return fmt::format("{} runs each, seed {}, culprit {}: {}", result.campaign.runs,
                      result.campaign.seed, result.campaign.version, result.campaign.command);
@@ -66,25 +83,24 @@ Table results_table(const CampaignResult& result) {
 }
 
 Table honest_table(const CampaignResult& result) {
-  const ConfigurationColumns configuration(result.rows);
-  Table table{"honest",
-              "Honest metrics: mean [95 % interval of the mean]",
-              configuration.columns(),
-              {},
-              {}};
-  for (const Metric metric : kHonestMetrics) table.columns.push_back(metric_column(metric));
-  table.columns.push_back({"", "not recovered", "", "", Align::kRight});
-  for (const Row& row : result.rows) {
-    std::vector<Cell> cells = configuration.cells(row.configuration);
-    for (const Metric metric : kHonestMetrics) cells.push_back({with_interval(row[metric])});
-    cells.push_back({fmt::format("{} of {}", row[Metric::kRecovery].censored(), row.runs)});
-    table.rows.push_back(std::move(cells));
+  Table table = interval_table(result, "honest", "Honest metrics",
+                               {Metric::kHonestDowntime, Metric::kStrategiesPerFault,
+                                Metric::kWrongComponent, Metric::kUnresolved, Metric::kRecovery});
+  table.columns.push_back({"", "not recovered"});
+  for (std::size_t i = 0; i < result.rows.size(); ++i) {
+    const Row& row = result.rows[i];
+    table.rows[i].push_back({fmt::format("{} of {}", row[Metric::kRecovery].censored(), row.runs)});
   }
   table.notes.push_back(
       "A run that did not recover counts with all the time that it was watched, so its mean time "
       "to "
-      "recovery is a lower bound. Intervals by bootstrap over runs.");
+      "recovery is a lower bound.");
   return table;
+}
+
+Table root_cause_table(const CampaignResult& result) {
+  return interval_table(result, "root-causes", "Root causes",
+                        {Metric::kTopCauseRight, Metric::kExactCausesRight});
 }
 
 Table learning_table(const std::vector<LearningCurve>& curves) {
@@ -115,7 +131,8 @@ Table learning_table(const std::vector<LearningCurve>& curves) {
                           {last.count() == 0 ? "–" : number(std::abs(last.mean() - curve.truth))}});
   }
   table.notes.push_back(fmt::format(
-      "After {} experiments, c_p = {:g}. The paper prints a figure of F1 and F4 without numbers.",
+      "After {} experiments. Of the paper's own learning (c_p = {:g}) there is a figure of "
+      "F1 and F4, without numbers.",
       curves.front().learned.size(), published::kLearning.confidence));
   return table;
 }

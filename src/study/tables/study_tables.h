@@ -13,8 +13,11 @@ namespace culprit::study {
 // The paper's metrics of each row, the best mean of each in bold (tab:ablation-study).
 Table results_table(const CampaignResult& result);
 
-// The honest metrics of each row, with the 95 % interval of each mean.
+// The honest metrics of each row but those of the next table, with the 95 % interval of each mean.
 Table honest_table(const CampaignResult& result);
+
+// How often the root causes were found, with the 95 % interval of each mean.
+Table root_cause_table(const CampaignResult& result);
 
 // Each mean of an ablation beside the paper's, and whether it lies within the paper's mean ± 1 sd.
 Table comparison_table(const Ablation& ablation);

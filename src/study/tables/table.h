@@ -32,7 +32,7 @@ struct Cell {
 };
 
 struct Table {
-  std::string id;  // for labels and anchors: letters, digits and dashes
+  std::string id;  // for labels and anchors: letters, digits, dashes and underscores
   std::string caption;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;  // as wide as the columns

@@ -1,0 +1,153 @@
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+
+namespace culprit::cli {
+namespace {
+
+using testing::HasSubstr;
+
+class StudyCommand : public testing::Test {
+ protected:
+  StudyCommand() { std::filesystem::create_directories(folder_); }
+  ~StudyCommand() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  static std::string text(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  static void write(const std::string& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+  }
+
+  int run(std::vector<std::string> arguments) {
+    CLI::App app;
+    int exit_code = -1;
+    add_study(app, "test", exit_code);
+    arguments.insert(arguments.begin(), "study");
+    std::reverse(arguments.begin(), arguments.end());
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout();
+    app.parse(arguments);
+    said = testing::internal::GetCapturedStdout();
+    complaint = testing::internal::GetCapturedStderr();
+    return exit_code;
+  }
+
+  int run_small(std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"sunset", "--ablation", "--runs", "4"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+
+  // The same small campaign in two shards, at path("1") and path("2").
+  void make_shards() {
+    ASSERT_EQ(run_small({"--shard", "1/2", "--shard-file", path("1")}), kOk) << complaint;
+    ASSERT_EQ(run_small({"--shard", "2/2", "--shard-file", path("2")}), kOk) << complaint;
+  }
+
+  std::string said;
+  std::string complaint;
+
+ private:
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
+                                  testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+TEST_F(StudyCommand, GivesTheRowsOfAllThreeTables) {
+  ASSERT_EQ(run({"sunset", "--runs", "4", "--repetitions", "1", "--json"}), kOk) << complaint;
+  const auto document = nlohmann::json::parse(said);
+  EXPECT_EQ(document["rows"].size(), 9);  // eight of the ablation, and the misspecified one
+  const auto& row = document["rows"][7];
+  EXPECT_TRUE(row["dependencies"] && row["criticality"] && row["impact"]);
+  EXPECT_EQ(row["planner"], "paper");
+  EXPECT_EQ(row["runs"], 4);
+  EXPECT_GT(row["downtime_s"]["mean"], 3);
+  EXPECT_GT(row["honest"]["recovery_s"]["mean"], 3);
+  EXPECT_EQ(document["learning"].size(), 5);  // strategies of F1 and F4
+}
+
+TEST_F(StudyCommand, GivesTheSameBytesWithAnyNumberOfJobs) {
+  ASSERT_EQ(run_small({"--jobs", "1", "--json"}), kOk);
+  const std::string one = said;
+  ASSERT_EQ(run_small({"--jobs", "5", "--json"}), kOk);
+  EXPECT_EQ(said, one);
+  ASSERT_EQ(run_small({"--jobs", "5", "--json", "--seed", "2"}), kOk);
+  EXPECT_NE(said, one);
+}
+
+TEST_F(StudyCommand, ShardsMergeToTheSameBytes) {
+  ASSERT_EQ(run_small({"--json"}), kOk);
+  const std::string whole = said;
+  make_shards();
+  ASSERT_EQ(run({"merge", path("2"), path("1"), "--json"}), kOk) << complaint;
+  EXPECT_EQ(said, whole);
+}
+
+TEST_F(StudyCommand, GoesOnWhereItWasInterrupted) {
+  make_shards();
+  const std::string whole = text(path("1"));
+  write(path("1"), whole.substr(0, whole.size() / 2));
+  EXPECT_EQ(run({"merge", path("1"), path("2")}), kFailed);
+  ASSERT_EQ(run_small({"--shard", "1/2", "--shard-file", path("1")}), kOk);
+  EXPECT_THAT(complaint, HasSubstr("runs are there already"));
+  EXPECT_EQ(text(path("1")), whole);
+}
+
+TEST_F(StudyCommand, MergesNothingByHalves) {
+  make_shards();
+  EXPECT_EQ(run({"merge", path("1")}), kFailed);
+  EXPECT_EQ(run({"merge", path("1"), path("1"), path("2")}), kFailed);
+  EXPECT_EQ(run({"merge", path("1"), path("none")}), kFailed);
+
+  ASSERT_EQ(run_small({"--seed", "2", "--shard", "2/2", "--shard-file", path("other")}), kOk);
+  EXPECT_EQ(run({"merge", path("1"), path("other")}), kFailed);
+  EXPECT_EQ(said, "");
+
+  std::string damaged = text(path("2"));
+  damaged[damaged.size() / 2] ^= 1;
+  write(path("2"), damaged);
+  write(path("out"), "old");
+  EXPECT_EQ(run({"merge", path("1"), path("2"), "--output", path("out")}), kFailed);
+  EXPECT_THAT(complaint, HasSubstr(path("2")));
+  EXPECT_EQ(text(path("out")), "old");
+}
+
+TEST_F(StudyCommand, WritesAReportAndPlots) {
+  ASSERT_EQ(run_small({"--html", path("report.html"), "--svg", path("plots")}), kOk) << complaint;
+  const std::string page = text(path("report.html"));
+  EXPECT_THAT(page, HasSubstr("culprit study sunset --ablation"));
+  EXPECT_THAT(page, HasSubstr("is held responsible for"));
+  EXPECT_THAT(text(path("plots/downtime_s.svg")), HasSubstr("<svg"));
+  EXPECT_EQ(run_small({"--html", path("no/report.html")}), kFailed);
+}
+
+TEST_F(StudyCommand, SaysWhatCanBeChosen) {
+  EXPECT_EQ(run({"sunset", "--profile", "september"}), kUsage);
+  EXPECT_THAT(complaint, HasSubstr("there are paper, head, october, live"));
+  EXPECT_EQ(run({"sunset", "--planner", "magic"}), kUsage);
+  EXPECT_THAT(complaint, HasSubstr("there are paper, reference"));
+  EXPECT_EQ(run({"sunset", "--planner", "reference", "--profile", "live"}), kUsage);
+  EXPECT_EQ(run({"sunset", "--shard", "3/2", "--shard-file", path("x")}), kUsage);
+  EXPECT_EQ(run({"sunset", "--shard", "1/2"}), kUsage);
+  EXPECT_EQ(run({"sunset", "--learning", "--shard-file", path("x")}), kUsage);
+  EXPECT_EQ(run({"sunset", "--run", "1", "--explain", "--switches", "XYZ"}), kUsage);
+}
+
+TEST_F(StudyCommand, TellsWhatHappenedInARun) {
+  ASSERT_EQ(run({"sunset", "--run", "37", "--explain"}), kOk) << complaint;
+  EXPECT_THAT(said, HasSubstr("run 37 of D C S: image_degradation+sync_issue"));
+  EXPECT_THAT(said, HasSubstr("fault: sync_issue"));
+  EXPECT_THAT(said, HasSubstr("fusion is held responsible for SensorFusionDead"));
+  EXPECT_THAT(said, HasSubstr("SensorFusionDead resolved by fusion_restart"));
+}
+
+}  // namespace
+}  // namespace culprit::cli
