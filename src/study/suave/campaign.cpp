@@ -17,7 +17,8 @@ void add(const suave::model::Reactions& of_run, SuaveReactions& all) {
   all.unanswered += static_cast<std::int64_t>(of_run.unanswered_s.size());
 }
 
-SuaveRow fold(const std::string& manager, const std::vector<SuaveRun>& runs) {
+SuaveRow fold(const std::string& manager, const suave::model::MissionPlan& plan,
+              const std::vector<SuaveRun>& runs) {
   SuaveRow row;
   row.manager = manager;
   Moments search;
@@ -32,7 +33,7 @@ SuaveRow fold(const std::string& manager, const std::vector<SuaveRun>& runs) {
     row.whole_distance_m.add(run.whole_distance_m);
     add(run.visibility, row.visibility);
     add(run.thruster, row.thruster);
-    add(run.battery, row.battery);
+    if (plan.needs_battery) add(run.battery, row.battery);
     if (has_outliers && is_outlier(run, search)) {
       ++row.outliers;
       continue;
@@ -60,7 +61,7 @@ std::optional<std::vector<SuaveRow>> run_campaign(const SuaveCampaign& campaign,
       [&](std::uint64_t i, SuaveRun run) {
         runs.push_back(std::move(run));
         if (runs.size() == campaign.runs) {
-          rows.push_back(fold(campaign.managers[i / campaign.runs], runs));
+          rows.push_back(fold(campaign.managers[i / campaign.runs], *campaign.plan, runs));
           runs.clear();
         }
         return !is_stopped || !is_stopped();

@@ -18,8 +18,9 @@ Autopilot::Autopilot(simulation::World& world, Topics& topics, const VehicleTrai
                      Time guided)
     : Node(world, nodes::kAutopilot, {}),
       guided_(guided),
-      first_pose_(
-          later(guided, simulation::Span{traits.first_pose, kFirstPoseSpread}.draw(random()))),
+      first_pose_(later(
+          guided,
+          simulation::Span{from_seconds(traits.first_pose_s), kFirstPoseSpread}.draw(random()))),
       centre_(start_of(traits, world.random("start"))),
       vehicle_(traits, centre_, world.random("vehicle")),
       state_(*this, topics.guided, simulation::Use::kAlways) {}

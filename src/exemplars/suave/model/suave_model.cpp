@@ -16,7 +16,7 @@ simulation::NodeTraits mode_manager() {
   simulation::NodeTraits traits;
   traits.start = {milliseconds(300), milliseconds(400)};
   traits.end = {milliseconds(10), milliseconds(40)};
-  traits.service = {milliseconds(1), milliseconds(4)};
+  traits.service = {std::chrono::microseconds(500), milliseconds(2)};
   return traits;
 }
 

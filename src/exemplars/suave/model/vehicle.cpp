@@ -44,7 +44,7 @@ void Vehicle::advance() {
 }
 
 Position Vehicle::seen() const {
-  const double sd = traits_.drift_sd * (failed_thrusters() > 0 ? traits_.failed_drift : 1);
+  const double sd = traits_.drift_sd;
   return {position_.x + sd * drift_.x, position_.y + sd * drift_.y, position_.z + sd * drift_.z};
 }
 

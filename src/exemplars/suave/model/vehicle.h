@@ -2,7 +2,7 @@
 //
 // It heads for its setpoint with a speed proportional to the distance, up to a cruise speed, and
 // gets there with a lag; its depth likewise. What it and its camera take for its position is off by
-// an Ornstein-Uhlenbeck process. A failed thruster makes it slower and less precise.
+// an Ornstein-Uhlenbeck process. A failed thruster makes it slower and less agile.
 //
 // The constants are not the exemplar's, which are hidden in an autopilot; they are fitted to what
 // the published runs took (scripts/fit-suave).
@@ -19,21 +19,20 @@ namespace culprit::suave::model {
 inline constexpr int kThrusters = 6;
 
 struct VehicleTraits {
-  double gain_per_s = 0.65;    // speed per distance to the setpoint
-  double cruise = 0.80;        // m/s, level
-  double climb = 0.13;         // m/s
-  double lag_s = 0.5;          // of the speed behind what is wanted
-  double drift_sd = 0.08;      // m, of the position that is seen, on each axis
-  double drift_time_s = 3;     // how long it remembers
-  double failed_speed = 0.28;  // of the cruise speed, with one thruster failed
-  double failed_gain = 0.85;
-  double failed_drift = 2;
+  double gain_per_s = 0.65;     // speed per distance to the setpoint
+  double cruise = 0.7625;       // m/s, level
+  double climb = 0.11;          // m/s
+  double lag_s = 0.5;           // of the speed behind what is wanted
+  double drift_sd = 0.06;       // m, of the position that is seen, on each axis
+  double drift_time_s = 3;      // how long it remembers
+  double failed_speed = 0.395;  // of the cruise speed, with one thruster failed
+  double failed_gain = 0.70;
   double failed_again = 0.6;  // of the speed, for each further one
 
   // Where the search begins: the drift between the simulation's frame and the autopilot's.
   double centre_y = 2.35;
-  double centre_y_sd = 0.20;
-  Duration first_pose = std::chrono::seconds(6);  // of the autopilot, after the mission's begin
+  double centre_y_sd = 0.25;
+  double first_pose_s = 6.625;  // of the autopilot, after the mission's begin
 };
 
 class Vehicle {
