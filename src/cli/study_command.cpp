@@ -9,6 +9,7 @@
 #include "cli/console.h"
 #include "cli/progress.h"
 #include "cli/study_output.h"
+#include "cli/study_suave_command.h"
 #include "study/ordered_work.h"
 #include "study/shards/merge.h"
 #include "study/shards/shard_writer.h"
@@ -274,6 +275,7 @@ void add_study(CLI::App& app, const std::string& version, int& exit_code) {
       "study", "Campaigns over an exemplar: metrics, statistics and tables beside the paper's");
   command->require_subcommand(1);
   add_sunset(*command, version, exit_code);
+  add_study_suave(*command, exit_code);
   add_merge(*command, exit_code);
 }
 

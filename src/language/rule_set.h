@@ -44,7 +44,7 @@ struct StatusLevel {
 };
 
 struct DiagnosticKey {
-  std::string status;  // name or hardware id of the status
+  std::string status;  // name or hardware id of the status; "*": any
   std::string key;
 };
 struct TopicField {

@@ -21,7 +21,8 @@ DiagnosticsWatch::DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox&
   for (std::size_t s = 0; s < rules.signals.size(); ++s) {
     const Signal& signal = rules.signals[s];
     if (const auto* source = std::get_if<DiagnosticKey>(&signal.source)) {
-      signals_.emplace(source->status + "\n" + source->key, SignalId(s));
+      const bool is_any = source->status == "*";
+      signals_.emplace(is_any ? source->key : source->status + "\n" + source->key, SignalId(s));
     } else if (std::holds_alternative<LookedUp>(signal.source)) {
       signals_.emplace(signal.name, SignalId(s));
     }

@@ -27,7 +27,7 @@ void Node::launch() {
   if (process_ != ProcessState::kGone) return;
   process_ = ProcessState::kRunning;
   pid_ = world_.new_pid();
-  if (Watcher* watcher = world_.watcher()) watcher->on_process(*this, "");
+  world_.show([&](Watcher& watcher) { watcher.on_process(*this, ""); });
   while_alive(traits_.start.draw(random_), [this] {
     if (failing_starts_ > 0) {
       --failing_starts_;
@@ -42,7 +42,7 @@ void Node::appear() {
   lifecycle_ = Lifecycle::kUnconfigured;
   parameters_ = defaults_;
   is_in_graph_ = true;
-  if (Watcher* watcher = world_.watcher()) watcher->on_node(*this, true);
+  world_.show([&](Watcher& watcher) { watcher.on_node(*this, true); });
   on_start();
   for (Endpoint* endpoint : endpoints_) endpoint->report();
 }
@@ -61,7 +61,7 @@ void Node::disappear() {
   if (!is_in_graph_) return;
   for (Endpoint* endpoint : endpoints_) endpoint->report();
   is_in_graph_ = false;
-  if (Watcher* watcher = world_.watcher()) watcher->on_node(*this, false);
+  world_.show([&](Watcher& watcher) { watcher.on_node(*this, false); });
 }
 
 void Node::lose_process(const std::string& remark) {
@@ -70,7 +70,7 @@ void Node::lose_process(const std::string& remark) {
   waiting_.clear();
   for (Endpoint* endpoint : endpoints_) endpoint->forget();
   free_at_ = {};
-  if (Watcher* watcher = world_.watcher()) watcher->on_process(*this, remark);
+  world_.show([&](Watcher& watcher) { watcher.on_process(*this, remark); });
 }
 
 void Node::terminate(Action done) {
@@ -95,13 +95,13 @@ void Node::kill() {
 void Node::stop() {
   if (process_ != ProcessState::kRunning) return;
   process_ = ProcessState::kStopped;
-  if (Watcher* watcher = world_.watcher()) watcher->on_process(*this, "");
+  world_.show([&](Watcher& watcher) { watcher.on_process(*this, ""); });
 }
 
 void Node::resume() {
   if (process_ != ProcessState::kStopped) return;
   process_ = ProcessState::kRunning;
-  if (Watcher* watcher = world_.watcher()) watcher->on_process(*this, "");
+  world_.show([&](Watcher& watcher) { watcher.on_process(*this, ""); });
   drain();
 }
 
@@ -150,8 +150,8 @@ void Node::drain() {
 
 void Node::occupy(Duration time) { free_at_ = later(free_at(), time); }
 
-void Node::every(Duration period, Action action) {
-  while_alive(period, [this, period, action = std::move(action)] { tick(period, action); });
+void Node::every(Duration first, Duration period, Action action) {
+  while_alive(first, [this, period, action = std::move(action)] { tick(period, action); });
 }
 
 void Node::tick(Duration period, const Action& action) {
@@ -164,7 +164,7 @@ void Node::tick(Duration period, const Action& action) {
 void Node::become(Lifecycle lifecycle) {
   lifecycle_ = lifecycle;
   for (Endpoint* endpoint : endpoints_) endpoint->report();
-  if (Watcher* watcher = world_.watcher()) watcher->on_lifecycle(*this);
+  world_.show([&](Watcher& watcher) { watcher.on_lifecycle(*this); });
 }
 
 bool Node::change(Transition transition) {
@@ -215,7 +215,7 @@ void Node::set_default(const std::string& name, Value value) { defaults_[name] =
 void Node::assign(const std::string& name, Value value) {
   Value& held = parameters_[name];
   held = std::move(value);
-  if (Watcher* watcher = world_.watcher()) watcher->on_parameter(*this, name, held);
+  world_.show([&](Watcher& watcher) { watcher.on_parameter(*this, name, held); });
 }
 
 }  // namespace culprit::simulation

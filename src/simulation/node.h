@@ -89,6 +89,7 @@ class Node {
   bool has(const std::string& parameter) const { return defaults_.contains(parameter); }
   // Null if there is none of this name.
   const Value* parameter(const std::string& name) const;
+  const std::map<std::string, Value>& parameters() const { return parameters_; }
   // Gives whether the node has it, and accepts the value.
   bool set_parameter(const std::string& name, const Value& value);
   // Gives whether it has such a routine, and it succeeded.
@@ -114,8 +115,10 @@ class Node {
 
   // The callback under way takes this long. What it publishes goes out afterwards.
   void occupy(Duration time);
-  // Calls `action` every `period` of robot time while the process lives, on the executor.
-  void every(Duration period, Action action);
+  // Calls `action` every `period` of robot time while the process lives, on the executor; the first
+  // time after `first`.
+  void every(Duration first, Duration period, Action action);
+  void every(Duration period, Action action) { every(period, period, std::move(action)); }
 
  private:
   friend class Endpoint;

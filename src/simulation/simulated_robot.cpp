@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "simulation/mode_manager.h"
 #include "simulation/node.h"
 #include "simulation/topic.h"
 
@@ -10,7 +11,7 @@ namespace culprit::simulation {
 SimulatedRobot::SimulatedRobot(const RuleSet& rules, World& world)
     : rules_(rules), world_(world), binding_(rules) {
   index_rules();
-  world_.watch(this);
+  world_.watch(*this);
   for (const Node* node : world_.nodes()) {
     if (node->process() != ProcessState::kGone) on_process(*node, "");
     if (!node->is_in_graph()) continue;
@@ -21,7 +22,7 @@ SimulatedRobot::SimulatedRobot(const RuleSet& rules, World& world)
   }
 }
 
-SimulatedRobot::~SimulatedRobot() { world_.watch(nullptr); }
+SimulatedRobot::~SimulatedRobot() { world_.unwatch(*this); }
 
 void SimulatedRobot::index_rules() {
   for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
@@ -31,7 +32,12 @@ void SimulatedRobot::index_rules() {
   for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
     const Signal& signal = rules_.signals[s];
     if (const auto* source = std::get_if<DiagnosticKey>(&signal.source)) {
-      signals_[source->status + "\n" + source->key].push_back(SignalId(s));
+      const bool is_any = source->status == "*";
+      signals_[is_any ? source->key : source->status + "\n" + source->key].push_back(SignalId(s));
+    } else if (const auto* field = std::get_if<TopicField>(&signal.source)) {
+      const std::string& topic = rules_[field->topic].name;
+      signals_[topic + "\n" + field->field].push_back(SignalId(s));
+      if (TopicBase* known = world_.topic(topic)) known->watch_field(field->field);
     } else if (std::holds_alternative<LookedUp>(signal.source)) {
       signals_[signal.name].push_back(SignalId(s));
     }
@@ -55,7 +61,21 @@ std::optional<ComponentId> SimulatedRobot::component_of(const Node& node) {
   return component;
 }
 
+// The systems whose modes `manager` serves come and go with it.
+void SimulatedRobot::tell_systems(const Node& manager, bool is_there) {
+  for (const auto& [system, server] : world_.systems()) {
+    if (server != &manager) continue;
+    if (!is_there) {
+      tell(NodeVanished{system});
+      continue;
+    }
+    (void)binding_.bind(system);
+    tell(NodeAppeared{system, manager.pid()});
+  }
+}
+
 void SimulatedRobot::on_node(const Node& node, bool is_there) {
+  tell_systems(node, is_there);
   if (!is_there) return tell(NodeVanished{node.name()});
   tell(NodeAppeared{node.name(), node.pid()});
   const auto component = component_of(node);
@@ -85,10 +105,24 @@ void SimulatedRobot::on_diagnostic(std::string_view status, std::string_view key
                                    const Value& value) {
   const std::string of_status(status);
   const std::string of_key(key);
-  for (const std::string& name : {of_status + "\n" + of_key, of_status + "_" + of_key, of_key}) {
-    const auto known = signals_.find(name);
-    if (known == signals_.end()) continue;
-    for (const SignalId signal : known->second) tell(SignalRead{signal, value});
+  for (const std::string& name : {of_status + "\n" + of_key, of_status + "_" + of_key, of_key})
+    tell_signals(name, value);
+}
+
+void SimulatedRobot::on_field(const TopicBase& topic, const std::string& field,
+                              const Value& value) {
+  tell_signals(topic.name() + "\n" + field, value);
+}
+
+void SimulatedRobot::tell_signals(const std::string& name, const Value& value) {
+  const auto known = signals_.find(name);
+  if (known == signals_.end()) return;
+  for (const SignalId signal : known->second) tell(SignalRead{signal, value});
+}
+
+void SimulatedRobot::on_level(std::string_view status, std::uint8_t level) {
+  for (std::size_t d = 0; d < rules_.diagnostics.size(); ++d) {
+    if (rules_.diagnostics[d].name == status) tell(DiagnosticRead{DiagnosticId(d), level});
   }
 }
 
@@ -107,8 +141,13 @@ void SimulatedRobot::on_lifecycle(const Node& node) {
 }
 
 void SimulatedRobot::on_process(const Node& node, const std::string& remark) {
-  if (const auto component = component_of(node))
-    tell(ProcessSeen{*component, node.process(), node.pid(), remark});
+  const auto tell_component = [&](std::optional<ComponentId> component) {
+    if (component) tell(ProcessSeen{*component, node.process(), node.pid(), remark});
+  };
+  tell_component(component_of(node));
+  for (const auto& [system, server] : world_.systems()) {
+    if (server == &node) tell_component(binding_.bind(system));
+  }
 }
 
 // ---- what it is asked
@@ -117,9 +156,18 @@ Node* SimulatedRobot::node_of(ComponentId component) const {
   return world_.node(binding_.node_of(component));
 }
 
+// Who serves the request: the component's node, or, of modes, the mode manager.
+Node* SimulatedRobot::server_of(const Command& command) const {
+  const bool is_about_modes = std::holds_alternative<ChangeMode>(command.what) ||
+                              std::holds_alternative<ReadMode>(command.what);
+  if (!is_about_modes) return node_of(command.component);
+  ModeManager* manager = world_.modes_of(binding_.node_of(command.component));
+  return manager != nullptr ? manager : node_of(command.component);
+}
+
 void SimulatedRobot::execute(const Command& command) {
   open_.insert(command.id);
-  Node* node = node_of(command.component);
+  Node* node = server_of(command);
   if (node == nullptr) {
     world_.after({}, [this, id = command.id] { reply(id, Outcome::kUnreachable); });
   } else if (std::holds_alternative<StopProcess>(command.what)) {
@@ -165,7 +213,21 @@ void SimulatedRobot::serve(const Command& command, Node& node) {
       answer(command, node, Outcome::kRefused, {}, "no parameter " + read->name);
     }
   } else {
+    serve_modes(command, node);
+  }
+}
+
+void SimulatedRobot::serve_modes(const Command& command, Node& node) {
+  const std::string& system = binding_.node_of(command.component);
+  ModeManager* manager = world_.modes_of(system);
+  if (manager == nullptr) {
     answer(command, node, Outcome::kRefused, {}, "the node has no modes");
+  } else if (const auto* change = std::get_if<ChangeMode>(&command.what)) {
+    const bool is_accepted = manager->change_mode(system, change->mode);
+    answer(command, node, is_accepted ? Outcome::kDone : Outcome::kRefused, {},
+           is_accepted ? "" : "it has no mode " + change->mode);
+  } else {
+    answer(command, node, Outcome::kDone, Value(manager->mode_of(system)));
   }
 }
 

@@ -3,6 +3,8 @@
 // It tells what a live link would tell (nodes, topics, samples and signals that the rules read,
 // parameters, lifecycle, processes) and carries out requests, which take their way to the node,
 // wait for its executor, and take their way back.
+//
+// A system of a mode manager is a component like a node: it is there as long as its manager is.
 #pragma once
 
 #include <map>
@@ -32,16 +34,22 @@ class SimulatedRobot : public Robot, private Watcher {
   void on_endpoint(const Node& node, EndpointKind kind, const std::string& name,
                    bool is_there) override;
   void on_sample(const TopicBase& topic) override;
+  void on_field(const TopicBase& topic, const std::string& field, const Value& value) override;
   void on_diagnostic(std::string_view status, std::string_view key, const Value& value) override;
+  void on_level(std::string_view status, std::uint8_t level) override;
   void on_parameter(const Node& node, const std::string& name, const Value& value) override;
   void on_lifecycle(const Node& node) override;
   void on_process(const Node& node, const std::string& remark) override;
 
   void index_rules();
   std::optional<ComponentId> component_of(const Node& node);
+  void tell_systems(const Node& manager, bool is_there);
+  void tell_signals(const std::string& name, const Value& value);
   Node* node_of(ComponentId component) const;
+  Node* server_of(const Command& command) const;
   void request(const Command& command, Node& node);
   void serve(const Command& command, Node& node);
+  void serve_modes(const Command& command, Node& node);
   void answer(const Command& command, Node& node, Outcome outcome,
               decltype(Reply::value) value = {}, std::string text = "");
   void reply(CommandId command, Outcome outcome, decltype(Reply::value) value = {},
@@ -57,7 +65,7 @@ class SimulatedRobot : public Robot, private Watcher {
   ComponentBinding binding_;
   std::map<const Node*, ComponentId> components_;
   std::map<std::string, TopicId, std::less<>> topics_;
-  std::map<std::string, std::vector<SignalId>, std::less<>> signals_;  // by status + '\n' + key
+  std::map<std::string, std::vector<SignalId>, std::less<>> signals_;  // by source + '\n' + key
   std::set<CommandId> open_;  // requests that were not answered yet
   std::vector<Observation> inbox_;
 };

@@ -1,5 +1,7 @@
 #include "simulation/topic.h"
 
+#include <algorithm>
+
 namespace culprit::simulation {
 
 TopicBase::TopicBase(World& world, std::string name, Transport transport)
@@ -15,13 +17,19 @@ std::optional<Time> TopicBase::arrival(Time departure, Time& last) {
   return last;
 }
 
-void TopicBase::show(Time departure) {
-  if (!is_watched_ || world_.watcher() == nullptr) return;
-  if (const auto at = arrival(departure, last_shown_)) {
-    world_.at(*at, [this] {
-      if (Watcher* watcher = world_.watcher()) watcher->on_sample(*this);
+void TopicBase::watch_field(const std::string& field) {
+  if (std::find(fields_.begin(), fields_.end(), field) == fields_.end()) fields_.push_back(field);
+}
+
+void TopicBase::show(Time departure, Fields fields) {
+  const auto at = arrival(departure, last_shown_);
+  if (!at) return;
+  world_.at(*at, [this, fields = std::move(fields)] {
+    world_.show([&](Watcher& watcher) {
+      watcher.on_sample(*this);
+      for (const auto& [field, value] : fields) watcher.on_field(*this, field, value);
     });
-  }
+  });
 }
 
 Endpoint::Endpoint(Node& node, EndpointKind kind, std::string name, Use use)
@@ -39,15 +47,17 @@ bool Endpoint::is_open() const {
 void Endpoint::report() {
   if (std::exchange(is_reported_, is_open()) == is_open()) return;
   if (!is_reported_) forget();
-  if (Watcher* watcher = node_.world().watcher())
-    watcher->on_endpoint(node_, kind_, name_, is_reported_);
+  show(is_reported_);
+}
+
+void Endpoint::show(bool is_there) const {
+  node_.world().show([&](Watcher& watcher) { watcher.on_endpoint(node_, kind_, name_, is_there); });
 }
 
 void Endpoint::rename(std::string name) {
-  Watcher* watcher = node_.world().watcher();
-  if (is_reported_ && watcher) watcher->on_endpoint(node_, kind_, name_, false);
+  if (is_reported_) show(false);
   name_ = std::move(name);
-  if (is_reported_ && watcher) watcher->on_endpoint(node_, kind_, name_, true);
+  if (is_reported_) show(true);
 }
 
 }  // namespace culprit::simulation

@@ -25,6 +25,13 @@ enum class Use : std::uint8_t {
   kWhileActive  // and its lifecycle is active
 };
 
+// The value of `field` in `message`; nothing if it has no such field. Messages whose fields rules
+// read have an overload of this in their own namespace.
+template <class Message>
+std::optional<Value> field_of(const Message& /*message*/, std::string_view /*field*/) {
+  return std::nullopt;
+}
+
 class TopicBase {
  public:
   // `world` must outlive the topic.
@@ -39,14 +46,19 @@ class TopicBase {
   Transport transport() const { return transport_; }
   void set_transport(Transport transport) { transport_ = transport; }
 
-  // Whether the world's watcher hears the samples of this topic.
+  // Whether the world's watchers hear the samples of this topic, and which fields of them.
   void set_watched(bool is_watched) { is_watched_ = is_watched; }
+  bool is_watched() const { return is_watched_; }
+  void watch_field(const std::string& field);
 
  protected:
+  using Fields = std::vector<std::pair<std::string, Value>>;
+
   // When a message that leaves at `departure` arrives; nothing if it is lost. Messages to one place
   // do not overtake each other: `last` is when the one before arrived.
   std::optional<Time> arrival(Time departure, Time& last);
-  void show(Time departure);  // to the watcher
+  const std::vector<std::string>& watched_fields() const { return fields_; }
+  void show(Time departure, Fields fields);  // to the watchers
 
  private:
   World& world_;
@@ -54,10 +66,11 @@ class TopicBase {
   Transport transport_;
   Random random_;
   bool is_watched_ = false;
+  std::vector<std::string> fields_;  // that are watched
   Time last_shown_{};
 };
 
-// A node's end of a topic. It tells the watcher when it comes and goes.
+// A node's end of a topic. It tells the watchers when it comes and goes.
 class Endpoint {
  public:
   // All must outlive the endpoint.
@@ -71,7 +84,7 @@ class Endpoint {
   const std::string& name() const { return name_; }
   bool is_open() const;  // it can send or receive now
 
-  // Tells the watcher if that changed.
+  // Tells the watchers if that changed.
   void report();
   // What waits here is lost.
   virtual void forget() {}
@@ -80,6 +93,8 @@ class Endpoint {
   void rename(std::string name);
 
  private:
+  void show(bool is_there) const;
+
   Node& node_;
   EndpointKind kind_;
   std::string name_;
@@ -106,7 +121,15 @@ class Topic : public TopicBase {
       if (const auto at = arrival(departure, reader->last_arrival_))
         world().at(*at, [reader, message] { reader->deliver(message); });
     }
-    show(departure);
+    if (is_watched()) show(departure, fields_of(message));
+  }
+
+  Fields fields_of(const Message& message) const {
+    Fields fields;
+    for (const std::string& field : watched_fields()) {
+      if (auto value = field_of(message, field)) fields.emplace_back(field, std::move(*value));
+    }
+    return fields;
   }
 
   std::vector<Subscription<Message>*> readers_;

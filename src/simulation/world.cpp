@@ -32,4 +32,9 @@ TopicBase* World::topic(std::string_view name) const {
   return found == topics_.end() ? nullptr : found->second;
 }
 
+ModeManager* World::modes_of(std::string_view system) const {
+  const auto found = systems_.find(system);
+  return found == systems_.end() ? nullptr : found->second;
+}
+
 }  // namespace culprit::simulation

@@ -16,6 +16,7 @@
 
 namespace culprit::simulation {
 
+class ModeManager;
 class Node;
 class TopicBase;
 
@@ -23,14 +24,17 @@ class TopicBase;
 class Watcher {
  public:
   virtual ~Watcher() = default;
-  virtual void on_node(const Node& node, bool is_there) = 0;
-  virtual void on_endpoint(const Node& node, EndpointKind kind, const std::string& name,
-                           bool is_there) = 0;
-  virtual void on_sample(const TopicBase& topic) = 0;
-  virtual void on_diagnostic(std::string_view status, std::string_view key, const Value& value) = 0;
-  virtual void on_parameter(const Node& node, const std::string& name, const Value& value) = 0;
-  virtual void on_lifecycle(const Node& node) = 0;
-  virtual void on_process(const Node& node, const std::string& remark) = 0;
+  virtual void on_node(const Node&, bool /*is_there*/) {}
+  virtual void on_endpoint(const Node&, EndpointKind, const std::string& /*name*/,
+                           bool /*is_there*/) {}
+  virtual void on_sample(const TopicBase&) {}
+  // A field of a sample, right after it, if somebody wants it (TopicBase::watch_field).
+  virtual void on_field(const TopicBase&, const std::string& /*field*/, const Value&) {}
+  virtual void on_diagnostic(std::string_view /*status*/, std::string_view /*key*/, const Value&) {}
+  virtual void on_level(std::string_view /*status*/, std::uint8_t /*level*/) {}
+  virtual void on_parameter(const Node&, const std::string& /*name*/, const Value&) {}
+  virtual void on_lifecycle(const Node&) {}
+  virtual void on_process(const Node&, const std::string& /*remark*/) {}
 };
 
 class World {
@@ -61,15 +65,28 @@ class World {
   TopicBase* topic(std::string_view name) const;
   const std::vector<Node*>& nodes() const { return nodes_; }
 
-  // There is at most one watcher; null: none. It must outlive its watching.
-  void watch(Watcher* watcher) { watcher_ = watcher; }
-  Watcher* watcher() const { return watcher_; }
+  // Null if no mode manager serves this name.
+  ModeManager* modes_of(std::string_view system) const;
+  const std::map<std::string, ModeManager*, std::less<>>& systems() const { return systems_; }
+
+  // A watcher must outlive its watching.
+  void watch(Watcher& watcher) { watchers_.push_back(&watcher); }
+  void unwatch(Watcher& watcher) { std::erase(watchers_, &watcher); }
+  // Calls `tell(watcher)` for each, in the order of their coming.
+  template <class Tell>
+  void show(const Tell& tell) const {
+    for (Watcher* watcher : watchers_) tell(*watcher);
+  }
   // Something was published on /diagnostics.
   void diagnose(std::string_view status, std::string_view key, const Value& value) const {
-    if (watcher_) watcher_->on_diagnostic(status, key, value);
+    show([&](Watcher& watcher) { watcher.on_diagnostic(status, key, value); });
+  }
+  void diagnose(std::string_view status, std::uint8_t level) const {
+    show([&](Watcher& watcher) { watcher.on_level(status, level); });
   }
 
  private:
+  friend class ModeManager;
   friend class Node;
   friend class TopicBase;
 
@@ -81,7 +98,8 @@ class World {
   std::vector<Node*> nodes_;  // in the order of their making
   std::map<std::string, Node*, std::less<>> nodes_by_name_;
   std::map<std::string, TopicBase*, std::less<>> topics_;
-  Watcher* watcher_ = nullptr;
+  std::map<std::string, ModeManager*, std::less<>> systems_;
+  std::vector<Watcher*> watchers_;
   int last_pid_ = 100;
 };
 

@@ -15,8 +15,8 @@ using namespace std::chrono_literals;
 // Hears the model's diagnostics.
 class Ear : public simulation::Watcher {
  public:
-  explicit Ear(SunsetModel& model) : world_(model.world()) { world_.watch(this); }
-  ~Ear() override { world_.watch(nullptr); }
+  explicit Ear(SunsetModel& model) : world_(model.world()) { world_.watch(*this); }
+  ~Ear() override { world_.unwatch(*this); }
 
   double number(const std::string& key) const { return std::get<double>(last_.at(key)); }
   bool has(const std::string& key) const { return last_.contains(key); }

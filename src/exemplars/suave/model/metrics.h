@@ -1,0 +1,74 @@
+// The exemplar's metrics of a mission (mission_metrics; facts 3), by name, and what it leaves out.
+//
+// - Visibility: a mismatch opens with a reading of the visibility for which the search does not
+//   have the expected altitude, and closes when the search's altitude becomes the one expected by
+//   then. It does not matter whether anybody searches. A low battery closes an open one without
+//   counting it, and no new one opens until it is charged; in the standard mission, never.
+// - Thruster: from the failure's diagnostic to the activation of the recovery.
+// - Battery: from the first reading below a quarter to the activation of the recharging; each
+//   activation counts.
+#pragma once
+
+#include <vector>
+
+#include "exemplars/suave/model/mission.h"
+
+namespace culprit::suave::model {
+
+struct Reactions {
+  std::vector<double> answered_s;
+  // What nobody answered: how long it had been there when it was over, or when the mission was.
+  // Lower bounds. A mismatch is over when nobody searches any more.
+  std::vector<double> unanswered_s;
+};
+
+class Metrics : private simulation::Watcher {
+ public:
+  // Both must outlive the metrics.
+  Metrics(simulation::World& world, Topics& topics);
+  ~Metrics() override;
+
+  // Whatever is open now was not answered.
+  void finish();
+
+  std::optional<Time> found() const { return found_; }
+  // The last that was told: since the following of the pipeline began the last time.
+  double distance() const { return distance_; }
+  // Of all stretches.
+  double whole_distance() const { return earlier_distance_ + distance_; }
+
+  const Reactions& visibility() const { return visibility_; }
+  const Reactions& thruster() const { return thruster_; }
+  const Reactions& battery() const { return battery_; }
+
+ private:
+  void on_field(const simulation::TopicBase& topic, const std::string& field,
+                const Value& value) override;
+  void on_diagnostic(std::string_view status, std::string_view key, const Value& value) override;
+  void on_parameter(const simulation::Node& node, const std::string& name,
+                    const Value& value) override;
+  void on_lifecycle(const simulation::Node& node) override;
+
+  void on_visibility(double metres);
+  void on_battery(double level);
+  void answer(std::optional<Time>& open, Reactions& reactions);
+  void give_up(const std::optional<Time>& open, Reactions& reactions);
+  void give_up_mismatch();
+
+  simulation::World& world_;
+  Topics& topics_;
+  std::optional<Time> found_;
+  double distance_ = 0;
+  double earlier_distance_ = 0;
+  double expected_altitude_ = 0;
+  std::optional<Time> mismatch_;   // since
+  bool is_mismatch_over_ = false;  // it was counted as unanswered
+  std::optional<Time> failed_thruster_;
+  std::optional<Time> low_battery_;
+  bool is_battery_answered_ = false;
+  Reactions visibility_;
+  Reactions thruster_;
+  Reactions battery_;
+};
+
+}  // namespace culprit::suave::model

@@ -1,0 +1,54 @@
+// SUAVE as a discrete-event model: the managed system of the paper's second evaluation, in robot
+// time.
+//
+// An underwater robot searches a pipeline in a spiral and then follows it, while the water gets
+// murky, thrusters fail and the battery runs low. What it does about that is a manager's matter,
+// who changes the modes of its functions.
+#pragma once
+
+#include "exemplars/suave/model/metrics.h"
+
+namespace culprit::suave::model {
+
+class SuaveModel {
+ public:
+  struct Setting {
+    const Generation& generation;
+    const MissionPlan& plan;
+    Leader leader = Leader::kMission;
+    VehicleTraits vehicle = {};
+  };
+
+  // Starts all nodes. What `setting` refers to must outlive the model. The same seed, the same run.
+  SuaveModel(const Setting& setting, std::uint64_t seed);
+  SuaveModel(const SuaveModel&) = delete;
+  SuaveModel& operator=(const SuaveModel&) = delete;
+
+  simulation::World& world() { return world_; }
+  const MissionPlan& plan() const { return plan_; }
+  Time guided() const { return autopilot_.guided(); }  // the mission's begin
+  // The mission is over by then at the latest.
+  Time latest_end() const;
+  Mission& mission() { return mission_; }
+  const BatteryMonitor& battery() const { return battery_; }
+  Metrics& metrics() { return metrics_; }
+
+ private:
+  const MissionPlan& plan_;
+  simulation::World world_;
+  Topics topics_;
+  Autopilot autopilot_;
+  Detector detector_;
+  VisibilityMonitor visibility_;
+  BatteryMonitor battery_;
+  ThrusterMonitor thrusters_;
+  SearchNode search_;
+  FollowNode follow_;
+  MotionNode motion_;
+  RechargeNode recharge_;
+  simulation::ModeManager modes_;
+  Mission mission_;
+  Metrics metrics_;
+};
+
+}  // namespace culprit::suave::model

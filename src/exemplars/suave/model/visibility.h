@@ -1,0 +1,23 @@
+// How far one sees in the water, and how high above the seabed that lets a vehicle search (facts
+// 1.3, 1.6).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace culprit::suave::model {
+
+// Metres, `second` whole seconds after the mission began: a cosine between 1.25 and 3.75 with a
+// period of 80 s.
+double water_visibility(std::int64_t second);
+
+// The modes of the search, best first.
+struct SearchMode {
+  const char* name;
+  double altitude;    // above the seabed
+  double visibility;  // that it needs at least
+};
+inline constexpr std::array<SearchMode, 3> kSearchModes = {
+    {{"fd_spiral_high", 3, 3.25}, {"fd_spiral_medium", 2, 2.25}, {"fd_spiral_low", 1, 1.25}}};
+
+}  // namespace culprit::suave::model
