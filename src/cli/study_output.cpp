@@ -55,9 +55,7 @@ Expected<void> write(const study::Findings& findings, const StudyOutput& output)
     if (!written) return written;
   }
   const std::string text = in_format(findings, output.format);
-  if (!output.output.empty()) return write_text(output.output, text);
-  fmt::print("{}", text);
-  return std::fflush(stdout) == 0 ? Expected<void>() : Error{"the output cannot be written"};
+  return write_text(output.output, text);
 }
 
 std::string timeline_text(const study::Timeline& timeline) {

@@ -80,12 +80,8 @@ int study_suave(const SuaveOptions& options) {
       study::run_campaign(*campaign, options.jobs, [&] { return signals.stopped().load(); });
   if (!rows) return fail("interrupted; nothing is written", kFailed);
   const std::string text = in_format(options.format, *campaign, *rows);
-  if (!options.output.empty()) {
-    const auto written = replace_text(options.output, text);
-    return written ? kOk : fail(written.error(), kFailed);
-  }
-  fmt::print("{}", text);
-  return std::fflush(stdout) == 0 ? kOk : fail("the output cannot be written", kFailed);
+  const auto written = write_text(options.output, text);
+  return written ? kOk : fail(written.error(), kFailed);
 }
 
 }  // namespace

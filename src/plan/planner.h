@@ -14,7 +14,7 @@ struct Verdict {
   std::optional<StrategyId> chosen;  // nothing: the failure has to wait, or nothing is left
   bool is_spent = false;             // no untried strategy is valid now: the round is over
   std::vector<Candidate>
-      candidates;  // every strategy of the rule, best first, with what excluded it
+      candidates;                   // every strategy of the rule, best first, with what excluded it
   std::vector<Suspect> suspects{};  // likeliest first; of a planner that weighs them
 };
 
