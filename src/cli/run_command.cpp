@@ -8,11 +8,11 @@
 #include "cli/health.h"
 #include "cli/live_robot.h"
 #include "cli/paths.h"
+#include "cli/planner_options.h"
 #include "cli/rule_file.h"
 #include "knowledge/describe.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
-#include "plan/paper_planner.h"
 
 namespace culprit::cli {
 namespace {
@@ -21,9 +21,8 @@ struct RunOptions {
   std::string rules;
   bool dry_run = false;
   bool launch = false;
-  bool no_dependencies = false;
-  bool no_criticality = false;
-  bool no_impact = false;
+  PlannerOptions planner;
+  double forgetting = 1;
   double settle_seconds = seconds(Manager::kDiscovery);
   std::string state_folder;
   std::vector<std::filesystem::path> message_path;
@@ -49,7 +48,7 @@ Expected<LiveRobot::Options> robot_options(const RunOptions& options) {
   out.link.message_path =
       ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH"));
   out.link.parameters = {{"rules", Value(options.rules)},
-                         {"planner", Value(std::string("paper"))},
+                         {"planner", Value(options.planner.name)},
                          {"dry_run", Value(options.dry_run)}};
   out.supervisor = {state / "log", {own_folder()}};
   return out;
@@ -103,13 +102,12 @@ int run(const RunOptions& options) {
     seen = discover(**robot, signals.stopped());
     launch_missing(**robot, *rules, seen);
   }
-  const PaperSwitches switches{!options.no_dependencies, !options.no_criticality,
-                               !options.no_impact};
   Manager::Options manager_options;
   manager_options.autonomy = options.dry_run ? Autonomy::kAdvise : Autonomy::kAct;
   manager_options.start = (*robot)->now();
   manager_options.settling = from_seconds(options.settle_seconds);
-  Manager manager(*rules, std::make_unique<PaperPlanner>(switches), manager_options);
+  manager_options.forgetting = options.forgetting;
+  Manager manager(*rules, options.planner.planner(), manager_options);
 
   const Colour colour = colour_of(STDOUT_FILENO);
   Runtime runtime(manager, **robot);
@@ -153,17 +151,13 @@ void add_run(CLI::App& app, int& exit_code) {
       ->default_str("~/.local/state/culprit");
   command->add_option("--message-path", options->message_path,
                       "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
-  const std::string kFactors = "The paper's factors";
   command
-      ->add_flag("--no-dependencies", options->no_dependencies,
-                 "Do not look for root causes in the dependency graph")
-      ->group(kFactors);
-  command
-      ->add_flag("--no-criticality", options->no_criticality,
-                 "Treat all failures as equally critical")
-      ->group(kFactors);
-  command->add_flag("--no-impact", options->no_impact, "Do not count a strategy's impact as cost")
-      ->group(kFactors);
+      ->add_option("--forgetting", options->forgetting,
+                   "What was learned n outcomes ago weighs this to the n-th power; 1: nothing is "
+                   "forgotten")
+      ->check(CLI::Range(0.5, 1.0))
+      ->capture_default_str();
+  options->planner.add_to(*command);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -110,9 +110,8 @@ void Manager::carry_out(const Verdict& verdict, Time now) {
   const StrategyId strategy = *verdict.chosen;
   held_back_[verdict.rule.index] = {};
   const bool is_dry = autonomy_ == Autonomy::kAdvise;
-  knowledge_.tell(now,
-                  StrategyChosen{strategy, verdict.candidates, explained_by(strategy), is_dry,
-                                           verdict.suspects});
+  knowledge_.tell(now, StrategyChosen{strategy, verdict.candidates, explained_by(strategy), is_dry,
+                                      verdict.suspects});
   if (is_dry) {
     knowledge_.states.state(verdict.rule).is_advised = true;
     return;

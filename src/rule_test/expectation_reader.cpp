@@ -36,6 +36,8 @@ constexpr std::array kReasons = {
     Reason{"tried", Condition::kTried},           Reason{"invalid", Condition::kInvalid},
     Reason{"adapting", Condition::kAdapting},     Reason{"affected", Condition::kAffected},
     Reason{"dependency", Condition::kDependency}, Reason{"other_chosen", Condition::kOneEach},
+    Reason{"downstream", Condition::kDownstream}, Reason{"suspect", Condition::kSuspect},
+    Reason{"settling", Condition::kSettling},     Reason{"in_the_way", Condition::kInTheWay},
 };
 
 class ExpectationReader {
