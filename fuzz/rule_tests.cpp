@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "language/checker.h"
+#include "plan/bayes/bayes_planner.h"
 #include "rule_test/reader.h"
 #include "rule_test/runner.h"
 
@@ -53,7 +54,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const rule_test::Test& test : suite.tests) {
     if (test.length > rule_test::kLongestRun) __builtin_trap();
     if (is_usable && test.length <= kShort && size < 2000)
-      rule_test::run_test(rules(), suite, test);
+      rule_test::run_test(rules(), suite, test, std::make_unique<BayesPlanner>());
   }
   return 0;
 }

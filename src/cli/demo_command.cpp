@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/planner_options.h"
 #include "cli/sunset_demo.h"
 
 namespace culprit::cli {
@@ -19,6 +20,7 @@ struct DemoOptions {
   std::uint64_t seed = 1;
   double speed = 1;
   std::string json;
+  PlannerOptions planner;
 };
 
 Expected<std::vector<Play>> plays_for(const DemoOptions& options) {
@@ -113,6 +115,7 @@ int demo(const DemoOptions& options) {
   SunsetDemo::Options setup;
   setup.speed = options.speed;
   setup.seed = options.seed;
+  setup.planner = options.planner.factory();
   setup.on_event = [colour](const Event& event, const RuleSet& rules, Time start) {
     const std::string text = line(event, rules, start, colour);
     if (!text.empty()) fmt::print("{}\n", text);
@@ -173,6 +176,7 @@ void add_demo(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--json", options->json,
                       "Also write the outcome to this file, as one JSON object");
+  options->planner.add_to(*command);
   command->callback([options, &exit_code] { exit_code = demo(*options); });
 }
 

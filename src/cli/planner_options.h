@@ -1,7 +1,9 @@
-// Which planner decides, and how: the same switches for every command that plans.
+// Which planner decides, and how: the same switches for every command that plans
+// (docs/planning.md).
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -10,13 +12,17 @@
 namespace culprit::cli {
 
 struct PlannerOptions {
+  std::string name = "paper";
+  std::string objective = "balanced";
   bool no_dependencies = false;
   bool no_criticality = false;
   bool no_impact = false;
 
-  // The options must live as long as `command`.
+  // The options must live as long as `command`. A switch of another planner than the one that is
+  // asked for is a usage error.
   void add_to(CLI::App& command);
   std::unique_ptr<const Planner> planner() const;
+  PlannerFactory factory() const;
 };
 
 }  // namespace culprit::cli

@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/planner_options.h"
 #include "rule_test/file_run.h"
 
 namespace culprit::cli {
@@ -17,6 +18,7 @@ struct TestOptions {
   std::vector<std::string> files;
   std::string filter;
   std::string junit;
+  PlannerOptions planner;
 };
 
 struct Totals {
@@ -51,7 +53,8 @@ int run_tests(const TestOptions& options) {
   Totals totals;
   std::vector<rule_test::SuiteReport> suites;
   for (const std::string& file : options.files) {
-    rule_test::FileRun run = rule_test::run_file(file, options.filter, colour_of(STDERR_FILENO));
+    rule_test::FileRun run = rule_test::run_file(file, options.filter, options.planner.factory(),
+                                                 colour_of(STDERR_FILENO));
     fmt::print(stderr, "{}", run.complaints);
     fmt::print("{}", run.output);
     totals.add(run);
@@ -79,6 +82,7 @@ void add_test(CLI::App& app, int& exit_code) {
   command->add_option("FILES", options->files, "Test files")->required();
   command->add_option("--filter", options->filter, "Only tests whose name contains this");
   command->add_option("--junit", options->junit, "Write the results as JUnit XML to this file");
+  options->planner.add_to(*command);
   command->callback([options, &exit_code] { exit_code = run_tests(*options); });
 }
 

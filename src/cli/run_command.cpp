@@ -22,6 +22,7 @@ struct RunOptions {
   bool dry_run = false;
   bool launch = false;
   PlannerOptions planner;
+  double forgetting = 1;
   double settle_seconds = seconds(Manager::kDiscovery);
   std::string state_folder;
   std::vector<std::filesystem::path> message_path;
@@ -47,7 +48,7 @@ Expected<LiveRobot::Options> robot_options(const RunOptions& options) {
   out.link.message_path =
       ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH"));
   out.link.parameters = {{"rules", Value(options.rules)},
-                         {"planner", Value(std::string("paper"))},
+                         {"planner", Value(options.planner.name)},
                          {"dry_run", Value(options.dry_run)}};
   out.supervisor = {state / "log", {own_folder()}};
   return out;
@@ -105,6 +106,7 @@ int run(const RunOptions& options) {
   manager_options.autonomy = options.dry_run ? Autonomy::kAdvise : Autonomy::kAct;
   manager_options.start = (*robot)->now();
   manager_options.settling = from_seconds(options.settle_seconds);
+  manager_options.forgetting = options.forgetting;
   Manager manager(*rules, options.planner.planner(), manager_options);
 
   const Colour colour = colour_of(STDOUT_FILENO);
@@ -149,6 +151,12 @@ void add_run(CLI::App& app, int& exit_code) {
       ->default_str("~/.local/state/culprit");
   command->add_option("--message-path", options->message_path,
                       "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
+  command
+      ->add_option("--forgetting", options->forgetting,
+                   "What was learned n outcomes ago weighs this to the n-th power; 1: nothing is "
+                   "forgotten")
+      ->check(CLI::Range(0.5, 1.0))
+      ->capture_default_str();
   options->planner.add_to(*command);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

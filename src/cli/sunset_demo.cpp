@@ -101,8 +101,7 @@ Expected<void> SunsetDemo::open() {
   Manager::Options manager;
   manager.start = live_now();
   manager.settling = 20s;  // the nodes are only just being started
-  manager_ =
-      std::make_unique<Manager>(rules_, std::make_unique<PaperPlanner>(options_.switches), manager);
+  manager_ = std::make_unique<Manager>(rules_, options_.planner(), manager);
   runtime_ = std::thread([this] {
     Runtime runtime(*manager_, *robot_);
     runtime.on_events = [this](std::span<const Event> events) { on_events(events); };

@@ -44,7 +44,7 @@ class SunsetDemo {
   struct Options {
     double speed = 1;  // robot seconds in a second
     std::uint64_t seed = 1;
-    PaperSwitches switches;
+    PlannerFactory planner = [] { return std::make_unique<PaperPlanner>(); };
     // Called for each event of the manager, on its thread, with its time since the start of the
     // demo.
     std::function<void(const Event&, const RuleSet&, Time start)> on_event;

@@ -12,6 +12,12 @@ std::string two_decimals(double value) {
   return text;
 }
 
+std::string percents(double probability) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f %%", 100 * probability);
+  return text;
+}
+
 class Describer {
  public:
   explicit Describer(const RuleSet& rules) : rules_(rules) {}
@@ -38,13 +44,16 @@ class Describer {
     std::vector<std::string> actions;
     for (const Adaptation& adaptation : strategy.adaptations)
       actions.push_back(describe(adaptation, rules_));
-    double cost = 0;
-    for (const Candidate& candidate : e.candidates) {
-      if (candidate.strategy == e.strategy) cost = candidate.cost;
+    const auto chosen = std::find_if(e.candidates.begin(), e.candidates.end(),
+                                     [&](const Candidate& c) { return c.strategy == e.strategy; });
+    std::string reason = strategy.name;
+    if (chosen != e.candidates.end()) {
+      if (chosen->value > 0) reason += ", value " + two_decimals(chosen->value);
+      reason += ", cost " + two_decimals(chosen->cost);
     }
     return listed(blamed) + (blamed.size() == 1 ? " is" : " are") + " held responsible for " +
-           listed(failures) + ": " + (e.dry_run ? "would " : "") + listed(actions) + " (" +
-           strategy.name + ", cost " + two_decimals(cost) + ")";
+           listed(failures) + doubt(e) + ": " + (e.dry_run ? "would " : "") + listed(actions) +
+           " (" + reason + ")";
   }
   std::string operator()(const FailureHeldBack& e) const {
     if (e.candidates.empty()) return "";
@@ -88,6 +97,23 @@ class Describer {
   std::string operator()(const Trouble& e) const { return e.text; }
 
  private:
+  // " (62 %; 38 %: fusion, by FusionDead)"; empty if nobody else is suspected.
+  std::string doubt(const StrategyChosen& e) const {
+    if (e.suspects.size() < 2) return "";
+    std::string own;
+    std::string others;
+    for (const Suspect& suspect : e.suspects) {
+      const std::string share = percents(suspect.probability);
+      if (suspect.failure == rules_[e.strategy].rule) {
+        own = share;
+      } else {
+        others += "; " + share + ": " + rules_[suspect.component].name + ", by " +
+                  rules_[suspect.failure].name;
+      }
+    }
+    return " (" + (own.empty() ? others.substr(2) : own + others) + ")";
+  }
+
   const RuleSet& rules_;
 };
 

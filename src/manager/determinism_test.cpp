@@ -49,7 +49,7 @@ struct Line {
 // Drives a dry-running manager over `observations`, at its own deadlines and at `extra` times.
 std::vector<Line> run(const RuleSet& rules, const std::vector<Observation>& observations,
                       std::vector<Time> extra) {
-  Manager manager(rules, std::make_unique<PaperPlanner>(), {Autonomy::kAdvise});
+  Manager manager(rules, std::make_unique<BayesPlanner>(), {Autonomy::kAdvise});
   std::vector<Line> lines;
   const Time end = observations.empty() ? Time{} : observations.back().at + 10s;
   std::size_t next = 0;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "manager/test_robot.h"
+#include "plan/paper_planner.h"
 
 namespace culprit::test {
 namespace {
@@ -35,8 +36,8 @@ RULE SegmentationDead
       ADAPTATION segmentation redeploy 10
 )";
 
-TestRobot pipeline(PaperSwitches switches = {}, Autonomy autonomy = Autonomy::kAct) {
-  TestRobot robot(kPipeline, switches, autonomy);
+TestRobot pipeline(std::unique_ptr<const Planner> planner, Autonomy autonomy = Autonomy::kAct) {
+  TestRobot robot(kPipeline, std::move(planner), autonomy);
   robot.add("camera", {}, "/rgb");
   robot.add("fusion", {"camera"}, "/fused");
   robot.add("segmentation", {"fusion"}, "/segmentation");
@@ -46,6 +47,22 @@ TestRobot pipeline(PaperSwitches switches = {}, Autonomy autonomy = Autonomy::kA
   return robot;
 }
 
+std::unique_ptr<const Planner> paper() { return std::make_unique<PaperPlanner>(); }
+std::unique_ptr<const Planner> bayes() { return std::make_unique<BayesPlanner>(); }
+std::unique_ptr<const Planner> without_dependencies() {
+  return std::make_unique<PaperPlanner>(PaperSwitches{.dependencies = false});
+}
+
+// What has to hold whoever plans.
+class ManagerWith : public testing::TestWithParam<PlannerFactory> {
+ protected:
+  TestRobot pipeline(Autonomy autonomy = Autonomy::kAct) const {
+    return test::pipeline(GetParam()(), autonomy);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(EachPlanner, ManagerWith, testing::Values(paper, bayes),
+                         [](const auto& test) { return test.index == 0 ? "paper" : "bayes"; });
+
 std::string transcript(const TestRobot& robot) {
   std::string out;
   for (const std::string& line : robot.said) out += "\n  said  " + line;
@@ -53,7 +70,7 @@ std::string transcript(const TestRobot& robot) {
   return out;
 }
 
-TEST(Manager, RestartsTheRootCauseAndNothingElse) {
+TEST_P(ManagerWith, RestartsTheRootCauseAndNothingElse) {
   TestRobot robot = pipeline();
   robot["camera"].fault = "restart";
   robot.run_for(5s);
@@ -68,14 +85,14 @@ TEST(Manager, RestartsTheRootCauseAndNothingElse) {
 }
 
 TEST(Manager, BlamesEveryComponentWithoutTheDependencyGraph) {
-  TestRobot robot = pipeline({.dependencies = false});
+  TestRobot robot = pipeline(without_dependencies());
   robot["camera"].fault = "restart";
   robot.run_for(10s);
   EXPECT_TRUE(robot.was_asked("fusion:"));
   EXPECT_TRUE(robot.was_asked("segmentation:"));
 }
 
-TEST(Manager, RedeploysWhenARestartDidNotHelp) {
+TEST_P(ManagerWith, RedeploysWhenARestartDidNotHelp) {
   TestRobot robot = pipeline();
   robot["fusion"].fault = "redeploy";
   robot.run_for(8s);
@@ -86,7 +103,7 @@ TEST(Manager, RedeploysWhenARestartDidNotHelp) {
   EXPECT_FALSE(robot.was_asked("segmentation:"));
 }
 
-TEST(Manager, RedeploysADeadProcessAtOnce) {
+TEST_P(ManagerWith, RedeploysADeadProcessAtOnce) {
   TestRobot robot = pipeline();
   robot.kill("camera");
   robot.run_for(5s);
@@ -95,7 +112,7 @@ TEST(Manager, RedeploysADeadProcessAtOnce) {
   EXPECT_EQ(robot.count("camera is lost: killed by signal 9"), 1u);
 }
 
-TEST(Manager, RedeploysAStoppedProcess) {
+TEST_P(ManagerWith, RedeploysAStoppedProcess) {
   TestRobot robot = pipeline();
   robot.stop("segmentation");
   robot.run_for(5s);
@@ -103,7 +120,7 @@ TEST(Manager, RedeploysAStoppedProcess) {
   EXPECT_EQ(robot.count_asked("segmentation: stop process"), 1u);
 }
 
-TEST(Manager, HealsAHungNodeThatAnswersNothing) {
+TEST_P(ManagerWith, HealsAHungNodeThatAnswersNothing) {
   TestRobot robot = pipeline();
   robot["fusion"].answers = false;
   robot["fusion"].fault = "redeploy";
@@ -112,7 +129,7 @@ TEST(Manager, HealsAHungNodeThatAnswersNothing) {
   EXPECT_EQ(robot.count("restart fusion: failed, it did not answer"), 1u) << transcript(robot);
 }
 
-TEST(Manager, KnowsWhoNeedsADeadNodeEvenWhenItLeftTheGraph) {
+TEST_P(ManagerWith, KnowsWhoNeedsADeadNodeEvenWhenItLeftTheGraph) {
   TestRobot robot = pipeline();
   robot["camera"].start_time = 3s;
   robot.kill("camera");
@@ -121,7 +138,7 @@ TEST(Manager, KnowsWhoNeedsADeadNodeEvenWhenItLeftTheGraph) {
   EXPECT_FALSE(robot.was_asked("fusion:")) << transcript(robot);
 }
 
-TEST(Manager, HealsTwoDeadNodesAtOnce) {
+TEST_P(ManagerWith, HealsTwoDeadNodesAtOnce) {
   TestRobot robot = pipeline();
   robot.kill("camera");
   robot.kill("segmentation");
@@ -130,8 +147,8 @@ TEST(Manager, HealsTwoDeadNodesAtOnce) {
   EXPECT_FALSE(robot.was_asked("fusion:")) << transcript(robot);
 }
 
-TEST(Manager, SaysWhatItWouldDoAndDoesNothingInADryRun) {
-  TestRobot robot = pipeline({}, Autonomy::kAdvise);
+TEST_P(ManagerWith, SaysWhatItWouldDoAndDoesNothingInADryRun) {
+  TestRobot robot = pipeline(Autonomy::kAdvise);
   robot["camera"].fault = "restart";
   robot.run_for(10s);
   EXPECT_TRUE(robot.asked.empty());
@@ -139,7 +156,7 @@ TEST(Manager, SaysWhatItWouldDoAndDoesNothingInADryRun) {
   EXPECT_EQ(robot.count("would restart camera"), 1u) << transcript(robot);
 }
 
-TEST(Manager, GivesUpAfterItsAttemptsAndNoLongerHoldsBackDependants) {
+TEST_P(ManagerWith, GivesUpAfterItsAttemptsAndNoLongerHoldsBackDependants) {
   TestRobot robot = pipeline();
   robot["camera"].fault = "a person";
   robot["fusion"].fault = "restart";
@@ -157,7 +174,7 @@ TEST(Manager, GivesUpAfterItsAttemptsAndNoLongerHoldsBackDependants) {
       << "an exhausted failure that heals is reported";
 }
 
-TEST(Manager, LearnsFromVerdicts) {
+TEST_P(ManagerWith, LearnsFromVerdicts) {
   TestRobot robot = pipeline();
   const Belief restart = robot.manager().knowledge().beliefs[StrategyId(2)];
   const Belief redeploy = robot.manager().knowledge().beliefs[StrategyId(3)];
@@ -170,11 +187,85 @@ TEST(Manager, LearnsFromVerdicts) {
 }
 
 TEST(Manager, LearnsNothingFromOutcomesWithTwoCauses) {
-  TestRobot robot = pipeline({.dependencies = false});
+  TestRobot robot = pipeline(without_dependencies());
   const Belief before = robot.manager().knowledge().beliefs[StrategyId(4)];
   robot["camera"].fault = "restart";  // all three are restarted; only the camera's restart helps
   robot.run_for(10s);
   EXPECT_EQ(robot.manager().knowledge().beliefs[StrategyId(4)], before) << transcript(robot);
+}
+
+// ---- What goes away with what.
+
+Coupling coupling(TestRobot& robot, std::size_t cause, std::size_t effect) {
+  return robot.manager().knowledge().couplings.of(RuleId(cause), RuleId(effect));
+}
+
+TEST(Couplings, LearnWhichFailuresGoAwayWithTheOneThatWasRepaired) {
+  TestRobot robot = pipeline(bayes());
+  robot["camera"].fault = "restart";
+  robot.run_for(10s);
+  EXPECT_EQ(coupling(robot, 0, 1), (Coupling{1, 0})) << transcript(robot);
+  EXPECT_EQ(coupling(robot, 0, 2), (Coupling{1, 0})) << transcript(robot);
+  EXPECT_EQ(coupling(robot, 1, 2), Coupling()) << "the camera was repaired, not the fusion";
+}
+
+TEST(Couplings, LearnWhichStay) {
+  TestRobot robot = pipeline(bayes());
+  robot["camera"].fault = "restart";
+  robot["fusion"].fault = "restart";
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
+  EXPECT_EQ(coupling(robot, 0, 1), (Coupling{0, 1})) << transcript(robot);
+  EXPECT_EQ(coupling(robot, 1, 2), (Coupling{1, 0})) << transcript(robot);
+}
+
+TEST(Couplings, LearnNothingFromOutcomesWithTwoCauses) {
+  TestRobot robot = pipeline(without_dependencies());
+  robot["camera"].fault = "restart";  // all three are restarted
+  robot.run_for(10s);
+  for (std::size_t cause = 0; cause < 3; ++cause) {
+    for (std::size_t effect = 0; effect < 3; ++effect)
+      EXPECT_EQ(coupling(robot, cause, effect), Coupling()) << transcript(robot);
+  }
+}
+
+TEST(Couplings, LearnThatAStrategyClearsAFailureThatIsNotDownstream) {
+  TestRobot robot(R"(
+COMPONENT camera NODE /camera
+COMPONENT lamp   NODE /lamp
+RULE Dark
+  POLICIES WARNING
+  TRIGGER brightness < 0.5
+    STRATEGY light 90 10
+      ADAPTATION lamp set_parameter on 1 2
+RULE Blurred
+  POLICIES NON_CRITICAL
+  TRIGGER blur > 0.5
+    STRATEGY focus 50 10
+      ADAPTATION lamp set_parameter angle 1 2
+)");
+  robot.add("camera");
+  robot.add("lamp").parameters = {{"on", Value(std::int64_t{0})},
+                                  {"angle", Value(std::int64_t{0})}};
+  robot.discover();
+  for (const double brightness : {1.0, 1.0, 0.2}) {
+    robot.signal("brightness", Value(brightness));
+    robot.signal("blur", Value(1 - brightness));
+    robot.run_for(300ms);
+  }
+  robot.signal("brightness", Value(1.0));
+  robot.signal("blur", Value(0.0));
+  robot.run_for(3s);
+  EXPECT_EQ(robot.count("Dark resolved by light"), 1u) << transcript(robot);
+  EXPECT_EQ(coupling(robot, 0, 1), (Coupling{1, 0})) << transcript(robot);
+}
+
+TEST(BayesPlanner, LeavesWhatWasRepairedUpstreamTheTimeToSettle) {
+  TestRobot robot = pipeline(bayes());
+  robot["camera"].fault = "redeploy";
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("fusion:")) << transcript(robot);
 }
 
 // ---- Adaptations that go wrong.
@@ -253,7 +344,7 @@ TEST(Manager, GoesOnWhenAParameterIsRefusedOrUnknown) {
   EXPECT_TRUE(robot.was_asked("set exposure to 6"));
 }
 
-TEST(Manager, TreatsARestartWhoseRepliesAreLostAsDone) {
+TEST_P(ManagerWith, TreatsARestartWhoseRepliesAreLostAsDone) {
   TestRobot robot = pipeline();
   robot["camera"].fault = "restart";
   robot["camera"].loses_replies = true;
@@ -264,7 +355,7 @@ TEST(Manager, TreatsARestartWhoseRepliesAreLostAsDone) {
   EXPECT_FALSE(robot.was_asked("camera: start process"));
 }
 
-TEST(Manager, BringsARelaunchedLifecycleNodeBackToWhereItWas) {
+TEST_P(ManagerWith, BringsARelaunchedLifecycleNodeBackToWhereItWas) {
   TestRobot robot = pipeline();
   robot["camera"].state_at_start = Lifecycle::kUnconfigured;
   robot.kill("camera");
@@ -274,7 +365,7 @@ TEST(Manager, BringsARelaunchedLifecycleNodeBackToWhereItWas) {
   EXPECT_EQ(robot.count_asked("camera: activate"), 1u);
 }
 
-TEST(Manager, ReportsAComponentThatDiesAtEveryStart) {
+TEST_P(ManagerWith, ReportsAComponentThatDiesAtEveryStart) {
   TestRobot robot = pipeline();
   robot["camera"].dies_at_start = true;
   robot.kill("camera");

@@ -6,15 +6,16 @@
 
 namespace culprit::test {
 
-TestRobot::TestRobot(const std::string& text, PaperSwitches switches, Autonomy autonomy) {
+TestRobot::TestRobot(const std::string& text, std::unique_ptr<const Planner> planner,
+                     Autonomy autonomy) {
   const Source source("test.rules", text);
   Checked checked = check(source);
   for (const Diagnostic& d : checked.diagnostics) {
     if (d.severity == Severity::kError) ADD_FAILURE() << render(d, source);
   }
   rules_ = std::make_unique<RuleSet>(checked.rules.value_or(RuleSet{}));
-  manager_ = std::make_unique<Manager>(*rules_, std::make_unique<PaperPlanner>(switches),
-                                       Manager::Options{autonomy, now});
+  manager_ =
+      std::make_unique<Manager>(*rules_, std::move(planner), Manager::Options{autonomy, now});
 }
 
 TestRobot::Component& TestRobot::add(const std::string& name, std::vector<std::string> needs,
@@ -30,10 +31,12 @@ TestRobot::Component& TestRobot::add(const std::string& name, std::vector<std::s
 void TestRobot::discover() {
   for (const auto& [name, component] : components_) appear(component);
   for (const auto& [name, component] : components_) {
-    for (const std::string& producer : component.needs) {
-      const std::string topic = "/from_" + producer;
-      observe(EndpointAppeared{"/" + producer, EndpointKind::kPublisher, topic});
-      observe(EndpointAppeared{"/" + name, EndpointKind::kSubscriber, topic});
+    for (const auto* producers : {&component.needs, &component.hears}) {
+      for (const std::string& producer : *producers) {
+        const std::string topic = "/from_" + producer;
+        observe(EndpointAppeared{"/" + producer, EndpointKind::kPublisher, topic});
+        observe(EndpointAppeared{"/" + name, EndpointKind::kSubscriber, topic});
+      }
     }
   }
   step();
@@ -118,6 +121,7 @@ void TestRobot::step() {
     const std::string line = describe(event, *rules_);
     if (!line.empty()) said.push_back(line);
   }
+  if (after_step) after_step();
   for (const Command& command : commands) {
     asked.push_back(rules_->components[command.component.index].name + ": " + to_string(command));
     later(5ms, [this, command] { serve(command); });

@@ -15,7 +15,7 @@
 #include "knowledge/describe.h"
 #include "language/checker.h"
 #include "manager/manager.h"
-#include "plan/paper_planner.h"
+#include "plan/bayes/bayes_planner.h"
 
 namespace culprit::test {
 
@@ -23,7 +23,8 @@ using namespace std::chrono_literals;
 
 class TestRobot {
  public:
-  explicit TestRobot(const std::string& rules, PaperSwitches switches = {},
+  explicit TestRobot(const std::string& rules,
+                     std::unique_ptr<const Planner> planner = std::make_unique<BayesPlanner>(),
                      Autonomy autonomy = Autonomy::kAct);
 
   struct Component {
@@ -34,6 +35,7 @@ class TestRobot {
     bool has_lifecycle = true;
     std::map<std::string, Value> parameters;
     std::vector<std::string> needs;
+    std::vector<std::string> hears{};  // what it subscribes to, and can do without
     std::string fault;  // "", or what resolves it: "restart", "redeploy", or "parameter=value"
     // How it fails to serve.
     bool answers = true;
@@ -68,6 +70,9 @@ class TestRobot {
   std::size_t count(const std::string& part) const;  // lines of `said` that contain it
   std::size_t count_asked(const std::string& part) const;
   bool was_asked(const std::string& part) const { return count_asked(part) > 0; }
+
+  // Called after each step of the manager.
+  std::function<void()> after_step;
 
   Time now{};
 

@@ -1,6 +1,8 @@
 // The port of planners: failures -> strategies.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,5 +30,8 @@ class Planner {
   virtual std::vector<Verdict> plan(std::span<const RuleId> failures,
                                     const Knowledge& knowledge) const = 0;
 };
+
+// For whoever needs several of a kind.
+using PlannerFactory = std::function<std::unique_ptr<const Planner>()>;
 
 }  // namespace culprit

@@ -30,9 +30,10 @@ constexpr std::array kVerbs = {
     Verb{"BLAMED", Kind::kBlamed, About::kComponent},
 };
 
-constexpr std::array kConditions = {Condition::kTried,      Condition::kInvalid,
-                                    Condition::kAdapting,   Condition::kAffected,
-                                    Condition::kDependency, Condition::kOneEach};
+constexpr std::array kConditions = {
+    Condition::kTried,      Condition::kInvalid, Condition::kAdapting,   Condition::kAffected,
+    Condition::kDependency, Condition::kOneEach, Condition::kDownstream, Condition::kSuspect,
+    Condition::kSettling,   Condition::kInTheWay};
 
 class ExpectationReader {
  public:

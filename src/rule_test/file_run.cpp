@@ -39,12 +39,13 @@ std::optional<Part> read_part(const Source& source, const std::string& rules_pat
   return Part{rules_path, std::move(*checked.rules), std::move(suite)};
 }
 
-void run_part(const Source& source, const Part& part, const std::string& filter, FileRun& run) {
+void run_part(const Source& source, const Part& part, const std::string& filter,
+              const PlannerFactory& planner, FileRun& run) {
   SuiteReport suite{source.name() + " with " + part.rules_path, {}};
   run.output += suite.name + "\n";
   for (const Test& test : part.suite.tests) {
     if (test.name.find(filter) == std::string::npos) continue;
-    const Result result = run_test(part.rules, part.suite, test);
+    const Result result = run_test(part.rules, part.suite, test, planner());
     std::string text = report(result, source, part.rules);
     run.output += text;
     suite.cases.push_back({test.name, test.length, result.is_ok() ? "" : std::move(text)});
@@ -54,7 +55,8 @@ void run_part(const Source& source, const Part& part, const std::string& filter,
 
 }  // namespace
 
-FileRun run_file(const std::string& path, const std::string& filter, Colour colour) {
+FileRun run_file(const std::string& path, const std::string& filter, const PlannerFactory& planner,
+                 Colour colour) {
   FileRun run;
   const auto source = Source::read(path);
   if (!source) {
@@ -75,7 +77,7 @@ FileRun run_file(const std::string& path, const std::string& filter, Colour colo
   }
   run.is_usable = parts.size() == files.size();
   if (!run.is_usable) return run;
-  for (const Part& part : parts) run_part(*source, part, filter, run);
+  for (const Part& part : parts) run_part(*source, part, filter, planner, run);
   return run;
 }
 

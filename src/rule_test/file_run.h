@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "language/diagnostic.h"
+#include "plan/planner.h"
 #include "rule_test/report.h"
 
 namespace culprit::rule_test {
@@ -16,7 +17,8 @@ struct FileRun {
   std::vector<SuiteReport> suites;  // one for each rule file
 };
 
-// Runs the tests whose name contains `filter`.
-FileRun run_file(const std::string& path, const std::string& filter, Colour colour);
+// Runs the tests whose name contains `filter`, each with a planner of its own.
+FileRun run_file(const std::string& path, const std::string& filter, const PlannerFactory& planner,
+                 Colour colour);
 
 }  // namespace culprit::rule_test

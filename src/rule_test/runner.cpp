@@ -4,16 +4,16 @@
 
 #include "manager/manager.h"
 #include "manager/runtime.h"
-#include "plan/paper_planner.h"
 #include "rule_test/scripted_robot.h"
 
 namespace culprit::rule_test {
 
-Result run_test(const RuleSet& rules, const Suite& suite, const Test& test) {
+Result run_test(const RuleSet& rules, const Suite& suite, const Test& test,
+                std::unique_ptr<const Planner> planner) {
   Scenario scenario = suite.shared;
   scenario.append(test.scenario);
   ScriptedRobot robot(rules, scenario);
-  Manager manager(rules, std::make_unique<PaperPlanner>(), {});
+  Manager manager(rules, std::move(planner), {});
   Result result{test.name, test.length, {}, {}};
 
   Runtime runtime(manager, robot);

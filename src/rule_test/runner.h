@@ -4,9 +4,11 @@
 // No clock, no thread, nothing random: the same test gives the same timeline.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "plan/planner.h"
 #include "rule_test/reader.h"
 
 namespace culprit::rule_test {
@@ -26,6 +28,7 @@ struct Result {
 };
 
 // `test` must be one of `suite`, which was read for `rules` without errors.
-Result run_test(const RuleSet& rules, const Suite& suite, const Test& test);
+Result run_test(const RuleSet& rules, const Suite& suite, const Test& test,
+                std::unique_ptr<const Planner> planner);
 
 }  // namespace culprit::rule_test

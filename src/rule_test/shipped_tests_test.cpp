@@ -4,17 +4,24 @@
 
 #include <gtest/gtest.h>
 
+#include "plan/bayes/bayes_planner.h"
+#include "plan/paper_planner.h"
 #include "rule_test/file_run.h"
 
 namespace culprit::rule_test {
 namespace {
 
-TEST(ShippedTests, AllHold) {
+std::unique_ptr<const Planner> paper() { return std::make_unique<PaperPlanner>(); }
+std::unique_ptr<const Planner> bayes() { return std::make_unique<BayesPlanner>(); }
+
+class ShippedTests : public testing::TestWithParam<PlannerFactory> {};
+
+TEST_P(ShippedTests, AllHold) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator("rules/tests")) {
     if (entry.path().extension() != ".test") continue;
     ++files;
-    const FileRun run = run_file(entry.path().string(), "", Colour::kOff);
+    const FileRun run = run_file(entry.path().string(), "", GetParam(), Colour::kOff);
     ASSERT_TRUE(run.is_usable) << run.complaints;
     EXPECT_EQ(run.complaints, "");
     for (const SuiteReport& suite : run.suites) {
@@ -25,8 +32,11 @@ TEST(ShippedTests, AllHold) {
   EXPECT_GE(files, 2);
 }
 
+INSTANTIATE_TEST_SUITE_P(WithEachPlanner, ShippedTests, testing::Values(paper, bayes),
+                         [](const auto& test) { return test.index == 0 ? "paper" : "bayes"; });
+
 TEST(FileRun, TakesOnlyTestsThatTheFilterNames) {
-  const FileRun run = run_file("rules/tests/sunset.test", "F3:", Colour::kOff);
+  const FileRun run = run_file("rules/tests/sunset.test", "F3:", bayes, Colour::kOff);
   ASSERT_EQ(run.suites.size(), 1u);
   ASSERT_EQ(run.suites[0].cases.size(), 1u);
   EXPECT_EQ(run.suites[0].cases[0].name, "F3: only the segmentation falls silent");
@@ -49,24 +59,24 @@ TEST(FileRun, RunsEachTestWithEachRuleFile) {
   write("file_run_b.rules", kRules);
   const FileRun run =
       run_file(write("both.test", std::string("RULES file_run_a.rules file_run_b.rules\n") + kTest),
-               "", Colour::kOff);
+               "", bayes, Colour::kOff);
   ASSERT_TRUE(run.is_usable) << run.complaints;
   ASSERT_EQ(run.suites.size(), 2u);
   EXPECT_EQ(run.suites[1].cases.at(0).failure, "");
 }
 
 TEST(FileRun, RunsNothingOfAFileThatCannotBeUsed) {
-  EXPECT_FALSE(run_file("no/such.test", "", Colour::kOff).is_usable);
-  const FileRun no_rules = run_file(write("no_rules.test", kTest), "", Colour::kOff);
+  EXPECT_FALSE(run_file("no/such.test", "", bayes, Colour::kOff).is_usable);
+  const FileRun no_rules = run_file(write("no_rules.test", kTest), "", bayes, Colour::kOff);
   EXPECT_FALSE(no_rules.is_usable);
   EXPECT_NE(no_rules.complaints.find("does not say which rules it tests"), std::string::npos);
-  const FileRun lost =
-      run_file(write("lost.test", std::string("RULES gone.rules\n") + kTest), "", Colour::kOff);
+  const FileRun lost = run_file(write("lost.test", std::string("RULES gone.rules\n") + kTest), "",
+                                bayes, Colour::kOff);
   EXPECT_FALSE(lost.is_usable);
   EXPECT_NE(lost.complaints.find("gone.rules"), std::string::npos);
   write("broken.rules", "RULE\n");
-  const FileRun broken =
-      run_file(write("broken.test", std::string("RULES broken.rules\n") + kTest), "", Colour::kOff);
+  const FileRun broken = run_file(write("broken.test", std::string("RULES broken.rules\n") + kTest),
+                                  "", bayes, Colour::kOff);
   EXPECT_FALSE(broken.is_usable);
   EXPECT_NE(broken.complaints.find("broken.rules:1"), std::string::npos) << broken.complaints;
   EXPECT_EQ(broken.output, "");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "language/checker.h"
+#include "plan/paper_planner.h"
 
 namespace culprit::rule_test {
 
@@ -56,7 +57,8 @@ Played play(const std::string& test) {
   played.suite = read_suite(played.source, played.rules, diagnostics);
   for (const Diagnostic& d : diagnostics) ADD_FAILURE() << render(d, played.source);
   if (diagnostics.empty())
-    played.result = run_test(played.rules, played.suite, played.suite.tests.at(0));
+    played.result = run_test(played.rules, played.suite, played.suite.tests.at(0),
+                             std::make_unique<PaperPlanner>());
   return played;
 }
 

@@ -83,12 +83,7 @@ class Greedy {
     const auto order = by_worth(choices_);
     fill(order);
     constexpr int kPasses = 3;
-    for (int pass = 0; pass < kPasses; ++pass) {
-      bool is_better = false;
-      for (const std::size_t c : order) is_better |= !is_chosen_[c] && swap_in(c);
-      if (!is_better) break;
-      fill(order);
-    }
+    for (int pass = 0; pass < kPasses && improve(order); ++pass) fill(order);
     std::vector<std::size_t> chosen;
     for (std::size_t c = 0; c < choices_.size(); ++c) {
       if (is_chosen_[c]) chosen.push_back(c);
@@ -117,13 +112,34 @@ class Greedy {
     return rivals_;
   }
 
-  bool swap_in(std::size_t c) {
-    const std::vector<std::size_t> leaving = rivals(c);
+  // Lets chosen ones go for those that only they shut out, where these are worth more together.
+  bool improve(const std::vector<std::size_t>& order) {
+    std::vector<std::vector<std::size_t>> shut_out(choices_.size());
+    for (const std::size_t c : order) {
+      if (!is_chosen_[c] && rivals(c).size() == 1) shut_out[rivals_.front()].push_back(c);
+    }
+    bool is_better = false;
+    for (const std::size_t c : order) {
+      if (is_chosen_[c]) is_better |= swap(c, shut_out[c]);
+    }
+    return is_better;
+  }
+
+  bool swap(std::size_t leaving, const std::vector<std::size_t>& shut_out) {
+    std::vector<std::size_t> coming;
     double worth = 0;
-    for (const std::size_t rival : leaving) worth += choices_[rival].worth;
-    if (worth >= choices_[c].worth) return false;
-    for (const std::size_t rival : leaving) put(rival, kNone);
-    choose(c);
+    for (const std::size_t c : shut_out) {
+      const bool is_free = rivals(c).size() == 1 &&  // also after other swaps
+                           std::none_of(coming.begin(), coming.end(), [&](std::size_t other) {
+                             return conflict(choices_[c], choices_[other]);
+                           });
+      if (!is_free) continue;
+      coming.push_back(c);
+      worth += choices_[c].worth;
+    }
+    if (worth <= choices_[leaving].worth) return false;
+    put(leaving, kNone);
+    for (const std::size_t c : coming) choose(c);
     return true;
   }
 

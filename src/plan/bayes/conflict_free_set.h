@@ -3,8 +3,8 @@
 // Two choices conflict if they are for the same failure, or if what one takes is near what the
 // other takes. Exact up to kExact choices, by branch and bound over the failures: a branch is left
 // when even the best remaining choice of every remaining failure could not make it better. Beyond,
-// greedy by worth, and then improved by swaps: a choice that is worth more than all that conflict
-// with it takes their place.
+// greedy by worth, and then improved by swaps: a choice makes place for those that only it shuts
+// out if these are worth more together.
 #pragma once
 
 #include <vector>

@@ -146,6 +146,8 @@ double PlanningStep::disruption(const Strategy& strategy) const {
 }
 
 void PlanningStep::exclude(Entry& entry, double chance) const {
+  exclude_effect(entry);
+  if (entry.candidate.excluded) return;
   const RuleId rule = failures_[entry.failure];
   const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
   for (const ComponentId c : strategy.components) {
@@ -160,7 +162,6 @@ void PlanningStep::exclude(Entry& entry, double chance) const {
   if (is_settling)
     return exclude(entry,
                    {Condition::kSettling, likeliest_component(settling->with), settling->with});
-  exclude_effect(entry);
 }
 
 void PlanningStep::exclude(Entry& entry, const Surroundings::Obstacle& obstacle) const {

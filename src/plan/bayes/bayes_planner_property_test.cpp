@@ -1,0 +1,188 @@
+// What holds for every plan, on random robots: components that depend on each other in any way,
+// circles included, rules that touch one or two of them, and failures of any level.
+//
+// RC_PARAMS="max_success=1000000" runs a million of them.
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "plan/bayes/bayes_planner.h"
+#include "plan/bayes/test_scene.h"
+
+namespace culprit {
+namespace {
+
+using plan::Scene;
+
+std::string name_of(char prefix, int number) { return prefix + std::to_string(number); }
+
+struct RandomRobot {
+  int components = 0;
+  std::vector<std::pair<int, int>> links;
+  std::vector<std::string> rules;  // the text of each
+  std::vector<int> failing;        // rules
+  std::vector<int> attempting;     // rules, with their first strategy
+  std::vector<int> tried;          // rules, whose first strategy was tried
+  bool has_effect = false;         // the strategies under way only wait for their verdict
+
+  // The rules in the order of `order`, the components in the opposite one if `is_reversed`.
+  Scene scene(const std::vector<int>& order, bool is_reversed) const {
+    std::string text;
+    for (int i = 0; i < components; ++i) {
+      const std::string name = name_of('c', is_reversed ? components - 1 - i : i);
+      text += "COMPONENT " + name + " NODE /" + name + " LAUNCH \"" + name + "\"\n";
+    }
+    for (const int rule : order) text += rules[static_cast<std::size_t>(rule)];
+    Scene scene(text);
+    for (const auto& [producer, consumer] : links)
+      scene.link(name_of('c', producer), name_of('c', consumer));
+    for (const int rule : failing) scene.fail(name_of('R', rule));
+    for (const int rule : attempting)
+      scene.attempt(name_of('R', rule) + ".first",
+                    has_effect ? Attempt::Stage::kWaiting : Attempt::Stage::kAdapting);
+    for (const int rule : tried) scene.tried(name_of('R', rule) + ".first");
+    return scene;
+  }
+  Scene scene() const { return scene(in_order(), false); }
+
+  std::vector<int> in_order() const {
+    std::vector<int> order(rules.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+    return order;
+  }
+};
+
+RandomRobot random_robot() {
+  RandomRobot robot;
+  robot.components = *rc::gen::inRange(1, 8);
+  const auto component = rc::gen::inRange(0, robot.components);
+  robot.links =
+      *rc::gen::container<std::vector<std::pair<int, int>>>(rc::gen::pair(component, component));
+  const int rules = *rc::gen::inRange(1, 8);
+  std::set<int> reserved;
+  for (int r = 0; r < rules; ++r) {
+    const int first = *component;
+    const int second = *component;
+    const std::string level = *rc::gen::element<std::string>("ERROR", "WARNING", "NON_CRITICAL");
+    const auto number = [](int least, int most) {
+      return std::to_string(*rc::gen::inRange(least, most)) + " ";
+    };
+    robot.rules.push_back("RULE " + name_of('R', r) + "\nPOLICIES " + level +
+                          "\nTRIGGER x > 1\nSTRATEGY first " + number(1, 100) + "10\nADAPTATION " +
+                          name_of('c', first) + " restart " + number(1, 20) + "\nSTRATEGY second " +
+                          number(1, 100) + "10\nADAPTATION " + name_of('c', second) + " redeploy " +
+                          number(1, 20) + "\n");
+    switch (*rc::gen::inRange(0, 4)) {
+      case 0:
+        break;  // it is well
+      case 1:
+        if (reserved.insert(first).second) robot.attempting.push_back(r);
+        break;
+      case 2:
+        robot.tried.push_back(r);
+        [[fallthrough]];
+      default:
+        robot.failing.push_back(r);
+    }
+  }
+  robot.has_effect = *rc::gen::arbitrary<bool>();
+  return robot;
+}
+
+Objective random_objective() {
+  return *rc::gen::element(Objective::kBalanced, Objective::kDowntime, Objective::kAdaptations,
+                           Objective::kRedeployments);
+}
+
+bool depends(Scene& scene, const Strategy& consumer, const Strategy& producer) {
+  return std::any_of(
+      consumer.components.begin(), consumer.components.end(), [&](ComponentId component) {
+        const auto& upstream = scene->graph.upstream(component);
+        return std::any_of(upstream.begin(), upstream.end(), [&](ComponentId c) {
+          return std::binary_search(producer.components.begin(), producer.components.end(), c);
+        });
+      });
+}
+
+bool shares(const Strategy& a, const Strategy& b) {
+  return std::any_of(a.components.begin(), a.components.end(), [&](ComponentId c) {
+    return std::binary_search(b.components.begin(), b.components.end(), c);
+  });
+}
+
+std::vector<const Strategy*> chosen(const Scene& scene) {
+  std::vector<const Strategy*> all;
+  for (const Verdict& verdict : scene.verdicts()) {
+    if (verdict.chosen) all.push_back(&scene.rules()[*verdict.chosen]);
+  }
+  return all;
+}
+
+RC_GTEST_PROP(BayesPlannerOnRandomRobots, NeverInterferesWithItself, ()) {
+  Scene scene = random_robot().scene();
+  scene.plan(BayesPlanner(random_objective()));
+  const auto all = chosen(scene);
+  for (const Strategy* a : all) {
+    for (const Strategy* b : all) {
+      RC_ASSERT(a == b || (!shares(*a, *b) && !depends(scene, *a, *b)));
+    }
+  }
+}
+
+RC_GTEST_PROP(BayesPlannerOnRandomRobots, LeavesAloneWhatIsBeingAdaptedAndWhatDependsOnIt, ()) {
+  Scene scene = random_robot().scene();
+  scene.plan(BayesPlanner(random_objective()));
+  for (const RuleId id : scene->states.active()) {
+    const auto& attempt = scene->states[id].attempt;
+    if (!attempt) continue;
+    const Strategy& under_way = scene.rules()[attempt->strategy];
+    for (const Strategy* strategy : chosen(scene)) {
+      RC_ASSERT(!shares(*strategy, under_way));
+      const bool is_lesser = scene.rules()[id].policies.criticality <
+                             scene.rules()[strategy->rule].policies.criticality;
+      const bool stands_back = attempt->stage == Attempt::Stage::kWaiting && is_lesser;
+      RC_ASSERT(stands_back || !depends(scene, *strategy, under_way));
+    }
+  }
+}
+
+RC_GTEST_PROP(BayesPlannerOnRandomRobots, NeverWaitsForNothing, ()) {
+  RandomRobot robot = random_robot();
+  robot.attempting.clear();
+  Scene scene = robot.scene();
+  const std::string plan = scene.plan(BayesPlanner(random_objective()));
+  RC_ASSERT(plan.empty() == robot.failing.empty());
+}
+
+// A strategy that adapts what a more critical failure touches or depends on would delay it.
+RC_GTEST_PROP(BayesPlannerOnRandomRobots, NeverDelaysTheMoreCritical, ()) {
+  const RandomRobot robot = random_robot();
+  Scene scene = robot.scene();
+  scene.plan(BayesPlanner(random_objective()));
+  for (const Strategy* strategy : chosen(scene)) {
+    const auto level = scene.rules()[strategy->rule].policies.criticality;
+    for (const int failing : robot.failing) {
+      const Rule& rule = scene.rules()[scene.rule(name_of('R', failing))];
+      if (rule.policies.criticality <= level) continue;
+      Strategy touched;
+      touched.components = rule.components;
+      RC_ASSERT(!shares(touched, *strategy) && !depends(scene, touched, *strategy));
+    }
+  }
+}
+
+RC_GTEST_PROP(BayesPlannerOnRandomRobots, DecidesTheSameInWhateverOrderRulesAreDeclared, ()) {
+  const RandomRobot robot = random_robot();
+  const BayesPlanner planner(random_objective());
+  std::vector<int> order = robot.in_order();
+  for (std::size_t i = order.size(); i > 1; --i)
+    std::swap(order[i - 1], order[*rc::gen::inRange<std::size_t>(0, i)]);
+  Scene one = robot.scene();
+  Scene other = robot.scene(order, true);
+  RC_ASSERT(one.plan(planner) == other.plan(planner));
+}
+
+}  // namespace
+}  // namespace culprit

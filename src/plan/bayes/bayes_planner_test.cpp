@@ -1,0 +1,170 @@
+#include "plan/bayes/bayes_planner.h"
+
+#include <gtest/gtest.h>
+
+#include "plan/bayes/test_scene.h"
+#include "plan/paper_planner.h"
+
+namespace culprit {
+namespace {
+
+using namespace std::chrono_literals;
+using plan::failure_of;
+using plan::Scene;
+
+const BayesPlanner kBalanced;
+const BayesPlanner kFewRedeployments(Objective::kRedeployments);
+const BayesPlanner kFewAdaptations(Objective::kAdaptations);
+
+// a -> b -> c, and d beside them.
+Scene robot() {
+  Scene scene(failure_of("a", "A") + failure_of("b", "B") + failure_of("c", "C") +
+              failure_of("d", "D"));
+  scene.link("a", "b").link("b", "c");
+  return scene;
+}
+
+TEST(BayesPlanner, ActsOnTheRootCauseOnly) {
+  Scene scene = robot();
+  scene.fail("A").fail("B").fail("C");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart");
+  EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kDependency);
+  EXPECT_EQ(scene.candidate("B.restart").because, scene.rule("A"));
+}
+
+TEST(BayesPlanner, ActsOnIndependentFailuresAtOnce) {
+  Scene scene = robot();
+  scene.fail("A").fail("B").fail("D");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart D.restart");
+}
+
+TEST(BayesPlanner, BreaksACircleThatThePaperWaitsInForEver) {
+  Scene scene = robot();
+  scene.link("c", "a").fail("A").fail("B").fail("C");
+  EXPECT_EQ(scene.plan(PaperPlanner()), "");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart") << "one of equals: the first by name";
+  scene.tried("A.restart");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "less is left to try at A";
+}
+
+TEST(BayesPlanner, FollowsTheObjective) {
+  Scene scene = robot();
+  scene.fail("A");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart");
+  EXPECT_EQ(scene.plan(kFewAdaptations), "A.redeploy") << "90 % beats 50 % where each counts one";
+}
+
+TEST(BayesPlanner, TriesWhatIsLeft) {
+  Scene scene = robot();
+  scene.fail("A").tried("A.restart");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "A.redeploy");
+  scene.tried("A.redeploy");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "");
+  EXPECT_TRUE(scene.verdict("A").is_spent);
+}
+
+TEST(BayesPlanner, ReplacesAProcessThatIsGone) {
+  Scene scene = robot();
+  scene.fail("A");
+  scene.process("a", ProcessState::kGone);
+  EXPECT_EQ(scene.plan(kFewRedeployments), "A.redeploy");
+  EXPECT_EQ(scene.candidate("A.restart").excluded, Condition::kInvalid);
+}
+
+TEST(BayesPlanner, ActsOnAComponentWhoseProcessIsGoneThoughOthersMayExplainIt) {
+  Scene scene = robot();
+  scene.fail("A").fail("B");
+  scene.process("b", ProcessState::kGone);
+  scene->states.state(scene.rule("A")).retry_at = kNever;  // it is in its back-off
+  scene.plan(kFewRedeployments);
+  EXPECT_NE(scene.candidate("B.redeploy").excluded, Condition::kDependency);
+}
+
+TEST(BayesPlanner, LeavesAloneWhatIsBeingAdaptedAndWhatDependsOnIt) {
+  Scene scene = robot();
+  scene.attempt("A.restart").fail("C").fail("D");
+  scene->couplings.set(scene.rule("A"), scene.rule("C"), {0, 1000});  // it is a failure of its own
+  EXPECT_EQ(scene.plan(kFewRedeployments), "D.restart");
+  EXPECT_EQ(scene.candidate("C.restart").excluded, Condition::kDownstream);
+  EXPECT_EQ(scene.candidate("C.restart").component, scene.component("a"));
+}
+
+TEST(BayesPlanner, WaitsWhileAnUpstreamComponentIsSuspect) {
+  std::string text = failure_of("a", "A") + failure_of("b", "B");
+  text.replace(text.find("x > 1"), 5, "age(/out) > 2s");
+  Scene scene(text);
+  scene.link("a", "b").fail("B", 9900ms);  // 100 ms ago
+  scene->signals.set_rhythm(TopicId(0), {scene->now - 250ms, 100ms});
+  EXPECT_EQ(scene.plan(kFewRedeployments), "");
+  EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kSuspect);
+  EXPECT_EQ(scene.candidate("B.restart").because, scene.rule("A"));
+  EXPECT_FALSE(scene.verdict("B").is_spent);
+  scene->signals.set_rhythm(TopicId(0), {scene->now - 50ms, 100ms});
+  EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "it spoke";
+  scene->signals.set_rhythm(TopicId(0), {scene->now - 1500ms, 100ms});
+  scene->now += 1s;
+  EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "nobody waits for ever";
+}
+
+TEST(BayesPlanner, GivesAFailureTimeToSettleAfterItsCauseIsGone) {
+  Scene scene = robot();
+  scene.fail("B");
+  scene->states.state(scene.rule("B")).settling =
+      Settling{scene.rule("A"), scene->now, scene->now + 500ms};
+  EXPECT_EQ(scene.plan(kFewRedeployments), "");
+  EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kSettling);
+  scene->couplings.set(scene.rule("A"), scene.rule("B"), {0, 10});
+  EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "they never went away together";
+  scene->couplings.set(scene.rule("A"), scene.rule("B"), {});
+  scene->now += 500ms;
+  EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart");
+}
+
+TEST(BayesPlanner, LetsALesserFailureNeverDelayAGreaterOne) {
+  Scene scene(failure_of("a", "Focus", "NON_CRITICAL") + failure_of("b", "Dead"));
+  scene.link("a", "b").fail("Focus").fail("Dead");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "Dead.restart");
+  EXPECT_EQ(scene.candidate("Focus.restart").excluded, Condition::kInTheWay);
+}
+
+TEST(BayesPlanner, LetsAGreaterFailureActWhileALesserOneUpstreamIsJudged) {
+  Scene scene(failure_of("a", "Focus", "NON_CRITICAL") + failure_of("b", "Dead"));
+  scene.link("a", "b").attempt("Focus.restart", Attempt::Stage::kWaiting).fail("Dead");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "Dead.restart");
+}
+
+TEST(BayesPlanner, PrefersTheStrategyThatClearsMore) {
+  // Two rules touch one component; nothing else tells them apart.
+  Scene scene(failure_of("a", "A") + failure_of("b", "B") +
+              "RULE AToo\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY restart 50 10\n"
+              "ADAPTATION a restart 2\nSTRATEGY redeploy 90 10\nADAPTATION a redeploy 10\n");
+  scene.link("a", "b").fail("A").fail("AToo").fail("B");
+  scene->couplings.set(scene.rule("AToo"), scene.rule("B"), {9, 0});
+  scene->couplings.set(scene.rule("A"), scene.rule("B"), {0, 9});
+  EXPECT_EQ(scene.plan(kFewRedeployments), "AToo.restart");
+}
+
+TEST(BayesPlanner, SaysWhoIsSuspectedAndWhatItIsWorth) {
+  Scene scene = robot();
+  scene.fail("A").fail("B");
+  scene.plan(kBalanced);
+  const auto& suspects = scene.verdict("B").suspects;
+  ASSERT_EQ(suspects.size(), 2u);
+  EXPECT_EQ(suspects[0].component, scene.component("a"));
+  EXPECT_EQ(suspects[0].failure, scene.rule("A"));
+  EXPECT_NEAR(suspects[0].probability + suspects[1].probability, 1, 1e-12);
+  EXPECT_GT(suspects[0].probability, 0.9);
+  EXPECT_GT(scene.candidate("A.restart").value, 4) << "an ERROR, and a share of another";
+  EXPECT_DOUBLE_EQ(scene.candidate("A.restart").resolves, 0.5);
+}
+
+TEST(BayesPlanner, DecidesAboutEveryFailure) {
+  Scene scene = robot();
+  scene.fail("A").fail("B").fail("C").fail("D");
+  scene.plan(kBalanced);
+  EXPECT_EQ(scene.verdicts().size(), 4u);
+  EXPECT_EQ(scene.verdict("C").candidates.size(), 2u);
+}
+
+}  // namespace
+}  // namespace culprit
