@@ -4,6 +4,7 @@
 
 #include "knowledge/describe.h"
 #include "language/checker.h"
+#include "plan/bayes/bayes_planner.h"
 #include "plan/paper_planner.h"
 #include "study/reference/reference_manager.h"
 #include "study/reference/sunset_blackboard.h"
@@ -70,14 +71,14 @@ std::string component_of(sunset::Member member, const RuleSet& rules) {
 
 }  // namespace
 
-std::vector<std::string_view> sunset_planners() { return {"paper", "reference"}; }
+std::vector<std::string_view> sunset_planners() { return {"paper", "reference", "bayes"}; }
 
 Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::uint64_t seed) {
   std::vector<Setting> settings;
   for (Configuration& row : rows) {
     const auto planners = sunset_planners();
     if (std::find(planners.begin(), planners.end(), row.planner) == planners.end())
-      return Error{"there is no planner '" + row.planner + "'; there are paper, reference"};
+      return Error{"there is no planner '" + row.planner + "'; there are paper, reference, bayes"};
     const auto profile = sunset::model::find_profile(row.profile);
     if (!profile) return Error{profile.error()};
     if (row.planner == "reference" && !(*profile)->has_blackboard)
@@ -112,9 +113,13 @@ std::unique_ptr<ManagingSystem> SunsetStudy::manager(const Setting& setting) con
     // The rules are made for it.
     return std::move(*ReferenceManager::make(*setting.rules, std::move(options)));
   }
-  return std::make_unique<Manager>(*setting.rules,
-                                   std::make_unique<PaperPlanner>(setting.configuration.switches),
-                                   manager_options(setting));
+  std::unique_ptr<const Planner> planner;
+  if (setting.configuration.planner == "bayes") {
+    planner = std::make_unique<BayesPlanner>();
+  } else {
+    planner = std::make_unique<PaperPlanner>(setting.configuration.switches);
+  }
+  return std::make_unique<Manager>(*setting.rules, std::move(planner), manager_options(setting));
 }
 
 SunsetRun SunsetStudy::play(RunId id) const {

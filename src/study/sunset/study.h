@@ -59,7 +59,7 @@ class SunsetStudy {
   std::uint64_t seed_;
 };
 
-// The planners that there are, for messages: "paper", "reference".
+// The planners that there are: "paper", "reference", "bayes".
 std::vector<std::string_view> sunset_planners();
 
 }  // namespace culprit::study
