@@ -195,13 +195,13 @@ const Value* Node::parameter(const std::string& name) const {
 bool Node::set_parameter(const std::string& name, const Value& value) {
   const auto found = parameters_.find(name);
   if (found == parameters_.end() || found->second.index() != value.index() ||
-      !on_parameter(name, value))
+      !on_set(name, value))
     return false;
   assign(name, value);
   return true;
 }
 
-bool Node::on_parameter(const std::string&, const Value&) { return true; }
+bool Node::on_set(const std::string&, const Value&) { return true; }
 
 bool Node::call(const std::string&) { return false; }
 

@@ -104,7 +104,7 @@ class Node {
   virtual void on_activate() {}
   virtual void on_deactivate() {}
   // `value` was accepted. False: it is refused after all.
-  virtual bool on_parameter(const std::string& name, const Value& value);
+  virtual bool on_set(const std::string& name, const Value& value);
 
   // A parameter and its value in a new process.
   void declare(std::string name, Value value);

@@ -46,7 +46,7 @@ void ManagedNode::on_configure() {
 
 void ManagedNode::on_activate() { clear(faults_.cleared_by_activate); }
 
-bool ManagedNode::on_parameter(const std::string& name, const Value& value) {
+bool ManagedNode::on_set(const std::string& name, const Value& value) {
   if (profile_.keeps_parameters) set_default(name, value);
   return true;
 }

@@ -54,7 +54,7 @@ class ManagedNode : public simulation::Node {
   void on_start() override;
   void on_configure() override;
   void on_activate() override;
-  bool on_parameter(const std::string& name, const Value& value) override;
+  bool on_set(const std::string& name, const Value& value) override;
 
  private:
   void beat();

@@ -45,13 +45,13 @@ void SensorFusion::on_start() {
   take_rgb_from(get<std::string>("topic_camera_input"));
 }
 
-bool SensorFusion::on_parameter(const std::string& name, const Value& value) {
+bool SensorFusion::on_set(const std::string& name, const Value& value) {
   if (name == "topic_camera_input") {
     const auto& topic = std::get<std::string>(value);
     if (!is_enhanced(topic) && !topic.ends_with("rgb_camera")) return false;
     take_rgb_from(topic);
   }
-  return ManagedNode::on_parameter(name, value);
+  return ManagedNode::on_set(name, value);
 }
 
 void SensorFusion::take_rgb_from(std::string_view topic) {

@@ -12,7 +12,7 @@ class SensorFusion : public ManagedNode {
 
  private:
   void on_start() override;
-  bool on_parameter(const std::string& name, const Value& value) override;
+  bool on_set(const std::string& name, const Value& value) override;
   void take_rgb_from(std::string_view topic);
   void on_arrival();
   void fuse(const Frame& rgb, const Frame& depth);
