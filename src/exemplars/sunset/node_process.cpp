@@ -27,7 +27,7 @@ bool runs(const fs::path& process, Member member) {
 }
 
 bool is_in(const fs::path& process, std::uint32_t domain) {
-  constexpr std::string_view kName = "ROS_DOMAIN_ID=";
+  static constexpr std::string_view kName = "ROS_DOMAIN_ID=";
   const auto environment = texts_of(process / "environ");
   const auto found = std::ranges::find_if(
       environment, [](const std::string& variable) { return variable.starts_with(kName); });
