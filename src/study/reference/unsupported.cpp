@@ -61,8 +61,9 @@ std::optional<Error> unsupported(const RuleSet& rules, const ReferenceOptions& o
     if (auto error = in_input(input, rules, options)) return error;
   }
   for (const auto& [name, value] : options.initial) {
-    const bool is_signal = std::any_of(rules.signals.begin(), rules.signals.end(),
-                                       [&](const Signal& signal) { return signal.name == name; });
+    const bool is_signal =
+        std::any_of(rules.signals.begin(), rules.signals.end(),
+                    [&, &called = name](const Signal& signal) { return signal.name == called; });
     if (!is_signal) return Error{"the rules have no signal " + name + " to give an initial value"};
   }
   return std::nullopt;
