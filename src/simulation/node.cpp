@@ -194,8 +194,7 @@ const Value* Node::parameter(const std::string& name) const {
 
 bool Node::set_parameter(const std::string& name, const Value& value) {
   const auto found = parameters_.find(name);
-  if (found == parameters_.end() || found->second.index() != value.index() ||
-      !on_set(name, value))
+  if (found == parameters_.end() || found->second.index() != value.index() || !on_set(name, value))
     return false;
   assign(name, value);
   return true;
