@@ -17,6 +17,20 @@ if(CULPRIT_SANITIZE)
   target_link_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE})
 endif()
 
+# Tests are compiled to be built soon: what they test is optimised as for users.
+add_library(culprit_test_options INTERFACE)
+target_link_libraries(culprit_test_options INTERFACE culprit_options)
+target_compile_options(culprit_test_options INTERFACE -O0)
+
+# What nearly every test includes, parsed once: a third of the time of a build.
+if(CULPRIT_TESTS)
+  add_library(culprit_test_headers OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
+  target_precompile_headers(culprit_test_headers PRIVATE <algorithm> <chrono> <filesystem> <fstream> <functional> <map>
+                                                         <memory> <optional> <set> <span> <string> <variant> <vector>
+                                                         <gmock/gmock.h> <gtest/gtest.h> <rapidcheck/gtest.h>)
+  target_link_libraries(culprit_test_headers PRIVATE GTest::gtest GTest::gmock rapidcheck culprit_test_options)
+endif()
+
 # culprit_library(<folder> [USES <folder>...] [PACKAGES <target>...]
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL]
 #                 [TEST_LABELS <label>...])
@@ -92,8 +106,9 @@ endfunction()
 function(culprit_test name)
   cmake_parse_arguments(ARG "SERIAL" "" "SOURCES;USES;PACKAGES;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
+  target_precompile_headers(${name} REUSE_FROM culprit_test_headers)
   target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PACKAGES} GTest::gtest_main GTest::gmock rapidcheck
-                                        culprit_options)
+                                        culprit_test_options)
   set(properties TIMEOUT 300)
   if(ARG_SERIAL)
     list(APPEND properties RUN_SERIAL TRUE)
