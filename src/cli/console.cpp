@@ -30,6 +30,7 @@ struct Labels {
   Label operator()(const Undone&) const { return {"undone", "\033[36m"}; }
   Label operator()(const RoundSpent&) const { return {"pause", "\033[33m"}; }
   Label operator()(const RuleExhausted&) const { return {"EXHAUSTED", "\033[1;31m"}; }
+  Label operator()(const LastResortReached&) const { return {"LAST", "\033[1;31m"}; }
   Label operator()(const ComponentLost&) const { return {"lost", "\033[31m"}; }
   Label operator()(const ComponentFound&) const { return {"found", "\033[32m"}; }
   Label operator()(const Trouble&) const { return {"trouble", "\033[33m"}; }

@@ -88,6 +88,9 @@ class Describer {
   std::string operator()(const RuleExhausted& e) const {
     return rules_[e.rule].name + " is exhausted: nothing helped, a person must look";
   }
+  std::string operator()(const LastResortReached& e) const {
+    return rules_[e.rule].name + ": nothing helped, and only the last resort is left";
+  }
   std::string operator()(const ComponentLost& e) const {
     return rules_[e.component].name + " is lost" + (e.remark.empty() ? "" : ": " + e.remark);
   }

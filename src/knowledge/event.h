@@ -118,6 +118,11 @@ struct RoundSpent {
   Time retry_at;
 };
 
+// Nothing is left to try but the rule's last resorts.
+struct LastResortReached {
+  RuleId rule;
+};
+
 // Nothing is left to try. A person must look.
 struct RuleExhausted {
   RuleId rule;
@@ -210,7 +215,7 @@ struct Event {
                AdaptationDone, AdaptationFailed, StrategyFailed, Undone, RoundSpent, RuleExhausted,
                ComponentLost, ComponentFound, Trouble, OrderAccepted, OrderRefused, ActionHeldBack,
                ApprovalAsked, ApprovalLapsed, StrategyAbandoned, OrderCarriedOut, SilenceEnded,
-               StormBegan, StormEnded>
+               StormBegan, StormEnded, LastResortReached>
       what;
 };
 

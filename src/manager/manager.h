@@ -56,7 +56,10 @@ class Manager : public ManagingSystem {
   }
 
  private:
+  void take_in(Time now, std::span<const Observation> observations);
+  void react(std::vector<Command>& commands);
   void obey(const Order& order, Time now);
+  void refresh_conditions(StrategyId strategy, Time now);
   void abandon_all(const std::string& reason, Time now);
   void plan(Time now);
   std::vector<Verdict> allowed_plan(const std::vector<RuleId>& failures, Time now);

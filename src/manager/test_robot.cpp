@@ -70,11 +70,6 @@ void TestRobot::signal(const std::string& name, Value value) {
   step();
 }
 
-void TestRobot::order(Order order) {
-  observe(std::move(order));
-  step();
-}
-
 void TestRobot::kill(const std::string& name) {
   Component& component = components_.at(name);
   component.process = ProcessState::kGone;

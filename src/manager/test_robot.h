@@ -59,7 +59,13 @@ class TestRobot {
       const std::string& name);  // -9: its process is gone, its node lingers until its lease ends
   void stop(const std::string& name);  // -STOP
   void run_for(Duration time);
-  void order(Order order);
+  void order(Order order) { tell(std::move(order)); }
+  // An observation that comes now.
+  template <class What>
+  void tell(What what) {
+    observe(std::move(what));
+    step();
+  }
 
   // Says each node, topic and state to the manager, as discovery does. Call once, after add().
   void discover();
