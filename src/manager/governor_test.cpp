@@ -178,6 +178,20 @@ TEST(Storm, OneCauseUpstreamOfAllIsNone) {
   EXPECT_TRUE(robot.works("e")) << transcript(robot);
 }
 
+TEST(Intensity, HoldsAmongStrategiesThatAreChosenTogether) {
+  Manager::Options options;
+  options.governor.limits.per_kind = {2, 30s};
+  TestRobot robot(many_rules(), std::make_unique<BayesPlanner>(), options);
+  for (const char* c : {"a", "b", "c", "d", "e"}) robot.add(c, {}, "/t" + std::string(c));
+  robot.discover();
+  robot.run_for(2s);
+  for (const char* c : {"a", "b", "c", "d", "e"}) robot[c].fault = "redeploy";
+  robot.run_for(20s);
+  EXPECT_EQ(times_of_choices(robot).size(), 2u) << transcript(robot);
+  robot.run_for(100s);
+  for (const char* c : {"a", "b", "c", "d", "e"}) EXPECT_TRUE(robot.works(c)) << c;
+}
+
 TEST(Identity, NothingIsDoneToANameThatSeveralNodesHave) {
   TestRobot robot = one_camera({});
   robot.tell(NamesakesSeen{"/camera", 1});

@@ -122,7 +122,10 @@ void Manager::plan(Time now) {
   }
   for (const Verdict& verdict : allowed_plan(failures, now)) {
     if (verdict.chosen) {
-      if (!governor_.holds_back(*verdict.chosen, now)) carry_out(verdict, now);
+      // What was allowed when the plan was made may have been the last of its kind.
+      const bool has_to_wait =
+          governor_.holds_back(*verdict.chosen, now) || governor_.withholds(*verdict.chosen, now);
+      if (!has_to_wait) carry_out(verdict, now);
     } else if (verdict.is_spent) {
       hold_back(verdict, now);
       analyzer_.round_is_spent(verdict.rule, now);
