@@ -96,8 +96,10 @@ std::optional<Limits::Limit> Limits::on(StrategyId id, Time now) const {
 }
 
 bool Limits::was_healthy(ComponentId component, RuleId rule) const {
+  const PerComponent& state = components_[component.index];
   const Time failed = knowledge_.states[rule].failing_since;
-  return components_[component.index].well_since <= failed - options_.backoff.healthy &&
+  return state.well_since >= state.restarted &&
+         later(state.well_since, options_.backoff.healthy) <= failed &&
          !knowledge_.states.is_sick(component, Criticality::kNonCritical, rule);
 }
 

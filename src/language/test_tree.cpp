@@ -54,7 +54,7 @@ class Writer {
     all(s.name, s.probability, s.confidence, s.when, s.adaptations, s.is_last_resort,
         s.has_broken_adaptation);
   }
-  void put(const syntax::Interlock& i) { all(i.condition, i.text); }
+  void put(const syntax::Interlock& i) { put(i.condition); }  // its text is how it is written
   void put(const syntax::Policies::Hold& h) { all(h.needed, h.window); }
   void put(const syntax::Policies::Attempts& a) { put(a.count); }
   void put(const syntax::Policies& p) {

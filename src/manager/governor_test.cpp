@@ -124,9 +124,11 @@ RULE CameraDead
   robot["camera"].fault = "a person";
   robot.run_for(60s);
   EXPECT_EQ(robot.count_asked("camera: start process"), 2u) << transcript(robot);
-  EXPECT_EQ(robot.count("only the last resort is left"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("nothing helped, and only the last resort is left"), 1u)
+      << transcript(robot);
   EXPECT_EQ(robot.count_asked("set safe to true"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count("CameraDead is exhausted"), 1u) << transcript(robot);
+  EXPECT_EQ(robot["camera"].parameters["safe"], Value(true)) << "it is not undone";
 }
 
 // Five independent cameras.
