@@ -25,5 +25,6 @@ void add_lsp(CLI::App& app, const std::string& version, int& exit_code);
 void add_import(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, const std::string& version, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
+void add_torture(CLI::App& app, int& exit_code);
 
 }  // namespace culprit::cli

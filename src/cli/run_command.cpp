@@ -5,11 +5,13 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/governor_options.h"
 #include "cli/health.h"
 #include "cli/live_robot.h"
 #include "cli/paths.h"
 #include "cli/planner_options.h"
 #include "cli/rule_file.h"
+#include "cli/service_manager.h"
 #include "knowledge/describe.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
@@ -22,6 +24,7 @@ struct RunOptions {
   bool dry_run = false;
   bool launch = false;
   PlannerOptions planner;
+  GovernorOptions governor;
   double forgetting = 1;
   double settle_seconds = seconds(Manager::kDiscovery);
   std::string state_folder;
@@ -29,11 +32,17 @@ struct RunOptions {
 };
 
 ros2::Severity severity_of(const Event& event) {
-  if (std::holds_alternative<RuleExhausted>(event.what)) return ros2::Severity::kError;
+  if (std::holds_alternative<RuleExhausted>(event.what) ||
+      std::holds_alternative<LastResortReached>(event.what) ||
+      std::holds_alternative<StormBegan>(event.what))
+    return ros2::Severity::kError;
   const bool is_bad = std::holds_alternative<FailureDetected>(event.what) ||
                       std::holds_alternative<StrategyFailed>(event.what) ||
                       std::holds_alternative<ComponentLost>(event.what) ||
                       std::holds_alternative<AdaptationFailed>(event.what) ||
+                      std::holds_alternative<ActionHeldBack>(event.what) ||
+                      std::holds_alternative<ApprovalAsked>(event.what) ||
+                      std::holds_alternative<StrategyAbandoned>(event.what) ||
                       std::holds_alternative<Trouble>(event.what);
   return is_bad ? ros2::Severity::kWarn : ros2::Severity::kInfo;
 }
@@ -80,6 +89,11 @@ void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Ob
 int run(const RunOptions& options) {
   const auto rules = load_rules(options.rules);
   if (rules == nullptr) return kFailed;
+  const auto governor = options.governor.options();
+  if (!governor) {
+    fmt::print(stderr, "culprit: {}\n", governor.error());
+    return kUsage;
+  }
   auto robot_setup = robot_options(options);
   if (!robot_setup) {
     fmt::print(stderr, "culprit: {}\n", robot_setup.error());
@@ -107,6 +121,7 @@ int run(const RunOptions& options) {
   manager_options.start = (*robot)->now();
   manager_options.settling = from_seconds(options.settle_seconds);
   manager_options.forgetting = options.forgetting;
+  manager_options.governor = *governor;
   Manager manager(*rules, options.planner.planner(), manager_options);
 
   const Colour colour = colour_of(STDOUT_FILENO);
@@ -124,7 +139,13 @@ int run(const RunOptions& options) {
   (*robot)->link().publish(health(manager.knowledge()));
   for (const Command& command : manager.step((*robot)->now(), seen)) (*robot)->execute(command);
   if (!manager.events().empty()) runtime.on_events(manager.events());
-  runtime.run(signals.stopped());
+  ServiceManager systemd;
+  systemd.ready(fmt::format("watching {}", rules->robot.empty() ? "the robot" : rules->robot));
+  while (!signals.stopped()) {
+    systemd.feed((*robot)->now());
+    runtime.run(signals.stopped(), systemd.next_feeding());
+  }
+  systemd.stopping();
   signals.on_stop({});
   fmt::print("culprit: stopped; the robot goes on as it is\n");
   return kOk;
@@ -158,6 +179,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.5, 1.0))
       ->capture_default_str();
   options->planner.add_to(*command);
+  options->governor.add_to(*command);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -15,6 +15,7 @@ void Executor::begin(StrategyId strategy, Time now) {
   state.attempt.emplace();
   state.attempt->strategy = strategy;
   state.attempt->chosen = now;
+  state.attempt->has_no_failure = state.phase == RulePhase::kQuiet;
   knowledge_.states.enter(rule, RulePhase::kAttempting);
   std::erase_if(runs_, [&](const Run& old) { return old.rule == rule; });
   Run run;
@@ -96,7 +97,9 @@ bool Executor::next_goal(Run& run, Time now) {
 void Executor::finish_goal(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const AdaptationType type = knowledge_.rules[run.strategy].adaptations[run.adaptation].type;
-  if (pursuit.has_changed_anything() && pursuit.before()) {
+  // A last resort is to last: whether the failure is gone is not what it is for.
+  const bool is_to_last = knowledge_.rules[run.strategy].is_last_resort;
+  if (!is_to_last && pursuit.has_changed_anything() && pursuit.before()) {
     if (auto goal = execute::undoing(pursuit.goal(), type, *pursuit.before())) {
       run.undo.push_back({pursuit.component(), std::move(*goal)});
     }

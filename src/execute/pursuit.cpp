@@ -203,8 +203,13 @@ std::optional<Pursuit::Request> Pursuit::pursue_gone(const ComponentState& state
     return give_up("its process is not known; is it on another machine?");
   if (!has_changed_anything()) return change(StopProcess{state.known_pid()}, now);
   const bool is_gone = !state.in_graph && state.process == ProcessState::kGone;
-  if (answer_->outcome == Outcome::kDone || is_gone) return reach();
-  return answer_->outcome == Outcome::kTimedOut ? look_again(now) : give_up(why(*answer_));
+  // Where the operating system is asked, its word is needed too: a new process must not begin
+  // beside the old one because of a wrong answer.
+  const bool still_runs = state.pid != 0 && state.process != ProcessState::kGone;
+  if (is_gone || (answer_->outcome == Outcome::kDone && !still_runs)) return reach();
+  const bool may_come =
+      answer_->outcome == Outcome::kTimedOut || answer_->outcome == Outcome::kDone;
+  return may_come ? look_again(now) : give_up(why(*answer_));
 }
 
 std::optional<Pursuit::Request> Pursuit::pursue_present(const ComponentState& state, Time now) {
