@@ -163,7 +163,7 @@ void Analyzer::end_attempt(RuleId id, Time now) {
 
 void Analyzer::abandon(RuleId id, Time now) {
   end_attempt(id, now);
-  schedule(id, now);
+  look_at(id, now);  // the failure may be gone already
 }
 
 bool Analyzer::can_have_caused(RuleId id) const {

@@ -173,7 +173,8 @@ void Executor::enter(Run& run, Attempt::Stage stage) {
 Time Executor::next_deadline() const {
   Time next = kNever;
   for (const Run& run : runs_) {
-    if (run.pursuit) next = std::min(next, run.pursuit->next_deadline());
+    const bool is_abandoned = !knowledge_.states[run.rule].attempt;
+    if (run.pursuit && !is_abandoned) next = std::min(next, run.pursuit->next_deadline());
   }
   return next;
 }
