@@ -27,6 +27,9 @@ class LiveRobot : public Robot {
   // Lets a waiting observe() return. From any thread.
   void interrupt() { inbox_.interrupt(); }
 
+  // Something about culprit itself that a person should know. From any thread.
+  void report(std::string trouble) { inbox_.put(LinkTrouble{std::move(trouble)}); }
+
   ros2::Link& link() { return *link_; }
   process::Supervisor& supervisor() { return *supervisor_; }
 

@@ -103,6 +103,11 @@ struct StrategyFailed {
   std::string reason;
 };
 
+// A strategy that an earlier process of culprit did not live to end is being finished.
+struct StrategyResumed {
+  StrategyId strategy;
+};
+
 // Something that a failed strategy had changed is back as it was, or could not be brought back.
 struct Undone {
   StrategyId strategy;
@@ -137,8 +142,8 @@ struct Trouble {
 struct Event {
   Time at;
   std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
-               AdaptationDone, AdaptationFailed, StrategyFailed, Undone, RoundSpent, RuleExhausted,
-               ComponentLost, ComponentFound, Trouble>
+               AdaptationDone, AdaptationFailed, StrategyFailed, StrategyResumed, Undone, RoundSpent,
+               RuleExhausted, ComponentLost, ComponentFound, Trouble>
       what;
 };
 

@@ -31,10 +31,16 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
       planner_(std::move(planner)),
       executor_(knowledge_),
       autonomy_(options.autonomy),
+      settling_(options.settling),
       now_(options.start),
       held_back_(rules.rules.size()) {
   knowledge_.beliefs.set_forgetting(options.forgetting);
   knowledge_.couplings.set_forgetting(options.forgetting);
+}
+
+void Manager::resume(Interrupted interrupted) {
+  if (autonomy_ == Autonomy::kAdvise) return;
+  executor_.resume(std::move(interrupted), now_, later(now_, settling_));
 }
 
 std::vector<Command> Manager::step(Time now, std::span<const Observation> observations) {
