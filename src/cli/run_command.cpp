@@ -166,6 +166,7 @@ int run(const RunOptions& options) {
     seen = discover(**robot, signals.stopped());
     launch_missing(**robot, *rules, seen);
   }
+  const bool is_paused = beginning.is_paused;
   const journal::Session session =
       session_of(options, *rules, advises, (*robot)->now(), beginning);
   const auto manager =
@@ -193,6 +194,8 @@ int run(const RunOptions& options) {
     (*robot)->link().publish(health(manager->knowledge()));
   };
   (*robot)->link().publish(health(manager->knowledge()));
+  if (is_paused)
+    seen.push_back({session.start, Order{0, "the last run", "it was paused when it ended", Pause{}}});
   runtime.step(seen);
   runtime.run(signals.stopped());
   signals.on_stop({});

@@ -40,6 +40,7 @@ void take_over(const journal::Reader& reader, const RuleSet& rules, RunBeginning
     return;
   }
   tell(*recovery, rules, beginning.findings);
+  beginning.is_paused = recovery->is_paused;
   if (!learned->beliefs.empty())
     beginning.findings.push_back(fmt::format("what was learned of {} strategies is known",
                                              learned->beliefs.size()));

@@ -12,6 +12,7 @@ struct RunBeginning {
   std::optional<journal::Writer> writer;  // nothing: it cannot be written now
   journal::Learned learned;
   journal::Json interrupted = journal::Json::array();
+  bool is_paused = false;
   std::vector<std::string> findings;  // for the user, one line each
 };
 

@@ -16,6 +16,7 @@ void Executor::begin(StrategyId strategy, Time now) {
   state.attempt.emplace();
   state.attempt->strategy = strategy;
   state.attempt->chosen = now;
+  state.attempt->has_no_failure = state.phase == RulePhase::kQuiet;
   knowledge_.states.enter(rule, RulePhase::kAttempting);
   std::erase_if(runs_, [&](const Run& old) { return old.rule == rule; });
   Run run;
@@ -32,6 +33,7 @@ void Executor::resume(Interrupted interrupted, Time now, Time from) {
   Attempt& attempt = *knowledge_.states.state(rule).attempt;
   attempt.first_change = now;
   attempt.is_ambiguous = true;  // nobody saw what happened meanwhile
+  attempt.has_no_failure = false;
   Run& run = runs_.back();
   run.interrupted = std::move(interrupted);
   run.from = from;

@@ -20,7 +20,7 @@ class Executor {
   // `knowledge` must outlive the executor.
   explicit Executor(Knowledge& knowledge) : knowledge_(knowledge) {}
 
-  // The rule's attempt begins. @pre the rule is failing and none is under way.
+  // The rule's attempt begins. @pre none of the rule is under way, none has its components
   void begin(StrategyId strategy, Time now);
 
   // Goes on from `from` on with an attempt of an earlier process; its outcome will prove nothing.

@@ -105,8 +105,58 @@ class EventWriter {
     return {{"type", "component_found"}, {"component", name(e.component)}, {"pid", e.pid}};
   }
   Json operator()(const Trouble& e) const { return {{"type", "trouble"}, {"what", e.text}}; }
+  Json operator()(const OrderAccepted& e) const { return of_order("order_accepted", e.order); }
+  Json operator()(const OrderRefused& e) const {
+    Json json = of_order("order_refused", e.order);
+    json["refused_because"] = e.reason;
+    return json;
+  }
+  Json operator()(const ActionHeldBack& e) const {
+    Json json = of_strategy("action_held_back", e.strategy);
+    json["reason"] = e.reason;
+    return json;
+  }
+  Json operator()(const ApprovalAsked& e) const {
+    Json json = of_strategy("approval_asked", e.strategy);
+    json["suspects"] = suspects(e.suspects);
+    json["candidates"] = candidates(e.candidates);
+    return json;
+  }
+  Json operator()(const ApprovalLapsed& e) const {
+    return of_strategy("approval_lapsed", e.strategy);
+  }
+  Json operator()(const StrategyAbandoned& e) const {
+    Json json = of_strategy("strategy_abandoned", e.strategy);
+    json["reason"] = e.reason;
+    return json;
+  }
+  Json operator()(const OrderCarriedOut& e) const {
+    return of_strategy("order_carried_out", e.strategy);
+  }
+  Json operator()(const SilenceEnded&) const { return {{"type", "silence_ended"}}; }
+  Json operator()(const StormBegan& e) const {
+    return {{"type", "storm_began"}, {"reason", e.reason}};
+  }
+  Json operator()(const StormEnded&) const { return {{"type", "storm_ended"}}; }
 
  private:
+  struct WordOfOrder {
+    const char* operator()(const Pause&) const { return "pause"; }
+    const char* operator()(const Resume&) const { return "resume"; }
+    const char* operator()(const SetDryRun& o) const { return o.is_on ? "dry_run" : "act"; }
+    const char* operator()(const Approve&) const { return "approve"; }
+    const char* operator()(const Refuse&) const { return "refuse"; }
+    const char* operator()(const Silence&) const { return "silence"; }
+    const char* operator()(const LiftSilence&) const { return "lift_silence"; }
+    const char* operator()(const RunStrategy&) const { return "run_strategy"; }
+  };
+  static Json of_order(const char* type, const Order& order) {
+    return {{"type", type},
+            {"order", std::visit(WordOfOrder{}, order.what)},
+            {"number", order.number},
+            {"author", order.author},
+            {"reason", order.reason}};
+  }
   template <class Id>
   const std::string& name(Id id) const {
     return rules_[id].name;

@@ -34,6 +34,8 @@ class Trail {
     if (entry.kind == kind::kOutcome) outcome(body);
   }
 
+  bool is_paused() const { return is_paused_; }
+
   // Those that had begun to change anything.
   std::vector<Interrupted> open() && {
     std::erase_if(open_, [](const Interrupted& each) { return each.requests.empty(); });
@@ -43,13 +45,15 @@ class Trail {
  private:
   void event(const Json& body) {
     const std::string type = text_of(body, "type");
+    if (type == "order_accepted") order(text_of(body, "order"));
     const auto rule = find_rule(rules_, text_of(body, "rule"));
     if (!rule) return;
     const auto strategy =
         find_strategy(rules_, text_of(body, "rule"), text_of(body, "strategy"));
     // A failure is held back only while no strategy of its own is under way.
     constexpr std::array kEnds = {"failure_resolved", "failure_lost", "failure_held_back",
-                                  "round_spent", "rule_exhausted"};
+                                  "round_spent",      "rule_exhausted", "strategy_abandoned",
+                                  "order_carried_out"};
     if (std::find(kEnds.begin(), kEnds.end(), type) != kEnds.end()) return close(*rule);
     if (!strategy) return;
     if (type == "strategy_chosen" && !flag_of(body, "dry_run")) {
@@ -68,14 +72,24 @@ class Trail {
         std::min(found->adaptations_done, rules_[*strategy].adaptations.size());
   }
 
+  void order(const std::string& word) {
+    if (word == "pause") is_paused_ = true;
+    if (word == "resume") is_paused_ = false;
+  }
+
   void intent(const Json& body) {
     const auto command = command_from_json(body, rules_);
     if (!command) return give_up(body, command.error());
-    for (Interrupted& each : open_) {
-      if (each.strategy != command->purpose.strategy) continue;
-      each.requests.emplace_back();
-      each.requests.back().command = *command;
+    auto found = std::find_if(open_.begin(), open_.end(), [&](const Interrupted& each) {
+      return each.strategy == command->purpose.strategy;
+    });
+    // A person may have ordered it without a failure: then nobody chose it.
+    if (found == open_.end()) {
+      found = open_.emplace(open_.end());
+      found->strategy = command->purpose.strategy;
     }
+    found->requests.emplace_back();
+    found->requests.back().command = *command;
   }
 
   void outcome(const Json& body) {
@@ -104,6 +118,7 @@ class Trail {
   const RuleSet& rules_;
   std::vector<std::string>& given_up_;
   std::vector<Interrupted> open_;
+  bool is_paused_ = false;
 };
 
 }  // namespace
@@ -127,6 +142,7 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules) {
     trail.follow(entry);
   }
   if (!row) return Error{row.error()};
+  recovery.is_paused = trail.is_paused();
   recovery.interrupted = std::move(trail).open();
   return recovery;
 }

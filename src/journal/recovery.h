@@ -16,6 +16,7 @@ struct Recovery {
   bool had_run = false;         // there was a run before
   bool was_stopped = false;     // and it was asked to end
   bool was_other_boot = false;  // the machine was started anew since
+  bool is_paused = false;       // by a person, who has to resume it
   std::vector<Interrupted> interrupted;
   std::vector<std::string> given_up;  // what was under way and cannot be finished, and why
 };

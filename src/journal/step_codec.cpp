@@ -17,7 +17,19 @@ enum class Tag : std::uint8_t {
   kProcessSeen = 10,
   kProbed = 11,
   kReply = 12,
-  kLinkTrouble = 13
+  kLinkTrouble = 13,
+  kOrder = 14
+};
+
+enum class OrderTag : std::uint8_t {
+  kPause = 1,
+  kResume = 2,
+  kSetDryRun = 3,
+  kApprove = 4,
+  kRefuse = 5,
+  kSilence = 6,
+  kLiftSilence = 7,
+  kRunStrategy = 8
 };
 
 enum class ValueTag : std::uint8_t {
@@ -130,6 +142,47 @@ class Encoder {
     out_.text(o.text);
   }
 
+  void write(const Order& o, Duration age) {
+    head(Tag::kOrder, age);
+    out_.natural(o.number);
+    out_.text(o.author);
+    out_.text(o.reason);
+    std::visit([&](const auto& order) { write_order(order); }, o.what);
+  }
+  void write_order(const Pause&) { word(OrderTag::kPause); }
+  void write_order(const Resume&) { word(OrderTag::kResume); }
+  void write_order(const SetDryRun& o) {
+    word(OrderTag::kSetDryRun);
+    out_.byte(o.is_on ? 1 : 0);
+  }
+  void write_order(const Approve& o) {
+    word(OrderTag::kApprove);
+    out_.natural(o.strategy.index);
+  }
+  void write_order(const Refuse& o) {
+    word(OrderTag::kRefuse);
+    out_.natural(o.strategy.index);
+  }
+  void write_order(const Silence& o) {
+    word(OrderTag::kSilence);
+    silenced(o.what);
+    out_.byte(o.lasts ? 1 : 0);
+    if (o.lasts) out_.integer(o.lasts->count());
+  }
+  void write_order(const LiftSilence& o) {
+    word(OrderTag::kLiftSilence);
+    silenced(o.what);
+  }
+  void write_order(const RunStrategy& o) {
+    word(OrderTag::kRunStrategy);
+    out_.natural(o.strategy.index);
+  }
+  void silenced(const Silenceable& what) {
+    const auto* component = std::get_if<ComponentId>(&what);
+    out_.byte(component != nullptr ? 0 : 1);
+    out_.natural(component != nullptr ? component->index : std::get<RuleId>(what).index);
+  }
+
   template <class Endpoint>
   void endpoint(const Endpoint& o) {
     out_.text(o.node);
@@ -223,9 +276,49 @@ class Decoder {
         return reply();
       case Tag::kLinkTrouble:
         return LinkTrouble{in_.text()};
+      case Tag::kOrder:
+        return order();
     }
     in_.fail();
     return LinkTrouble{};
+  }
+
+  Order order() {
+    Order order;
+    order.number = in_.natural();
+    order.author = in_.text();
+    order.reason = in_.text();
+    order.what = what_order(static_cast<OrderTag>(in_.byte()));
+    return order;
+  }
+  decltype(Order::what) what_order(OrderTag tag) {
+    switch (tag) {
+      case OrderTag::kPause:
+        return Pause{};
+      case OrderTag::kResume:
+        return Resume{};
+      case OrderTag::kSetDryRun:
+        return SetDryRun{in_.byte() != 0};
+      case OrderTag::kApprove:
+        return Approve{id<StrategyId>(rules_.strategies.size())};
+      case OrderTag::kRefuse:
+        return Refuse{id<StrategyId>(rules_.strategies.size())};
+      case OrderTag::kSilence: {
+        Silence silence{silenced(), {}};
+        if (in_.byte() != 0) silence.lasts = Duration(in_.integer());
+        return silence;
+      }
+      case OrderTag::kLiftSilence:
+        return LiftSilence{silenced()};
+      case OrderTag::kRunStrategy:
+        return RunStrategy{id<StrategyId>(rules_.strategies.size())};
+    }
+    in_.fail();
+    return Pause{};
+  }
+  Silenceable silenced() {
+    if (in_.byte() == 0) return id<ComponentId>(rules_.components.size());
+    return id<RuleId>(rules_.rules.size());
   }
 
   Reply reply() {

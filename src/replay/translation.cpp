@@ -73,7 +73,7 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     is_known = renumber(process->component, components_);
   } else if (auto* probed = std::get_if<Probed>(&out.what)) {
     is_known = renumber(probed->component, components_);
-  } else if (std::holds_alternative<Reply>(out.what)) {
+  } else if (std::holds_alternative<Reply>(out.what) || std::holds_alternative<Order>(out.what)) {
     is_known = false;
   }
   return is_known ? std::optional(std::move(out)) : std::nullopt;

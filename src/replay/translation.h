@@ -14,8 +14,8 @@ class Translation {
  public:
   Translation(const RuleSet& from, const RuleSet& to);
 
-  // Nothing where the other rules do not speak of it. Replies are nobody's: they answer requests
-  // that the other manager did not make.
+  // Nothing where the other rules do not speak of it. Replies answer requests that the other
+  // manager did not make, and orders were given about what the recorded one did: both go.
   std::optional<Observation> operator()(const Observation& observation) const;
 
   // What the other rules read and the recording does not have: "signal exposure", "topic /scan".
