@@ -199,7 +199,10 @@ int run(const RunOptions& options) {
   runtime.step(seen);
   runtime.run(signals.stopped());
   signals.on_stop({});
-  if (recorder != nullptr) recorder->end();
+  if (recorder != nullptr) {
+    if (const auto written = recorder->end(); !written)
+      fmt::print(stderr, "culprit: {}\n", written.error());
+  }
   fmt::print("culprit: stopped; the robot goes on as it is\n");
   return kOk;
 }

@@ -34,6 +34,9 @@ void Executor::resume(Interrupted interrupted, Time now, Time from) {
   attempt.first_change = now;
   attempt.is_ambiguous = true;  // nobody saw what happened meanwhile
   attempt.has_no_failure = false;
+  // An answer to a request of the earlier process must not be taken for one to ours.
+  for (const Interrupted::Request& request : interrupted.requests)
+    last_command_ = std::max(last_command_, request.command.id.number);
   Run& run = runs_.back();
   run.interrupted = std::move(interrupted);
   run.from = from;

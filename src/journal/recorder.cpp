@@ -2,12 +2,29 @@
 
 #include <algorithm>
 
+#include "journal/reader.h"
 #include "journal/requests.h"
 
 namespace culprit::journal {
 namespace {
 
 bool changes_something(const Command& command) { return !is_read(command); }
+
+// What `news` speaks of is now as `news` says.
+void replace(Learned& learned, const Learned& news) {
+  for (const LearnedBelief& each : news.beliefs) {
+    std::erase_if(learned.beliefs, [&](const LearnedBelief& old) {
+      return old.rule == each.rule && old.strategy == each.strategy;
+    });
+    learned.beliefs.push_back(each);
+  }
+  for (const LearnedCoupling& each : news.couplings) {
+    std::erase_if(learned.couplings, [&](const LearnedCoupling& old) {
+      return old.cause == each.cause && old.effect == each.effect;
+    });
+    learned.couplings.push_back(each);
+  }
+}
 
 bool is_nothing(const Learned& learned) {
   return learned.beliefs.empty() && learned.couplings.empty();
@@ -34,7 +51,9 @@ Recorder::Recorder(std::optional<Writer> writer, Options options, const Session&
     : options_(std::move(options)),
       knowledge_(knowledge),
       rules_(knowledge.rules),
-      writer_(std::move(writer)) {
+      writer_(std::move(writer)),
+      session_(to_json(session)),
+      known_(session.learned) {
   for (std::size_t s = 0; s < rules_.strategies.size(); ++s)
     beliefs_.push_back(knowledge.beliefs[StrategyId(s)]);
   for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
@@ -42,12 +61,29 @@ Recorder::Recorder(std::optional<Writer> writer, Options options, const Session&
     couplings_.emplace_back(all.begin(), all.end());
   }
   is_failing_ = !writer_;
-  add(kind::kSession, options_.wall_clock(), to_json(session));
-  write(true);
+  add(kind::kSession, options_.wall_clock(), session_);
+  (void)write(true);
   thread_ = std::thread([this] { run(); });
 }
 
-Recorder::~Recorder() {
+Recorder::~Recorder() { finish(); }
+
+Expected<void> Recorder::end() {
+  {
+    const std::lock_guard lock(mutex_);
+    Pending pending;
+    pending.wall = options_.wall_clock();
+    pending.is_end = true;
+    queue_.push_back(std::move(pending));
+  }
+  finish();
+  if (!last_error_) return {};
+  return Error{last_error_->message + "; " + std::to_string(unsaved_.entries.size()) +
+               " rows of this run are lost"};
+}
+
+void Recorder::finish() {
+  if (!thread_.joinable()) return;
   {
     const std::lock_guard lock(mutex_);
     is_ending_ = true;
@@ -93,14 +129,6 @@ void Recorder::stepped(Time now, std::vector<Observation>& observations,
   std::unique_lock lock(mutex_);
   const std::uint64_t mine = handed_over_;
   done_.wait_for(lock, kPatience, [&] { return written_ >= mine || is_failing_; });
-}
-
-void Recorder::end() {
-  const std::lock_guard lock(mutex_);
-  Pending pending;
-  pending.wall = options_.wall_clock();
-  pending.is_end = true;
-  queue_.push_back(std::move(pending));
 }
 
 // The clock of the wall is read now and then only: it costs as much as a small step.
@@ -151,7 +179,8 @@ void Recorder::run() {
 
     for (const Pending& pending : taken) make_rows(pending);
     close_steps();
-    write(is_durable || is_last);
+    const auto written = write(is_durable || is_last);
+    last_error_ = written ? std::nullopt : std::optional(Error{written.error()});
 
     lock.lock();
     constexpr std::size_t kSpare = 64;
@@ -199,18 +228,8 @@ void Recorder::make_rows(const Pending& pending) {
     asked_[command.id.number] = text_of(body, "text");
     add(kind::kIntent, pending.wall, body);
   }
-  for (const LearnedBelief& each : pending.learned.beliefs) {
-    std::erase_if(unsaved_.learned.beliefs, [&](const LearnedBelief& old) {
-      return old.rule == each.rule && old.strategy == each.strategy;
-    });
-    unsaved_.learned.beliefs.push_back(each);
-  }
-  for (const LearnedCoupling& each : pending.learned.couplings) {
-    std::erase_if(unsaved_.learned.couplings, [&](const LearnedCoupling& old) {
-      return old.cause == each.cause && old.effect == each.effect;
-    });
-    unsaved_.learned.couplings.push_back(each);
-  }
+  replace(unsaved_.learned, pending.learned);
+  replace(known_, pending.learned);
   constexpr std::size_t kLongRow = 1 << 16;
   if (steps_.size() > kLongRow) close_steps();
 }
@@ -229,14 +248,28 @@ void Recorder::add(std::string_view kind, std::int64_t at, const Json& body) {
   unsaved_bytes_ += unsaved_.entries.back().body.size();
 }
 
-void Recorder::write(bool is_durable) {
-  const std::int64_t now = options_.wall_clock();
+// In a file that takes the place of one that was removed or damaged, the run goes on.
+Expected<void> Recorder::open_anew() {
+  auto opened = Writer::open(options_.path, options_.writer);
+  if (!opened) return Error{opened.error()};
+  writer_ = std::move(*opened);
+  if (!writer_->remark().empty() && options_.on_trouble) options_.on_trouble(writer_->remark());
+  const Reader reader(*Database::open(options_.path, Database::Mode::kRead));
+  const auto session = reader.newest(kind::kSession);
+  if (!is_begun_ || (session && *session)) return {};
+  session_["continued"] = true;
+  unsaved_.entries.insert(unsaved_.entries.begin(), {0, options_.wall_clock(),
+                                                     std::string(kind::kSession),
+                                                     to_text(session_)});
+  unsaved_.learned = known_;
+  return {};
+}
+
+Expected<void> Recorder::write(bool is_durable) {
   if (!writer_) {
-    auto opened = Writer::open(options_.path, options_.writer);
-    if (!opened) return failed(opened.error());
-    writer_ = std::move(*opened);
-    if (!writer_->remark().empty() && options_.on_trouble) options_.on_trouble(writer_->remark());
+    if (const auto opened = open_anew(); !opened) return failed({opened.error()});
   }
+  const std::int64_t now = options_.wall_clock();
   if (gap_steps_ + gap_rows_ > 0) {
     const std::string text = "not recorded, for the journal could not be written: " +
                              std::to_string(gap_steps_) + " steps, " + std::to_string(gap_rows_) +
@@ -247,10 +280,11 @@ void Recorder::write(bool is_durable) {
          to_text({{"steps", gap_steps_}, {"rows", gap_rows_}, {"text", text}})});
     gap_steps_ = gap_rows_ = 0;
   }
-  if (unsaved_.entries.empty() && is_nothing(unsaved_.learned)) return;
+  if (unsaved_.entries.empty() && is_nothing(unsaved_.learned)) return {};
   const auto written = writer_->append(
       unsaved_, now, is_durable ? Durability::kPowerFailure : Durability::kProcessEnd);
-  if (!written) return failed(written.error());
+  if (!written) return failed({written.error()});
+  is_begun_ = true;
   unsaved_ = {};
   unsaved_bytes_ = 0;
   bool was_failing = false;
@@ -259,9 +293,10 @@ void Recorder::write(bool is_durable) {
     was_failing = std::exchange(is_failing_, false);
   }
   if (was_failing && options_.on_trouble) options_.on_trouble("the journal is written again");
+  return {};
 }
 
-void Recorder::failed(const std::string& why) {
+Expected<void> Recorder::failed(Error error) {
   // A file that cannot be written now may be another one next time: it is opened anew.
   writer_.reset();
   bound_unsaved();
@@ -271,7 +306,9 @@ void Recorder::failed(const std::string& why) {
     is_new = !std::exchange(is_failing_, true);
   }
   if (is_new && options_.on_trouble)
-    options_.on_trouble(why + "; what happens is kept and written as soon as that is possible");
+    options_.on_trouble(error.message +
+                        "; what happens is kept and written as soon as that is possible");
+  return error;
 }
 
 void Recorder::bound_unsaved() {

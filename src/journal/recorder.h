@@ -50,7 +50,7 @@ class Recorder {
   // the first row.
   Recorder(std::optional<Writer> writer, Options options, const Session& session,
            const Knowledge& knowledge);
-  // Writes what is waiting, if it can be written.
+  // As end(), but without a word: as if the process had ended by itself.
   ~Recorder();
   Recorder(const Recorder&) = delete;
 
@@ -58,8 +58,8 @@ class Recorder {
   void stepped(Time now, std::vector<Observation>& observations, std::span<const Command> commands,
                std::span<const Event> events);
 
-  // culprit was asked to stop.
-  void end();
+  // culprit was asked to stop: writes what is waiting. An error says what is lost. No step after it.
+  Expected<void> end();
 
  private:
   struct Pending {
@@ -77,8 +77,10 @@ class Recorder {
   void make_rows(const Pending& pending);
   void close_steps();
   void add(std::string_view kind, std::int64_t at, const Json& body);
-  void write(bool is_durable);
-  void failed(const std::string& why);
+  Expected<void> write(bool is_durable);
+  Expected<void> open_anew();
+  void finish();
+  Expected<void> failed(Error error);
   void bound_unsaved();
   std::int64_t wall_of(Time now);
 
@@ -114,6 +116,10 @@ class Recorder {
   std::uint64_t gap_steps_ = 0;
   std::uint64_t gap_rows_ = 0;
   std::unordered_map<std::uint64_t, std::string> asked_;  // changes that wait for their outcome
+  Json session_;
+  Learned known_;              // all, for a file that takes the place of this one
+  bool is_begun_ = false;      // the session is in a file
+  std::optional<Error> last_error_;
   Hasher hasher_;
 
   std::thread thread_;

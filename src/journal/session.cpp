@@ -93,6 +93,7 @@ Expected<Session> session_from_json(const Json& json) {
   session.rules_text = text_of(json, "rules_text");
   session.planner = json.value("planner", Json::object());
   session.advises = flag_of(json, "advises");
+  session.continued = flag_of(json, "continued");
   session.boot = text_of(json, "boot");
   session.start = Time(Duration(integer_of(json, "start")));
   session.settling = Duration(integer_of(json, "settling"));

@@ -15,6 +15,7 @@ struct Session {
   std::string rules_text;
   Json planner;  // as its options have it
   bool advises = false;
+  bool continued = false;  // the run began in another file, which is gone: it cannot be replayed
   std::string boot;  // which start of the machine: the robot's clock counts from there
   Time start{};
   Duration settling{};

@@ -13,6 +13,9 @@ Expected<Recording> Recording::open(const journal::Reader& journal, std::int64_t
                               : "row " + std::to_string(session) + " is not the beginning of a run"};
   auto begin = journal::session_from_json(journal::from_text((*row)->body));
   if (!begin) return Error{begin.error()};
+  if (begin->continued)
+    return Error{"the run of row " + std::to_string((*row)->id) +
+                 " began in another file, which was removed or damaged"};
   Recording recording(journal);
   recording.session_row_ = (*row)->id;
   recording.session_ = std::move(*begin);
