@@ -110,8 +110,8 @@ void journalling(benchmark::State& state) {
   }
   const double before = quantile(without, 0.5);
   const double after = quantile(with, 0.5);
-  claim("journalling at 1,000 events/s: added to a step, median", 100 * (after - before) / before, 5,
-        "%");
+  claim("journalling at 1,000 events/s: added to a step, median", 100 * (after - before) / before,
+        5, "%");
 }
 BENCHMARK(journalling)->Iterations(1)->Unit(benchmark::kMillisecond);
 

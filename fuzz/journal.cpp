@@ -32,7 +32,8 @@ RULE Silent
       ADAPTATION camera redeploy 5
     STRATEGY tune 50 10 WHEN parameter(camera, gain) < 2
       ADAPTATION camera increase_parameter gain 0.5 5
-)")).rules;
+)"))
+                                  .rules;
   return set;
 }
 

@@ -46,9 +46,10 @@ int verify(const VerifyOptions& options) {
   if (result->findings.size() > kShown)
     fmt::print("... and {} more\n", result->findings.size() - kShown);
   const bool is_whole = result->findings.empty();
-  fmt::print("{} rows{}: {}\n", result->rows,
-             result->first > 1 ? fmt::format(" ({} older ones were dropped)", result->first - 1) : "",
-             is_whole ? "all as they were written" : "NOT as they were written");
+  fmt::print(
+      "{} rows{}: {}\n", result->rows,
+      result->first > 1 ? fmt::format(" ({} older ones were dropped)", result->first - 1) : "",
+      is_whole ? "all as they were written" : "NOT as they were written");
   fmt::print("newest {}:{}\n", result->newest.id, journal::to_hex(result->newest.hash));
   return is_whole ? kOk : kFailed;
 }

@@ -32,8 +32,8 @@ int show(const BeliefsOptions& options) {
     fmt::print("nothing was learned yet\n");
     return kOk;
   }
-  fmt::print("{:<28} {:<28} {:>7} {:>7} {:>8} {:>8}\n", "rule", "strategy", "rules", "now", "helped",
-             "did not");
+  fmt::print("{:<28} {:<28} {:>7} {:>7} {:>8} {:>8}\n", "rule", "strategy", "rules", "now",
+             "helped", "did not");
   for (const journal::LearnedBelief& each : learned->beliefs)
     fmt::print("{:<28} {:<28} {:>5.1f} % {:>5.1f} % {:>8.6g} {:>8.6g}\n", each.rule, each.strategy,
                100 * each.prior.mean().value, 100 * each.belief.mean().value,

@@ -71,9 +71,9 @@ std::string log_line(const journal::Entry& entry) {
   }
   std::string text = journal::text_of(body, "text");
   if (text.empty() && body.contains("alpha"))
-    text = fmt::format("{} of {}: {:.2f} helped, {:.2f} did not", journal::text_of(body, "strategy"),
-                       journal::text_of(body, "rule"), journal::number_of(body, "alpha"),
-                       journal::number_of(body, "beta"));
+    text = fmt::format("{} of {}: {:.2f} helped, {:.2f} did not",
+                       journal::text_of(body, "strategy"), journal::text_of(body, "rule"),
+                       journal::number_of(body, "alpha"), journal::number_of(body, "beta"));
   if (text.empty() && body.contains("cause"))
     text = fmt::format("{} with {}: went away {:g} times, stayed {:g} times",
                        journal::text_of(body, "effect"), journal::text_of(body, "cause"),

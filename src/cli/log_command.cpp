@@ -61,8 +61,7 @@ void add_log(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 1'000'000'000))
       ->capture_default_str();
   command->add_option("--since", options->since, "All rows of so long ago until now: 10min, 2h");
-  command
-      ->add_option("--kind", options->kind, "All rows of this kind only")
+  command->add_option("--kind", options->kind, "All rows of this kind only")
       ->check(CLI::IsMember(
           {"session", "event", "intent", "outcome", "belief", "coupling", "gap", "end"}));
   command->add_flag("--json", options->json, "One JSON document per row");

@@ -147,7 +147,8 @@ int run(const RunOptions& options) {
   if (!claim) return complain(claim.error());
   const bool advises = options.dry_run || !*claim;
   if (!*claim)
-    fmt::print("culprit: another culprit manages this robot; this one only says what it would do\n");
+    fmt::print(
+        "culprit: another culprit manages this robot; this one only says what it would do\n");
   StopSignals signals;
   auto robot = LiveRobot::open(*rules, std::move(*robot_setup));
   if (!robot) {
@@ -167,11 +168,9 @@ int run(const RunOptions& options) {
     launch_missing(**robot, *rules, seen);
   }
   const bool is_paused = beginning.is_paused;
-  const journal::Session session =
-      session_of(options, *rules, advises, (*robot)->now(), beginning);
-  const auto manager =
-      replay::manager_for(session, *rules, options.planner.planner(),
-                          advises ? Autonomy::kAdvise : Autonomy::kAct);
+  const journal::Session session = session_of(options, *rules, advises, (*robot)->now(), beginning);
+  const auto manager = replay::manager_for(session, *rules, options.planner.planner(),
+                                           advises ? Autonomy::kAdvise : Autonomy::kAct);
   std::unique_ptr<journal::Recorder> recorder;
   if (!options.no_journal && claim->has_value())
     recorder = record(options, std::move(beginning), session, *manager, **robot);
@@ -195,7 +194,8 @@ int run(const RunOptions& options) {
   };
   (*robot)->link().publish(health(manager->knowledge()));
   if (is_paused)
-    seen.push_back({session.start, Order{0, "the last run", "it was paused when it ended", Pause{}}});
+    seen.push_back(
+        {session.start, Order{0, "the last run", "it was paused when it ended", Pause{}}});
   runtime.step(seen);
   runtime.run(signals.stopped());
   signals.on_stop({});

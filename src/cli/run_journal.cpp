@@ -19,15 +19,16 @@ void tell(const Recovery& recovery, const RuleSet& rules, std::vector<std::strin
       findings.push_back("the last run ended in the middle of " + what +
                          "; the machine was started anew since, so nothing of it is left to do");
     } else {
-      findings.push_back(
-          "the last run ended in the middle of " + what + " (last: " +
-          rules[each.requests.back().command.component].name + ": " +
-          to_string(each.requests.back().command) + "); it is finished, and its outcome proves nothing");
+      findings.push_back("the last run ended in the middle of " + what +
+                         " (last: " + rules[each.requests.back().command.component].name + ": " +
+                         to_string(each.requests.back().command) +
+                         "); it is finished, and its outcome proves nothing");
     }
   }
   if (recovery.had_run && !recovery.was_stopped && recovery.interrupted.empty() &&
       recovery.given_up.empty())
-    findings.emplace_back("the last run ended without being asked to; nothing was left in the middle");
+    findings.emplace_back(
+        "the last run ended without being asked to; nothing was left in the middle");
 }
 
 void take_over(const journal::Reader& reader, const RuleSet& rules, RunBeginning& beginning) {
@@ -42,8 +43,8 @@ void take_over(const journal::Reader& reader, const RuleSet& rules, RunBeginning
   tell(*recovery, rules, beginning.findings);
   beginning.is_paused = recovery->is_paused;
   if (!learned->beliefs.empty())
-    beginning.findings.push_back(fmt::format("what was learned of {} strategies is known",
-                                             learned->beliefs.size()));
+    beginning.findings.push_back(
+        fmt::format("what was learned of {} strategies is known", learned->beliefs.size()));
   if (recovery->was_other_boot) return;
   for (const Interrupted& each : recovery->interrupted)
     beginning.interrupted.push_back(journal::to_json(each, rules));

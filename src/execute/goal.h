@@ -36,7 +36,8 @@ struct ModeGoal {
 struct ServiceGoal {
   std::string service;
 };
-// Reached at once if another process than `pid` has taken its place; 0: whichever is there is meant.
+// Reached at once if another process than `pid` has taken its place; 0: whichever is there is
+// meant.
 struct GoneGoal {
   int pid = 0;
 };

@@ -72,10 +72,10 @@ Resumption resumption_of(const Interrupted& interrupted, const Knowledge& knowle
   } else if (last.outcome == Outcome::kDone) {
     ++resumption.adaptation;
   } else {
-    resumption.obstacle = last.outcome ? to_string(last.command) + " failed before culprit ended"
-                                       : "culprit ended while it asked to " +
-                                             to_string(last.command) +
-                                             "; nobody knows whether that was done";
+    resumption.obstacle = last.outcome
+                              ? to_string(last.command) + " failed before culprit ended"
+                              : "culprit ended while it asked to " + to_string(last.command) +
+                                    "; nobody knows whether that was done";
   }
   return resumption;
 }
@@ -94,8 +94,7 @@ std::vector<Undo> undo_of(const Interrupted& interrupted, const RuleSet& rules) 
       changed = LifecycleGoal{};
     }
     if (!changed) continue;
-    const auto& adaptation =
-        rules[interrupted.strategy].adaptations[command.purpose.adaptation];
+    const auto& adaptation = rules[interrupted.strategy].adaptations[command.purpose.adaptation];
     const Reply before{{}, Outcome::kDone, command.purpose.before, ""};
     if (auto goal = undoing(*changed, adaptation.type, before))
       all.push_back({command.component, std::move(*goal)});

@@ -12,8 +12,8 @@ constexpr std::array kOutcomes = {Outcome::kDone, Outcome::kRefused, Outcome::kU
                                   Outcome::kTimedOut};
 constexpr std::array kTransitions = {Transition::kConfigure, Transition::kCleanup,
                                      Transition::kActivate, Transition::kDeactivate};
-constexpr std::array kLifecycles = {Lifecycle::kUnknown,  Lifecycle::kUnconfigured,
-                                    Lifecycle::kInactive, Lifecycle::kActive,
+constexpr std::array kLifecycles = {Lifecycle::kUnknown,   Lifecycle::kUnconfigured,
+                                    Lifecycle::kInactive,  Lifecycle::kActive,
                                     Lifecycle::kFinalized, Lifecycle::kTransition};
 
 std::string word_of(Transition transition) {
@@ -162,8 +162,7 @@ class EventWriter {
     return rules_[id].name;
   }
   Json of_strategy(const char* type, StrategyId strategy) const {
-    return {
-        {"type", type}, {"rule", name(rules_[strategy].rule)}, {"strategy", name(strategy)}};
+    return {{"type", type}, {"rule", name(rules_[strategy].rule)}, {"strategy", name(strategy)}};
   }
   Json of_adaptation(const char* type, StrategyId strategy, std::size_t adaptation) const {
     Json json = of_strategy(type, strategy);
@@ -251,7 +250,9 @@ Json to_json(const Event& event, const RuleSet& rules) {
   return json;
 }
 
-Json to_json(const decltype(Command::what)& request) { return std::visit(RequestWriter{}, request); }
+Json to_json(const decltype(Command::what)& request) {
+  return std::visit(RequestWriter{}, request);
+}
 
 Expected<decltype(Command::what)> request_from_json(const Json& json) {
   using Request = decltype(Command::what);
@@ -259,7 +260,8 @@ Expected<decltype(Command::what)> request_from_json(const Json& json) {
   if (!json.is_object() || json.size() != 1) return unknown;
   const std::string& word = json.begin().key();
   const Json& what = json.begin().value();
-  if (word == "stop_process" && what.is_number_integer()) return Request(StopProcess{what.get<int>()});
+  if (word == "stop_process" && what.is_number_integer())
+    return Request(StopProcess{what.get<int>()});
   if (word == "start_process") return Request(StartProcess{});
   if (word == "set_parameter" && what.is_object()) {
     const auto value = value_from(what.value("value", Json()));
@@ -278,7 +280,8 @@ Expected<decltype(Command::what)> request_from_json(const Json& json) {
 
 Json to_json(const decltype(Reply::value)& value) {
   if (const auto* v = std::get_if<Value>(&value)) return of_value(*v);
-  if (const auto* state = std::get_if<Lifecycle>(&value)) return {{"lifecycle", culprit::to_string(*state)}};
+  if (const auto* state = std::get_if<Lifecycle>(&value))
+    return {{"lifecycle", culprit::to_string(*state)}};
   return nullptr;
 }
 

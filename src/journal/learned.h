@@ -1,4 +1,5 @@
-// What was learned of strategies and failures, by name, so that it outlives the rule file's numbers.
+// What was learned of strategies and failures, by name, so that it outlives the rule file's
+// numbers.
 #pragma once
 
 #include <string>

@@ -220,8 +220,7 @@ void Recorder::make_rows(const Pending& pending) {
                       (reply->text.empty() ? "" : ", " + reply->text)}});
     asked_.erase(asked);
   }
-  for (const Event& event : pending.events)
-    add(kind::kEvent, pending.wall, to_json(event, rules_));
+  for (const Event& event : pending.events) add(kind::kEvent, pending.wall, to_json(event, rules_));
   for (const Command& command : pending.commands) {
     if (is_read(command)) continue;
     const Json body = to_json(command, rules_);
@@ -258,9 +257,9 @@ Expected<void> Recorder::open_anew() {
   const auto session = reader.newest(kind::kSession);
   if (!is_begun_ || (session && *session)) return {};
   session_["continued"] = true;
-  unsaved_.entries.insert(unsaved_.entries.begin(), {0, options_.wall_clock(),
-                                                     std::string(kind::kSession),
-                                                     to_text(session_)});
+  unsaved_.entries.insert(
+      unsaved_.entries.begin(),
+      {0, options_.wall_clock(), std::string(kind::kSession), to_text(session_)});
   unsaved_.learned = known_;
   return {};
 }
@@ -271,9 +270,9 @@ Expected<void> Recorder::write(bool is_durable) {
   }
   const std::int64_t now = options_.wall_clock();
   if (gap_steps_ + gap_rows_ > 0) {
-    const std::string text = "not recorded, for the journal could not be written: " +
-                             std::to_string(gap_steps_) + " steps, " + std::to_string(gap_rows_) +
-                             " other rows";
+    const std::string text =
+        "not recorded, for the journal could not be written: " + std::to_string(gap_steps_) +
+        " steps, " + std::to_string(gap_rows_) + " other rows";
     unsaved_.entries.insert(
         unsaved_.entries.begin(),
         {0, now, std::string(kind::kGap),

@@ -58,7 +58,8 @@ class Recorder {
   void stepped(Time now, std::vector<Observation>& observations, std::span<const Command> commands,
                std::span<const Event> events);
 
-  // culprit was asked to stop: writes what is waiting. An error says what is lost. No step after it.
+  // culprit was asked to stop: writes what is waiting. An error says what is lost. No step after
+  // it.
   Expected<void> end();
 
  private:
@@ -89,7 +90,7 @@ class Recorder {
   const RuleSet& rules_;
 
   // Of the manager's thread.
-  std::vector<Belief> beliefs_;          // as written last
+  std::vector<Belief> beliefs_;  // as written last
   std::vector<std::vector<Couplings::Learned>> couplings_;
   std::int64_t wall_offset_ = 0;
   std::uint32_t since_clock_ = 0;
@@ -117,8 +118,8 @@ class Recorder {
   std::uint64_t gap_rows_ = 0;
   std::unordered_map<std::uint64_t, std::string> asked_;  // changes that wait for their outcome
   Json session_;
-  Learned known_;              // all, for a file that takes the place of this one
-  bool is_begun_ = false;      // the session is in a file
+  Learned known_;          // all, for a file that takes the place of this one
+  bool is_begun_ = false;  // the session is in a file
   std::optional<Error> last_error_;
   Hasher hasher_;
 

@@ -48,10 +48,9 @@ class Trail {
     if (type == "order_accepted") order(text_of(body, "order"));
     const auto rule = find_rule(rules_, text_of(body, "rule"));
     if (!rule) return;
-    const auto strategy =
-        find_strategy(rules_, text_of(body, "rule"), text_of(body, "strategy"));
+    const auto strategy = find_strategy(rules_, text_of(body, "rule"), text_of(body, "strategy"));
     // A failure is held back only while no strategy of its own is under way.
-    constexpr std::array kEnds = {"failure_resolved", "failure_lost", "failure_held_back",
+    constexpr std::array kEnds = {"failure_resolved", "failure_lost",   "failure_held_back",
                                   "round_spent",      "rule_exhausted", "strategy_abandoned",
                                   "order_carried_out"};
     if (std::find(kEnds.begin(), kEnds.end(), type) != kEnds.end()) return close(*rule);
@@ -110,7 +109,8 @@ class Trail {
   }
 
   void give_up(const Json& what, const std::string& why) {
-    const std::string line = text_of(what, "strategy") + " for " + text_of(what, "rule") + ": " + why;
+    const std::string line =
+        text_of(what, "strategy") + " for " + text_of(what, "rule") + ": " + why;
     if (std::find(given_up_.begin(), given_up_.end(), line) == given_up_.end())
       given_up_.push_back(line);
   }

@@ -16,11 +16,11 @@ struct Session {
   Json planner;  // as its options have it
   bool advises = false;
   bool continued = false;  // the run began in another file, which is gone: it cannot be replayed
-  std::string boot;  // which start of the machine: the robot's clock counts from there
+  std::string boot;        // which start of the machine: the robot's clock counts from there
   Time start{};
   Duration settling{};
   double forgetting = 1;
-  Learned learned;                 // what was known at the start
+  Learned learned;                   // what was known at the start
   Json interrupted = Json::array();  // what the run before left behind (requests.h)
 };
 

@@ -221,8 +221,7 @@ class Decoder {
   // Damaged bytes may say anything; time must not overflow over it.
   Time earlier(Time now, std::int64_t nanoseconds) {
     std::int64_t at = 0;
-    const bool overflows =
-        __builtin_sub_overflow(now.time_since_epoch().count(), nanoseconds, &at);
+    const bool overflows = __builtin_sub_overflow(now.time_since_epoch().count(), nanoseconds, &at);
     if (overflows || !is_plausible(Time(Duration(at)))) in_.fail();
     return in_.is_good() ? Time(Duration(at)) : now;
   }
@@ -400,8 +399,7 @@ void encode(Time now, std::span<const Observation> observations, std::optional<D
   Encoder encoder(out);
   for (const Observation& observation : observations) encoder(observation, now);
   if (!digest) return;
-  for (int shift = 0; shift < 64; shift += 8)
-    out.byte(static_cast<std::uint8_t>(*digest >> shift));
+  for (int shift = 0; shift < 64; shift += 8) out.byte(static_cast<std::uint8_t>(*digest >> shift));
 }
 
 Expected<bool> StepReader::next(Step& step) {

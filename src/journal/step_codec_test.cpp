@@ -22,7 +22,8 @@ RULE R
       ADAPTATION a restart 2
     STRATEGY other 50 10
       ADAPTATION b restart 2
-)")).rules;
+)"))
+                                  .rules;
   return set;
 }
 
@@ -41,8 +42,8 @@ Value any_value() {
 
 decltype(Order::what) any_order() {
   const StrategyId strategy(*rc::gen::inRange<std::size_t>(0, 2));
-  const Silenceable what = *rc::gen::arbitrary<bool>() ? Silenceable(ComponentId(1))
-                                                       : Silenceable(RuleId(0));
+  const Silenceable what =
+      *rc::gen::arbitrary<bool>() ? Silenceable(ComponentId(1)) : Silenceable(RuleId(0));
   switch (*rc::gen::inRange(0, 8)) {
     case 0:
       return Pause{};

@@ -38,8 +38,8 @@ Expected<Learned> read_learned(const Database& database) {
                                {beliefs->real(2), beliefs->real(3)},
                                {beliefs->real(4), beliefs->real(5)}});
   if (!row) return Error{row.error()};
-  auto couplings =
-      database.prepare("SELECT cause, effect, cleared, stayed FROM coupling ORDER BY cause, effect");
+  auto couplings = database.prepare(
+      "SELECT cause, effect, cleared, stayed FROM coupling ORDER BY cause, effect");
   if (!couplings) return Error{couplings.error()};
   row = couplings->step();
   for (; row && *row; row = couplings->step())

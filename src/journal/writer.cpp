@@ -94,8 +94,8 @@ Expected<Writer> Writer::open(const fs::path& path, Options options) {
     }
     const auto aside = set_aside(path);
     if (!aside) return failure(path, "it is damaged, and cannot be moved: " + aside.error());
-    remark = "the journal was damaged; it is kept as '" + aside->string() + "' and a new one begun" +
-             (saved.beliefs.empty() ? "" : ", with what was learned");
+    remark = "the journal was damaged; it is kept as '" + aside->string() +
+             "' and a new one begun" + (saved.beliefs.empty() ? "" : ", with what was learned");
   }
   auto database = open_database(path);
   if (!database) return failure(path, database.error());
@@ -190,8 +190,9 @@ Expected<int> Writer::forget(const std::string& rule, std::int64_t now) {
   for (const auto& each : all->beliefs) count += rule.empty() || each.rule == rule ? 1 : 0;
   const std::string what = rule.empty() ? "all rules" : rule;
   Batch batch;
-  batch.entries.push_back({0, now, std::string(kind::kBelief),
-                           to_text({{"forgotten", rule}, {"text", "forgot what was learned of " + what}})});
+  batch.entries.push_back(
+      {0, now, std::string(kind::kBelief),
+       to_text({{"forgotten", rule}, {"text", "forgot what was learned of " + what}})});
   auto begun = database_.run("BEGIN IMMEDIATE");
   if (!begun) return failure(path_, begun.error());
   const Link before = newest_;
@@ -222,15 +223,17 @@ Expected<void> Writer::drop_old(std::int64_t now) {
   const std::int64_t last = std::min(*oldest + kAtOnce - 1, newest_.id - 1);
   std::int64_t end = last;
   if (*pages <= options_.max_bytes) {
-    const auto old = database_.number("SELECT max(id) FROM entry WHERE id <= " + std::to_string(last) +
-                                      " AND at < " + std::to_string(now - options_.max_age_ns));
+    const auto old =
+        database_.number("SELECT max(id) FROM entry WHERE id <= " + std::to_string(last) +
+                         " AND at < " + std::to_string(now - options_.max_age_ns));
     if (!old) return Error{old.error()};
     end = *old;
   }
   if (end < *oldest) return {};
   const std::string id = std::to_string(end);
-  return database_.run("DELETE FROM anchor; INSERT INTO anchor SELECT id, hash FROM entry WHERE id = " +
-                       id + "; DELETE FROM entry WHERE id <= " + id);
+  return database_.run(
+      "DELETE FROM anchor; INSERT INTO anchor SELECT id, hash FROM entry WHERE id = " + id +
+      "; DELETE FROM entry WHERE id <= " + id);
 }
 
 // Rows written to a file that somebody removed or replaced would be lost in silence.

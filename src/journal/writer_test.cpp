@@ -4,11 +4,12 @@
 #include "journal/writer.h"
 
 #include <fstream>
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include "journal/json.h"
 #include "journal/reader.h"
@@ -156,8 +157,8 @@ TEST(Rotation, DropsWhatIsTooOld) {
   options.max_age_ns = 1000;
   Writer writer = open(folder / "a.journal", options);
   ASSERT_TRUE(append(writer, batch(10)));
-  ASSERT_TRUE(writer.append({{{0, kNow + 2000, "gap", "{}"}}, {}}, kNow + 2000,
-                            Durability::kProcessEnd));
+  ASSERT_TRUE(
+      writer.append({{{0, kNow + 2000, "gap", "{}"}}, {}}, kNow + 2000, Durability::kProcessEnd));
   EXPECT_EQ(verified(folder / "a.journal").first, 11);
 }
 
@@ -267,8 +268,8 @@ TEST(Faults, AReadOnlyFolderIsReadAndNotWritten) {
     Writer writer = open(folder / "a.journal");
     ASSERT_TRUE(append(writer, batch(3)));
   }
-  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read |
-                                                  std::filesystem::perms::owner_exec);
+  std::filesystem::permissions(
+      folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   EXPECT_EQ(verified(folder / "a.journal").rows, 3);
   const auto failed = Writer::open(folder / "b.journal", {});
   ASSERT_FALSE(failed);

@@ -212,10 +212,10 @@ struct StormEnded {};
 struct Event {
   Time at;
   std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
-               AdaptationDone, AdaptationFailed, StrategyFailed, StrategyResumed, Undone, RoundSpent,
-               RuleExhausted, ComponentLost, ComponentFound, Trouble, OrderAccepted, OrderRefused,
-               ActionHeldBack, ApprovalAsked, ApprovalLapsed, StrategyAbandoned, OrderCarriedOut,
-               SilenceEnded, StormBegan, StormEnded>
+               AdaptationDone, AdaptationFailed, StrategyFailed, StrategyResumed, Undone,
+               RoundSpent, RuleExhausted, ComponentLost, ComponentFound, Trouble, OrderAccepted,
+               OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed, StrategyAbandoned,
+               OrderCarriedOut, SilenceEnded, StormBegan, StormEnded>
       what;
 };
 

@@ -1,6 +1,7 @@
-// Culprit is killed after each of its steps that matters, once each, with its last requests sent or not. Another
-// process takes over with nothing but the journal: the robot must end healthy, nothing may be asked
-// for twice that does harm then, and what was learned must be the sum of the outcomes on record.
+// Culprit is killed after each of its steps that matters, once each, with its last requests sent or
+// not. Another process takes over with nothing but the journal: the robot must end healthy, nothing
+// may be asked for twice that does harm then, and what was learned must be the sum of the outcomes
+// on record.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -5,12 +5,12 @@ namespace culprit::replay {
 using journal::Entry;
 
 Expected<Recording> Recording::open(const journal::Reader& journal, std::int64_t session) {
-  const auto row =
-      session == 0 ? journal.newest(journal::kind::kSession) : journal.entry(session);
+  const auto row = session == 0 ? journal.newest(journal::kind::kSession) : journal.entry(session);
   if (!row) return Error{row.error()};
   if (!*row || (*row)->kind != journal::kind::kSession)
-    return Error{session == 0 ? "it has no run that begins in it"
-                              : "row " + std::to_string(session) + " is not the beginning of a run"};
+    return Error{session == 0
+                     ? "it has no run that begins in it"
+                     : "row " + std::to_string(session) + " is not the beginning of a run"};
   auto begin = journal::session_from_json(journal::from_text((*row)->body));
   if (!begin) return Error{begin.error()};
   if (begin->continued)
@@ -19,8 +19,7 @@ Expected<Recording> Recording::open(const journal::Reader& journal, std::int64_t
   Recording recording(journal);
   recording.session_row_ = (*row)->id;
   recording.session_ = std::move(*begin);
-  Checked checked =
-      check(Source(recording.session_.rules_path, recording.session_.rules_text));
+  Checked checked = check(Source(recording.session_.rules_path, recording.session_.rules_text));
   if (!checked.rules)
     return Error{"the rules of the run that begins with row " + std::to_string((*row)->id) +
                  " are not valid for this culprit"};

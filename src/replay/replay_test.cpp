@@ -152,12 +152,12 @@ RULE Blind
       ADAPTATION camera redeploy 10
 )"));
   std::vector<std::string> chosen;
-  const auto missing = value_of(
-      advise(recording, *other.rules, std::make_unique<BayesPlanner>(),
-             [&](const Event& event, const RuleSet& rules) {
-               if (const auto* choice = std::get_if<StrategyChosen>(&event.what))
-                 chosen.push_back(rules[choice->strategy].name);
-             }));
+  const auto missing =
+      value_of(advise(recording, *other.rules, std::make_unique<BayesPlanner>(),
+                      [&](const Event& event, const RuleSet& rules) {
+                        if (const auto* choice = std::get_if<StrategyChosen>(&event.what))
+                          chosen.push_back(rules[choice->strategy].name);
+                      }));
   EXPECT_THAT(chosen, testing::Contains("swap"));
   EXPECT_THAT(missing, testing::ElementsAre("topic /lidar"));
 }

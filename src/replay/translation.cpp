@@ -47,8 +47,8 @@ Translation::Translation(const RuleSet& from, const RuleSet& to) {
   parameters_ =
       match<ParameterId>(from.parameters, ours, to.parameters, theirs, "parameter", missing_);
   std::vector<std::string> new_components;  // the graph tells of them by name
-  components_ = match<ComponentId>(from.components, ours, to.components, theirs, "component",
-                                   new_components);
+  components_ =
+      match<ComponentId>(from.components, ours, to.components, theirs, "component", new_components);
 }
 
 std::optional<Observation> Translation::operator()(const Observation& observation) const {
