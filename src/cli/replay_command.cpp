@@ -3,10 +3,12 @@
 
 #include <fmt/core.h>
 
+#include "bag/bag_file.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/journal_file.h"
 #include "cli/planner_options.h"
+#include "cli/replay_bag.h"
 #include "cli/rule_file.h"
 #include "knowledge/describe.h"
 #include "replay/replay.h"
@@ -19,6 +21,7 @@ struct ReplayOptions {
   std::int64_t session = 0;
   std::string rules;
   bool events = false;
+  std::vector<std::filesystem::path> message_path;
   PlannerOptions planner;
 };
 
@@ -141,7 +144,11 @@ int compare(const ReplayOptions& options, replay::Recording& recording, bool oth
   return kOk;
 }
 
-int replay_journal(const ReplayOptions& options, bool other_planner) {
+int replay_any(const ReplayOptions& options, bool other_planner) {
+  if (bag::is_bag(options.journal)) {
+    if (options.rules.empty()) return complain("a bag has no rules: add --rules"), kUsage;
+    return replay_bag({options.journal, options.rules, options.message_path, options.planner});
+  }
   const auto journal = journal::Reader::open(options.journal);
   if (!journal) return complain(journal.error());
   auto recording = replay::Recording::open(*journal, options.session);
@@ -157,17 +164,19 @@ void add_replay(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "replay",
       "Run a recorded journal through the manager again: it must decide the same.\nWith --rules or "
-      "--planner: what would have been decided, beside what was.");
-  command->add_option("JOURNAL", options->journal, "The journal file")->required();
+      "--planner: what would have been decided, beside what was. A rosbag2 recording works, too.");
+  command->add_option("JOURNAL", options->journal, "The journal file, or a bag")->required();
   command->add_option("--session", options->session,
                       "The run that begins with this row (default: the latest)");
   command->add_option("--rules", options->rules, "Other rules");
   command->add_flag("--events", options->events, "Print what happens");
+  command->add_option("--message-path", options->message_path,
+                      "For a bag: folders with .msg files: <folder>/<package>/msg/<Type>.msg");
   options->planner.add_to(*command);
   const CLI::Option* planner = command->get_option("--planner");
   const CLI::Option* objective = command->get_option("--objective");
   command->callback([options, planner, objective, &exit_code] {
-    exit_code = replay_journal(*options, planner->count() + objective->count() > 0);
+    exit_code = replay_any(*options, planner->count() + objective->count() > 0);
   });
 }
 

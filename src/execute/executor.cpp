@@ -172,7 +172,7 @@ void Executor::finish_goal(Run& run, Time now) {
 
 bool Executor::next_undo(Run& run, Time now) {
   // What was set in a process that is gone went with it.
-  std::erase_if(run.undo, [this](const Undo& undo) {
+  std::erase_if(run.undo, [this](const execute::Undo& undo) {
     return knowledge_.components[undo.component].process == ProcessState::kGone;
   });
   if (run.undo.empty()) {
