@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "journal/reader.h"
 #include "journal/requests.h"
 
 namespace culprit::journal {
@@ -253,9 +252,9 @@ Expected<void> Recorder::open_anew() {
   if (!opened) return Error{opened.error()};
   writer_ = std::move(*opened);
   if (!writer_->remark().empty() && options_.on_trouble) options_.on_trouble(writer_->remark());
-  const Reader reader(*Database::open(options_.path, Database::Mode::kRead));
-  const auto session = reader.newest(kind::kSession);
-  if (!is_begun_ || (session && *session)) return {};
+  const auto sessions = writer_->database().number(
+      "SELECT count(*) FROM entry WHERE kind <> 'steps' AND kind = 'session'");
+  if (!is_begun_ || (sessions && *sessions > 0)) return {};
   session_["continued"] = true;
   unsaved_.entries.insert(
       unsaved_.entries.begin(),

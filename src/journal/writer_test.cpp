@@ -9,7 +9,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include "journal/json.h"
 #include "journal/reader.h"
@@ -87,21 +86,21 @@ TEST(Writer, ASecondOneIsTurnedAwayUntilTheFirstIsGone) {
   EXPECT_TRUE(Writer::open(folder / "a.journal", {}));
 }
 
-// Whatever one row's bytes become, the chain tells.
-RC_GTEST_PROP(Chain, ShowsEveryChange, ()) {
-  const TestFolder folder;
-  {
-    Writer writer = open(folder / "a.journal");
-    ASSERT_TRUE(append(writer, batch(5)));
+TEST(Chain, ShowsEveryChange) {
+  for (const char* change :
+       {"UPDATE entry SET body = '{}'", "UPDATE entry SET at = at + 1",
+        "UPDATE entry SET kind = 'gap'", "UPDATE entry SET hash = zeroblob(32)",
+        "UPDATE entry SET hash = x'00'", "UPDATE entry SET id = id + 100"}) {
+    for (const char* row : {" WHERE id = 1", " WHERE id = 3", " WHERE id = 5"}) {
+      const TestFolder folder;
+      {
+        Writer writer = open(folder / "a.journal");
+        ASSERT_TRUE(append(writer, batch(5)));
+      }
+      run_sql(folder / "a.journal", std::string(change) + row);
+      EXPECT_FALSE(verified(folder / "a.journal").findings.empty()) << change << row;
+    }
   }
-  const int id = *rc::gen::inRange(1, 6);
-  const std::string row = " WHERE id = " + std::to_string(id);
-  const std::string change = *rc::gen::element<std::string>(
-      "UPDATE entry SET body = '{}'" + row, "UPDATE entry SET at = at + 1" + row,
-      "UPDATE entry SET kind = 'gap'" + row, "UPDATE entry SET hash = zeroblob(32)" + row,
-      "UPDATE entry SET id = id + 100" + row);
-  run_sql(folder / "a.journal", change);
-  RC_ASSERT(!verified(folder / "a.journal").findings.empty());
 }
 
 TEST(Chain, ShowsRowsMissingInTheMiddleAndWithANotedHashAtTheEnd) {
