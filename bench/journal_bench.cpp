@@ -2,6 +2,8 @@
 #include <chrono>
 #include <filesystem>
 #include <string>
+#include <thread>
+#include <unistd.h>
 
 #include <benchmark/benchmark.h>
 
@@ -67,6 +69,7 @@ journal::Session session() {
   journal::Session session;
   session.rules_path = "bench.rules";
   session.rules_text = kRules;
+  session.settling = Manager::kDiscovery;
   return session;
 }
 
@@ -87,8 +90,8 @@ void journalling(benchmark::State& state) {
   const File file("step");
   Manager bare(rules, std::make_unique<PaperPlanner>(), {});
   Manager recorded(rules, std::make_unique<PaperPlanner>(), {});
-  journal::Recorder recorder(*journal::Writer::open(file.path, {}), options_for(file), session(),
-                             recorded.knowledge());
+  journal::Recorder recorder(std::move(*journal::Writer::open(file.path, {})), options_for(file),
+                             session(), recorded.knowledge());
   std::vector<double> without;
   std::vector<double> with;
   for (auto _ : state) {
@@ -117,8 +120,8 @@ BENCHMARK(journalling)->Iterations(1)->Unit(benchmark::kMillisecond);
 
 void fill(const File& file, const RuleSet& rules, int steps, journal::Writer::Options limits = {}) {
   Manager manager(rules, std::make_unique<PaperPlanner>(), {});
-  journal::Recorder recorder(*journal::Writer::open(file.path, limits), options_for(file),
-                             session(), manager.knowledge());
+  journal::Recorder recorder(std::move(*journal::Writer::open(file.path, limits)),
+                             options_for(file), session(), manager.knowledge());
   Time now{};
   for (int i = 0; i < steps; ++i) {
     now += std::chrono::milliseconds(20);
@@ -162,8 +165,8 @@ void recovery(benchmark::State& state) {
     journal::Writer::Options limits;
     limits.max_bytes = std::int64_t{4} << 30;
     auto writer = journal::Writer::open(file.path, limits);
-    (void)writer->append({{{0, 1, "session", to_text(journal::to_json(session()))}}, {}}, 1,
-                         journal::Durability::kProcessEnd);
+    (void)writer->append({{{0, 1, "session", journal::to_text(journal::to_json(session()))}}, {}},
+                         1, journal::Durability::kProcessEnd);
     journal::Batch batch;
     for (int i = 0; i < 1000; ++i)
       batch.entries.push_back({0, 1, "steps", std::string(std::size_t{1} << 14, 'x')});

@@ -85,7 +85,8 @@ Expected<std::string> sequel_of(const journal::Reader& journal, const Entry& dec
   std::vector<std::int64_t> commands;
   Entry entry;
   auto more = rows->next(entry);
-  for (; more && *more && entry.kind != journal::kind::kSession; more = rows->next(entry)) {
+  // A strategy that was interrupted is finished by the next run.
+  for (; more && *more; more = rows->next(entry)) {
     const Json body = journal::from_text(entry.body);
     const auto number = journal::integer_of(body, "command", -1);
     const bool is_outcome = entry.kind == journal::kind::kOutcome;
