@@ -93,33 +93,32 @@ void Recorder::finish() {
 
 void Recorder::stepped(Time now, std::vector<Observation>& observations,
                        std::span<const Command> commands, std::span<const Event> events) {
-  Pending pending;
-  pending.now = now;
-  pending.wall = wall_of(now);
-  pending.observations.swap(observations);
-  bool wait = false;
-  if (!commands.empty()) {
-    pending.commands.assign(commands.begin(), commands.end());
-    wait = std::any_of(commands.begin(), commands.end(), changes_something);
-  }
-  if (!events.empty()) {
-    pending.events.assign(events.begin(), events.end());
-    pending.learned = changes();
-    wait |= !is_nothing(pending.learned);
-  }
+  const std::int64_t wall = wall_of(now);
+  const Learned learned = events.empty() ? Learned() : changes();
+  const bool wait =
+      !is_nothing(learned) || std::any_of(commands.begin(), commands.end(), changes_something);
   {
     const std::lock_guard lock(mutex_);
+    constexpr std::size_t kMaxQueued = 1 << 17;
+    if (queued_observations_ > kMaxQueued && commands.empty() && events.empty()) {
+      ++lost_steps_;
+      return;
+    }
+    // In its place at once: most steps have nothing but observations, which change hands.
+    Pending& pending = queue_.emplace_back();
+    pending.now = now;
+    pending.wall = wall;
+    pending.observations.swap(observations);
+    if (!commands.empty()) pending.commands.assign(commands.begin(), commands.end());
+    if (!events.empty()) {
+      pending.events.assign(events.begin(), events.end());
+      pending.learned = learned;
+    }
     if (!spare_.empty()) {
       observations.swap(spare_.back());
       spare_.pop_back();
     }
-    constexpr std::size_t kMaxQueued = 1 << 17;
-    if (queued_observations_ > kMaxQueued && pending.commands.empty() && pending.events.empty()) {
-      ++lost_steps_;
-      return;
-    }
     queued_observations_ += pending.observations.size();
-    queue_.push_back(std::move(pending));
     ++handed_over_;
     is_wanted_now_ |= wait;
   }
