@@ -27,6 +27,7 @@ struct Labels {
   Label operator()(const AdaptationDone&) const { return {"done", "\033[36m"}; }
   Label operator()(const AdaptationFailed&) const { return {"failed", "\033[33m"}; }
   Label operator()(const StrategyFailed&) const { return {"no help", "\033[33m"}; }
+  Label operator()(const StrategyResumed&) const { return {"resumed", "\033[36m"}; }
   Label operator()(const Undone&) const { return {"undone", "\033[36m"}; }
   Label operator()(const RoundSpent&) const { return {"pause", "\033[33m"}; }
   Label operator()(const RuleExhausted&) const { return {"EXHAUSTED", "\033[1;31m"}; }

@@ -1,9 +1,16 @@
 #include "cli/governor_options.h"
 
+#include <algorithm>
 #include <charconv>
+
+#include <nlohmann/json.hpp>
+
+#include "journal/json.h"
 
 namespace culprit::cli {
 namespace {
+
+constexpr double kLongest = 86400;  // seconds
 
 std::string to_text(const Intensity& intensity) {
   if (intensity.most == 0) return "none";
@@ -46,7 +53,7 @@ void GovernorOptions::add_to(CLI::App& command) {
   command.add_flag("--approve", approve, "Ask a person before each strategy")->group(kGroup);
   const auto time = [&](const char* option, double& value, const char* help) {
     command.add_option(option, value, help)
-        ->check(CLI::Range(0.0, 86400.0))
+        ->check(CLI::Range(0.0, kLongest))
         ->capture_default_str()
         ->group(kGroup);
   };
@@ -92,6 +99,39 @@ Expected<Governor::Options> GovernorOptions::options() const {
                         from_seconds(healthy_seconds)};
   out.storm.share = storm_percent / 100.0;
   return out;
+}
+
+nlohmann::ordered_json GovernorOptions::to_json() const {
+  return {{"approve", approve},
+          {"quiet", quiet_seconds},
+          {"intensity", overall},
+          {"intensity_kind", per_kind},
+          {"intensity_component", per_component},
+          {"backoff", backoff_seconds},
+          {"backoff_most", backoff_most_seconds},
+          {"healthy", healthy_seconds},
+          {"storm", storm_percent}};
+}
+
+GovernorOptions GovernorOptions::from_json(const nlohmann::ordered_json& json) {
+  GovernorOptions options;
+  const auto intensity = [&json](const char* key, std::string& value) {
+    if (const std::string text = journal::text_of(json, key); !text.empty()) value = text;
+  };
+  const auto time = [&json](const char* key, double& value) {
+    value = std::clamp(journal::number_of(json, key, value), 0.0, kLongest);
+  };
+  options.approve = journal::flag_of(json, "approve");
+  time("quiet", options.quiet_seconds);
+  intensity("intensity", options.overall);
+  intensity("intensity_kind", options.per_kind);
+  intensity("intensity_component", options.per_component);
+  time("backoff", options.backoff_seconds);
+  time("backoff_most", options.backoff_most_seconds);
+  time("healthy", options.healthy_seconds);
+  options.storm_percent = static_cast<int>(
+      std::clamp(journal::number_of(json, "storm", options.storm_percent), 0.0, 100.0));
+  return options;
 }
 
 }  // namespace culprit::cli

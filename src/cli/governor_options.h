@@ -4,6 +4,7 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "execute/governor.h"
 
@@ -26,6 +27,10 @@ struct GovernorOptions {
   void add_to(CLI::App& command);
   // An error: an intensity that is none.
   Expected<Governor::Options> options() const;
+
+  // For the journal. What is missing there was as recommended.
+  nlohmann::ordered_json to_json() const;
+  static GovernorOptions from_json(const nlohmann::ordered_json& json);
 };
 
 }  // namespace culprit::cli

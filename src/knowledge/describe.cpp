@@ -79,6 +79,11 @@ class Describer {
     const Strategy& strategy = rules_[e.strategy];
     return strategy.name + " did not resolve " + rules_[strategy.rule].name + ": " + e.reason;
   }
+  std::string operator()(const StrategyResumed& e) const {
+    const Strategy& strategy = rules_[e.strategy];
+    return strategy.name + " for " + rules_[strategy.rule].name +
+           " was under way when culprit ended, and is finished now";
+  }
   std::string operator()(const Undone& e) const {
     return e.succeeded ? e.what + " again" : "cannot be undone: " + e.what;
   }

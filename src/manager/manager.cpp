@@ -32,10 +32,18 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
       executor_(knowledge_),
       governor_(knowledge_, options.governor, options.start),
       autonomy_(options.autonomy),
+      settling_(options.settling),
       now_(options.start),
       held_back_(rules.rules.size()) {
   knowledge_.beliefs.set_forgetting(options.forgetting);
   knowledge_.couplings.set_forgetting(options.forgetting);
+}
+
+void Manager::resume(Interrupted interrupted) {
+  if (autonomy_ == Autonomy::kAdvise) return;
+  const StrategyId strategy = interrupted.strategy;
+  executor_.resume(std::move(interrupted), now_, later(now_, settling_));
+  governor_.began(strategy);
 }
 
 std::vector<Command> Manager::step(Time now, std::span<const Observation> observations) {

@@ -84,6 +84,11 @@ class TestRobot {
 
   // Called after each step of the manager.
   std::function<void()> after_step;
+  // Called after each step and before its commands are served. If it gives false they never are:
+  // the manager died with them.
+  std::function<bool(std::vector<Observation>&, std::span<const Command>)> before_commands;
+  // Another process of culprit takes over: it knows nothing, and discovers the robot anew.
+  void replace_manager(std::unique_ptr<Manager> manager);
 
   Time now{};
 
