@@ -32,6 +32,7 @@ struct Labels {
   Label operator()(const RuleExhausted&) const { return {"EXHAUSTED", "\033[1;31m"}; }
   Label operator()(const ComponentLost&) const { return {"lost", "\033[31m"}; }
   Label operator()(const ComponentFound&) const { return {"found", "\033[32m"}; }
+  Label operator()(const RivalSeen&) const { return {"RIVAL", "\033[1;33m"}; }
   Label operator()(const Trouble&) const { return {"trouble", "\033[33m"}; }
 };
 

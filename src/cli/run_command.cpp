@@ -34,6 +34,7 @@ ros2::Severity severity_of(const Event& event) {
                       std::holds_alternative<StrategyFailed>(event.what) ||
                       std::holds_alternative<ComponentLost>(event.what) ||
                       std::holds_alternative<AdaptationFailed>(event.what) ||
+                      std::holds_alternative<RivalSeen>(event.what) ||
                       std::holds_alternative<Trouble>(event.what);
   return is_bad ? ros2::Severity::kWarn : ros2::Severity::kInfo;
 }

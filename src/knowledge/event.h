@@ -130,6 +130,12 @@ struct ComponentFound {
   int pid = 0;
 };
 
+// Something else sets back what strategies set (rivals.h). It is left alone from now on.
+struct RivalSeen {
+  ComponentId component;
+  std::string parameter;  // empty: the mode
+};
+
 struct Trouble {
   std::string text;
 };
@@ -138,7 +144,7 @@ struct Event {
   Time at;
   std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
                AdaptationDone, AdaptationFailed, StrategyFailed, Undone, RoundSpent, RuleExhausted,
-               ComponentLost, ComponentFound, Trouble>
+               ComponentLost, ComponentFound, RivalSeen, Trouble>
       what;
 };
 

@@ -8,6 +8,7 @@
 #include "knowledge/couplings.h"
 #include "knowledge/dependency_graph.h"
 #include "knowledge/event.h"
+#include "knowledge/rivals.h"
 #include "knowledge/rule_states.h"
 #include "knowledge/signal_store.h"
 #include "language/rule_set.h"
@@ -34,6 +35,7 @@ struct Knowledge {
         states(rules, other.states),
         beliefs(other.beliefs),
         couplings(other.couplings),
+        rivals(other.rivals),
         now(other.now) {}
   Knowledge(const Knowledge&) = delete;
 
@@ -44,8 +46,12 @@ struct Knowledge {
   RuleStates states;
   Beliefs beliefs;
   Couplings couplings;
+  Rivals rivals;
   Time now{};                 // of the step under way
   std::vector<Event> events;  // of the step under way
+
+  // When the component, or something that it depends on, last joined the graph.
+  Time began(ComponentId component) const;
 
   template <class What>
   void tell(Time at, What what) {

@@ -54,6 +54,7 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
   monitor_.advance(now_);
   analyzer_.advance(now_);
   if (!analyzer_.anything_active()) {
+    executor_.advance(now_, commands);  // lets go of what has just succeeded
     next_plan_ = kNever;
     return commands;
   }
