@@ -24,6 +24,7 @@ void add_demo(CLI::App& app, int& exit_code);
 void add_lsp(CLI::App& app, const std::string& version, int& exit_code);
 void add_import(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, const std::string& version, int& exit_code);
+void add_modes(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 
 }  // namespace culprit::cli
