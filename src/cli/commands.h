@@ -28,6 +28,7 @@ void add_log(CLI::App& app, int& exit_code);
 void add_audit(CLI::App& app, int& exit_code);
 void add_beliefs(CLI::App& app, int& exit_code);
 void add_replay(CLI::App& app, int& exit_code);
+void add_modes(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_torture(CLI::App& app, int& exit_code);
 

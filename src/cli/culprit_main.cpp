@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   culprit::cli::add_lsp(app, CULPRIT_VERSION, exit_code);
   culprit::cli::add_import(app, exit_code);
   culprit::cli::add_study(app, CULPRIT_VERSION, exit_code);
+  culprit::cli::add_modes(app, exit_code);
   culprit::cli::add_export(app, exit_code);
   culprit::cli::add_torture(app, exit_code);
   culprit::cli::add_log(app, exit_code);

@@ -50,6 +50,7 @@ ros2::Severity severity_of(const Event& event) {
                       std::holds_alternative<ActionHeldBack>(event.what) ||
                       std::holds_alternative<ApprovalAsked>(event.what) ||
                       std::holds_alternative<StrategyAbandoned>(event.what) ||
+                      std::holds_alternative<RivalSeen>(event.what) ||
                       std::holds_alternative<Trouble>(event.what);
   return is_bad ? ros2::Severity::kWarn : ros2::Severity::kInfo;
 }
@@ -184,8 +185,9 @@ int run(const RunOptions& options) {
   }
   const bool is_paused = beginning.is_paused;
   const journal::Session session = session_of(options, *rules, advises, (*robot)->now(), beginning);
-  const auto manager = replay::manager_for(session, *rules, options.planner.planner(),
-                                           advises ? Autonomy::kAdvise : Autonomy::kAct);
+  const auto manager =
+      replay::manager_for(session, *rules, options.planner.planner(),
+                          {advises ? Autonomy::kAdvise : Autonomy::kAct, *governor});
   std::unique_ptr<journal::Recorder> recorder;
   if (!options.no_journal && claim->has_value())
     recorder = record(options, std::move(beginning), session, *manager, **robot);

@@ -76,7 +76,11 @@ void Executor::answered(const Reply& reply, Time now) {
 
 void Executor::advance(Time now, std::vector<Command>& commands) {
   // An attempt that succeeded left its rule; nothing of it is left to do.
-  std::erase_if(runs_, [&](const Run& run) { return attempt_of(run) == nullptr; });
+  std::erase_if(runs_, [&](const Run& run) {
+    if (attempt_of(run) != nullptr) return false;
+    forget_routines(run);
+    return true;
+  });
   for (Run& run : runs_) advance(run, now, commands);
 }
 
@@ -88,6 +92,8 @@ void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
     run.pursuit.reset();
   }
   if (stage == Attempt::Stage::kWaiting || stage == Attempt::Stage::kOver) return;
+  // The analysis has not taken it from here yet.
+  if (!attempt_of(run)->obstacle.empty() && !run.is_undoing) return;
   while (run.pursuit || (run.is_undoing ? next_undo(run, now) : next_goal(run, now))) {
     const bool had_changed = run.pursuit->has_changed_anything();
     if (run.pending == CommandId{} || run.pursuit->next_deadline() <= now) {
@@ -162,8 +168,10 @@ void Executor::finish_goal(Run& run, Time now) {
     const bool switches = type == AdaptationType::kActivate || type == AdaptationType::kDeactivate;
     if (switches) note_lifecycle(pursuit);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
+    note_setting(pursuit, now);
     ++run.goal;
   } else {
+    if (pursuit.met_rival()) note_rival(run, now);
     attempt_of(run)->obstacle =
         knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark();
     knowledge_.tell(now, AdaptationFailed{run.strategy, run.adaptation, pursuit.remark()});
@@ -189,6 +197,11 @@ void Executor::finish_undo(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const bool reached = pursuit.is_reached();
   if (reached) note_lifecycle(pursuit);
+  // A mode that is back by itself was set back, and that is remembered.
+  const bool is_mode = std::holds_alternative<execute::ModeGoal>(pursuit.goal());
+  if (const auto subject = execute::subject_of(pursuit.goal(), pursuit.component());
+      subject && (!is_mode || pursuit.has_changed_anything()))
+    knowledge_.rivals.forget(*subject);
   // What came back by itself was not undone.
   if (!reached || pursuit.has_changed_anything()) {
     const std::string what =
@@ -212,6 +225,37 @@ void Executor::note_lifecycle(const Pursuit& pursuit) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
   if (lifecycle != nullptr)
     knowledge_.components[pursuit.component()].intended_lifecycle = lifecycle->target;
+}
+
+// What was set, and from what: something else may set it back.
+void Executor::note_setting(const Pursuit& pursuit, Time now) {
+  const auto setting = execute::setting_of(pursuit.goal(), pursuit.component());
+  const auto* before = pursuit.before() ? std::get_if<Value>(&pursuit.before()->value) : nullptr;
+  // An odd remark says that it does not read back what was set.
+  if (!setting || before == nullptr || !pursuit.has_changed_anything() || !pursuit.remark().empty())
+    return;
+  knowledge_.rivals.changed(setting->subject, *before, execute::in_type_of(setting->value, *before),
+                            knowledge_.began(pursuit.component()), now);
+}
+
+void Executor::note_rival(const Run& run, Time now) {
+  const auto subject = execute::subject_of(run.pursuit->goal(), run.pursuit->component());
+  knowledge_.rivals.leave_alone(*subject, now);
+  knowledge_.tell(now, RivalSeen{subject->component, subject->parameter});
+  attempt_of(run)->is_ambiguous = true;  // that nothing was tried proves nothing
+}
+
+// What resets itself before the failure is over is no rival's work.
+void Executor::forget_routines(const Run& run) {
+  for (const Adaptation& adaptation : knowledge_.rules[run.strategy].adaptations) {
+    const bool is_parameter = adaptation.type == AdaptationType::kSetParameter ||
+                              adaptation.type == AdaptationType::kChangeCommunication;
+    if (!is_parameter) continue;
+    const Subject subject{adaptation.component, adaptation.subject};
+    const Value* ours = knowledge_.rivals.ours(subject);
+    const auto& present = knowledge_.components[adaptation.parameter];
+    if (ours != nullptr && present && *present != *ours) knowledge_.rivals.forget(subject);
+  }
 }
 
 Attempt* Executor::attempt_of(const Run& run) {

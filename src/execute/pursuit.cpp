@@ -4,12 +4,9 @@
 #include <cmath>
 
 namespace culprit::execute {
-namespace {
 
 using namespace std::chrono_literals;
 
-// A whole number for a parameter that holds numbers, and the other way round where nothing is lost:
-// ROS parameters are strictly typed, rule files are not.
 Value in_type_of(const Value& value, const Value& present) {
   if (const auto* whole = std::get_if<std::int64_t>(&value);
       whole != nullptr && std::holds_alternative<double>(present)) {
@@ -23,6 +20,8 @@ Value in_type_of(const Value& value, const Value& present) {
   }
   return value;
 }
+
+namespace {
 
 std::optional<Value> sum(const Value& present, const Value& change) {
   const auto* whole = std::get_if<std::int64_t>(&present);
@@ -128,6 +127,9 @@ std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Tim
 
 std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time now) {
   const ComponentState& state = knowledge.components[component_];
+  if (std::holds_alternative<ModeGoal>(goal_) && has_changed_anything() &&
+      !state.alive.value_or(true))
+    return give_up("whoever changes its mode is gone");
   if (const auto* gone = std::get_if<GoneGoal>(&goal_)) return pursue(*gone, state, now);
   if (const auto* present = std::get_if<PresentGoal>(&goal_)) return pursue(*present, state, now);
   if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return pursue(*service, now);
@@ -142,9 +144,22 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   }
   if (seen_->outcome == Outcome::kRefused) return give_up(why(*seen_));
   if (!before_) before_ = seen_;
+  if (!has_changed_anything() && would_fight(knowledge)) {
+    met_rival_ = true;
+    return give_up("something else sets it back; it is left alone");
+  }
   if (const auto* parameter = std::get_if<ParameterGoal>(&goal_)) return pursue(*parameter, now);
   if (const auto* lifecycle = std::get_if<LifecycleGoal>(&goal_)) return pursue(*lifecycle, now);
   return pursue(std::get<ModeGoal>(goal_), now);
+}
+
+bool Pursuit::would_fight(const Knowledge& knowledge) const {
+  const auto setting = setting_of(goal_, component_);
+  const auto* present = std::get_if<Value>(&seen_->value);
+  return setting && present != nullptr &&
+         knowledge.rivals.would_fight(setting->subject, *present,
+                                      in_type_of(setting->value, *present),
+                                      knowledge.began(component_));
 }
 
 std::optional<Pursuit::Request> Pursuit::pursue(const ParameterGoal& goal, Time now) {
@@ -240,8 +255,11 @@ std::optional<Pursuit::Request> Pursuit::change(Request request, Time now) {
 }
 
 std::optional<Pursuit::Request> Pursuit::look_again(Time now) {
-  if (now >= deadline_)
-    return give_up("not " + describe(goal_) + " after " + to_string(patience(goal_)));
+  if (now >= deadline_) {
+    const bool was_accepted = answer_ && answer_->outcome == Outcome::kDone;
+    return give_up((was_accepted ? "it accepted and did nothing: not " : "not ") + describe(goal_) +
+                   " after " + to_string(patience(goal_)));
+  }
   wake_ = std::min(later(now, kPause), deadline_);
   step_ = Step::kPausing;
   return std::nullopt;

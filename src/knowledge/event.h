@@ -142,6 +142,12 @@ struct ComponentFound {
   int pid = 0;
 };
 
+// Something else sets back what strategies set (rivals.h). It is left alone from now on.
+struct RivalSeen {
+  ComponentId component;
+  std::string parameter;  // empty: the mode
+};
+
 struct Trouble {
   std::string text;
 };
@@ -218,7 +224,7 @@ struct Event {
   Time at;
   std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
                AdaptationDone, AdaptationFailed, StrategyFailed, StrategyResumed, Undone,
-               RoundSpent, RuleExhausted, ComponentLost, ComponentFound, Trouble, OrderAccepted,
+               RoundSpent, RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble, OrderAccepted,
                OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed, StrategyAbandoned,
                OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached>
       what;

@@ -43,7 +43,7 @@ void Manager::resume(Interrupted interrupted) {
   if (autonomy_ == Autonomy::kAdvise) return;
   const StrategyId strategy = interrupted.strategy;
   executor_.resume(std::move(interrupted), now_, later(now_, settling_));
-  governor_.began(strategy);
+  governor_.began(strategy, now_);
 }
 
 std::vector<Command> Manager::step(Time now, std::span<const Observation> observations) {
@@ -53,6 +53,7 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
   if (analyzer_.anything_active()) {
     react(commands);
   } else {
+    executor_.advance(now_, commands);  // lets go of what has just succeeded
     next_plan_ = kNever;
   }
   governor_.note(knowledge_.events);

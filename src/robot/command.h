@@ -38,7 +38,9 @@ struct CallService {
 struct ChangeMode {
   std::string mode;
 };
+// Read back as kUnknownMode while what its parts are in fits no mode.
 struct ReadMode {};
+inline constexpr const char* kUnknownMode = "unknown";
 
 // Ends the component's process: politely, then harder, until it is proven gone. Done when it is
 // gone, also if it was.

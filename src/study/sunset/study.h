@@ -53,13 +53,17 @@ class SunsetStudy {
 
   std::uint64_t seed_of(RunId id) const;
   static Manager::Options manager_options(const Setting& setting);
-  std::unique_ptr<ManagingSystem> manager(const Setting& setting) const;
+  std::unique_ptr<ManagingSystem> manager(const Setting& setting, std::uint64_t seed) const;
 
   std::vector<Setting> settings_;
   std::uint64_t seed_;
 };
 
-// The planners that there are: "paper", "reference", "bayes".
+// The planners that there are: "paper", "reference", "bayes", and the managers of others as
+// planners of one failure and one strategy at a time: "bt", "metacontrol", "rosa".
 std::vector<std::string_view> sunset_planners();
+
+// Whether a planner has the paper's D, C and S to switch off.
+bool has_switches(std::string_view planner);
 
 }  // namespace culprit::study
