@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/layout_diff.h"
-#include "cli/text_file.h"
+#include "language/text_file.h"
 #include "language/formatter.h"
 
 namespace culprit::cli {

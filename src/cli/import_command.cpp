@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "cli/commands.h"
-#include "cli/text_file.h"
+#include "language/text_file.h"
 #include "language/import/importer.h"
 #include "rule_json/from_json.h"
 

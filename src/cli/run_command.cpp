@@ -10,9 +10,13 @@
 #include "cli/paths.h"
 #include "cli/planner_options.h"
 #include "cli/rule_file.h"
+#include "cli/web_service.h"
 #include "knowledge/describe.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
+#include "web/live_routes.h"
+#include "web/rule_routes.h"
+#include "web/watched_manager.h"
 
 namespace culprit::cli {
 namespace {
@@ -26,6 +30,8 @@ struct RunOptions {
   double settle_seconds = seconds(Manager::kDiscovery);
   std::string state_folder;
   std::vector<std::filesystem::path> message_path;
+  bool is_on_web = false;
+  WebOptions web;
 };
 
 ros2::Severity severity_of(const Event& event) {
@@ -77,6 +83,12 @@ void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Ob
   }
 }
 
+std::vector<web::Route> web_routes(web::Hub& hub, web::RuleDesk& desk) {
+  std::vector<web::Route> routes = web::live_routes(hub);
+  for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
+  return routes;
+}
+
 int run(const RunOptions& options) {
   const auto rules = load_rules(options.rules);
   if (rules == nullptr) return kFailed;
@@ -109,8 +121,20 @@ int run(const RunOptions& options) {
   manager_options.forgetting = options.forgetting;
   Manager manager(*rules, options.planner.planner(), manager_options);
 
+  web::Hub hub([&] { (*robot)->interrupt(); });
+  web::WatchedManager watched(manager, hub, manager_options.start);
+  web::RuleDesk desk(options.rules);
+  Expected<std::unique_ptr<web::Server>> server(nullptr);
+  if (options.is_on_web) {
+    server = serve(options.web, web_routes(hub, desk), &hub);
+    if (!server) {
+      fmt::print(stderr, "culprit: {}\n", server.error());
+      return kUsage;
+    }
+  }
+
   const Colour colour = colour_of(STDOUT_FILENO);
-  Runtime runtime(manager, **robot);
+  Runtime runtime(watched, **robot);
   runtime.on_events = [&](std::span<const Event> events) {
     for (const Event& event : events) {
       const std::string text = line(event, *rules, manager_options.start, colour);
@@ -122,7 +146,7 @@ int run(const RunOptions& options) {
     (*robot)->link().publish(health(manager.knowledge()));
   };
   (*robot)->link().publish(health(manager.knowledge()));
-  for (const Command& command : manager.step((*robot)->now(), seen)) (*robot)->execute(command);
+  for (const Command& command : watched.step((*robot)->now(), seen)) (*robot)->execute(command);
   if (!manager.events().empty()) runtime.on_events(manager.events());
   runtime.run(signals.stopped());
   signals.on_stop({});
@@ -158,6 +182,9 @@ void add_run(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.5, 1.0))
       ->capture_default_str();
   options->planner.add_to(*command);
+  command->add_flag("--web", options->is_on_web,
+                    "Show in a browser what is seen, decided and done");
+  options->web.add_to(*command);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

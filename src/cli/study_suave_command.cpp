@@ -9,7 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "cli/text_file.h"
+#include "language/text_file.h"
 #include "study/suave/report.h"
 #include "study/tables/render.h"
 

@@ -102,8 +102,9 @@ Expected<void> SunsetDemo::open() {
   manager.start = live_now();
   manager.settling = 20s;  // the nodes are only just being started
   manager_ = std::make_unique<Manager>(rules_, options_.planner(), manager);
+  watched_ = std::make_unique<web::WatchedManager>(*manager_, hub_, start_);
   runtime_ = std::thread([this] {
-    Runtime runtime(*manager_, *robot_);
+    Runtime runtime(*watched_, *robot_);
     runtime.on_events = [this](std::span<const Event> events) { on_events(events); };
     runtime.run(is_ending_);
   });
@@ -146,6 +147,12 @@ Expected<void> SunsetDemo::inject(const Play& play) {
     }
   }
   return {};
+}
+
+Expected<void> SunsetDemo::inject(const std::string& fault) {
+  if (const sunset::Fault* known = sunset::find_fault(fault)) return experiment_->inject(*known);
+  const auto play = find_play(fault);
+  return play ? inject(*play) : Error{play.error()};
 }
 
 Expected<PlayOutcome> SunsetDemo::play(const Play& play) {
