@@ -132,12 +132,17 @@ void Analyzer::judge(RuleId id, Time now) {
       break;
     case Attempt::Stage::kUndoing:
       return;
-    case Attempt::Stage::kOver:
-      couplings_.ended(attempt, now);
-      state.attempt.reset();
-      knowledge_.states.enter(id, RulePhase::kFailing);
+    case Attempt::Stage::kOver: {
+      const bool had_failure = !attempt.has_no_failure;
+      end_attempt(id, now);
+      if (!had_failure) return;
       exhaust_if_spent(id, now);
       return watch_failing(id, now);
+    }
+  }
+  if (attempt.has_no_failure) {
+    knowledge_.tell(now, OrderCarriedOut{attempt.strategy});
+    return end_attempt(id, now);
   }
   // Anew each time: how long a signal takes to show a change may have become known meanwhile.
   const Duration impact = duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
@@ -145,6 +150,19 @@ void Analyzer::judge(RuleId id, Time now) {
   if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
   if (now < attempt.deadline || is_false(state.trigger)) return;
   if (state.trigger.known || now >= later(attempt.deadline, kLostAfter)) fail(id, now);
+}
+
+void Analyzer::end_attempt(RuleId id, Time now) {
+  const Attempt attempt = *std::exchange(knowledge_.states.state(id).attempt, std::nullopt);
+  couplings_.ended(attempt, now);
+  knowledge_.states.enter(id, attempt.has_no_failure ? RulePhase::kQuiet : RulePhase::kFailing);
+  // The failure may have come meanwhile.
+  if (attempt.has_no_failure) knowledge_.signals.touch(id);
+}
+
+void Analyzer::abandon(RuleId id, Time now) {
+  end_attempt(id, now);
+  schedule(id, now);
 }
 
 bool Analyzer::can_have_caused(RuleId id) const {
@@ -171,11 +189,13 @@ void Analyzer::succeed(RuleId id, Time now) {
 void Analyzer::fail(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   Attempt& attempt = *state.attempt;
-  knowledge_.states.set_tried(attempt.strategy, true);
-  ++state.attempts;
-  // An unknown trigger proves nothing, nor does an overlap with another strategy.
-  if (!attempt.is_ambiguous && state.trigger.known)
-    knowledge_.beliefs.did_not_help(attempt.strategy);
+  if (!attempt.has_no_failure) {
+    knowledge_.states.set_tried(attempt.strategy, true);
+    ++state.attempts;
+    // An unknown trigger proves nothing, nor does an overlap with another strategy.
+    if (!attempt.is_ambiguous && state.trigger.known)
+      knowledge_.beliefs.did_not_help(attempt.strategy);
+  }
   const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
                              : state.trigger.known
                                  ? "the failure is still there"

@@ -56,6 +56,9 @@ class Analyzer {
   // Whether there is any, for steps where nothing is wrong.
   bool anything_active() const { return !knowledge_.states.active().empty(); }
 
+  // The rule's strategy under way ends without a verdict.
+  void abandon(RuleId id, Time now);
+
   // No untried strategy of the rule is valid: its round is over.
   void round_is_spent(RuleId id, Time now);
 
@@ -70,6 +73,7 @@ class Analyzer {
   void detect(RuleId id, Time now);
   void watch_failing(RuleId id, Time now);
   void judge(RuleId id, Time now);
+  void end_attempt(RuleId id, Time now);
   void succeed(RuleId id, Time now);
   void fail(RuleId id, Time now);
   void resolve(RuleId id, FailureResolved how, Time now);

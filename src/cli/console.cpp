@@ -33,6 +33,16 @@ struct Labels {
   Label operator()(const ComponentLost&) const { return {"lost", "\033[31m"}; }
   Label operator()(const ComponentFound&) const { return {"found", "\033[32m"}; }
   Label operator()(const Trouble&) const { return {"trouble", "\033[33m"}; }
+  Label operator()(const OrderAccepted&) const { return {"order", "\033[1;35m"}; }
+  Label operator()(const OrderRefused&) const { return {"refused", "\033[35m"}; }
+  Label operator()(const ActionHeldBack&) const { return {"held back", "\033[33m"}; }
+  Label operator()(const ApprovalAsked&) const { return {"APPROVE?", "\033[1;35m"}; }
+  Label operator()(const ApprovalLapsed&) const { return {"lapsed", "\033[35m"}; }
+  Label operator()(const StrategyAbandoned&) const { return {"abandoned", "\033[33m"}; }
+  Label operator()(const OrderCarriedOut&) const { return {"done", "\033[36m"}; }
+  Label operator()(const SilenceEnded&) const { return {"silence", "\033[35m"}; }
+  Label operator()(const StormBegan&) const { return {"STORM", "\033[1;31m"}; }
+  Label operator()(const StormEnded&) const { return {"calm", "\033[32m"}; }
 };
 
 }  // namespace

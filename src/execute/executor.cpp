@@ -15,6 +15,7 @@ void Executor::begin(StrategyId strategy, Time now) {
   state.attempt.emplace();
   state.attempt->strategy = strategy;
   state.attempt->chosen = now;
+  state.attempt->has_no_failure = state.phase == RulePhase::kQuiet;
   knowledge_.states.enter(rule, RulePhase::kAttempting);
   std::erase_if(runs_, [&](const Run& old) { return old.rule == rule; });
   Run run;

@@ -19,7 +19,7 @@ class Executor {
   // `knowledge` must outlive the executor.
   explicit Executor(Knowledge& knowledge) : knowledge_(knowledge) {}
 
-  // The rule's attempt begins. @pre the rule is failing and none is under way.
+  // The rule's attempt begins. @pre none of the rule is under way, none has its components
   void begin(StrategyId strategy, Time now);
 
   // An answer; one that nobody waits for any more is ignored.

@@ -23,7 +23,8 @@ struct Knowledge {
         components(rules),
         states(rules),
         beliefs(rules),
-        couplings(rules) {}
+        couplings(rules),
+        withheld(rules.strategies.size()) {}
 
   // What `other` knows, for `rule_set`: a copy of its rules. Its events are left out.
   Knowledge(const RuleSet& rule_set, const Knowledge& other)
@@ -34,6 +35,7 @@ struct Knowledge {
         states(rules, other.states),
         beliefs(other.beliefs),
         couplings(other.couplings),
+        withheld(other.withheld),
         now(other.now) {}
   Knowledge(const Knowledge&) = delete;
 
@@ -44,6 +46,8 @@ struct Knowledge {
   RuleStates states;
   Beliefs beliefs;
   Couplings couplings;
+  // By strategy: why the governor does not allow it now; empty where it does.
+  std::vector<std::string> withheld;
   Time now{};                 // of the step under way
   std::vector<Event> events;  // of the step under way
 

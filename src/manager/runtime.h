@@ -7,6 +7,8 @@
 
 #include <atomic>
 #include <functional>
+#include <mutex>
+#include <vector>
 
 #include "manager/managing_system.h"
 #include "robot/robot.h"
@@ -25,9 +27,17 @@ class Runtime {
   // to interrupt the robot's waiting.
   void run(const std::atomic<bool>& stop, Time end = kNever);
 
+  // Gives the managing system an order, with its next step, which comes at once. From any thread,
+  // as long as the runtime lives; what is submitted while run() does not run waits for it.
+  void submit(Order order);
+
  private:
+  void take_orders(std::vector<Observation>& observations);
+
   ManagingSystem& manager_;
   Robot& robot_;
+  std::mutex mutex_;
+  std::vector<Order> orders_;  // guarded by mutex_
 };
 
 }  // namespace culprit

@@ -7,15 +7,15 @@
 namespace culprit::test {
 
 TestRobot::TestRobot(const std::string& text, std::unique_ptr<const Planner> planner,
-                     Autonomy autonomy) {
+                     Manager::Options options) {
   const Source source("test.rules", text);
   Checked checked = check(source);
   for (const Diagnostic& d : checked.diagnostics) {
     if (d.severity == Severity::kError) ADD_FAILURE() << render(d, source);
   }
   rules_ = std::make_unique<RuleSet>(checked.rules.value_or(RuleSet{}));
-  manager_ =
-      std::make_unique<Manager>(*rules_, std::move(planner), Manager::Options{autonomy, now});
+  options.start = now;
+  manager_ = std::make_unique<Manager>(*rules_, std::move(planner), options);
 }
 
 TestRobot::Component& TestRobot::add(const std::string& name, std::vector<std::string> needs,
@@ -67,6 +67,11 @@ void TestRobot::signal(const std::string& name, Value value) {
   for (std::size_t s = 0; s < rules_->signals.size(); ++s) {
     if (rules_->signals[s].name == name) observe(SignalRead{SignalId(s), value});
   }
+  step();
+}
+
+void TestRobot::order(Order order) {
+  observe(std::move(order));
   step();
 }
 

@@ -25,7 +25,11 @@ class TestRobot {
  public:
   explicit TestRobot(const std::string& rules,
                      std::unique_ptr<const Planner> planner = std::make_unique<BayesPlanner>(),
-                     Autonomy autonomy = Autonomy::kAct);
+                     Autonomy autonomy = Autonomy::kAct)
+      : TestRobot(rules, std::move(planner), options_of(autonomy)) {}
+  // `options.start` is when the robot's time begins.
+  TestRobot(const std::string& rules, std::unique_ptr<const Planner> planner,
+            Manager::Options options);
 
   struct Component {
     std::string name;
@@ -55,6 +59,7 @@ class TestRobot {
       const std::string& name);  // -9: its process is gone, its node lingers until its lease ends
   void stop(const std::string& name);  // -STOP
   void run_for(Duration time);
+  void order(Order order);
 
   // Says each node, topic and state to the manager, as discovery does. Call once, after add().
   void discover();
@@ -77,6 +82,11 @@ class TestRobot {
   Time now{};
 
  private:
+  static Manager::Options options_of(Autonomy autonomy) {
+    Manager::Options options;
+    options.autonomy = autonomy;
+    return options;
+  }
   struct Topic {
     std::string name;
     std::string producer;

@@ -78,6 +78,7 @@ class Monitor {
   void on(Time at, const ProcessSeen& seen);
   void on(Time at, const Probed& seen);
   void on(Time, const Reply&) {}  // the executor's
+  void on(Time, const Order&) {}  // the governor's
   void on(Time at, const LinkTrouble& seen);
 
   void read_signal(SignalId signal, const Value& value, Time at);

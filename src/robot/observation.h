@@ -1,8 +1,8 @@
 // What a robot tells: the only way in for facts about the managed system.
 //
 // Adapters (ros2, process, simulation, recorded bags) produce observations, the monitor consumes
-// them. Things that the rule set names come with their number in the rule set; the rest of the
-// robot's graph comes with its names.
+// them; people's orders come the same way. Things that the rule set names come with their number in
+// the rule set; the rest of the robot's graph comes with its names.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 
 #include "language/ids.h"
 #include "language/value.h"
+#include "robot/order.h"
 #include "robot/time.h"
 
 namespace culprit {
@@ -140,7 +141,7 @@ struct Observation {
   Time at;
   std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived,
                SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply,
-               LinkTrouble>
+               LinkTrouble, Order>
       what;
 };
 
