@@ -13,8 +13,10 @@
 #include "cli/planner_options.h"
 #include "cli/sunset_demo.h"
 #include "cli/web_service.h"
+#include "cli/what_if_route.h"
 #include "web/fault_routes.h"
 #include "web/live_routes.h"
+#include "web/order_routes.h"
 #include "web/rule_routes.h"
 
 namespace culprit::cli {
@@ -122,9 +124,13 @@ web::Faults faults_of(SunsetDemo& demo) {
   return faults;
 }
 
-std::vector<web::Route> web_routes(SunsetDemo& demo, web::RuleDesk& desk) {
+std::vector<web::Route> web_routes(SunsetDemo& demo, web::RuleDesk& desk, PlannerFactory planner) {
   std::vector<web::Route> routes = web::live_routes(demo.hub());
+  const auto submit = [&demo](Order order) { demo.submit(std::move(order)); };
+  for (web::Route& route : web::order_routes(demo.rules(), submit))
+    routes.push_back(std::move(route));
   for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
+  routes.push_back(what_if_route(std::move(planner)));
   for (web::Route& route : web::fault_routes(faults_of(demo))) routes.push_back(std::move(route));
   return routes;
 }
@@ -154,7 +160,8 @@ int demo(const DemoOptions& options) {
     return kFailed;
   }
   web::RuleDesk desk("sunset.rules", kSunsetRules);
-  const auto server = serve(options.web, web_routes(**demo, desk), &(*demo)->hub());
+  const auto server =
+      serve(options.web, web_routes(**demo, desk, options.planner.factory()), &(*demo)->hub());
   if (!server) {
     fmt::print(stderr, "culprit: {}\n", server.error());
     return kUsage;

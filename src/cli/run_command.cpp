@@ -11,10 +11,12 @@
 #include "cli/planner_options.h"
 #include "cli/rule_file.h"
 #include "cli/web_service.h"
+#include "cli/what_if_route.h"
 #include "knowledge/describe.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
 #include "web/live_routes.h"
+#include "web/order_routes.h"
 #include "web/rule_routes.h"
 #include "web/watched_manager.h"
 
@@ -83,9 +85,13 @@ void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Ob
   }
 }
 
-std::vector<web::Route> web_routes(web::Hub& hub, web::RuleDesk& desk) {
+std::vector<web::Route> web_routes(web::Hub& hub, web::RuleDesk& desk, const RuleSet& rules,
+                                   Runtime& runtime, PlannerFactory planner) {
   std::vector<web::Route> routes = web::live_routes(hub);
+  const auto submit = [&runtime](Order order) { runtime.submit(std::move(order)); };
+  for (web::Route& route : web::order_routes(rules, submit)) routes.push_back(std::move(route));
   for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
+  routes.push_back(what_if_route(std::move(planner)));
   return routes;
 }
 
@@ -123,10 +129,12 @@ int run(const RunOptions& options) {
 
   web::Hub hub([&] { (*robot)->interrupt(); });
   web::WatchedManager watched(manager, hub, manager_options.start);
+  Runtime runtime(watched, **robot);
   web::RuleDesk desk(options.rules);
   Expected<std::unique_ptr<web::Server>> server(nullptr);
   if (options.is_on_web) {
-    server = serve(options.web, web_routes(hub, desk), &hub);
+    server =
+        serve(options.web, web_routes(hub, desk, *rules, runtime, options.planner.factory()), &hub);
     if (!server) {
       fmt::print(stderr, "culprit: {}\n", server.error());
       return kUsage;
@@ -134,7 +142,6 @@ int run(const RunOptions& options) {
   }
 
   const Colour colour = colour_of(STDOUT_FILENO);
-  Runtime runtime(watched, **robot);
   runtime.on_events = [&](std::span<const Event> events) {
     for (const Event& event : events) {
       const std::string text = line(event, *rules, manager_options.start, colour);

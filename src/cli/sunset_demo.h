@@ -73,6 +73,8 @@ class SunsetDemo {
   const std::filesystem::path& keep_state();
   const RuleSet& rules() const { return rules_; }
   web::Hub& hub() { return hub_; }
+  // Gives the manager an order. From any thread.
+  void submit(Order order) { runtime_->submit(std::move(order)); }
 
  private:
   static constexpr Duration kPatience = std::chrono::seconds(90);
@@ -104,6 +106,7 @@ class SunsetDemo {
   std::unique_ptr<Manager> manager_;
   web::Hub hub_{[this] { robot_->interrupt(); }};
   std::unique_ptr<web::WatchedManager> watched_;
+  std::unique_ptr<Runtime> runtime_;
   Time start_;
 
   std::mutex mutex_;  // guards what follows
@@ -111,7 +114,7 @@ class SunsetDemo {
   Time last_event_;
 
   std::atomic<bool> is_ending_ = false;
-  std::thread runtime_;
+  std::thread thread_;  // runs the runtime
 };
 
 }  // namespace culprit::cli

@@ -38,9 +38,10 @@ Expected<web::Access> access_for(const WebOptions& options) {
   access.allowed_hosts = options.allowed_hosts;
   if (options.token_file.empty()) {
     if (!access.is_local)
-      return Error{fmt::format("others can reach {}, so that a token is needed that you have chosen: "
-                               "write one to a file that only you can read, and add --token-file",
-                               options.address)};
+      return Error{
+          fmt::format("others can reach {}, so that a token is needed that you have chosen: "
+                      "write one to a file that only you can read, and add --token-file",
+                      options.address)};
     access.token = web::make_token();
     return access;
   }
@@ -67,9 +68,10 @@ Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
   if (server.access.is_local) {
     fmt::print("See it in a browser: {}\n", (*started)->address());
   } else {
-    fmt::print("See it in a browser: http://{}:{}/#token=... (the token of {}). Others can reach "
-               "this address, and what they send is not encrypted.\n",
-               options.address, (*started)->port(), options.token_file);
+    fmt::print(
+        "See it in a browser: http://{}:{}/#token=... (the token of {}). Others can reach "
+        "this address, and what they send is not encrypted.\n",
+        options.address, (*started)->port(), options.token_file);
   }
   std::fflush(stdout);
   return started;

@@ -88,6 +88,37 @@ struct AsJson {
     return {{"kind", "found"}, {"component", rules[e.component].name}};
   }
   Json operator()(const Trouble&) const { return {{"kind", "trouble"}}; }
+  Json operator()(const OrderAccepted& e) const { return of_order("order", e.order); }
+  Json operator()(const OrderRefused& e) const { return of_order("order_refused", e.order); }
+  Json operator()(const ActionHeldBack& e) const {
+    Json json = of_strategy("held_back", e.strategy, rules);
+    json["until"] = time_to_json(e.until, start);
+    return json;
+  }
+  Json operator()(const ApprovalAsked& e) const {
+    Json json = of_strategy("approval_asked", e.strategy, rules);
+    add_reasons(json, e, rules);
+    return json;
+  }
+  Json operator()(const ApprovalLapsed& e) const {
+    return of_strategy("approval_lapsed", e.strategy, rules);
+  }
+  Json operator()(const StrategyAbandoned& e) const {
+    return of_strategy("abandoned", e.strategy, rules);
+  }
+  Json operator()(const OrderCarriedOut& e) const {
+    return of_strategy("carried_out", e.strategy, rules);
+  }
+  Json operator()(const SilenceEnded&) const { return {{"kind", "silence_ended"}}; }
+  Json operator()(const StormBegan&) const { return {{"kind", "storm"}}; }
+  Json operator()(const StormEnded&) const { return {{"kind", "calm"}}; }
+
+  static Json of_order(const char* kind, const Order& order) {
+    return {{"kind", kind},
+            {"number", order.number},
+            {"author", order.author},
+            {"reason", order.reason}};
+  }
 };
 
 }  // namespace
@@ -99,12 +130,9 @@ Json time_to_json(Time at, Time start) {
 
 Json to_json(const Candidate& candidate, const RuleSet& rules) {
   const Strategy& strategy = rules[candidate.strategy];
-  Json json{{"strategy", strategy.name},
-            {"impact", strategy.impact.count},
-            {"cost", candidate.cost},
-            {"value", candidate.value},
-            {"resolves", candidate.resolves},
-            {"excluded", nullptr}};
+  Json json{{"strategy", strategy.name},      {"impact", strategy.impact.count},
+            {"cost", candidate.cost},         {"value", candidate.value},
+            {"resolves", candidate.resolves}, {"excluded", nullptr}};
   if (candidate.excluded) {
     json["excluded"] = {{"condition", to_string(*candidate.excluded)},
                         {"text", describe_exclusion(candidate, rules)}};

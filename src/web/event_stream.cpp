@@ -27,7 +27,8 @@ std::optional<std::string> EventStream::next() {
   }
   for (const Message& message : batch.messages) {
     text += "id: " + hub_.name() + "-" + std::to_string(message.number) +
-            "\nevent: " + std::string(to_string(message.kind)) + "\ndata: " + *message.data + "\n\n";
+            "\nevent: " + std::string(to_string(message.kind)) + "\ndata: " + *message.data +
+            "\n\n";
     sent_ = message.number;
   }
   if (text.empty()) text = ": nothing new\n\n";

@@ -32,7 +32,10 @@ Answer clear(const Faults& faults) {
 std::vector<Route> fault_routes(Faults faults) {
   const auto shared = std::make_shared<const Faults>(std::move(faults));
   return {
-      {Method::kGet, "/api/faults", [shared](const Json&) { return Answer{200, list(*shared)}; }},
+      {Method::kGet, "/api/faults",
+       [shared](const Json&) {
+         return Answer{200, list(*shared)};
+       }},
       {Method::kPost, "/api/faults", [shared](const Json& body) { return inject(*shared, body); }},
       {Method::kDelete, "/api/faults", [shared](const Json&) { return clear(*shared); }}};
 }

@@ -7,7 +7,7 @@ namespace culprit::web {
 
 std::string_view to_string(Kind kind) {
   constexpr std::array<std::string_view, kKinds> kNames = {"robot", "graph", "state", "control",
-                                                            "event"};
+                                                           "event"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 

@@ -2,9 +2,9 @@
 // and the threads of the web server, which may.
 //
 // Two kinds of messages. Of a *latest* one (the graph, the present state) only the newest counts: a
-// slow reader skips those between. *Events* are a history: a reader gets each of them, as long as it
-// is kept. All are numbered in one sequence, so a reader that says which number it had last goes on
-// from there, and a new one begins at 0.
+// slow reader skips those between. *Events* are a history: a reader gets each of them, as long as
+// it is kept. All are numbered in one sequence, so a reader that says which number it had last goes
+// on from there, and a new one begins at 0.
 #pragma once
 
 #include <array>

@@ -38,10 +38,12 @@ Answer events(Hub& hub) {
 }  // namespace
 
 std::vector<Route> live_routes(Hub& hub) {
-  return {{Method::kGet, "/api/robot", [&hub](const Json&) { return newest(hub, Kind::kRobot); }},
-          {Method::kGet, "/api/graph", [&hub](const Json&) { return newest(hub, Kind::kGraph); }},
-          {Method::kGet, "/api/state", [&hub](const Json&) { return newest(hub, Kind::kState); }},
-          {Method::kGet, "/api/events", [&hub](const Json&) { return events(hub); }}};
+  return {
+      {Method::kGet, "/api/robot", [&hub](const Json&) { return newest(hub, Kind::kRobot); }},
+      {Method::kGet, "/api/graph", [&hub](const Json&) { return newest(hub, Kind::kGraph); }},
+      {Method::kGet, "/api/state", [&hub](const Json&) { return newest(hub, Kind::kState); }},
+      {Method::kGet, "/api/control", [&hub](const Json&) { return newest(hub, Kind::kControl); }},
+      {Method::kGet, "/api/events", [&hub](const Json&) { return events(hub); }}};
 }
 
 }  // namespace culprit::web

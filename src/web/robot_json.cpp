@@ -133,12 +133,9 @@ Json topics_to_json(const Knowledge& knowledge) {
 }  // namespace
 
 Json rules_to_json(const RuleSet& rules) {
-  Json json{{"robot", rules.robot},
-            {"cycle_s", seconds(rules.cycle)},
-            {"components", Json::array()},
-            {"topics", Json::array()},
-            {"inputs", Json::array()},
-            {"rules", Json::array()}};
+  Json json{{"robot", rules.robot},        {"cycle_s", seconds(rules.cycle)},
+            {"components", Json::array()}, {"topics", Json::array()},
+            {"inputs", Json::array()},     {"rules", Json::array()}};
   for (const Component& c : rules.components)
     json["components"].push_back({{"name", c.name}, {"can_start", !c.launch.empty()}});
   for (const Topic& t : rules.topics) json["topics"].push_back(t.name);
@@ -175,6 +172,29 @@ Json graph_to_json(const Knowledge& knowledge) {
   }
   for (const auto& edge : edges)
     json["edges"].push_back(Json::array({edge.consumer, edge.producer, edge.channel}));
+  return json;
+}
+
+Json control_to_json(const Manager& manager, Time start) {
+  const RuleSet& rules = manager.knowledge().rules;
+  Json json{{"paused", manager.governor().is_paused()},
+            {"dry_run", manager.autonomy() == Autonomy::kAdvise},
+            {"silences", Json::array()},
+            {"asked", Json::array()}};
+  for (const Governor::ActiveSilence& silence : manager.governor().silences()) {
+    Json entry;
+    if (const auto* component = std::get_if<ComponentId>(&silence.what)) {
+      entry["component"] = rules[*component].name;
+    } else {
+      entry["rule"] = rules[std::get<RuleId>(silence.what)].name;
+    }
+    entry["until"] = time_to_json(silence.until, start);
+    entry["author"] = silence.author;
+    entry["reason"] = silence.reason;
+    json["silences"].push_back(std::move(entry));
+  }
+  for (const StrategyId id : manager.governor().asked())
+    json["asked"].push_back({{"rule", rules[rules[id].rule].name}, {"strategy", rules[id].name}});
   return json;
 }
 

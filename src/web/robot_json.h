@@ -1,7 +1,7 @@
 // What the manager knows, as JSON (docs/web.md): what never changes, the graph, the present state.
 #pragma once
 
-#include "knowledge/knowledge.h"
+#include "manager/manager.h"
 #include "web/event_json.h"
 
 namespace culprit::web {
@@ -15,5 +15,9 @@ Json graph_to_json(const Knowledge& knowledge);
 
 // How it stands: rules, components, topics, inputs, beliefs. Times are seconds since `start`.
 Json state_to_json(const Knowledge& knowledge, Time start);
+
+// What people have told the manager, and what it asks them: paused or not, silences, strategies
+// that wait for approval.
+Json control_to_json(const Manager& manager, Time start);
 
 }  // namespace culprit::web

@@ -1,5 +1,5 @@
-// The calls of the API, apart from how they travel: a method, a path, and what is answered to a JSON
-// document. docs/web.md tells them to people, openapi.json to programs.
+// The calls of the API, apart from how they travel: a method, a path, and what is answered to a
+// JSON document. docs/web.md tells them to people, openapi.json to programs.
 #pragma once
 
 #include <functional>

@@ -29,7 +29,8 @@ Expected<RuleDesk::Content> RuleDesk::read() const {
 std::variant<std::string, RuleDesk::Refusal> RuleDesk::save(const std::string& text,
                                                             const std::string& version) {
   if (fixed_)
-    return Refusal{Problem::kNotWritten, path_ + " is part of the program; save the text elsewhere"};
+    return Refusal{Problem::kNotWritten,
+                   path_ + " is part of the program; save the text elsewhere"};
   const std::lock_guard lock(saving_);
   const auto now = read();
   if (!now) return Refusal{Problem::kNotWritten, now.error()};

@@ -59,7 +59,8 @@ Answer ask(const Json& body) {
   if (std::find(kQuestions.begin(), kQuestions.end(), *method) == kQuestions.end())
     return refuse(400, "'method' has to be one that asks about a text, such as textDocument/hover");
   nlohmann::json params = nlohmann::json::object();
-  if (const auto sent = body.find("params"); sent != body.end() && sent->is_object()) params = *sent;
+  if (const auto sent = body.find("params"); sent != body.end() && sent->is_object())
+    params = *sent;
   params["textDocument"] = document;
   server.handle({{"id", 1}, {"method", *method}, {"params", params}});
   return {200, reply};

@@ -1,11 +1,13 @@
 #include "web/server.h"
 
 #include <atomic>
+
 #include <fmt/core.h>
 
 #include "web/app.h"
 #include "web/connection_threads.h"
 #include "web/event_stream.h"
+#include "web/openapi.h"
 #include "web/rate_limit.h"
 
 namespace culprit::web {
@@ -16,7 +18,7 @@ constexpr const char* kJson = "application/json";
 // The app is all of one origin and has no inline script or style; it is never in a frame.
 const httplib::Headers kHeaders = {
     {"Content-Security-Policy",
-     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
+     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
     {"X-Content-Type-Options", "nosniff"},
     {"X-Frame-Options", "DENY"},
@@ -38,6 +40,12 @@ bool is_api(const httplib::Request& request) { return request.path.rfind("/api/"
 
 bool changes(const httplib::Request& request) {
   return request.method != "GET" && request.method != "HEAD";
+}
+
+const char* reason_for(int status) {
+  if (status == 404) return "there is no such page or call";
+  if (status == 413) return "that is too large";
+  return "the request cannot be served";
 }
 
 // A path as the expression that httplib takes.
@@ -71,13 +79,12 @@ class Server::Http {
       give(r, *refusal);
       return httplib::Server::HandlerResponse::Handled;
     });
-    server_.set_error_handler([](const httplib::Request&, httplib::Response& r) {
-      if (!r.body.empty()) return httplib::Server::HandlerResponse::Unhandled;
-      give(r, refuse(r.status, r.status == 404   ? "there is no such page or call"
-                               : r.status == 413 ? "that is too large"
-                                                 : "the request cannot be served"));
-      return httplib::Server::HandlerResponse::Handled;
-    });
+    server_.set_error_handler(
+        httplib::Server::HandlerWithResponse([](const httplib::Request&, httplib::Response& r) {
+          if (!r.body.empty()) return httplib::Server::HandlerResponse::Unhandled;
+          give(r, refuse(r.status, reason_for(r.status)));
+          return httplib::Server::HandlerResponse::Handled;
+        }));
     server_.set_exception_handler([](const httplib::Request&, httplib::Response& r,
                                      std::exception_ptr) { give(r, refuse(500, "that failed")); });
     add_app();
@@ -85,10 +92,12 @@ class Server::Http {
     server_.Get("/api/about", [this](const httplib::Request&, httplib::Response& r) {
       give(r, {200, about()});
     });
+    server_.Get("/api/openapi\\.json", [](const httplib::Request&, httplib::Response& r) {
+      r.set_content(kOpenApi, kJson);
+    });
     if (hub_ != nullptr) {
-      server_.Get("/api/stream", [this](const httplib::Request& q, httplib::Response& r) {
-        stream(q, r);
-      });
+      server_.Get("/api/stream",
+                  [this](const httplib::Request& q, httplib::Response& r) { stream(q, r); });
     }
   }
 
@@ -121,7 +130,8 @@ class Server::Http {
       return refuse(429, "too many requests; wait a second");
     const bool needs_token = changes(q) || (is_api(q) && !options_.access.is_local);
     if (needs_token && !options_.access.allows_token(q.get_header_value("Authorization")))
-      return refuse(401, "this needs the token that culprit printed: Authorization: Bearer <token>");
+      return refuse(401,
+                    "this needs the token that culprit printed: Authorization: Bearer <token>");
     if (q.has_header("Transfer-Encoding")) return refuse(411, "say the length of the body");
     if (q.has_header("Content-Encoding")) return refuse(415, "send the body as it is");
     if (has_body(q) && q.get_header_value("Content-Type").rfind(kJson, 0) != 0)
@@ -215,8 +225,9 @@ Expected<std::unique_ptr<Server>> Server::start(Options options, std::vector<Rou
                                                 Hub* hub) {
   auto http = std::make_unique<Http>(std::move(options), std::move(routes), hub);
   if (!http->bind())
-    return Error{fmt::format("cannot listen at {} port {}; is the port taken? --port chooses another",
-                             http->options().address, http->options().port)};
+    return Error{
+        fmt::format("cannot listen at {} port {}; is the port taken? --port chooses another",
+                    http->options().address, http->options().port)};
   return std::unique_ptr<Server>(new Server(std::move(http)));
 }
 

@@ -11,7 +11,8 @@ bool may_change_graph(const Observation& observation) {
   const auto& what = observation.what;
   return std::holds_alternative<NodeAppeared>(what) || std::holds_alternative<NodeVanished>(what) ||
          std::holds_alternative<EndpointAppeared>(what) ||
-         std::holds_alternative<EndpointVanished>(what) || std::holds_alternative<ProcessSeen>(what);
+         std::holds_alternative<EndpointVanished>(what) ||
+         std::holds_alternative<ProcessSeen>(what);
 }
 
 }  // namespace
@@ -50,6 +51,8 @@ void WatchedManager::tell_state(Time now) {
     is_graph_new_ = false;
     hub_.publish(Kind::kGraph, to_line(graph_to_json(knowledge)));
   }
+  std::string control = to_line(control_to_json(manager_, start_));
+  if (control != told_control_) hub_.publish(Kind::kControl, told_control_ = std::move(control));
   hub_.publish(Kind::kState, to_line(state_to_json(knowledge, start_)));
   told_ = now;
   next_tell_ = later(now, kPeriod);

@@ -33,6 +33,7 @@ class WatchedManager : public ManagingSystem {
   Time told_ = kLongAgo;       // when the state was told last
   Time next_tell_ = kLongAgo;  // when it may be told again
   bool is_graph_new_ = true;
+  std::string told_control_;
 };
 
 }  // namespace culprit::web

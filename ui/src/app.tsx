@@ -6,12 +6,14 @@ import { BeliefsPage } from './beliefs_page'
 import { notice } from './faults'
 import { RobotPage } from './robot_page'
 import { RulesPage } from './rules_page'
+import { SimulatorPage } from './simulator_page'
 import { calls, can, isConnected, robot, start } from './store'
 
 const kPages = [
-  { name: 'robot', title: 'Robot', needs: '/api/stream', Page: RobotPage },
-  { name: 'rules', title: 'Rules', needs: '/api/rules', Page: RulesPage },
-  { name: 'beliefs', title: 'Beliefs', needs: '/api/stream', Page: BeliefsPage },
+  { name: 'robot', title: 'Robot', needs: 'get /api/stream', Page: RobotPage },
+  { name: 'rules', title: 'Rules', needs: 'get /api/rules', Page: RulesPage },
+  { name: 'beliefs', title: 'Beliefs', needs: 'get /api/stream', Page: BeliefsPage },
+  { name: 'simulator', title: 'Simulator', needs: 'post /api/what-if', Page: SimulatorPage },
 ]
 
 const page = signal(location.hash.slice(1))
@@ -19,7 +21,7 @@ addEventListener('hashchange', () => (page.value = location.hash.slice(1)))
 const trouble = signal('')
 
 function App() {
-  const offered = kPages.filter((p) => can('get', p.needs))
+  const offered = kPages.filter((p) => calls.value.has(p.needs))
   const current = offered.find((p) => p.name === page.value) ?? offered[0]
   const isLiveServer = can('get', '/api/stream')
   return (

@@ -4,6 +4,7 @@ import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
 import { beta, density } from './beta'
 import { robot, state } from './store'
+import { colour, isDark } from './theme'
 import type { Strategy } from './types'
 
 interface Entry {
@@ -30,8 +31,6 @@ function Density({ entry }: { entry: Entry }) {
   const { prior } = entry.strategy
   const [a, b] = entry.belief
   useEffect(() => {
-    const css = getComputedStyle(document.documentElement)
-    const colour = (name: string) => css.getPropertyValue(`--${name}`).trim()
     const grid = { stroke: colour('line'), width: 0.5 }
     const x = Array.from({ length: 201 }, (_, i) => i / 200)
     const plot = new uPlot(
@@ -53,7 +52,7 @@ function Density({ entry }: { entry: Entry }) {
       place.current!
     )
     return () => plot.destroy()
-  }, [entry.rule, entry.strategy.name, a, b])
+  }, [entry.rule, entry.strategy.name, a, b, isDark.value])
   return (
     <figure>
       <figcaption>

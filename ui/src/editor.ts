@@ -49,6 +49,16 @@ const colours = HighlightStyle.define([
   { tag: tags.link, class: 'code-topic' },
 ])
 
+const theme = EditorView.theme({
+  '&': { height: '100%', backgroundColor: 'var(--surface)', color: 'var(--text)', fontSize: '14px' },
+  '.cm-gutters': { backgroundColor: 'var(--raised)', color: 'var(--muted)', borderRight: '1px solid var(--faint)' },
+  '.cm-activeLine': { backgroundColor: 'var(--raised)' },
+  '.cm-cursor': { borderLeftColor: 'var(--text)' },
+  '.cm-tooltip': { backgroundColor: 'var(--raised)', color: 'var(--text)', border: '1px solid var(--line)' },
+  '&.cm-focused .cm-selectionBackground, .cm-selectionBackground': { backgroundColor: 'var(--faint) !important' },
+  '.cm-diagnostic': { whiteSpace: 'pre-wrap' },
+})
+
 // LSP counts lines from 0 and UTF-16 code units within them, as CodeMirror does.
 const offset = (doc: Text, at: Position) => {
   const line = doc.line(Math.min(at.line + 1, doc.lines))
@@ -110,6 +120,20 @@ export interface Editor {
   goTo(at: number): void
 }
 
+// CodeMirror writes its styles into a document by a style element, which the content security policy
+// forbids, but into a shadow root by the object model, which it allows. There, those of the page have to
+// be given too.
+function shadowRoot(parent: HTMLElement): ShadowRoot {
+  const host = document.createElement('div')
+  parent.append(host)
+  const root = host.attachShadow({ mode: 'open' })
+  const sheet = new CSSStyleSheet()
+  const rules = [...document.styleSheets].flatMap((s) => [...s.cssRules])
+  sheet.replaceSync(rules.map((r) => r.cssText).join('\n'))
+  root.adoptedStyleSheets = [sheet]
+  return root
+}
+
 // `onText` is told each new text, `onFound` what a check says about the newest.
 export function makeEditor(
   parent: HTMLElement,
@@ -144,8 +168,10 @@ export function makeEditor(
     },
     { delay: 150 }
   )
+  const root = shadowRoot(parent)
   const view = new EditorView({
-    parent,
+    parent: root,
+    root,
     state: EditorState.create({
       doc: text,
       extensions: [
@@ -154,6 +180,7 @@ export function makeEditor(
         drawSelection(),
         highlightActiveLine(),
         language,
+        theme,
         syntaxHighlighting(colours),
         lintGutter(),
         check,

@@ -5,6 +5,7 @@ import { computed, effect, signal } from '@preact/signals'
 import { useEffect, useRef } from 'preact/hooks'
 import { layered, type Point } from './layout'
 import { culprits, graph, health, isLive, robot, selected, situation, state } from './store'
+import { colour, isDark } from './theme'
 import type { Health } from './types'
 
 export const showsAll = signal(false) // also nodes that no rule is about
@@ -128,11 +129,7 @@ function edgeLabel(channels: string[]): string {
   return (first ? shortName(first) : 'declared') + rateOf(first) + more
 }
 
-const kDark = matchMedia('(prefers-color-scheme: dark)')
-
 function stylesheet(): cytoscape.StylesheetStyle[] {
-  const css = getComputedStyle(document.documentElement)
-  const colour = (name: string) => css.getPropertyValue(`--${name}`).trim()
   const healths = (Object.keys(kShapes) as Health[]).map((h) => ({
     selector: `node[health = "${h}"]`,
     style: {
@@ -302,13 +299,15 @@ export function GraphView() {
   useEffect(() => {
     const drawing = new Drawing(place.current!)
     const stop = effect(() => drawing.draw())
-    const restyle = () => drawing.restyle()
-    kDark.addEventListener('change', restyle)
+    const stopStyling = effect(() => {
+      isDark.value // colours are those of the scheme
+      drawing.restyle()
+    })
     const observer = new ResizeObserver(() => drawing.fit())
     observer.observe(place.current!)
     return () => {
       observer.disconnect()
-      kDark.removeEventListener('change', restyle)
+      stopStyling()
       stop()
       drawing.destroy()
     }

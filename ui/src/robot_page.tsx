@@ -1,3 +1,4 @@
+import { Approvals, Control } from './control'
 import { Components, Explanation } from './explain'
 import { Faults } from './faults'
 import { GraphView } from './graph_view'
@@ -7,13 +8,17 @@ export function RobotPage() {
   return (
     <main class="robot">
       <Faults />
-      <GraphView />
+      <div class="scene">
+        <GraphView />
+        <Timeline />
+      </div>
       <aside>
+        <Approvals />
         <Explanation />
+        <Control />
         <Components />
         <EventLog />
       </aside>
-      <Timeline />
     </main>
   )
 }

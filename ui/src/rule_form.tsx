@@ -1,5 +1,6 @@
 // Rules, strategies and adaptations as a form over the statements of the file.
 import type { ComponentChildren } from 'preact'
+import { useState } from 'preact/hooks'
 import {
   endOf,
   freeName,
@@ -37,6 +38,7 @@ function Field(
 ) {
   const { document, change, place, member, kind = 'text' } = props
   const value = document.statements[place][member]
+  const [draft, setDraft] = useState<string | null>(null) // what is being typed
   const take = (entered: string) => {
     const trimmed = entered.trim()
     if (trimmed === shown(value)) return
@@ -53,10 +55,14 @@ function Field(
       <input
         type="text"
         inputMode={kind === 'number' ? 'decimal' : 'text'}
-        value={shown(value)}
+        value={draft ?? shown(value)}
         list={props.list}
         spellcheck={false}
-        onChange={(e) => take(e.currentTarget.value)}
+        onInput={(e) => setDraft(e.currentTarget.value)}
+        onChange={(e) => {
+          setDraft(null)
+          take(e.currentTarget.value)
+        }}
       />
     </label>
   )

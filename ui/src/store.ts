@@ -2,7 +2,7 @@
 // is looked at, which may be in the past.
 import { computed, signal } from '@preact/signals'
 import { call, follow } from './api'
-import type { Criticality, Graph, Health, ManagerEvent, Robot, State } from './types'
+import type { ControlState, Criticality, Graph, Health, ManagerEvent, Robot, State } from './types'
 
 export const calls = signal<Set<string>>(new Set())
 export const can = (method: string, path: string) => calls.value.has(`${method} ${path}`)
@@ -11,6 +11,7 @@ export const isConnected = signal(false)
 export const robot = signal<Robot | null>(null)
 export const graph = signal<Graph>({ nodes: [], edges: [] })
 export const state = signal<State | null>(null)
+export const control = signal<ControlState | null>(null)
 export const events = signal<ManagerEvent[]>([])
 
 // Seconds since the start of the manager; null: now.
@@ -38,6 +39,7 @@ export async function start(): Promise<void> {
       if (event === 'robot') robot.value = document
       if (event === 'graph') graph.value = document
       if (event === 'state') state.value = document
+      if (event === 'control') control.value = document
       if (event === 'event') {
         if (waiting.length === 0) requestAnimationFrame(show)
         waiting.push(document)
@@ -94,7 +96,11 @@ export function situationAt(history: ManagerEvent[], t: number): Situation {
         failure.phase = event.dry_run ? 'failing' : 'attempting'
         break
       case 'waiting':
+      case 'approval_asked':
         if (failure) failure.decision = event
+        break
+      case 'abandoned':
+        if (failure) failure.phase = 'failing'
         break
       case 'no_help':
         if (!failure) break

@@ -155,7 +155,7 @@ export function EventLog() {
             <button type="button" onClick={() => (moment.value = event.t)} title="Look at this moment">
               {event.t.toFixed(2)}
             </button>
-            <span class={`kind ${event.kind}`}>{event.kind.replace('_', ' ')}</span>
+            <span class={`kind kind-${event.kind}`}>{event.kind.replace('_', ' ')}</span>
             <span>{event.text}</span>
           </li>
         ))}

@@ -58,6 +58,13 @@ export interface State {
   beliefs: [number, number][]
 }
 
+export interface ControlState {
+  paused: boolean
+  dry_run: boolean
+  silences: { component?: string; rule?: string; until: number | null; author: string; reason: string }[]
+  asked: { rule: string; strategy: string }[]
+}
+
 export interface Candidate {
   strategy: string
   impact: number

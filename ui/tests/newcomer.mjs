@@ -1,0 +1,41 @@
+// The first five minutes: open, see, break it, watch it heal, understand why, look back, take control.
+import { expect, isAccessible, picture, session } from './session.mjs'
+
+await session(['demo', '--stay', '--speed', '2'], async (page) => {
+  const explanation = page.getByRole('region', { name: 'Explanation' })
+  const well = explanation.getByText('All is well')
+  await well.waitFor()
+  for (const component of ['camera', 'depth', 'image_enhancement', 'fusion', 'segmentation'])
+    await page.getByRole('button', { name: component, exact: false }).first().waitFor()
+  await picture(page, 'well')
+
+  await page.getByLabel('Break it:').selectOption('kill:camera')
+  await page.getByRole('button', { name: 'Inject fault' }).click()
+  await explanation.getByText('camera is held responsible').first().waitFor()
+  const failure = explanation.locator('article', { hasText: 'RGBDead' })
+  await failure.getByRole('row', { name: /rgb_redeploy|rgb_restart/ }).first().waitFor()
+  await well.waitFor()
+
+  // Why was that? The moment of the decision, again.
+  const log = page.getByRole('region', { name: 'What happened' })
+  await log.getByText(/^RGBDead resolved/).waitFor()
+  await log.locator('li', { hasText: 'camera is held responsible' }).first().getByRole('button').click()
+  await explanation.getByText('camera is held responsible').first().waitFor()
+  await picture(page, 'sick')
+  expect((await page.locator('output.moment').innerText()).startsWith('at '), 'no moment is shown')
+  await page.getByRole('slider').press('ArrowLeft')
+  await page.getByRole('button', { name: 'Live' }).click()
+  await well.waitFor()
+
+  await page.getByRole('button', { name: 'Pause' }).click()
+  await page.getByText('Paused: nothing is changed').waitFor()
+  await page.getByRole('button', { name: 'Resume' }).click()
+  await page.getByRole('button', { name: 'Pause' }).waitFor()
+  await isAccessible(page)
+
+  await page.getByRole('link', { name: 'Beliefs' }).click()
+  const learned = page.getByRole('row', { name: /RGBDead\.rgb_re/ }).filter({ hasText: '1 outcome' })
+  await learned.first().waitFor()
+  await isAccessible(page)
+  await picture(page, 'beliefs')
+})
