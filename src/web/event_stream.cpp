@@ -16,7 +16,9 @@ EventStream::EventStream(Hub& hub, const std::string& last_event_id) : hub_(hub)
 }
 
 std::optional<std::string> EventStream::next() {
-  const Hub::Batch batch = hub_.wait(sent_, kSilence);
+  // The greeting waits for nothing.
+  const auto patience = has_greeted_ ? kSilence : std::chrono::milliseconds(0);
+  const Hub::Batch batch = hub_.wait(sent_, patience);
   if (hub_.is_closed()) return std::nullopt;
   std::string text;
   if (!has_greeted_ || (batch.is_gap && !batch.messages.empty())) {

@@ -96,8 +96,10 @@ TEST(EventStream, ResumesBehindTheLastEvent) {
 TEST(EventStream, BeginsAnewForIdsThatAreNotOurs) {
   Hub hub;
   hub.publish(Kind::kEvent, "{}");
-  for (const std::string id : {std::string("another-1"), hub.name() + "-", hub.name() + "-99",
-                               hub.name() + "--1", hub.name() + "-1x", std::string(5000, '9')}) {
+  const std::vector<std::string> others{"another-1",        hub.name() + "-",
+                                        hub.name() + "-99", hub.name() + "--1",
+                                        hub.name() + "-1x", std::string(5000, '9')};
+  for (const std::string& id : others) {
     EXPECT_THAT(EventStream(hub, id).next().value(), testing::HasSubstr("\"resumed\": false"))
         << id;
   }

@@ -68,7 +68,8 @@ Json openapi() {
 
 TEST_F(Routes, AreAllInTheOpenApiDocument) {
   std::set<std::string> told;
-  for (const auto& [path_told, calls] : openapi()["paths"].items()) {
+  const Json document = openapi();
+  for (const auto& [path_told, calls] : document["paths"].items()) {
     for (const auto& [method, call] : calls.items()) told.insert(method + " " + path_told);
   }
   // Of the server itself (server.cpp), and of the commands (cli/what_if_route.cpp).
@@ -81,7 +82,8 @@ TEST_F(Routes, AreAllInTheOpenApiDocument) {
 
 TEST_F(Routes, TakeTheExamplesOfTheOpenApiDocument) {
   int examples = 0;
-  for (const auto& [path_told, calls] : openapi()["paths"].items()) {
+  const Json document = openapi();
+  for (const auto& [path_told, calls] : document["paths"].items()) {
     for (const auto& [method, call] : calls.items()) {
       const bool is_of_the_commands = path_told == "/api/what-if";  // cli/what_if_route_test.cpp
       if (!call.contains("requestBody") || is_of_the_commands) continue;

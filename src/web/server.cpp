@@ -1,6 +1,7 @@
 #include "web/server.h"
 
 #include <atomic>
+#include <sys/socket.h>
 
 #include <fmt/core.h>
 
@@ -16,16 +17,16 @@ namespace {
 constexpr const char* kJson = "application/json";
 
 // The app is all of one origin and has no inline script or style; it is never in a frame.
-const httplib::Headers kHeaders = {
-    {"Content-Security-Policy",
-     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
-     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
-    {"X-Content-Type-Options", "nosniff"},
-    {"X-Frame-Options", "DENY"},
-    {"Referrer-Policy", "no-referrer"},
-    {"Cross-Origin-Opener-Policy", "same-origin"},
-    {"Cross-Origin-Resource-Policy", "same-origin"},
-    {"Cache-Control", "no-store"}};
+const httplib::Headers kHeaders = {{"Content-Security-Policy",
+                                    "default-src 'none'; script-src 'self'; style-src 'self'; "
+                                    "img-src 'self' data:; connect-src 'self'; "
+                                    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+                                   {"X-Content-Type-Options", "nosniff"},
+                                   {"X-Frame-Options", "DENY"},
+                                   {"Referrer-Policy", "no-referrer"},
+                                   {"Cross-Origin-Opener-Policy", "same-origin"},
+                                   {"Cross-Origin-Resource-Policy", "same-origin"},
+                                   {"Cache-Control", "no-store"}};
 
 void give(httplib::Response& response, const Answer& answer) {
   response.status = answer.status;
@@ -40,6 +41,12 @@ bool is_api(const httplib::Request& request) { return request.path.rfind("/api/"
 
 bool changes(const httplib::Request& request) {
   return request.method != "GET" && request.method != "HEAD";
+}
+
+// Left to itself, httplib shares a port with whoever has it already.
+void take_port_alone(int socket) {
+  const int yes = 1;
+  setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
 }
 
 const char* reason_for(int status) {
@@ -66,6 +73,7 @@ class Server::Http {
         limit_(kRequestsPerSecond, kBurst) {
     using std::chrono::seconds;
     server_.new_task_queue = [] { return new ConnectionThreads(kMostConnections); };
+    server_.set_socket_options(take_port_alone);
     server_.set_keep_alive_timeout(2);
     server_.set_keep_alive_max_count(1000);
     server_.set_read_timeout(seconds(5));
@@ -107,12 +115,15 @@ class Server::Http {
     port_ = server_.bind_to_any_port(options_.address);
     return port_ > 0;
   }
-  void listen() { server_.listen_after_bind(); }
+  void listen() {
+    server_.listen_after_bind();
+    is_over_ = true;
+  }
   void stop() {
     if (hub_ != nullptr) hub_->close();
     server_.stop();
   }
-  bool is_running() const { return server_.is_running(); }
+  bool has_begun() const { return server_.is_running() || is_over_; }
   int port() const { return port_; }
   const Options& options() const { return options_; }
 
@@ -213,6 +224,7 @@ class Server::Http {
   Hub* const hub_;
   RateLimit limit_;
   std::atomic<int> streams_ = 0;
+  std::atomic<bool> is_over_ = false;  // it does not listen any more
   httplib::Server server_;
   int port_ = 0;
 };
@@ -233,7 +245,7 @@ Expected<std::unique_ptr<Server>> Server::start(Options options, std::vector<Rou
 
 Server::~Server() {
   // stop() before it listens would be lost.
-  while (!http_->is_running()) std::this_thread::yield();
+  while (!http_->has_begun()) std::this_thread::yield();
   http_->stop();
   thread_.join();
 }

@@ -31,7 +31,7 @@ std::unique_ptr<Server> start(Hub* hub = nullptr, bool is_local = true) {
 }
 
 struct WebServer : testing::Test {
-  httplib::Client client() const { return {"127.0.0.1", server->port()}; }
+  httplib::Client client() const { return httplib::Client("127.0.0.1", server->port()); }
   const httplib::Headers with_token = {{"Authorization", std::string("Bearer ") + kToken}};
   httplib::Headers with(const std::string& name, const std::string& value) const {
     httplib::Headers headers = with_token;
@@ -51,19 +51,19 @@ struct WebServer : testing::Test {
 // A connection whose bytes are ours.
 class Raw {
  public:
-  explicit Raw(int port) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+  // SOCK_NONBLOCK among `flags`: it does not wait for the server.
+  explicit Raw(int port, int flags = 0) : socket_(socket(AF_INET, SOCK_STREAM | flags, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(static_cast<std::uint16_t>(port));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    is_open_ = connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+    connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address);
     const timeval patience{20, 0};
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   }
   ~Raw() { close(socket_); }
   Raw(const Raw&) = delete;
 
-  bool is_open() const { return is_open_; }
   void send(const std::string& bytes) const {
     ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   }
@@ -80,8 +80,7 @@ class Raw {
   }
 
  private:
-  int socket_;
-  bool is_open_ = false;
+  const int socket_;
 };
 
 TEST_F(WebServer, AnswersCalls) {
@@ -154,8 +153,7 @@ TEST_F(WebServer, RefusesBodiesOfUnknownSize) {
 }
 
 TEST_F(WebServer, RefusesWhatIsNoJson) {
-  for (const std::string body : {std::string("{"), std::string("\xff\xfe"), std::string("nul")})
-    EXPECT_EQ(post(with_token, body), 400);
+  for (const char* body : {"{", "\xff\xfe", "nul"}) EXPECT_EQ(post(with_token, body), 400);
 }
 
 TEST_F(WebServer, SurvivesDeepJson) { EXPECT_EQ(post(with_token, std::string(100000, '[')), 400); }
@@ -202,15 +200,15 @@ TEST_F(WebServer, DoesNotLetPublishersWaitForSlowReaders) {
 }
 
 TEST_F(WebServer, GoesOnAfterAThousandConnections) {
-  std::vector<std::unique_ptr<Raw>> flood;
-  for (int i = 0; i < 300; ++i) {
-    flood.push_back(std::make_unique<Raw>(server->port()));
-    flood.back()->send("GET /api/");  // and nothing more
-    if (i >= static_cast<int>(Server::kMostConnections)) flood.erase(flood.begin());
+  for (int round = 0; round < 2; ++round) {
+    std::vector<std::unique_ptr<Raw>> flood;
+    for (int i = 0; i < 500; ++i) {
+      flood.push_back(std::make_unique<Raw>(server->port(), SOCK_NONBLOCK));
+      flood.back()->send("GET /api/");  // and nothing more
+    }
   }
-  flood.clear();
-  for (int i = 0; i < 700; ++i) Raw(server->port()).send("\r\n");
   httplib::Client patient = client();
+  patient.set_connection_timeout(60);
   patient.set_read_timeout(60);
   const auto answer = patient.Get("/api/echo");
   ASSERT_TRUE(answer);

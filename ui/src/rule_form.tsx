@@ -32,7 +32,8 @@ function Field(
     label: string
     kind?: 'text' | 'number' | 'hold'
     optional?: boolean
-    wide?: boolean
+    wide?: boolean // a line of its own
+    wider?: boolean
     list?: string
   }
 ) {
@@ -50,7 +51,7 @@ function Field(
     change(withMember(document, place, member, next))
   }
   return (
-    <label class={props.wide ? 'field wide' : kind === 'text' ? 'field' : 'field short'}>
+    <label class={`field ${props.wide ? 'wide' : props.wider ? 'wider' : kind === 'text' ? '' : 'short'}`}>
       <span>{props.label}</span>
       <input
         type="text"
@@ -106,7 +107,7 @@ function AdaptationForm({ document, change, place }: Props & { place: number }) 
         take={(t) => change(replaced(document, place, 1, newAdaptation(t, statement)))}
       />
       {(kAdaptations[type] ?? []).map(field)}
-      <Field {...{ document, change, place }} member="impact" label="impact (cycles)" kind="number" />
+      <Field {...{ document, change, place }} member="impact" label="impact" kind="number" />
       <Remove what="adaptation" onClick={() => change(replaced(document, place, 1))} />
     </div>
   )
@@ -124,7 +125,7 @@ function StrategyForm({ document, change, place }: Props & { place: number }) {
     <fieldset class="strategy">
       <legend>Strategy {name}</legend>
       <div class="row">
-        <Field {...props} member="name" label="name" />
+        <Field {...props} member="name" label="name" wider />
         <Field {...props} member="probability" label="helps in %" kind="number" />
         <Field {...props} member="confidence" label="confidence" kind="number" />
         <Field {...props} member="when" label="only when" optional />
@@ -153,7 +154,7 @@ function RuleCard({ document, change, place }: Props & { place: number }) {
     <details class="rule" open>
       <summary>{name}</summary>
       <div class="row">
-        <Field {...props} place={place} member="name" label="rule" />
+        <Field {...props} place={place} member="name" label="rule" wider />
         {policies !== undefined && (
           <>
             <Choice
@@ -162,7 +163,7 @@ function RuleCard({ document, change, place }: Props & { place: number }) {
               of={['NON_CRITICAL', 'WARNING', 'ERROR']}
               take={(c) => change(withMember(document, policies, 'criticality', c))}
             />
-            <Field {...props} place={policies} member="for" label="for at least" optional />
+            <Field {...props} place={policies} member="for" label="for" optional />
             <Field {...props} place={policies} member="hold" label="hold n/k" kind="hold" optional />
             <Field {...props} place={policies} member="cooldown" label="cooldown" optional />
             <Field {...props} place={policies} member="attempts" label="attempts" kind="number" optional />

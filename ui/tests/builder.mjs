@@ -43,15 +43,15 @@ await session(['web', path], async (page) => {
     for (const [label, value] of Object.entries(members)) await fill(within, label, value)
   }
   const add = (within, what) => within.getByRole('button', { name: `+ ${what}` }).click()
-  const input = (topic) => ({ component: 'fusion', parameter: 'camera_input', topic, 'impact (cycles)': '2' })
+  const input = (topic) => ({ component: 'fusion', parameter: 'camera_input', topic, impact: '2' })
 
   const recalibration = await strategy('recalibration', '80', '50')
-  const parameter = { component: 'fusion', parameter: 'recalibration', 'impact (cycles)': '2' }
+  const parameter = { component: 'fusion', parameter: 'recalibration', impact: '2' }
   await adaptation(recalibration, 'set_parameter', parameter)
   for (const [type, confidence, topic] of [['activate', '50', 'rgb_enhanced'], ['deactivate', '10', 'rgb_raw']]) {
     await add(form, 'Strategy')
     const enhancement = await strategy(`enhancement_${type}`, '10', confidence)
-    await adaptation(enhancement, type, { component: 'image_enhancement', 'impact (cycles)': '5' })
+    await adaptation(enhancement, type, { component: 'image_enhancement', impact: '5' })
     await add(enhancement, 'Adaptation')
     await adaptation(enhancement, 'change_communication', input(topic))
   }

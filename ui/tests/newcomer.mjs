@@ -38,4 +38,13 @@ await session(['demo', '--stay', '--speed', '2'], async (page) => {
   await learned.first().waitFor()
   await isAccessible(page)
   await picture(page, 'beliefs')
+
+  await page.getByRole('link', { name: 'Simulator' }).click()
+  const plan = page.getByRole('region', { name: 'Plan' })
+  await plan.getByText('Nothing would fail').waitFor()
+  await page.getByLabel('camera', { exact: true }).selectOption('killed')
+  await plan.getByText('camera is held responsible').waitFor()
+  await plan.getByText('It would be chosen if').first().waitFor()
+  await isAccessible(page)
+  await picture(page, 'simulator')
 })
