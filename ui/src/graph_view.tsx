@@ -42,14 +42,14 @@ const shown = computed((): Shown => {
   return { nodes, edges }
 })
 
-// The edges on the way from a culprit to what its strategy is expected to heal.
+// The edges on the way from a culprit to what fails because of it.
 const cascade = computed((): Set<string> => {
   const nodeOf = new Map(graph.value.nodes.map((n) => [n.component, n.node]))
   const rules = new Map(robot.value?.rules.map((r) => [r.name, r]) ?? [])
   const path = new Set<string>()
   for (const [culprit, failure] of culprits.value) {
     const goals = new Set(
-      (failure.decision?.explains ?? [])
+      [...(failure.decision?.explains ?? []), ...waitingFor(failure.rule)]
         .flatMap((rule) => rules.get(rule)?.components ?? [])
         .map((c) => nodeOf.get(c))
     )
@@ -58,6 +58,18 @@ const cascade = computed((): Set<string> => {
   }
   return path
 })
+
+// The failures that wait because of `cause`, directly or through others.
+function waitingFor(cause: string): string[] {
+  const found = [cause]
+  for (const rule of found) {
+    for (const failure of situation.value.failures) {
+      const waits = failure.decision?.candidates?.some((c) => c.excluded?.because === rule)
+      if (waits && !found.includes(failure.rule)) found.push(failure.rule)
+    }
+  }
+  return found.slice(1)
+}
 
 function edgesBetween(start: string, goals: Set<string | undefined>): string[] {
   const edges = [...shown.value.edges]
