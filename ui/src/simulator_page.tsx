@@ -4,6 +4,7 @@ import { signal } from '@preact/signals'
 import { useEffect, useState } from 'preact/hooks'
 import { call, Refusal } from './api'
 import { graph, robot, state } from './store'
+import type { State } from './types'
 
 const kConditions = {
   well: '',
@@ -35,15 +36,16 @@ interface Plan {
 const conditions = signal<Record<string, Condition>>({})
 const values = signal<Record<string, string>>({}) // of signals
 const silent = signal<Record<string, boolean>>({}) // topics
+const taken = signal<State | null>(null) // the robot as it was when one began to imagine
 
 const isSignal = (input: string) => !input.includes('(')
 
 function usualCondition(place: number): Condition {
-  return state.value?.components[place]?.lifecycle === 'inactive' ? 'inactive' : 'well'
+  return taken.value?.components[place]?.lifecycle === 'inactive' ? 'inactive' : 'well'
 }
 
 function usualValue(place: number): string {
-  const value = state.value?.inputs[place]
+  const value = taken.value?.inputs[place]
   return value === null || value === undefined ? '' : String(value)
 }
 
@@ -65,7 +67,7 @@ function stateText(): string {
     return `COMPONENT ${name}${clause('NEEDS', needs)}${clause('PUBLISHES', tells)} ${condition}`
   })
   robot.value?.topics.forEach((topic, place) => {
-    const rate = state.value?.topics[place]?.rate ?? 10
+    const rate = taken.value?.topics[place]?.rate ?? 10
     lines.push(`TOPIC ${topic} ${silent.value[topic] ? 'silent' : `${rate}Hz`}`)
   })
   robot.value?.inputs.forEach((input, place) => {
@@ -88,7 +90,7 @@ function usePlan(): { plan: Plan | null; trouble: string } {
   useEffect(() => {
     call<{ text: string }>('GET', '/api/rules').then((f) => setRules(f.text), (e) => setTrouble(e.message))
   }, [])
-  const text = state.value ? stateText() : ''
+  const text = taken.value ? stateText() : ''
   useEffect(() => {
     if (rules === null || text === '') return
     let isOld = false
@@ -147,7 +149,7 @@ function PlanView({ plan }: { plan: Plan }) {
                   <td>
                     {c.excluded ? c.excluded.text : <b>chosen</b>}
                     {c.flips.length > 0 && (
-                      <span class="muted"> It would be chosen if {c.flips.map((x) => x.text).join(', or ')}.</span>
+                      <span class="muted">. It would be chosen if {c.flips.map((x) => x.text).join(', or ')}.</span>
                     )}
                   </td>
                 </tr>
@@ -161,6 +163,7 @@ function PlanView({ plan }: { plan: Plan }) {
 }
 
 export function SimulatorPage() {
+  if (!taken.value && state.value) taken.value = state.value
   const { plan, trouble } = usePlan()
   return (
     <main class="simulator">
@@ -211,6 +214,7 @@ export function SimulatorPage() {
           <button
             type="button"
             onClick={() => {
+              taken.value = state.peek()
               conditions.value = {}
               values.value = {}
               silent.value = {}
