@@ -89,6 +89,7 @@ void step_with_pages(benchmark::State& state) {
   }
   const std::string who = std::to_string(pages) + " pages open, 500 components: ";
   claim(who + "a step, median", quantile(microseconds, 0.5), 5, "us");
+  if (pages == 0) return;  // then nothing is told
   claim(who + "a step that tells the state, p99.9", quantile(microseconds, 0.999), 20'000, "us");
 }
 BENCHMARK(step_with_pages)->Arg(0)->Arg(50)->Iterations(1000);
