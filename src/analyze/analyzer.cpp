@@ -104,6 +104,7 @@ void Analyzer::detect(RuleId id, Time now) {
   state.attempts = 0;
   state.round = 0;
   state.retry_at = now;
+  state.is_at_last_resort = false;
   state.is_advised = false;
   state.settling.reset();
   std::fill(state.tried.begin(), state.tried.end(), false);
@@ -162,7 +163,7 @@ void Analyzer::end_attempt(RuleId id, Time now) {
 
 void Analyzer::abandon(RuleId id, Time now) {
   end_attempt(id, now);
-  schedule(id, now);
+  look_at(id, now);  // the failure may be gone already
 }
 
 bool Analyzer::can_have_caused(RuleId id) const {
@@ -220,15 +221,33 @@ void Analyzer::round_is_spent(RuleId id, Time now) {
   const int doublings = std::min(state.round - 1, 10);
   state.retry_at =
       later(now, std::min<Duration>(kFirstBackoff * (1 << doublings), kLongestBackoff));
-  exhaust_if_spent(id, now);
-  if (state.phase == RulePhase::kFailing) knowledge_.tell(now, RoundSpent{id, state.retry_at});
+  if (state.is_at_last_resort) {
+    exhaust(id, now);
+  } else {
+    exhaust_if_spent(id, now);
+  }
+  const bool goes_on = state.phase == RulePhase::kFailing && !state.is_at_last_resort;
+  if (goes_on) knowledge_.tell(now, RoundSpent{id, state.retry_at});
   schedule(id, now);
 }
 
 void Analyzer::exhaust_if_spent(RuleId id, Time now) {
-  const RuleState& state = knowledge_.states[id];
+  RuleState& state = knowledge_.states.state(id);
   const int limit = knowledge_.rules[id].policies.attempts;
-  if (state.attempts < limit && state.round < limit) return;
+  // The last resorts end with their round.
+  if (state.is_at_last_resort || (state.attempts < limit && state.round < limit)) return;
+  const auto& strategies = knowledge_.rules[id].strategies;
+  const bool has_last_resort = std::any_of(strategies.begin(), strategies.end(), [&](StrategyId s) {
+    return knowledge_.rules[s].is_last_resort;
+  });
+  if (!has_last_resort) return exhaust(id, now);
+  state.is_at_last_resort = true;
+  state.retry_at = now;
+  std::fill(state.tried.begin(), state.tried.end(), false);
+  knowledge_.tell(now, LastResortReached{id});
+}
+
+void Analyzer::exhaust(RuleId id, Time now) {
   knowledge_.states.enter(id, RulePhase::kExhausted);
   knowledge_.tell(now, RuleExhausted{id});
 }

@@ -27,9 +27,11 @@ struct Labels {
   Label operator()(const AdaptationDone&) const { return {"done", "\033[36m"}; }
   Label operator()(const AdaptationFailed&) const { return {"failed", "\033[33m"}; }
   Label operator()(const StrategyFailed&) const { return {"no help", "\033[33m"}; }
+  Label operator()(const StrategyResumed&) const { return {"resumed", "\033[36m"}; }
   Label operator()(const Undone&) const { return {"undone", "\033[36m"}; }
   Label operator()(const RoundSpent&) const { return {"pause", "\033[33m"}; }
   Label operator()(const RuleExhausted&) const { return {"EXHAUSTED", "\033[1;31m"}; }
+  Label operator()(const LastResortReached&) const { return {"LAST", "\033[1;31m"}; }
   Label operator()(const ComponentLost&) const { return {"lost", "\033[31m"}; }
   Label operator()(const ComponentFound&) const { return {"found", "\033[32m"}; }
   Label operator()(const Trouble&) const { return {"trouble", "\033[33m"}; }

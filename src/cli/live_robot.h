@@ -26,6 +26,9 @@ class LiveRobot : public Robot {
 
   void interrupt() override { inbox_.interrupt(); }
 
+  // Something about culprit itself that a person should know. From any thread.
+  void report(std::string trouble) { inbox_.put(LinkTrouble{std::move(trouble)}); }
+
   ros2::Link& link() { return *link_; }
   process::Supervisor& supervisor() { return *supervisor_; }
 

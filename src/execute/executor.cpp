@@ -1,6 +1,7 @@
 #include "execute/executor.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "knowledge/ambiguity.h"
 
@@ -24,6 +25,45 @@ void Executor::begin(StrategyId strategy, Time now) {
   runs_.push_back(std::move(run));
 }
 
+void Executor::resume(Interrupted interrupted, Time now, Time from) {
+  const StrategyId strategy = interrupted.strategy;
+  const RuleId rule = knowledge_.rules[strategy].rule;
+  knowledge_.states.state(rule).failing_since = now;
+  begin(strategy, now);
+  Attempt& attempt = *knowledge_.states.state(rule).attempt;
+  attempt.first_change = now;
+  attempt.is_ambiguous = true;  // nobody saw what happened meanwhile
+  attempt.has_no_failure = false;
+  // An answer to a request of the earlier process must not be taken for one to ours.
+  for (const Interrupted::Request& request : interrupted.requests)
+    last_command_ = std::max(last_command_, request.command.id.number);
+  Run& run = runs_.back();
+  run.interrupted = std::move(interrupted);
+  run.from = from;
+}
+
+// Gives false while a resumed attempt has to wait, or if it cannot go on.
+bool Executor::take_up(Run& run, Time now) {
+  if (!run.interrupted) return true;
+  if (now < run.from) return false;
+  const Interrupted interrupted = *std::exchange(run.interrupted, std::nullopt);
+  knowledge_.tell(now, StrategyResumed{run.strategy});
+  run.undo = execute::undo_of(interrupted, knowledge_.rules);
+  if (interrupted.has_failed) {
+    knowledge_.states.set_tried(run.strategy, true);
+    enter(run, Attempt::Stage::kUndoing);
+    return true;
+  }
+  execute::Resumption rest = execute::resumption_of(interrupted, knowledge_);
+  run.adaptation = rest.adaptation;
+  run.goals = std::move(rest.goals);
+  if (rest.obstacle.empty()) return true;
+  attempt_of(run)->obstacle = rest.obstacle;
+  knowledge_.tell(now, AdaptationFailed{run.strategy, run.adaptation, rest.obstacle});
+  knowledge_.signals.touch(run.rule);
+  return false;
+}
+
 void Executor::answered(const Reply& reply, Time now) {
   for (Run& run : runs_) {
     if (run.pursuit && run.pending == reply.command) {
@@ -41,6 +81,7 @@ void Executor::advance(Time now, std::vector<Command>& commands) {
 }
 
 void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
+  if (!take_up(run, now)) return;
   const Attempt::Stage stage = attempt_of(run)->stage;
   if (stage == Attempt::Stage::kUndoing && !run.is_undoing) {
     run.is_undoing = true;
@@ -52,8 +93,8 @@ void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
     if (run.pending == CommandId{} || run.pursuit->next_deadline() <= now) {
       if (auto request = run.pursuit->advance(knowledge_, now)) {
         run.pending = {++last_command_};
-        commands.push_back(
-            {run.pending, run.pursuit->component(), *request, Pursuit::timeout(*request)});
+        commands.push_back({run.pending, run.pursuit->component(), *request,
+                            Pursuit::timeout(*request), purpose_of(run)});
       }
     }
     if (!had_changed && run.pursuit->has_changed_anything()) note_change(run, now);
@@ -62,6 +103,19 @@ void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
     if (!attempt_of(run)->obstacle.empty() && !run.is_undoing)
       return;  // the analysis takes it from here
   }
+}
+
+Purpose Executor::purpose_of(const Run& run) const {
+  Purpose purpose{run.strategy, static_cast<std::uint32_t>(run.adaptation), run.is_undoing};
+  const Pursuit& pursuit = *run.pursuit;
+  const bool is_process = std::holds_alternative<execute::GoneGoal>(pursuit.goal()) ||
+                          std::holds_alternative<execute::PresentGoal>(pursuit.goal());
+  if (is_process) {
+    purpose.before = knowledge_.components[pursuit.component()].intended_lifecycle;
+  } else if (pursuit.before()) {
+    purpose.before = pursuit.before()->value;
+  }
+  return purpose;
 }
 
 // Sets out for the next goal; gives false if the attempt has none left.
@@ -97,7 +151,9 @@ bool Executor::next_goal(Run& run, Time now) {
 void Executor::finish_goal(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const AdaptationType type = knowledge_.rules[run.strategy].adaptations[run.adaptation].type;
-  if (pursuit.has_changed_anything() && pursuit.before()) {
+  // A last resort is to last: whether the failure is gone is not what it is for.
+  const bool is_to_last = knowledge_.rules[run.strategy].is_last_resort;
+  if (!is_to_last && pursuit.has_changed_anything() && pursuit.before()) {
     if (auto goal = execute::undoing(pursuit.goal(), type, *pursuit.before())) {
       run.undo.push_back({pursuit.component(), std::move(*goal)});
     }
@@ -118,7 +174,7 @@ void Executor::finish_goal(Run& run, Time now) {
 
 bool Executor::next_undo(Run& run, Time now) {
   // What was set in a process that is gone went with it.
-  std::erase_if(run.undo, [this](const Undo& undo) {
+  std::erase_if(run.undo, [this](const execute::Undo& undo) {
     return knowledge_.components[undo.component].process == ProcessState::kGone;
   });
   if (run.undo.empty()) {
@@ -171,7 +227,10 @@ void Executor::enter(Run& run, Attempt::Stage stage) {
 Time Executor::next_deadline() const {
   Time next = kNever;
   for (const Run& run : runs_) {
+    const bool is_abandoned = !knowledge_.states[run.rule].attempt;
+    if (is_abandoned) continue;
     if (run.pursuit) next = std::min(next, run.pursuit->next_deadline());
+    if (run.interrupted) next = std::min(next, run.from);
   }
   return next;
 }

@@ -36,8 +36,16 @@ struct ModeGoal {
 struct ServiceGoal {
   std::string service;
 };
-struct GoneGoal {};
-struct PresentGoal {};
+// Reached at once if another process than `pid` has taken its place; 0: whichever is there is
+// meant.
+struct GoneGoal {
+  int pid = 0;
+};
+// `instead_of`: set if the process may have been started already. Then one with another pid will
+// do; otherwise one that appears from now on is wanted.
+struct PresentGoal {
+  std::optional<int> instead_of{};
+};
 
 using Goal =
     std::variant<ParameterGoal, LifecycleGoal, ModeGoal, ServiceGoal, GoneGoal, PresentGoal>;

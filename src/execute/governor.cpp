@@ -28,9 +28,25 @@ bool exists(const Silenceable& what, const RuleSet& rules) {
 
 }  // namespace
 
-Governor::Governor(Knowledge& knowledge, Options options)
+Governor::Options Governor::Options::recommended() {
+  using namespace std::chrono_literals;
+  Options options;
+  options.quiet_at_start = 2s;
+  options.limits.overall = {20, 60s};
+  options.limits.per_kind = {12, 60s};
+  options.limits.per_component = {6, 60s};
+  options.limits.backoff = {1s, 60s, 60s};
+  options.limits.quiet_after_launch = 1s;
+  options.storm.share = 0.6;
+  return options;
+}
+
+Governor::Governor(Knowledge& knowledge, Options options, Time start)
     : knowledge_(knowledge),
       options_(options),
+      start_(start),
+      limits_(knowledge, options.limits),
+      storm_(knowledge, options.storm),
       refused_(knowledge.rules.strategies.size(), kNever),
       told_(knowledge.rules.strategies.size()) {}
 
@@ -86,6 +102,8 @@ std::optional<std::string> Governor::objection_to_run(StrategyId id, Autonomy au
     if (knowledge_.states.reservation(component) != nullptr)
       return rules[component].name + " is being adapted";
   }
+  if (const auto held = interlock()) return held->reason;
+  if (const auto held = doubt_of_identity(strategy)) return held->reason;
   if (strategy.when.empty()) return std::nullopt;
   const Slot when = evaluate(strategy.when, knowledge_.signals.slots());
   return when.known && when.b ? std::nullopt
@@ -140,7 +158,7 @@ void Governor::begin_planning() {
 }
 
 bool Governor::withholds(StrategyId strategy, Time now) {
-  const auto held = restraint_on(strategy);
+  const auto held = restraint_on(strategy, now);
   if (!held) return false;
   knowledge_.withheld[strategy.index] = held->reason;
   tell(strategy, *held, now);
@@ -148,17 +166,29 @@ bool Governor::withholds(StrategyId strategy, Time now) {
 }
 
 bool Governor::holds_back(StrategyId strategy, Time now) {
-  const auto held = restraint_on_all();
+  const auto held = restraint_on_all(now);
   if (held) tell(strategy, *held, now);
   return held.has_value();
 }
 
-std::optional<Governor::Held> Governor::restraint_on_all() const {
+std::optional<Governor::Held> Governor::restraint_on_all(Time now) const {
   if (is_paused_) return Held{Restraint::kPaused, "paused by a person", kNever};
-  return std::nullopt;
+  if (storm_.storm())
+    return Held{storm_.storm()->restraint, storm_.storm()->reason, storm_.next_deadline()};
+  if (auto held = interlock()) return held;
+  const Time quiet_until = later(start_, options_.quiet_at_start);
+  if (now < quiet_until)
+    return Held{Restraint::kQuietPeriod, "watching began a moment ago", quiet_until};
+  return limits_.on_all(now);
 }
 
-std::optional<Governor::Held> Governor::restraint_on(StrategyId id) const {
+std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) const {
+  if (auto held = restraint_by_person(id)) return held;
+  if (auto held = doubt_of_identity(knowledge_.rules[id])) return held;
+  return limits_.on(id, now);
+}
+
+std::optional<Governor::Held> Governor::restraint_by_person(StrategyId id) const {
   const Strategy& strategy = knowledge_.rules[id];
   for (const ActiveSilence& silence : silences_) {
     if (!touches(strategy, silence.what)) continue;
@@ -172,6 +202,30 @@ std::optional<Governor::Held> Governor::restraint_on(StrategyId id) const {
   }
   if (refused_[id.index] == knowledge_.states[strategy.rule].failing_since)
     return Held{Restraint::kRefused, "a person refused it", kNever};
+  return std::nullopt;
+}
+
+std::optional<Governor::Held> Governor::interlock() const {
+  for (const Interlock& interlock : knowledge_.rules.interlocks) {
+    const Slot value = evaluate(interlock.condition, knowledge_.signals.slots());
+    if (value.known && value.b) continue;
+    return Held{Restraint::kInterlock,
+                "INTERLOCK " + interlock.text + (value.known ? " is false" : " is unknown"),
+                kNever};
+  }
+  return std::nullopt;
+}
+
+// Requests go to a name, signals to a process: it must be clear which.
+std::optional<Governor::Held> Governor::doubt_of_identity(const Strategy& strategy) const {
+  for (const ComponentId component : strategy.components) {
+    const ComponentState& state = knowledge_.components[component];
+    if (!state.in_graph) continue;
+    if (state.namesakes > 0) {
+      return Held{Restraint::kIdentity,
+                  "several nodes have the name " + knowledge_.graph.node_name(component), kNever};
+    }
+  }
   return std::nullopt;
 }
 
@@ -198,7 +252,8 @@ void Governor::tell(StrategyId strategy, const Held& held, Time now) {
   knowledge_.tell(now, ActionHeldBack{strategy, held.restraint, held.reason, held.until});
 }
 
-void Governor::began(StrategyId strategy) {
+void Governor::began(StrategyId strategy, Time now) {
+  limits_.began(strategy, now);
   told_[strategy.index] = {};
   std::erase_if(questions_, [&](const Question& q) { return q.strategy == strategy; });
 }
@@ -211,6 +266,7 @@ bool Governor::is_open(const Question& question) const {
 }
 
 void Governor::advance(Time now) {
+  storm_.advance(now);
   std::erase_if(silences_, [&](const ActiveSilence& silence) {
     if (silence.until > now) return false;
     knowledge_.tell(now, SilenceEnded{silence.what});
@@ -223,8 +279,13 @@ void Governor::advance(Time now) {
   });
 }
 
+void Governor::note(std::span<const Event> events) {
+  for (const Event& event : events) limits_.note(event);
+  storm_.note(events);
+}
+
 Time Governor::next_deadline() const {
-  Time next = kNever;
+  Time next = storm_.next_deadline();
   for (const ActiveSilence& silence : silences_) next = std::min(next, silence.until);
   return next;
 }

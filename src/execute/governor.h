@@ -6,9 +6,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "execute/limits.h"
+#include "execute/storm_watch.h"
 #include "knowledge/knowledge.h"
 #include "robot/order.h"
 
@@ -26,6 +29,13 @@ class Governor {
  public:
   struct Options {
     Approval approval = Approval::kNone;
+    Duration quiet_at_start{};  // nothing is begun for so long
+    Limits::Options limits{};
+    StormWatch::Options storm{};
+
+    // Nothing is limited unless it is asked for: a study measures the planner. This is what a
+    // robot is run with; why these numbers, says docs/governor.md.
+    static Options recommended();
   };
   struct ActiveSilence {
     Silenceable what;
@@ -33,14 +43,10 @@ class Governor {
     std::string author;
     std::string reason;
   };
-  struct Held {
-    Restraint restraint = Restraint::kPaused;
-    std::string reason;
-    Time until = kNever;
-  };
+  using Held = Limits::Limit;
 
   // `knowledge` must outlive the governor.
-  Governor(Knowledge& knowledge, Options options);
+  Governor(Knowledge& knowledge, Options options, Time start);
 
   // ---- orders
 
@@ -50,6 +56,7 @@ class Governor {
   void obey(const Order& order, Time now);
 
   bool is_paused() const { return is_paused_; }
+  const std::optional<StormWatch::Storm>& storm() const { return storm_.storm(); }
   const std::vector<ActiveSilence>& silences() const { return silences_; }
   // The strategies that wait for approval.
   std::vector<StrategyId> asked() const;
@@ -66,11 +73,13 @@ class Governor {
   // Whether a person has to approve it first, and did not yet. If so, the person is asked.
   bool awaits_approval(const ApprovalAsked& choice, Time now);
   // It is begun.
-  void began(StrategyId strategy);
+  void began(StrategyId strategy, Time now);
 
   // ---- time
 
   void advance(Time now);
+  // What happened in the step that is over.
+  void note(std::span<const Event> events);
   Time next_deadline() const;
 
  private:
@@ -85,8 +94,12 @@ class Governor {
   };
 
   std::optional<std::string> objection_to_run(StrategyId id, Autonomy autonomy) const;
-  std::optional<Held> restraint_on_all() const;
-  std::optional<Held> restraint_on(StrategyId strategy) const;
+  std::optional<Held> restraint_on_all(Time now) const;
+  std::optional<Held> restraint_on(StrategyId strategy, Time now) const;
+  std::optional<Held> restraint_by_person(StrategyId strategy) const;
+  // What no person can order either.
+  std::optional<Held> interlock() const;
+  std::optional<Held> doubt_of_identity(const Strategy& strategy) const;
   void tell(StrategyId strategy, const Held& held, Time now);
   Question* question_of(StrategyId strategy);
   const Question* question_of(StrategyId strategy) const;
@@ -94,6 +107,9 @@ class Governor {
 
   Knowledge& knowledge_;
   Options options_;
+  Time start_;
+  Limits limits_;
+  StormWatch storm_;
   bool is_paused_ = false;
   std::vector<ActiveSilence> silences_;
   std::vector<Question> questions_;

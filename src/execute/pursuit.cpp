@@ -128,8 +128,8 @@ std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Tim
 
 std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time now) {
   const ComponentState& state = knowledge.components[component_];
-  if (std::holds_alternative<GoneGoal>(goal_)) return pursue_gone(state, now);
-  if (std::holds_alternative<PresentGoal>(goal_)) return pursue_present(state, now);
+  if (const auto* gone = std::get_if<GoneGoal>(&goal_)) return pursue(*gone, state, now);
+  if (const auto* present = std::get_if<PresentGoal>(&goal_)) return pursue(*present, state, now);
   if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return pursue(*service, now);
   // The change was not sent, for there was nobody to send it to.
   if (answer_ && answer_->outcome == Outcome::kUnreachable) return give_up(why(*answer_));
@@ -198,16 +198,28 @@ std::optional<Pursuit::Request> Pursuit::pursue(const ServiceGoal& goal, Time no
   return answer_->outcome == Outcome::kDone ? reach() : give_up(why(*answer_));
 }
 
-std::optional<Pursuit::Request> Pursuit::pursue_gone(const ComponentState& state, Time now) {
+std::optional<Pursuit::Request> Pursuit::pursue(const GoneGoal& goal, const ComponentState& state,
+                                                Time now) {
+  const bool is_replaced = goal.pid != 0 && state.in_graph && state.known_pid() != goal.pid;
+  if (is_replaced && !has_changed_anything()) return reach();
   if (state.in_graph && state.known_pid() == 0)
     return give_up("its process is not known; is it on another machine?");
-  if (!has_changed_anything()) return change(StopProcess{state.known_pid()}, now);
+  if (!has_changed_anything())
+    return change(StopProcess{goal.pid != 0 ? goal.pid : state.known_pid()}, now);
   const bool is_gone = !state.in_graph && state.process == ProcessState::kGone;
-  if (answer_->outcome == Outcome::kDone || is_gone) return reach();
-  return answer_->outcome == Outcome::kTimedOut ? look_again(now) : give_up(why(*answer_));
+  // Where the operating system is asked, its word is needed too: a new process must not begin
+  // beside the old one because of a wrong answer.
+  const bool still_runs = state.pid != 0 && state.process != ProcessState::kGone;
+  if (is_gone || (answer_->outcome == Outcome::kDone && !still_runs)) return reach();
+  const bool may_come =
+      answer_->outcome == Outcome::kTimedOut || answer_->outcome == Outcome::kDone;
+  return may_come ? look_again(now) : give_up(why(*answer_));
 }
 
-std::optional<Pursuit::Request> Pursuit::pursue_present(const ComponentState& state, Time now) {
+std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal,
+                                                const ComponentState& state, Time now) {
+  const bool is_there = goal.instead_of && state.in_graph && state.known_pid() != *goal.instead_of;
+  if (is_there && !has_changed_anything()) return reach();
   if (!has_changed_anything()) return change(StartProcess{}, now);
   if (state.in_graph && state.node_seen >= begun_) return reach();
   if (did_not_come(*answer_) || answer_->outcome == Outcome::kRefused)

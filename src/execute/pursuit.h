@@ -53,8 +53,8 @@ class Pursuit {
   std::optional<Request> pursue(const LifecycleGoal& goal, Time now);
   std::optional<Request> pursue(const ModeGoal& goal, Time now);
   std::optional<Request> pursue(const ServiceGoal& goal, Time now);
-  std::optional<Request> pursue_gone(const ComponentState& state, Time now);
-  std::optional<Request> pursue_present(const ComponentState& state, Time now);
+  std::optional<Request> pursue(const GoneGoal& goal, const ComponentState& state, Time now);
+  std::optional<Request> pursue(const PresentGoal& goal, const ComponentState& state, Time now);
 
   std::optional<Request> change(Request request, Time now);
   std::optional<Request> look_again(Time now);

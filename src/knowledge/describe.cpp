@@ -79,6 +79,11 @@ class Describer {
     const Strategy& strategy = rules_[e.strategy];
     return strategy.name + " did not resolve " + rules_[strategy.rule].name + ": " + e.reason;
   }
+  std::string operator()(const StrategyResumed& e) const {
+    const Strategy& strategy = rules_[e.strategy];
+    return strategy.name + " for " + rules_[strategy.rule].name +
+           " was under way when culprit ended, and is finished now";
+  }
   std::string operator()(const Undone& e) const {
     return e.succeeded ? e.what + " again" : "cannot be undone: " + e.what;
   }
@@ -87,6 +92,9 @@ class Describer {
   }
   std::string operator()(const RuleExhausted& e) const {
     return rules_[e.rule].name + " is exhausted: nothing helped, a person must look";
+  }
+  std::string operator()(const LastResortReached& e) const {
+    return rules_[e.rule].name + ": nothing helped, and only the last resort is left";
   }
   std::string operator()(const ComponentLost& e) const {
     return rules_[e.component].name + " is lost" + (e.remark.empty() ? "" : ": " + e.remark);

@@ -105,6 +105,11 @@ struct StrategyFailed {
   std::string reason;
 };
 
+// A strategy that an earlier process of culprit did not live to end is being finished.
+struct StrategyResumed {
+  StrategyId strategy;
+};
+
 // Something that a failed strategy had changed is back as it was, or could not be brought back.
 struct Undone {
   StrategyId strategy;
@@ -116,6 +121,11 @@ struct Undone {
 struct RoundSpent {
   RuleId rule;
   Time retry_at;
+};
+
+// Nothing is left to try but the rule's last resorts.
+struct LastResortReached {
+  RuleId rule;
 };
 
 // Nothing is left to try. A person must look.
@@ -207,10 +217,10 @@ struct StormEnded {};
 struct Event {
   Time at;
   std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
-               AdaptationDone, AdaptationFailed, StrategyFailed, Undone, RoundSpent, RuleExhausted,
-               ComponentLost, ComponentFound, Trouble, OrderAccepted, OrderRefused, ActionHeldBack,
-               ApprovalAsked, ApprovalLapsed, StrategyAbandoned, OrderCarriedOut, SilenceEnded,
-               StormBegan, StormEnded>
+               AdaptationDone, AdaptationFailed, StrategyFailed, StrategyResumed, Undone,
+               RoundSpent, RuleExhausted, ComponentLost, ComponentFound, Trouble, OrderAccepted,
+               OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed, StrategyAbandoned,
+               OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached>
       what;
 };
 

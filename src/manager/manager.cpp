@@ -30,17 +30,36 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
       analyzer_(knowledge_),
       planner_(std::move(planner)),
       executor_(knowledge_),
-      governor_(knowledge_, options.governor),
+      governor_(knowledge_, options.governor, options.start),
       autonomy_(options.autonomy),
+      settling_(options.settling),
       now_(options.start),
       held_back_(rules.rules.size()) {
   knowledge_.beliefs.set_forgetting(options.forgetting);
   knowledge_.couplings.set_forgetting(options.forgetting);
 }
 
+void Manager::resume(Interrupted interrupted) {
+  if (autonomy_ == Autonomy::kAdvise) return;
+  const StrategyId strategy = interrupted.strategy;
+  executor_.resume(std::move(interrupted), now_, later(now_, settling_));
+  governor_.began(strategy);
+}
+
 std::vector<Command> Manager::step(Time now, std::span<const Observation> observations) {
   knowledge_.events.clear();
+  take_in(now, observations);
   std::vector<Command> commands;
+  if (analyzer_.anything_active()) {
+    react(commands);
+  } else {
+    next_plan_ = kNever;
+  }
+  governor_.note(knowledge_.events);
+  return commands;
+}
+
+void Manager::take_in(Time now, std::span<const Observation> observations) {
   for (const Observation& observation : observations) {
     // Late observations of an earlier time count for now: time does not go back.
     now_ = std::max(now_, std::min(observation.at, now));
@@ -56,12 +75,10 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
   monitor_.advance(now_);
   analyzer_.advance(now_);
   governor_.advance(now_);
-  if (!analyzer_.anything_active()) {
-    next_plan_ = kNever;
-    return commands;
-  }
   news_ |= !knowledge_.events.empty();
+}
 
+void Manager::react(std::vector<Command>& commands) {
   // Each stage can give the others something to do at once: a failed strategy makes room for the
   // next. A chain of more rounds than this goes on in the next step.
   constexpr int kRounds = 8;
@@ -75,10 +92,11 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
     if (said == knowledge_.events.size() && asked == commands.size()) break;
     news_ = true;
   }
-  return commands;
 }
 
 void Manager::obey(const Order& order, Time now) {
+  if (const auto* run = std::get_if<RunStrategy>(&order.what))
+    refresh_conditions(run->strategy, now);
   if (auto reason = governor_.objection(order, autonomy_))
     return knowledge_.tell(now, OrderRefused{order, std::move(*reason)});
   knowledge_.tell(now, OrderAccepted{order});
@@ -107,13 +125,15 @@ void Manager::abandon_all(const std::string& reason, Time now) {
 void Manager::plan(Time now) {
   const std::vector<RuleId> failures = analyzer_.plannable(now);
   for (const RuleId failure : failures) {
-    for (const StrategyId strategy : knowledge_.rules[failure].strategies) {
-      monitor_.refresh(knowledge_.rules[strategy].when, now);
-    }
+    for (const StrategyId strategy : knowledge_.rules[failure].strategies)
+      refresh_conditions(strategy, now);
   }
   for (const Verdict& verdict : allowed_plan(failures, now)) {
     if (verdict.chosen) {
-      if (!governor_.holds_back(*verdict.chosen, now)) carry_out(verdict, now);
+      // What was allowed when the plan was made may have been the last of its kind.
+      const bool has_to_wait =
+          governor_.holds_back(*verdict.chosen, now) || governor_.withholds(*verdict.chosen, now);
+      if (!has_to_wait) carry_out(verdict, now);
     } else if (verdict.is_spent) {
       hold_back(verdict, now);
       analyzer_.round_is_spent(verdict.rule, now);
@@ -123,6 +143,14 @@ void Manager::plan(Time now) {
   }
   news_ = false;
   next_plan_ = next_planning(now);
+}
+
+// What has to be true for the strategy to be begun.
+void Manager::refresh_conditions(StrategyId strategy, Time now) {
+  if (strategy.index < knowledge_.rules.strategies.size())
+    monitor_.refresh(knowledge_.rules[strategy].when, now);
+  for (const Interlock& interlock : knowledge_.rules.interlocks)
+    monitor_.refresh(interlock.condition, now);
 }
 
 // A strategy that may not be begun makes room for the next best.
@@ -169,7 +197,7 @@ void Manager::begin(StrategyId strategy, Time now) {
   for (const Adaptation& adaptation : knowledge_.rules[strategy].adaptations)
     monitor_.refresh(adaptation.value, now);
   executor_.begin(strategy, now);
-  governor_.began(strategy);
+  governor_.began(strategy, now);
 }
 
 void Manager::hold_back(const Verdict& verdict, Time now) {

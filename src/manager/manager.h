@@ -54,9 +54,15 @@ class Manager : public ManagingSystem {
   void set_coupling(RuleId cause, RuleId effect, Coupling coupling) {
     knowledge_.couplings.set(cause, effect, coupling);
   }
+  // A strategy that an earlier process left in the middle is finished, once the robot had the time
+  // of settling to show itself. Before the first step; one for each rule at most.
+  void resume(Interrupted interrupted);
 
  private:
+  void take_in(Time now, std::span<const Observation> observations);
+  void react(std::vector<Command>& commands);
   void obey(const Order& order, Time now);
+  void refresh_conditions(StrategyId strategy, Time now);
   void abandon_all(const std::string& reason, Time now);
   void plan(Time now);
   std::vector<Verdict> allowed_plan(const std::vector<RuleId>& failures, Time now);
@@ -72,6 +78,7 @@ class Manager : public ManagingSystem {
   Executor executor_;
   Governor governor_;
   Autonomy autonomy_;
+  Duration settling_;
   Time now_;
   bool news_ = false;        // something a plan depends on changed since the last plan
   Time next_plan_ = kNever;  // while failures are held back

@@ -10,10 +10,16 @@ void Runtime::run(const std::atomic<bool>& stop, Time end) {
     observations.clear();
     robot_.observe(std::min(end, manager_.next_deadline()), observations);
     take_orders(observations);
-    for (const Command& command : manager_.step(robot_.now(), observations))
-      robot_.execute(command);
-    if (!manager_.events().empty() && on_events) on_events(manager_.events());
+    step(observations);
   }
+}
+
+void Runtime::step(std::vector<Observation>& observations) {
+  const Time now = robot_.now();
+  const std::vector<Command> commands = manager_.step(now, observations);
+  if (on_step) on_step({now, observations, commands, manager_.events()});
+  for (const Command& command : commands) robot_.execute(command);
+  if (!manager_.events().empty() && on_events) on_events(manager_.events());
 }
 
 void Runtime::submit(Order order) {

@@ -20,12 +20,25 @@ class Runtime {
   // Both must outlive the runtime.
   Runtime(ManagingSystem& manager, Robot& robot) : manager_(manager), robot_(robot) {}
 
+  // Called after every step, before its commands go out, on the thread of run(). It may take the
+  // observations.
+  struct Step {
+    Time now;
+    std::vector<Observation>& observations;
+    std::span<const Command> commands;
+    std::span<const Event> events;
+  };
+  std::function<void(const Step&)> on_step;
+
   // Called after every step in which something happened, on the thread of run(). It must not block.
   std::function<void(std::span<const Event>)> on_events;
 
   // Runs until `stop` is set, or the robot's clock has come to `end`. Whoever sets `stop` also has
   // to interrupt the robot's waiting.
   void run(const std::atomic<bool>& stop, Time end = kNever);
+
+  // One step, with what was observed otherwise.
+  void step(std::vector<Observation>& observations);
 
   // Gives the managing system an order, with its next step, which comes at once. From any thread,
   // as long as the runtime lives; what is submitted while run() does not run waits for it.

@@ -68,6 +68,7 @@ class Monitor {
 
   void on(Time at, const NodeAppeared& seen);
   void on(Time at, const NodeVanished& seen);
+  void on(Time at, const NamesakesSeen& seen);
   void on(Time at, const EndpointAppeared& seen);
   void on(Time at, const EndpointVanished& seen);
   void on(Time at, const SampleArrived& seen);

@@ -9,8 +9,8 @@
 //   - redeploy: it has a LAUNCH command;
 //   - start: it has a LAUNCH command and is not there;
 //   - stop: it is there.
-// A strategy is valid if each of its adaptations is, given the ones before it, and its WHEN
-// condition is true.
+// A strategy is valid if each of its adaptations is, given the ones before it, its WHEN condition
+// is true, and it is a LASTRESORT just when nothing else is left.
 #pragma once
 
 #include <optional>

@@ -28,6 +28,13 @@ struct NodeVanished {
   std::string node;
 };
 
+// How many other nodes there are with the name of this one, that may be alive. Whoever speaks to
+// that name does not know whom it reaches.
+struct NamesakesSeen {
+  std::string node;
+  int others = 0;
+};
+
 enum class EndpointKind : std::uint8_t { kPublisher, kSubscriber, kServer, kClient };
 
 // A node offers or uses a topic (publisher, subscriber) or a service (server, client). `name` is
@@ -141,7 +148,7 @@ struct Observation {
   Time at;
   std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived,
                SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply,
-               LinkTrouble, Order>
+               LinkTrouble, Order, NamesakesSeen>
       what;
 };
 

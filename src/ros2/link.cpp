@@ -132,6 +132,8 @@ void Link::on_change(const GraphChange& change) {
   } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
     if (is_service(gone->kind) && is_for_management(gone->name)) return;
     inbox_.put(EndpointVanished{gone->node, gone->kind, gone->name});
+  } else if (const auto* namesakes = std::get_if<NodeNamesakes>(&change)) {
+    inbox_.put(NamesakesSeen{namesakes->node, namesakes->others});
   } else if (const auto* trouble = std::get_if<GraphTrouble>(&change)) {
     inbox_.put(LinkTrouble{trouble->text});
   }

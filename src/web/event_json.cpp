@@ -68,6 +68,12 @@ struct AsJson {
   Json operator()(const StrategyFailed& e) const {
     return of_strategy("no_help", e.strategy, rules);
   }
+  Json operator()(const StrategyResumed& e) const {
+    return of_strategy("resumed", e.strategy, rules);
+  }
+  Json operator()(const LastResortReached& e) const {
+    return {{"kind", "last_resort"}, {"rule", rules[e.rule].name}};
+  }
   Json operator()(const Undone& e) const {
     Json json = of_strategy("undone", e.strategy, rules);
     json["succeeded"] = e.succeeded;
