@@ -4,7 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/journal_file.h"
-#include "cli/text_file.h"
+#include "language/text_file.h"
 #include "journal/session.h"
 #include "journal/writer.h"
 

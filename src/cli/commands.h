@@ -22,6 +22,7 @@ void add_plan(CLI::App& app, int& exit_code);
 void add_graph(CLI::App& app, int& exit_code);
 void add_demo(CLI::App& app, int& exit_code);
 void add_lsp(CLI::App& app, const std::string& version, int& exit_code);
+void add_web(CLI::App& app, int& exit_code);
 void add_import(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, const std::string& version, int& exit_code);
 void add_log(CLI::App& app, int& exit_code);

@@ -94,6 +94,7 @@ void StopSignals::wait() {
     if (signal == SIGUSR1) return;
     const std::lock_guard lock(mutex_);
     stopped_ = true;
+    stopped_.notify_all();
     if (stop_) stop_();
   }
 }

@@ -30,6 +30,8 @@ class StopSignals {
   // What to do when a signal comes; called on another thread. Called at once if one came already.
   void on_stop(std::function<void()> stop);
   const std::atomic<bool>& stopped() const { return stopped_; }
+  // For commands that have nothing else to wait for.
+  void wait_until_stopped() const { stopped_.wait(false); }
 
  private:
   void wait();

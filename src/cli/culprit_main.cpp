@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   culprit::cli::add_plan(app, exit_code);
   culprit::cli::add_graph(app, exit_code);
   culprit::cli::add_demo(app, exit_code);
+  culprit::cli::add_web(app, exit_code);
   culprit::cli::add_lsp(app, CULPRIT_VERSION, exit_code);
   culprit::cli::add_import(app, exit_code);
   culprit::cli::add_study(app, CULPRIT_VERSION, exit_code);

@@ -9,9 +9,16 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/embedded_rules.h"
 #include "cli/planner_options.h"
 #include "cli/suave_demo_command.h"
 #include "cli/sunset_demo.h"
+#include "cli/web_service.h"
+#include "cli/what_if_route.h"
+#include "web/fault_routes.h"
+#include "web/live_routes.h"
+#include "web/order_routes.h"
+#include "web/rule_routes.h"
 
 namespace culprit::cli {
 namespace {
@@ -23,6 +30,8 @@ struct DemoOptions {
   double speed = 1;
   std::string json;
   PlannerOptions planner;
+  bool stay = false;
+  WebOptions web;
 };
 
 Expected<std::vector<Play>> plays_for(const DemoOptions& options) {
@@ -104,6 +113,30 @@ void print_summary(const std::vector<PlayOutcome>& outcomes) {
       "redeploys: those that were not necessary. reaction: mean, from detection to resolution.\n");
 }
 
+web::Faults faults_of(SunsetDemo& demo) {
+  web::Faults faults;
+  for (const sunset::Fault& fault : sunset::faults())
+    faults.all.push_back({std::string(fault.name), std::string(sunset::name_of(fault.member))});
+  for (const sunset::Member member : sunset::kManagedMembers) {
+    const std::string name(sunset::name_of(member));
+    for (const char* what : {"kill:", "stop:"}) faults.all.push_back({what + name, name});
+  }
+  faults.inject = [&demo](const std::string& name) { return demo.inject(name); };
+  faults.clear = [&demo] { return demo.clear_faults(); };
+  return faults;
+}
+
+std::vector<web::Route> web_routes(SunsetDemo& demo, web::RuleDesk& desk, PlannerFactory planner) {
+  std::vector<web::Route> routes = web::live_routes(demo.hub());
+  const auto submit = [&demo](Order order) { demo.submit(std::move(order)); };
+  for (web::Route& route : web::order_routes(demo.rules(), submit))
+    routes.push_back(std::move(route));
+  for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
+  routes.push_back(what_if_route(std::move(planner)));
+  for (web::Route& route : web::fault_routes(faults_of(demo))) routes.push_back(std::move(route));
+  return routes;
+}
+
 int demo_sunset(const DemoOptions& options) {
   const auto plays = plays_for(options);
   if (!plays) {
@@ -127,6 +160,19 @@ int demo_sunset(const DemoOptions& options) {
   if (!demo) {
     fmt::print(stderr, "culprit: {}\n", demo.error());
     return kFailed;
+  }
+  web::RuleDesk desk("sunset.rules", kSunsetRules);
+  const auto server =
+      serve(options.web, web_routes(**demo, desk, options.planner.factory()), &(*demo)->hub());
+  if (!server) {
+    fmt::print(stderr, "culprit: {}\n", server.error());
+    return kUsage;
+  }
+  if (options.stay) {
+    fmt::print("Break it in the browser, and see what becomes of it; Ctrl-C ends it.\n");
+    std::fflush(stdout);
+    signals.wait_until_stopped();
+    return kOk;
   }
   std::vector<PlayOutcome> outcomes;
   for (std::size_t i = 0; i < plays->size(); ++i) {
@@ -160,8 +206,9 @@ int demo_sunset(const DemoOptions& options) {
 
 int demo(const DemoOptions& options) {
   if (options.robot == "sunset") return demo_sunset(options);
-  if (!options.scenario.empty()) {
-    fmt::print(stderr, "culprit: --scenario is for --robot sunset; SUAVE has one mission\n");
+  if (!options.scenario.empty() || options.stay) {
+    fmt::print(stderr,
+               "culprit: --scenario and --stay are for --robot sunset; SUAVE has one mission\n");
     return kUsage;
   }
   SuaveDemo::Options setup;
@@ -196,7 +243,12 @@ void add_demo(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--json", options->json,
                       "Also write the outcome to this file, as one JSON object");
+  command
+      ->add_flag("--stay", options->stay,
+                 "Play no scenario: go on until Ctrl-C, and break the robot in the browser")
+      ->excludes("--scenario");
   options->planner.add_to(*command);
+  options->web.add_to(*command);
   command->callback([options, &exit_code] { exit_code = demo(*options); });
 }
 

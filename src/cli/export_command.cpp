@@ -5,7 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "cli/text_file.h"
+#include "language/text_file.h"
 #include "rule_json/to_json.h"
 
 namespace culprit::cli {

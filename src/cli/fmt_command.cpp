@@ -6,8 +6,8 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/layout_diff.h"
-#include "cli/text_file.h"
 #include "language/formatter.h"
+#include "language/text_file.h"
 
 namespace culprit::cli {
 namespace {

@@ -5,8 +5,8 @@
 #include <fmt/core.h>
 
 #include "cli/commands.h"
-#include "cli/text_file.h"
 #include "language/import/importer.h"
+#include "language/text_file.h"
 #include "rule_json/from_json.h"
 
 namespace culprit::cli {

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "cli/commands.h"
-#include "cli/text_file.h"
+#include "language/text_file.h"
 #include "modes/mode_manager.h"
 #include "modes/read_model.h"
 

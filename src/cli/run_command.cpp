@@ -14,11 +14,17 @@
 #include "cli/rule_file.h"
 #include "cli/run_journal.h"
 #include "cli/service_manager.h"
+#include "cli/web_service.h"
+#include "cli/what_if_route.h"
 #include "knowledge/describe.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
 #include "replay/replay.h"
 #include "ros2/named_lock.h"
+#include "web/live_routes.h"
+#include "web/order_routes.h"
+#include "web/rule_routes.h"
+#include "web/watched_manager.h"
 
 namespace culprit::cli {
 namespace {
@@ -36,6 +42,8 @@ struct RunOptions {
   std::string journal;
   bool no_journal = false;
   std::vector<std::filesystem::path> message_path;
+  bool is_on_web = false;
+  WebOptions web;
 };
 
 ros2::Severity severity_of(const Event& event) {
@@ -100,6 +108,16 @@ void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Ob
     fmt::print("starting {}\n", rules.components[c].name);
     robot.supervisor().start({}, ComponentId(c));
   }
+}
+
+std::vector<web::Route> web_routes(web::Hub& hub, web::RuleDesk& desk, const RuleSet& rules,
+                                   Runtime& runtime, PlannerFactory planner) {
+  std::vector<web::Route> routes = web::live_routes(hub);
+  const auto submit = [&runtime](Order order) { runtime.submit(std::move(order)); };
+  for (web::Route& route : web::order_routes(rules, submit)) routes.push_back(std::move(route));
+  for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
+  routes.push_back(what_if_route(std::move(planner)));
+  return routes;
 }
 
 // Two managers on one robot would undo each other's work: the second one only looks on. It neither
@@ -192,8 +210,21 @@ int run(const RunOptions& options) {
   if (!options.no_journal && claim->has_value())
     recorder = record(options, std::move(beginning), session, *manager, **robot);
 
+  web::Hub hub([&] { (*robot)->interrupt(); });
+  web::WatchedManager watched(*manager, hub, session.start);
+  Runtime runtime(watched, **robot);
+  web::RuleDesk desk(options.rules);
+  Expected<std::unique_ptr<web::Server>> server(nullptr);
+  if (options.is_on_web) {
+    server =
+        serve(options.web, web_routes(hub, desk, *rules, runtime, options.planner.factory()), &hub);
+    if (!server) {
+      fmt::print(stderr, "culprit: {}\n", server.error());
+      return kUsage;
+    }
+  }
+
   const Colour colour = colour_of(STDOUT_FILENO);
-  Runtime runtime(*manager, **robot);
   if (recorder != nullptr) {
     runtime.on_step = [&](const Runtime::Step& step) {
       recorder->stepped(step.now, step.observations, step.commands, step.events);
@@ -264,6 +295,9 @@ void add_run(CLI::App& app, const std::string& version, int& exit_code) {
       ->check(CLI::Range(0.5, 1.0))
       ->capture_default_str();
   options->planner.add_to(*command);
+  command->add_flag("--web", options->is_on_web,
+                    "Show in a browser what is seen, decided and done");
+  options->web.add_to(*command);
   options->governor.add_to(*command);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

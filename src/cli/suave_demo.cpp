@@ -9,7 +9,7 @@
 #include "cli/demo_setup.h"
 #include "cli/embedded_rules.h"
 #include "cli/paths.h"
-#include "cli/text_file.h"
+#include "language/text_file.h"
 
 namespace culprit::cli {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "cli/text_file.h"
+#include "language/text_file.h"
 
 namespace culprit::cli {
 namespace {

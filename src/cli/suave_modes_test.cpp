@@ -1,7 +1,7 @@
 // The mode file of the live SUAVE says what its model says.
 #include <gtest/gtest.h>
 
-#include "cli/text_file.h"
+#include "language/text_file.h"
 #include "exemplars/suave/model/mission.h"
 #include "modes/read_model.h"
 

@@ -44,7 +44,7 @@ SunsetDemo::SunsetDemo(Options options, const std::atomic<bool>& stop, ros2::Dom
 SunsetDemo::~SunsetDemo() {
   is_ending_ = true;
   if (robot_) robot_->interrupt();
-  if (runtime_.joinable()) runtime_.join();
+  if (thread_.joinable()) thread_.join();
   experiment_.reset();
   if (robot_) robot_->supervisor().stop_all();
   if (extras_) extras_->stop_all();
@@ -87,11 +87,10 @@ Expected<void> SunsetDemo::open() {
   manager.start = live_now();
   manager.settling = 20s;  // the nodes are only just being started
   manager_ = std::make_unique<Manager>(rules_, options_.planner(), manager);
-  runtime_ = std::thread([this] {
-    Runtime runtime(*manager_, *robot_);
-    runtime.on_events = [this](std::span<const Event> events) { on_events(events); };
-    runtime.run(is_ending_);
-  });
+  watched_ = std::make_unique<web::WatchedManager>(*manager_, hub_, start_);
+  runtime_ = std::make_unique<Runtime>(*watched_, *robot_);
+  runtime_->on_events = [this](std::span<const Event> events) { on_events(events); };
+  thread_ = std::thread([this] { runtime_->run(is_ending_); });
   if (wait_until_well(60s)) return {};
   if (stop_) return Error{"interrupted"};
   return Error{"the robot does not come up: " + experiment_->measure().complaint +
@@ -131,6 +130,12 @@ Expected<void> SunsetDemo::inject(const Play& play) {
     }
   }
   return {};
+}
+
+Expected<void> SunsetDemo::inject(const std::string& fault) {
+  if (const sunset::Fault* known = sunset::find_fault(fault)) return experiment_->inject(*known);
+  const auto play = find_play(fault);
+  return play ? inject(*play) : Error{play.error()};
 }
 
 Expected<PlayOutcome> SunsetDemo::play(const Play& play) {

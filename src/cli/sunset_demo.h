@@ -20,6 +20,7 @@
 #include "manager/runtime.h"
 #include "plan/paper_planner.h"
 #include "ros2/domain_lock.h"
+#include "web/watched_manager.h"
 
 namespace culprit::cli {
 
@@ -63,8 +64,17 @@ class SunsetDemo {
   // between plays, or `stop` was set.
   Expected<PlayOutcome> play(const Play& play);
 
+  // What the browser can break: the faults of the scenarios, and processes that are killed or
+  // stopped ("kill:camera").
+  Expected<void> inject(const std::string& fault);
+  // Removes what was injected. Does not wait until the robot is well.
+  Expected<void> clear_faults() { return experiment_->clear(); }
+
   const std::filesystem::path& keep_state();
   const RuleSet& rules() const { return rules_; }
+  web::Hub& hub() { return hub_; }
+  // Gives the manager an order. From any thread.
+  void submit(Order order) { runtime_->submit(std::move(order)); }
 
  private:
   static constexpr Duration kPatience = std::chrono::seconds(90);
@@ -94,6 +104,9 @@ class SunsetDemo {
   std::unique_ptr<LiveRobot> robot_;
   std::unique_ptr<sunset::Experiment> experiment_;
   std::unique_ptr<Manager> manager_;
+  web::Hub hub_{[this] { robot_->interrupt(); }};
+  std::unique_ptr<web::WatchedManager> watched_;
+  std::unique_ptr<Runtime> runtime_;
   Time start_;
 
   std::mutex mutex_;  // guards what follows
@@ -101,7 +114,7 @@ class SunsetDemo {
   Time last_event_;
 
   std::atomic<bool> is_ending_ = false;
-  std::thread runtime_;
+  std::thread thread_;  // runs the runtime
 };
 
 }  // namespace culprit::cli

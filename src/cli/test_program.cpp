@@ -19,8 +19,8 @@ using namespace std::chrono_literals;
 
 // Whether `done` came true within a time that only failures need.
 template <class Done>
-bool eventually(Done done) {
-  const auto end = std::chrono::steady_clock::now() + 30s;
+bool eventually(Done done, Duration patience = TestProgram::kPatience) {
+  const auto end = std::chrono::steady_clock::now() + patience;
   while (!done()) {
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(20ms);
@@ -68,13 +68,14 @@ void TestProgram::signal(int number) const {
   if (!exit_) kill(pid_, number);
 }
 
-std::optional<int> TestProgram::wait() {
-  eventually([&] {
+std::optional<int> TestProgram::wait(Duration patience) {
+  const auto is_over = [&] {
     int status = 0;
     if (exit_ || waitpid(pid_, &status, WNOHANG) != pid_) return exit_.has_value();
     exit_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
     return true;
-  });
+  };
+  eventually(is_over, patience);
   return exit_;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "language/units.h"
 #include "ros2/domain_lock.h"
 
 namespace culprit::cli {
@@ -28,6 +29,9 @@ class TestWorld {
 // A program of the project that runs, or has run. What is left of it is killed with the object.
 class TestProgram {
  public:
+  // Only failures need it.
+  static constexpr Duration kPatience = std::chrono::seconds(30);
+
   TestProgram(const TestWorld& world, std::vector<std::string> arguments);
   ~TestProgram();
   TestProgram(const TestProgram&) = delete;
@@ -37,7 +41,7 @@ class TestProgram {
   void signal(int number) const;
   // Waits for its end. Gives the exit code; minus the signal that ended it; nothing if it does not
   // end.
-  std::optional<int> wait();
+  std::optional<int> wait(Duration patience = kPatience);
 
   // All that it has printed so far.
   std::string output() const;

@@ -1,4 +1,4 @@
-#include "cli/text_file.h"
+#include "language/text_file.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -11,7 +11,7 @@
 
 #include "language/source.h"
 
-namespace culprit::cli {
+namespace culprit {
 namespace {
 
 Error failure(const std::string& what, const std::string& path) {
@@ -94,4 +94,4 @@ Expected<void> write_text(const std::string& path, const std::string& text) {
   return replace(target, text, mode);
 }
 
-}  // namespace culprit::cli
+}  // namespace culprit

@@ -5,7 +5,7 @@
 
 #include "language/expected.h"
 
-namespace culprit::cli {
+namespace culprit {
 
 // The bytes of the file at `path`, or of the standard input if it is "-".
 // Errors: it cannot be read, or it is larger than a rule file may be.
@@ -16,4 +16,4 @@ Expected<std::string> read_text(const std::string& path);
 // its permissions are kept; behind a symbolic link it is the file that is replaced.
 Expected<void> write_text(const std::string& path, const std::string& text);
 
-}  // namespace culprit::cli
+}  // namespace culprit

@@ -1,0 +1,41 @@
+// Bodies of calls to the web API, of any content: each is answered, a refusal says why, and what is
+// answered can be sent. The first byte chooses the call.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "language/checker.h"
+#include "web/order_routes.h"
+#include "web/rule_routes.h"
+
+namespace {
+
+using namespace culprit;
+
+constexpr const char* kRules =
+    "COMPONENT camera NODE /camera\nRULE Silent\nPOLICIES ERROR\nTRIGGER age(/rgb) > 1s\n"
+    "STRATEGY restart 50 10\nADAPTATION camera restart 3\n";
+
+std::vector<web::Route> all_routes() {
+  static const RuleSet rules = *check(Source("fuzz.rules", kRules)).rules;
+  static web::RuleDesk desk("fuzz.rules", kRules);
+  std::vector<web::Route> routes = web::rule_routes(desk);
+  for (web::Route& route : web::order_routes(rules, [](const Order&) {}))
+    routes.push_back(std::move(route));
+  return routes;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::vector<web::Route> routes = all_routes();
+  if (size == 0) return 0;
+  const std::string text(reinterpret_cast<const char*>(data) + 1, size - 1);
+  const web::Json body = web::Json::parse(text, nullptr, false);
+  if (body.is_discarded()) return 0;
+  const web::Answer answer = routes[data[0] % routes.size()].answer(body);
+  if (answer.status >= 400 && !answer.body.contains("error")) __builtin_trap();
+  if (web::to_line(answer.body).find('\n') != std::string::npos) __builtin_trap();
+  return 0;
+}

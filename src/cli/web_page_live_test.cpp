@@ -1,0 +1,36 @@
+// The web app as people use it: Debian's Chromium at the page of the real program. Skipped where
+// there is no Chromium, or the program was built without npm.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/paths.h"
+#include "cli/test_program.h"
+#include "web/app.h"
+
+namespace culprit::cli {
+namespace {
+
+struct WebPage : testing::Test {
+  void SetUp() override {
+    if (web::app().empty()) GTEST_SKIP() << "built without npm";
+    if (!std::filesystem::exists("/usr/bin/chromium")) GTEST_SKIP() << "there is no Chromium";
+  }
+  void passes(const std::string& session) {
+    TestProgram browser(world,
+                        {"node", "ui/tests/" + session, (own_folder() / "culprit").string(),
+                         std::filesystem::absolute("build/ui").string(), world.folder().string()});
+    EXPECT_EQ(browser.wait(std::chrono::minutes(3)), 0) << browser.output();
+    EXPECT_THAT(browser.output(), testing::HasSubstr("the session passed"));
+  }
+
+  TestWorld world;
+};
+
+TEST_F(WebPage, ShowsANewcomerWhatIsBrokenAndWhyAndHowItHeals) { passes("newcomer.mjs"); }
+
+TEST_F(WebPage, BuildsThePapersRuleFromNothing) { passes("builder.mjs"); }
+
+TEST_F(WebPage, MendsABrokenFile) { passes("repair.mjs"); }
+
+}  // namespace
+}  // namespace culprit::cli

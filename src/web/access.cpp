@@ -1,0 +1,80 @@
+#include "web/access.h"
+
+#include <algorithm>
+#include <arpa/inet.h>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <random>
+#include <sys/stat.h>
+
+namespace culprit::web {
+namespace {
+
+constexpr std::size_t kShortestToken = 16;
+
+// "[::1]:80" -> "::1", "localhost:80" -> "localhost"
+std::string without_port(std::string_view host) {
+  if (!host.empty() && host.front() == '[') {
+    const auto end = host.find(']');
+    return end == std::string_view::npos ? "" : std::string(host.substr(1, end - 1));
+  }
+  return std::string(host.substr(0, host.find(':')));
+}
+
+bool is_address(const std::string& text) {
+  in6_addr address;
+  return inet_pton(AF_INET, text.c_str(), &address) == 1 ||
+         inet_pton(AF_INET6, text.c_str(), &address) == 1;
+}
+
+}  // namespace
+
+bool Access::allows_host(std::string_view host) const {
+  const std::string name = without_port(host);
+  return name == "localhost" || is_address(name) ||
+         std::find(allowed_hosts.begin(), allowed_hosts.end(), name) != allowed_hosts.end();
+}
+
+bool Access::allows_origin(std::string_view origin, std::string_view host) const {
+  return origin.empty() || origin == "http://" + std::string(host);
+}
+
+bool Access::allows_token(std::string_view authorization) const {
+  const std::string expected = "Bearer " + token;
+  if (authorization.size() != expected.size()) return false;
+  unsigned char difference = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    difference |= static_cast<unsigned char>(expected[i] ^ authorization[i]);
+  return difference == 0;
+}
+
+bool is_loopback(std::string_view address) {
+  return address == "localhost" || address == "::1" || address.substr(0, 4) == "127.";
+}
+
+std::string make_token() {
+  std::random_device random;
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string token;
+  for (int i = 0; i < 32; ++i) token += kDigits[random() % 16];
+  return token;
+}
+
+Expected<std::string> read_token(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0)
+    return Error{"cannot read the token file '" + path + "': " + std::strerror(errno)};
+  if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+    return Error{"others can read the token file '" + path + "'; chmod 600 it"};
+  std::ifstream file(path);
+  std::string token;
+  std::getline(file, token);
+  const bool has_blank = token.find_first_of(" \t\r") != std::string::npos;
+  if (token.size() < kShortestToken || has_blank)
+    return Error{"the token file '" + path + "' needs one line of " +
+                 std::to_string(kShortestToken) + " characters or more, without blanks"};
+  return token;
+}
+
+}  // namespace culprit::web

@@ -1,0 +1,41 @@
+// Who may ask for what. Web pages of other sites reach a server on this machine through the user's
+// browser, so what counts is not only where a request comes from.
+//
+// - Host has to name this server: an address, "localhost", or a name that was allowed. A page that
+//   had its own name resolved to this machine (DNS rebinding) still sends its own name.
+// - Origin, where a browser sends it, has to be this server's.
+// - What changes anything needs the token; from beyond this machine, everything does.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "language/expected.h"
+
+namespace culprit::web {
+
+struct Access {
+  std::string token;                       // never empty
+  std::vector<std::string> allowed_hosts;  // names, beside addresses and "localhost"
+  bool is_local = true;                    // only this machine can reach the server
+
+  // "Host: 127.0.0.1:8642"
+  bool allows_host(std::string_view host) const;
+  // `origin` as a browser sends it, empty if it sent none, with the Host of the same request.
+  bool allows_origin(std::string_view origin, std::string_view host) const;
+  // "Authorization: Bearer <token>"; takes as long for any wrong token of the same length.
+  bool allows_token(std::string_view authorization) const;
+};
+
+bool is_loopback(std::string_view address);
+
+// 128 random bits, as hexadecimal digits.
+std::string make_token();
+
+// The only line of a file that nobody else can read: at least 16 characters without blanks.
+// Errors: it cannot be read, is readable by others, or holds no such line.
+Expected<std::string> read_token(const std::string& path);
+
+}  // namespace culprit::web

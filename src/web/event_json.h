@@ -1,0 +1,23 @@
+// What the manager did, as JSON (docs/web.md): the sentence that culprit run prints, and all that
+// it is made of.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "knowledge/event.h"
+
+namespace culprit::web {
+
+using Json = nlohmann::ordered_json;
+
+// Seconds since `start`, to the millisecond; null for kNever and kLongAgo.
+Json time_to_json(Time at, Time start);
+
+Json to_json(const Event& event, const RuleSet& rules, Time start);
+Json to_json(const Candidate& candidate, const RuleSet& rules);
+Json to_json(const Suspect& suspect, const RuleSet& rules);
+
+// On one line; what is no UTF-8 is replaced, for robots name things as they like.
+std::string to_line(const Json& json);
+
+}  // namespace culprit::web

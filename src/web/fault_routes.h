@@ -1,0 +1,26 @@
+// The calls that break a robot on purpose: of demonstrations only.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "language/expected.h"
+#include "web/routes.h"
+
+namespace culprit::web {
+
+// What can be broken, and how to do it. The functions are called from any thread, and may block.
+struct Faults {
+  struct Fault {
+    std::string name;
+    std::string component;  // where it is
+  };
+  std::vector<Fault> all;
+  std::function<Expected<void>(const std::string& name)> inject;
+  std::function<Expected<void>()> clear;  // all that were injected
+};
+
+std::vector<Route> fault_routes(Faults faults);
+
+}  // namespace culprit::web

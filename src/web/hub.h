@@ -1,0 +1,99 @@
+// What browsers are told, and how they catch up: between the manager's thread, which never waits,
+// and the threads of the web server, which may.
+//
+// Two kinds of messages. Of a *latest* one (the graph, the present state) only the newest counts: a
+// slow reader skips those between. *Events* are a history: a reader gets each of them, as long as
+// it is kept. All are numbered in one sequence, so a reader that says which number it had last goes
+// on from there, and a new one begins at 0.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace culprit::web {
+
+enum class Kind : std::uint8_t { kRobot, kGraph, kState, kControl, kEvent };
+inline constexpr std::size_t kKinds = 5;
+// "robot", "graph", "state", "control", "event": as the stream names them.
+std::string_view to_string(Kind kind);
+
+struct Message {
+  std::uint64_t number = 0;
+  Kind kind = Kind::kEvent;
+  std::shared_ptr<const std::string> data;  // JSON, on one line
+};
+
+// All members may be called from any thread. None of them waits for a reader.
+class Hub {
+ public:
+  // Older events are forgotten beyond this many, or beyond this many bytes.
+  static constexpr std::size_t kMostEvents = 4096;
+  static constexpr std::size_t kMostBytes = 16 << 20;
+  // A batch holds at most so many messages: what a reader has to have sent before the next.
+  static constexpr std::size_t kBatch = 256;
+
+  // `wake` is called when a reader comes while there was none: whoever publishes only for readers
+  // can do so at once. It must not block.
+  explicit Hub(std::function<void()> wake = {});
+
+  void publish(Kind kind, std::string data);
+
+  struct Batch {
+    bool is_gap = false;  // events between `after` and the first of these are forgotten
+    std::vector<Message> messages;
+  };
+  // What came after number `after`, oldest first: at once if there is something, else as soon as
+  // there is. Empty if nothing came in `patience`, or the hub was closed.
+  Batch wait(std::uint64_t after, std::chrono::milliseconds patience);
+  // The newest message of a kind that is not kEvent; null if there was none.
+  std::shared_ptr<const std::string> latest(Kind kind) const;
+
+  // Somebody reads as long as one of these lives.
+  class Reader {
+   public:
+    explicit Reader(Hub& hub);
+    ~Reader() { --hub_.readers_; }
+    Reader(const Reader&) = delete;
+
+   private:
+    Hub& hub_;
+  };
+  bool has_readers() const { return readers_ > 0; }
+
+  // Of this hub and no other: a number alone means nothing to the one after a restart.
+  const std::string& name() const { return name_; }
+  // The number of the newest message.
+  std::uint64_t last() const;
+
+  // No reader waits from now on.
+  void close();
+  bool is_closed() const { return is_closed_; }
+
+ private:
+  Batch collect(std::uint64_t after) const;
+
+  const std::string name_;
+  const std::function<void()> wake_;
+  std::atomic<int> readers_ = 0;
+  std::atomic<bool> is_closed_ = false;
+
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable something_came_;
+  std::uint64_t last_ = 0;
+  std::array<Message, kKinds> latest_;  // number 0: none yet
+  std::deque<Message> events_;
+  std::size_t bytes_ = 0;
+  std::uint64_t forgotten_ = 0;  // number of the newest event that is kept no more
+};
+
+}  // namespace culprit::web

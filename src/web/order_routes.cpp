@@ -1,0 +1,95 @@
+#include "web/order_routes.h"
+
+#include <atomic>
+
+namespace culprit::web {
+namespace {
+
+using What = decltype(Order::what);
+
+constexpr double kLongestSilence = 7 * 24 * 3600;  // s
+constexpr std::size_t kLongestText = 500;
+
+// The number of the first thing of this name.
+template <class I>
+std::optional<I> find(const auto& things, const std::optional<std::string>& name) {
+  if (!name) return std::nullopt;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    if (things[i].name == *name) return I(i);
+  }
+  return std::nullopt;
+}
+
+// Two rules may each have a strategy of one name.
+std::optional<StrategyId> find_strategy(const Json& body, const RuleSet& rules) {
+  const auto rule = find<RuleId>(rules.rules, text_of(body, "rule"));
+  const auto name = text_of(body, "strategy");
+  if (!rule || !name) return std::nullopt;
+  for (const StrategyId id : rules[*rule].strategies) {
+    if (rules[id].name == *name) return id;
+  }
+  return std::nullopt;
+}
+
+std::optional<Silenceable> find_silenceable(const Json& body, const RuleSet& rules) {
+  if (const auto component = find<ComponentId>(rules.components, text_of(body, "component")))
+    return *component;
+  if (const auto rule = find<RuleId>(rules.rules, text_of(body, "rule"))) return *rule;
+  return std::nullopt;
+}
+
+Expected<What> about_strategy(const std::string& word, const Json& body, const RuleSet& rules) {
+  const auto strategy = find_strategy(body, rules);
+  if (!strategy) return Error{"name a 'rule' and one of its strategies as 'strategy'"};
+  if (word == "approve") return What(Approve{*strategy});
+  if (word == "refuse") return What(Refuse{*strategy});
+  return What(RunStrategy{*strategy});
+}
+
+Expected<What> about_silence(const std::string& word, const Json& body, const RuleSet& rules) {
+  const auto what = find_silenceable(body, rules);
+  if (!what) return Error{"name a 'component' or a 'rule' of the rules"};
+  if (word == "lift") return What(LiftSilence{*what});
+  const auto seconds = body.find("seconds");
+  if (seconds == body.end()) return What(Silence{*what});
+  if (!seconds->is_number() || !(seconds->get<double>() > 0) ||
+      seconds->get<double>() > kLongestSilence)
+    return Error{"'seconds' has to be a number above 0, at most a week"};
+  return What(Silence{*what, from_seconds(seconds->get<double>())});
+}
+
+Expected<What> read(const Json& body, const RuleSet& rules) {
+  const std::string word = text_of(body, "order").value_or("");
+  if (word == "pause") return What(Pause{});
+  if (word == "resume") return What(Resume{});
+  if (word == "dry_run") {
+    const auto on = body.find("on");
+    if (on == body.end() || !on->is_boolean()) return Error{"say whether it is 'on'"};
+    return What(SetDryRun{on->get<bool>()});
+  }
+  if (word == "approve" || word == "refuse" || word == "run")
+    return about_strategy(word, body, rules);
+  if (word == "silence" || word == "lift") return about_silence(word, body, rules);
+  return Error{"'order' has to be pause, resume, dry_run, approve, refuse, silence, lift or run"};
+}
+
+}  // namespace
+
+std::vector<Route> order_routes(const RuleSet& rules, std::function<void(Order)> submit) {
+  const auto last = std::make_shared<std::atomic<std::uint64_t>>(0);
+  return {{Method::kPost, "/api/orders", [&rules, submit, last](const Json& body) {
+             const auto what = read(body, rules);
+             if (!what) return refuse(400, what.error());
+             Order order{++*last, text_of(body, "author").value_or(""),
+                         text_of(body, "reason").value_or(""), *what};
+             if (order.author.empty()) return refuse(400, "say who you are: 'author'");
+             if (order.author.size() > kLongestText || order.reason.size() > kLongestText)
+               return refuse(400, "keep 'author' and 'reason' short");
+             const std::uint64_t number = order.number;
+             submit(std::move(order));
+             // The manager decides; an event of this number says how.
+             return Answer{202, {{"number", number}}};
+           }}};
+}
+
+}  // namespace culprit::web

@@ -1,0 +1,220 @@
+#include "web/robot_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "knowledge/describe.h"
+
+namespace culprit::web {
+namespace {
+
+Json names_of(const auto& ids, const RuleSet& rules) {
+  Json names = Json::array();
+  for (const auto id : ids) names.push_back(rules[id].name);
+  return names;
+}
+
+Json strategy_to_json(const Strategy& strategy, const RuleSet& rules) {
+  const Belief prior = initial_belief(strategy.success, strategy.confidence);
+  Json json{{"name", strategy.name},
+            {"impact", strategy.impact.count},
+            {"components", names_of(strategy.components, rules)},
+            {"prior", {prior.alpha, prior.beta}},
+            {"actions", Json::array()}};
+  for (const Adaptation& a : strategy.adaptations) json["actions"].push_back(describe(a, rules));
+  return json;
+}
+
+Json value_of(const Slot& slot, const Input& input) {
+  if (!slot.known) return nullptr;
+  switch (input.type) {
+    case Type::kBool:
+      return slot.b;
+    case Type::kDuration:
+      return seconds(Duration(slot.i));
+    case Type::kInt:
+      return slot.i;
+    case Type::kString:
+      return std::string(slot.s);
+    default:
+      return std::isfinite(slot.d) ? Json(slot.d) : Json(nullptr);
+  }
+}
+
+std::string_view word_of(RulePhase phase) {
+  constexpr std::string_view kWords[] = {"quiet", "failing", "attempting", "exhausted"};
+  return kWords[static_cast<std::size_t>(phase)];
+}
+
+std::string_view word_of(Attempt::Stage stage) {
+  constexpr std::string_view kWords[] = {"adapting", "waiting", "undoing", "over"};
+  return kWords[static_cast<std::size_t>(stage)];
+}
+
+Json rule_to_json(RuleId id, const Knowledge& knowledge, Time start) {
+  const RuleState& state = knowledge.states[id];
+  Json json{{"phase", word_of(state.phase)}};
+  // What is true and must hold a while longer, FOR or HOLD, is no failure yet.
+  if (state.phase == RulePhase::kQuiet) {
+    json["trigger"] = state.trigger.known ? Json(state.trigger.b) : Json(nullptr);
+    return json;
+  }
+  json["since"] = time_to_json(state.failing_since, start);
+  json["attempts"] = state.attempts;
+  if (state.retry_at > knowledge.now) json["retry_at"] = time_to_json(state.retry_at, start);
+  if (state.settling) {
+    json["settling"] = {{"with", knowledge.rules[state.settling->with].name},
+                        {"until", time_to_json(state.settling->until, start)}};
+  }
+  if (state.attempt) {
+    json["attempt"] = {{"strategy", knowledge.rules[state.attempt->strategy].name},
+                       {"stage", word_of(state.attempt->stage)},
+                       {"chosen", time_to_json(state.attempt->chosen, start)},
+                       {"deadline", time_to_json(state.attempt->deadline, start)}};
+  }
+  return json;
+}
+
+// Health is a set: a component is as sick as the most critical failing rule that touches it.
+std::vector<Json> health_of_components(const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  std::vector<int> worst(rules.components.size(), -1);
+  std::vector<bool> is_exhausted(rules.components.size());
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    const RulePhase phase = knowledge.states[RuleId(r)].phase;
+    if (phase == RulePhase::kQuiet) continue;
+    const int level = static_cast<int>(rules.rules[r].policies.criticality);
+    for (const ComponentId c : rules.rules[r].components) {
+      worst[c.index] = std::max(worst[c.index], level);
+      if (phase == RulePhase::kExhausted) is_exhausted[c.index] = true;
+    }
+  }
+  std::vector<Json> health;
+  for (std::size_t c = 0; c < worst.size(); ++c) {
+    Json json = is_exhausted[c] ? Json("EXHAUSTED") : Json("OK");
+    if (!is_exhausted[c] && worst[c] >= 0) json = to_string(static_cast<Criticality>(worst[c]));
+    health.push_back(std::move(json));
+  }
+  return health;
+}
+
+Json components_to_json(const Knowledge& knowledge) {
+  const std::vector<Json> health = health_of_components(knowledge);
+  Json list = Json::array();
+  for (std::size_t c = 0; c < health.size(); ++c) {
+    const ComponentId id(c);
+    const ComponentState& state = knowledge.components[id];
+    Json json{{"health", health[c]}, {"present", knowledge.graph.is_present(id)}};
+    json["alive"] = state.alive ? Json(*state.alive) : Json(nullptr);
+    if (state.lifecycle != Lifecycle::kUnknown) json["lifecycle"] = to_string(state.lifecycle);
+    if (!state.process_remark.empty()) json["remark"] = state.process_remark;
+    if (const Attempt* attempt = knowledge.states.reservation(id))
+      json["adapting"] = knowledge.rules[attempt->strategy].name;
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+// The usual rate and the present silence of each topic that is watched.
+Json topics_to_json(const Knowledge& knowledge) {
+  Json list = Json::array();
+  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
+    const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(TopicId(t));
+    Json json{{"rate", nullptr}, {"age", nullptr}};
+    if (rhythm.interval > Duration::zero())
+      json["rate"] = std::round(10 / seconds(rhythm.interval)) / 10;
+    if (rhythm.last) json["age"] = time_to_json(knowledge.now, *rhythm.last);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+}  // namespace
+
+Json rules_to_json(const RuleSet& rules) {
+  Json json{{"robot", rules.robot},        {"cycle_s", seconds(rules.cycle)},
+            {"components", Json::array()}, {"topics", Json::array()},
+            {"inputs", Json::array()},     {"rules", Json::array()}};
+  for (const Component& c : rules.components)
+    json["components"].push_back({{"name", c.name}, {"can_start", !c.launch.empty()}});
+  for (const Topic& t : rules.topics) json["topics"].push_back(t.name);
+  for (const Input& i : rules.inputs) json["inputs"].push_back(describe(i, rules));
+  for (const Rule& rule : rules.rules) {
+    Json entry{{"name", rule.name},
+               {"criticality", to_string(rule.policies.criticality)},
+               {"attempts", rule.policies.attempts},
+               {"components", names_of(rule.components, rules)},
+               {"inputs", Json::array()},
+               {"strategies", Json::array()}};
+    for (const InputId i : rule.inputs) entry["inputs"].push_back(i.index);
+    for (const StrategyId s : rule.strategies)
+      entry["strategies"].push_back(strategy_to_json(rules[s], rules));
+    json["rules"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json graph_to_json(const Knowledge& knowledge) {
+  const DependencyGraph& graph = knowledge.graph;
+  const std::vector<DependencyGraph::Edge> edges = graph.edges();
+  std::map<std::string, bool> nodes;  // and whether they are present
+  // A node that is gone but has an edge counts: its consumers wait for it.
+  for (const auto& edge : edges) nodes[edge.consumer] = nodes[edge.producer] = false;
+  for (const std::string& node : graph.nodes()) nodes[node] = true;
+
+  Json json{{"nodes", Json::array()}, {"edges", Json::array()}};
+  for (const auto& [name, is_present] : nodes) {
+    Json node{{"node", name}, {"present", is_present}};
+    if (const auto component = graph.component_of(name))
+      node["component"] = knowledge.rules[*component].name;
+    json["nodes"].push_back(std::move(node));
+  }
+  for (const auto& edge : edges)
+    json["edges"].push_back(Json::array({edge.consumer, edge.producer, edge.channel}));
+  return json;
+}
+
+Json control_to_json(const Manager& manager, Time start) {
+  const RuleSet& rules = manager.knowledge().rules;
+  Json json{{"paused", manager.governor().is_paused()},
+            {"dry_run", manager.autonomy() == Autonomy::kAdvise},
+            {"silences", Json::array()},
+            {"asked", Json::array()}};
+  for (const Governor::ActiveSilence& silence : manager.governor().silences()) {
+    Json entry;
+    if (const auto* component = std::get_if<ComponentId>(&silence.what)) {
+      entry["component"] = rules[*component].name;
+    } else {
+      entry["rule"] = rules[std::get<RuleId>(silence.what)].name;
+    }
+    entry["until"] = time_to_json(silence.until, start);
+    entry["author"] = silence.author;
+    entry["reason"] = silence.reason;
+    json["silences"].push_back(std::move(entry));
+  }
+  for (const StrategyId id : manager.governor().asked())
+    json["asked"].push_back({{"rule", rules[rules[id].rule].name}, {"strategy", rules[id].name}});
+  return json;
+}
+
+Json state_to_json(const Knowledge& knowledge, Time start) {
+  const RuleSet& rules = knowledge.rules;
+  Json json{{"t", time_to_json(knowledge.now, start)},
+            {"rules", Json::array()},
+            {"components", components_to_json(knowledge)},
+            {"topics", topics_to_json(knowledge)},
+            {"inputs", Json::array()},
+            {"beliefs", Json::array()}};
+  for (std::size_t r = 0; r < rules.rules.size(); ++r)
+    json["rules"].push_back(rule_to_json(RuleId(r), knowledge, start));
+  for (std::size_t i = 0; i < rules.inputs.size(); ++i)
+    json["inputs"].push_back(value_of(knowledge.signals[InputId(i)], rules.inputs[i]));
+  for (std::size_t s = 0; s < rules.strategies.size(); ++s) {
+    const Belief& belief = knowledge.beliefs[StrategyId(s)];
+    json["beliefs"].push_back(Json::array({belief.alpha, belief.beta}));
+  }
+  return json;
+}
+
+}  // namespace culprit::web

@@ -1,0 +1,23 @@
+// What the manager knows, as JSON (docs/web.md): what never changes, the graph, the present state.
+#pragma once
+
+#include "manager/manager.h"
+#include "web/event_json.h"
+
+namespace culprit::web {
+
+// The rule set: components, rules with their strategies, topics that are watched. The other
+// documents count on the order of these lists.
+Json rules_to_json(const RuleSet& rules);
+
+// Nodes and dependencies, present or remembered (knowledge/dependency_graph.h).
+Json graph_to_json(const Knowledge& knowledge);
+
+// How it stands: rules, components, topics, inputs, beliefs. Times are seconds since `start`.
+Json state_to_json(const Knowledge& knowledge, Time start);
+
+// What people have told the manager, and what it asks them: paused or not, silences, strategies
+// that wait for approval.
+Json control_to_json(const Manager& manager, Time start);
+
+}  // namespace culprit::web

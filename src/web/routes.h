@@ -1,0 +1,35 @@
+// The calls of the API, apart from how they travel: a method, a path, and what is answered to a
+// JSON document. docs/web.md tells them to people, openapi.json to programs.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "web/event_json.h"
+
+namespace culprit::web {
+
+struct Answer {
+  int status = 200;
+  Json body = Json::object();
+};
+
+// {"error": "..."}: what is wrong and what to do about it.
+Answer refuse(int status, const std::string& message);
+
+enum class Method : std::uint8_t { kGet, kPost, kPut, kDelete };
+// "get", "post", "put", "delete"
+std::string_view to_string(Method method);
+
+struct Route {
+  Method method = Method::kGet;
+  std::string path;  // "/api/rules"; nothing in it varies
+  // `body` is what was sent; null for kGet and kDelete. Called from many threads at once.
+  std::function<Answer(const Json& body)> answer;
+};
+
+// The text at `member` of what was sent; nothing if it is none.
+std::optional<std::string> text_of(const Json& body, const char* member);
+
+}  // namespace culprit::web

@@ -1,0 +1,47 @@
+// The rule file that a page edits. Many pages may have it open, and editors beside them: who saves
+// says which version was changed, so that nobody overwrites what another has written.
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "language/expected.h"
+
+namespace culprit::web {
+
+// All members may be called from any thread.
+class RuleDesk {
+ public:
+  // A file, which may be new.
+  explicit RuleDesk(std::string path) : path_(std::move(path)) {}
+  // Rules without a file, which cannot be saved.
+  RuleDesk(std::string name, std::string text) : path_(std::move(name)), fixed_(std::move(text)) {}
+
+  struct Content {
+    std::string text;
+    std::string version;  // another one for another text
+  };
+  const std::string& path() const { return path_; }
+  bool can_save() const { return !fixed_; }
+
+  // Errors: the file cannot be read. One that is not there yet is empty.
+  Expected<Content> read() const;
+
+  enum class Problem : std::uint8_t { kChangedMeanwhile, kNotWritten };
+  struct Refusal {
+    Problem problem;
+    std::string message;
+  };
+  // Writes the file as a whole or not at all (language/text_file.h), if it is still `version`.
+  // Gives the new version, or why it was not written.
+  std::variant<std::string, Refusal> save(const std::string& text, const std::string& version);
+
+ private:
+  const std::string path_;
+  const std::optional<std::string> fixed_;
+  std::mutex saving_;
+};
+
+}  // namespace culprit::web

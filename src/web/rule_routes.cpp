@@ -1,0 +1,93 @@
+#include "web/rule_routes.h"
+
+#include <array>
+
+#include "language/checker.h"
+#include "lsp/server.h"
+#include "rule_json/from_json.h"
+#include "rule_json/to_json.h"
+
+namespace culprit::web {
+namespace {
+
+constexpr const char* kUri = "culprit:rules";  // what the language server calls the text
+
+// What an editor may ask about a text; anything else would need a session.
+constexpr std::array<std::string_view, 4> kQuestions = {
+    "textDocument/completion", "textDocument/hover", "textDocument/formatting",
+    "textDocument/codeAction"};
+
+Answer read(RuleDesk& desk) {
+  auto content = desk.read();
+  if (!content) return refuse(500, content.error());
+  return {200,
+          {{"path", desk.path()},
+           {"text", std::move(content->text)},
+           {"version", std::move(content->version)},
+           {"can_save", desk.can_save()}}};
+}
+
+Answer save(RuleDesk& desk, const Json& body) {
+  const auto text = text_of(body, "text");
+  const auto version = text_of(body, "version");
+  if (!text || !version) return refuse(400, "send the texts 'text' and 'version'");
+  const auto outcome = desk.save(*text, *version);
+  if (const auto* refusal = std::get_if<RuleDesk::Refusal>(&outcome)) {
+    const bool is_stale = refusal->problem == RuleDesk::Problem::kChangedMeanwhile;
+    return refuse(is_stale ? 409 : 403, refusal->message);
+  }
+  return {200, {{"version", std::get<std::string>(outcome)}}};
+}
+
+// One question of an editor, answered by a language server that knows nothing but this text.
+Answer ask(const Json& body) {
+  const auto text = text_of(body, "text");
+  if (!text) return refuse(400, "send the rules as 'text'");
+  Json reply{{"diagnostics", Json::array()}, {"result", nullptr}};
+  lsp::Server server("web", [&](const nlohmann::json& message) {
+    if (message.contains("id")) {
+      reply["result"] = message.value("result", nlohmann::json());
+    } else {
+      reply["diagnostics"] = message["params"]["diagnostics"];
+    }
+  });
+  const nlohmann::json document{{"uri", kUri}};
+  server.handle({{"method", "textDocument/didOpen"},
+                 {"params", {{"textDocument", {{"uri", kUri}, {"text", *text}}}}}});
+  const auto method = text_of(body, "method");
+  if (!method) return {200, reply};
+  if (std::find(kQuestions.begin(), kQuestions.end(), *method) == kQuestions.end())
+    return refuse(400, "'method' has to be one that asks about a text, such as textDocument/hover");
+  nlohmann::json params = nlohmann::json::object();
+  if (const auto sent = body.find("params"); sent != body.end() && sent->is_object())
+    params = *sent;
+  params["textDocument"] = document;
+  server.handle({{"id", 1}, {"method", *method}, {"params", params}});
+  return {200, reply};
+}
+
+Answer as_json(const Json& body) {
+  const auto text = text_of(body, "text");
+  if (!text) return refuse(400, "send the rules as 'text'");
+  const auto json = rule_json::to_json(Source("rules", *text));
+  if (!json) return refuse(422, json.error());
+  return {200, *json};
+}
+
+Answer as_text(const Json& body) {
+  const auto text = rule_json::to_rules("rules", body.dump());
+  if (!text) return refuse(422, text.error());
+  return {200, {{"text", *text}}};
+}
+
+}  // namespace
+
+std::vector<Route> rule_routes(RuleDesk& desk) {
+  return {{Method::kGet, "/api/rules", [&desk](const Json&) { return read(desk); }},
+          {Method::kPut, "/api/rules", [&desk](const Json& body) { return save(desk, body); }},
+          {Method::kPost, "/api/rules/ask", ask},
+          {Method::kPost, "/api/rules/json", as_json},
+          {Method::kPost, "/api/rules/text", as_text}};
+}
+
+}  // namespace culprit::web

@@ -1,0 +1,260 @@
+#include "web/server.h"
+
+#include <atomic>
+#include <sys/socket.h>
+
+#include <fmt/core.h>
+
+#include "web/app.h"
+#include "web/connection_threads.h"
+#include "web/event_stream.h"
+#include "web/openapi.h"
+#include "web/rate_limit.h"
+
+namespace culprit::web {
+namespace {
+
+constexpr const char* kJson = "application/json";
+
+// The app is all of one origin and has no inline script or style; it is never in a frame.
+const httplib::Headers kHeaders = {{"Content-Security-Policy",
+                                    "default-src 'none'; script-src 'self'; style-src 'self'; "
+                                    "img-src 'self' data:; connect-src 'self'; "
+                                    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+                                   {"X-Content-Type-Options", "nosniff"},
+                                   {"X-Frame-Options", "DENY"},
+                                   {"Referrer-Policy", "no-referrer"},
+                                   {"Cross-Origin-Opener-Policy", "same-origin"},
+                                   {"Cross-Origin-Resource-Policy", "same-origin"},
+                                   {"Cache-Control", "no-store"}};
+
+void give(httplib::Response& response, const Answer& answer) {
+  response.status = answer.status;
+  response.set_content(to_line(answer.body), kJson);
+}
+
+bool has_body(const httplib::Request& request) {
+  return request.has_header("Content-Length") && request.get_header_value("Content-Length") != "0";
+}
+
+bool is_api(const httplib::Request& request) { return request.path.rfind("/api/", 0) == 0; }
+
+bool changes(const httplib::Request& request) {
+  return request.method != "GET" && request.method != "HEAD";
+}
+
+// Left to itself, httplib shares a port with whoever has it already.
+void take_port_alone(int socket) {
+  const int yes = 1;
+  setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+}
+
+const char* reason_for(int status) {
+  if (status == 404) return "there is no such page or call";
+  if (status == 413) return "that is too large";
+  return "the request cannot be served";
+}
+
+// A path as the expression that httplib takes.
+std::string exactly(const std::string& path) {
+  std::string pattern;
+  for (const char c : path) pattern += c == '.' ? std::string("\\.") : std::string(1, c);
+  return pattern;
+}
+
+}  // namespace
+
+class Server::Http {
+ public:
+  Http(Options options, std::vector<Route> routes, Hub* hub)
+      : options_(std::move(options)),
+        routes_(std::move(routes)),
+        hub_(hub),
+        limit_(kRequestsPerSecond, kBurst) {
+    using std::chrono::seconds;
+    server_.new_task_queue = [] { return new ConnectionThreads(kMostConnections); };
+    server_.set_socket_options(take_port_alone);
+    server_.set_keep_alive_timeout(2);
+    server_.set_keep_alive_max_count(1000);
+    server_.set_read_timeout(seconds(5));
+    server_.set_write_timeout(seconds(5));
+    server_.set_tcp_nodelay(true);
+    server_.set_payload_max_length(kMostBytes);
+    server_.set_default_headers(kHeaders);
+    server_.set_pre_routing_handler([this](const httplib::Request& q, httplib::Response& r) {
+      const auto refusal = refusal_of(q);
+      if (!refusal) return httplib::Server::HandlerResponse::Unhandled;
+      give(r, *refusal);
+      return httplib::Server::HandlerResponse::Handled;
+    });
+    server_.set_error_handler(
+        httplib::Server::HandlerWithResponse([](const httplib::Request&, httplib::Response& r) {
+          if (!r.body.empty()) return httplib::Server::HandlerResponse::Unhandled;
+          give(r, refuse(r.status, reason_for(r.status)));
+          return httplib::Server::HandlerResponse::Handled;
+        }));
+    server_.set_exception_handler([](const httplib::Request&, httplib::Response& r,
+                                     std::exception_ptr) { give(r, refuse(500, "that failed")); });
+    add_app();
+    for (const Route& route : routes_) add(route);
+    server_.Get("/api/about", [this](const httplib::Request&, httplib::Response& r) {
+      give(r, {200, about()});
+    });
+    server_.Get("/api/openapi\\.json", [](const httplib::Request&, httplib::Response& r) {
+      r.set_content(kOpenApi, kJson);
+    });
+    if (hub_ != nullptr) {
+      server_.Get("/api/stream",
+                  [this](const httplib::Request& q, httplib::Response& r) { stream(q, r); });
+    }
+  }
+
+  bool bind() {
+    port_ = options_.port;
+    if (port_ != 0) return server_.bind_to_port(options_.address, port_);
+    port_ = server_.bind_to_any_port(options_.address);
+    return port_ > 0;
+  }
+  void listen() {
+    server_.listen_after_bind();
+    is_over_ = true;
+  }
+  void stop() {
+    if (hub_ != nullptr) hub_->close();
+    server_.stop();
+  }
+  bool has_begun() const { return server_.is_running() || is_over_; }
+  int port() const { return port_; }
+  const Options& options() const { return options_; }
+
+ private:
+  // Why a request is not served; nothing: it is.
+  std::optional<Answer> refusal_of(const httplib::Request& q) {
+    const std::string host = q.get_header_value("Host");
+    if (!options_.access.allows_host(host))
+      return refuse(403, "this server is not called '" + host + "'");
+    const std::string site = q.get_header_value("Sec-Fetch-Site");
+    const bool is_foreign = (site == "cross-site" || site == "same-site") && is_api(q);
+    if (is_foreign || !options_.access.allows_origin(q.get_header_value("Origin"), host))
+      return refuse(403, "pages of other sites may not ask this server");
+    if (!limit_.allows(q.remote_addr, RateLimit::Clock::now()))
+      return refuse(429, "too many requests; wait a second");
+    const bool needs_token = changes(q) || (is_api(q) && !options_.access.is_local);
+    if (needs_token && !options_.access.allows_token(q.get_header_value("Authorization")))
+      return refuse(401,
+                    "this needs the token that culprit printed: Authorization: Bearer <token>");
+    if (q.has_header("Transfer-Encoding")) return refuse(411, "say the length of the body");
+    if (q.has_header("Content-Encoding")) return refuse(415, "send the body as it is");
+    if (has_body(q) && q.get_header_value("Content-Type").rfind(kJson, 0) != 0)
+      return refuse(415, "send the body as application/json");
+    return std::nullopt;
+  }
+
+  // What this server offers: a page shows no more than that.
+  Json about() const {
+    Json calls = Json::array();
+    if (hub_ != nullptr) calls.push_back("get /api/stream");
+    for (const Route& route : routes_)
+      calls.push_back(std::string(to_string(route.method)) + " " + route.path);
+    return {{"calls", calls}};
+  }
+
+  void add_app() {
+    for (const Asset& asset : app()) {
+      server_.Get(exactly(std::string(asset.path)),
+                  [asset](const httplib::Request& q, httplib::Response& r) {
+                    if (q.get_header_value("Accept-Encoding").find("gzip") == std::string::npos)
+                      return give(r, refuse(406, "the app is compressed; accept gzip"));
+                    r.set_header("Content-Encoding", "gzip");
+                    // By a provider, for httplib would compress a content once more.
+                    r.set_content_provider(
+                        asset.gzip.size(), std::string(asset.type),
+                        [asset](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                          return sink.write(asset.gzip.data() + offset, length);
+                        });
+                  });
+    }
+  }
+
+  void add(const Route& route) {
+    const std::string pattern = exactly(route.path);
+    const auto serve = [&route](const httplib::Request& q, httplib::Response& r) {
+      Json body = nullptr;
+      if (!q.body.empty()) {
+        body = Json::parse(q.body, nullptr, false);
+        if (body.is_discarded()) return give(r, refuse(400, "the body is no JSON"));
+      }
+      give(r, route.answer(body));
+    };
+    switch (route.method) {
+      case Method::kGet:
+        server_.Get(pattern, serve);
+        break;
+      case Method::kPost:
+        server_.Post(pattern, serve);
+        break;
+      case Method::kPut:
+        server_.Put(pattern, serve);
+        break;
+      case Method::kDelete:
+        server_.Delete(pattern, serve);
+        break;
+    }
+  }
+
+  void stream(const httplib::Request& q, httplib::Response& r) {
+    if (++streams_ > static_cast<int>(kMostStreams)) {
+      --streams_;
+      r.set_header("Retry-After", "5");
+      return give(r, refuse(503, "too many pages are open; close some"));
+    }
+    const auto events = std::make_shared<EventStream>(*hub_, q.get_header_value("Last-Event-ID"));
+    r.set_chunked_content_provider(
+        "text/event-stream",
+        [events](std::size_t, httplib::DataSink& sink) {
+          const std::optional<std::string> text = events->next();
+          if (!text) return false;
+          return sink.write(text->data(), text->size());
+        },
+        [this](bool) { --streams_; });
+  }
+
+  const Options options_;
+  const std::vector<Route> routes_;
+  Hub* const hub_;
+  RateLimit limit_;
+  std::atomic<int> streams_ = 0;
+  std::atomic<bool> is_over_ = false;  // it does not listen any more
+  httplib::Server server_;
+  int port_ = 0;
+};
+
+Server::Server(std::unique_ptr<Http> http) : http_(std::move(http)) {
+  thread_ = std::thread([this] { http_->listen(); });
+}
+
+Expected<std::unique_ptr<Server>> Server::start(Options options, std::vector<Route> routes,
+                                                Hub* hub) {
+  auto http = std::make_unique<Http>(std::move(options), std::move(routes), hub);
+  if (!http->bind())
+    return Error{
+        fmt::format("cannot listen at {} port {}; is the port taken? --port chooses another",
+                    http->options().address, http->options().port)};
+  return std::unique_ptr<Server>(new Server(std::move(http)));
+}
+
+Server::~Server() {
+  // stop() before it listens would be lost.
+  while (!http_->has_begun()) std::this_thread::yield();
+  http_->stop();
+  thread_.join();
+}
+
+int Server::port() const { return http_->port(); }
+
+std::string Server::address() const {
+  return fmt::format("http://{}:{}/#token={}", http_->options().address, http_->port(),
+                     http_->options().access.token);
+}
+
+}  // namespace culprit::web

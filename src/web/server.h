@@ -1,0 +1,52 @@
+// Serves the web app, its API and its stream of changes over HTTP, on threads of its own.
+//
+// It is made for hostile company: who may ask is in access.h; requests are bounded in size and in
+// number; connections are bounded, and one that dawdles is closed. A slow reader delays nobody but
+// itself, and the manager knows nothing of readers (hub.h).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "web/access.h"
+#include "web/hub.h"
+#include "web/routes.h"
+
+namespace culprit::web {
+
+class Server {
+ public:
+  static constexpr std::size_t kMostConnections = 128;
+  static constexpr std::size_t kMostStreams = 64;
+  static constexpr std::size_t kMostBytes = 1 << 20;  // of a request's body
+  static constexpr double kRequestsPerSecond = 50;    // of one client, in the long run
+  static constexpr double kBurst = 200;
+
+  struct Options {
+    std::string address = "127.0.0.1";
+    int port = 0;  // 0: any that is free
+    Access access;
+  };
+
+  // Serves from now on. `hub` may be null: nothing is streamed then. Both have to outlive the
+  // server. Errors: the port is taken, or the address is not ours.
+  static Expected<std::unique_ptr<Server>> start(Options options, std::vector<Route> routes,
+                                                 Hub* hub);
+  // Closes the hub, and with it every stream.
+  ~Server();
+
+  int port() const;
+  // What to type into a browser, token included.
+  std::string address() const;
+
+ private:
+  class Http;
+  explicit Server(std::unique_ptr<Http> http);
+
+  std::unique_ptr<Http> http_;
+  std::thread thread_;
+};
+
+}  // namespace culprit::web

@@ -1,0 +1,229 @@
+// The server as browsers, scripts and attackers meet it: real sockets on loopback.
+#include "web/server.h"
+
+#include <arpa/inet.h>
+#include <httplib.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "web/app.h"
+
+namespace culprit::web {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kToken = "0123456789abcdef";
+
+Route echo(Method method) {
+  return {method, "/api/echo", [](const Json& body) { return Answer{200, {{"sent", body}}}; }};
+}
+
+std::unique_ptr<Server> start(Hub* hub = nullptr, bool is_local = true) {
+  Server::Options options;
+  options.access = {kToken, {}, is_local};
+  auto server = Server::start(options, {echo(Method::kGet), echo(Method::kPost)}, hub);
+  EXPECT_TRUE(server) << server.error();
+  return std::move(*server);
+}
+
+struct WebServer : testing::Test {
+  httplib::Client client() const { return httplib::Client("127.0.0.1", server->port()); }
+  const httplib::Headers with_token = {{"Authorization", std::string("Bearer ") + kToken}};
+  httplib::Headers with(const std::string& name, const std::string& value) const {
+    httplib::Headers headers = with_token;
+    headers.emplace(name, value);
+    return headers;
+  }
+  int post(const httplib::Headers& headers, const std::string& body = "{}",
+           const char* type = "application/json") const {
+    const auto answer = client().Post("/api/echo", headers, body, type);
+    return answer ? answer->status : -1;
+  }
+
+  Hub hub;
+  std::unique_ptr<Server> server = start(&hub);
+};
+
+// A connection whose bytes are ours.
+class Raw {
+ public:
+  // SOCK_NONBLOCK among `flags`: it does not wait for the server.
+  explicit Raw(int port, int flags = 0) : socket_(socket(AF_INET, SOCK_STREAM | flags, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address);
+    const timeval patience{20, 0};
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  }
+  ~Raw() { close(socket_); }
+  Raw(const Raw&) = delete;
+
+  void send(const std::string& bytes) const {
+    ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  }
+  // All that comes until the server closes, or `text` has come.
+  std::string receive(const std::string& text = "") const {
+    std::string all;
+    char block[4096];
+    while (text.empty() || all.find(text) == std::string::npos) {
+      const ssize_t n = recv(socket_, block, sizeof block, 0);
+      if (n <= 0) break;
+      all.append(block, static_cast<std::size_t>(n));
+    }
+    return all;
+  }
+
+ private:
+  const int socket_;
+};
+
+TEST_F(WebServer, AnswersCalls) {
+  const auto answer = client().Post("/api/echo", with_token, "{\"a\": 1}", "application/json");
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->body, "{\"sent\":{\"a\":1}}");
+}
+
+TEST_F(WebServer, ServesTheAppUnderAStrictPolicy) {
+  if (app().empty()) GTEST_SKIP() << "built without npm";
+  const auto page = client().Get("/", {{"Accept-Encoding", "gzip"}});
+  ASSERT_TRUE(page);
+  EXPECT_THAT(page->body, HasSubstr("<title>culprit</title>"));
+  const std::string policy = page->get_header_value("Content-Security-Policy");
+  EXPECT_THAT(policy, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(policy, testing::Not(HasSubstr("unsafe-inline")));
+  EXPECT_THAT(policy, testing::Not(HasSubstr("unsafe-eval")));
+  EXPECT_EQ(page->get_header_value("X-Frame-Options"), "DENY");
+  EXPECT_FALSE(page->has_header("Access-Control-Allow-Origin"));
+}
+
+TEST_F(WebServer, NeedsTheTokenForWhatChangesAnything) {
+  EXPECT_EQ(post({}), 401);
+  EXPECT_EQ(post({{"Authorization", "Bearer 0123456789abcdee"}}), 401);
+  EXPECT_EQ(post(with_token), 200);
+  EXPECT_EQ(client().Get("/api/echo")->status, 200);
+}
+
+TEST_F(WebServer, NeedsTheTokenForEverythingWhereOthersCanReachIt) {
+  server = start(nullptr, false);
+  EXPECT_EQ(client().Get("/api/echo")->status, 401);
+  EXPECT_EQ(client().Get("/api/echo", with_token)->status, 200);
+}
+
+TEST_F(WebServer, RefusesPagesOfOtherSites) {
+  EXPECT_EQ(post(with("Origin", "http://evil.example")), 403);
+  EXPECT_EQ(post(with("Origin", "null")), 403);
+  EXPECT_EQ(post(with("Sec-Fetch-Site", "cross-site")), 403);
+  EXPECT_EQ(client().Get("/api/echo", {{"Sec-Fetch-Site", "cross-site"}})->status, 403);
+  // What a form can send without asking.
+  EXPECT_EQ(post(with_token, "{}", "text/plain"), 415);
+  EXPECT_EQ(client().Options("/api/echo")->status, 401);
+}
+
+TEST_F(WebServer, RefusesNamesThatWereReboundToIt) {
+  EXPECT_EQ(client().Get("/api/echo", {{"Host", "evil.example"}})->status, 403);
+  EXPECT_EQ(client().Get("/", {{"Host", "evil.example:80"}})->status, 403);
+}
+
+TEST_F(WebServer, HasNoFilesToReach) {
+  for (const char* path : {"/../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/app.js/../../x",
+                           "//etc/passwd", "/etc/passwd%00.js", "/app\\js", "/appXjs"}) {
+    const Raw raw(server->port());
+    raw.send(std::string("GET ") + path +
+             " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+    EXPECT_THAT(raw.receive(), testing::StartsWith("HTTP/1.1 404")) << path;
+  }
+}
+
+TEST_F(WebServer, RefusesBodiesThatAreTooLarge) {
+  EXPECT_EQ(post(with_token, std::string(Server::kMostBytes + 1, ' ')), 413);
+}
+
+TEST_F(WebServer, RefusesBodiesOfUnknownSize) {
+  const Raw raw(server->port());
+  raw.send(std::string("POST /api/echo HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer ") +
+           kToken + "\r\nTransfer-Encoding: chunked\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(raw.receive("\r\n\r\n"), testing::StartsWith("HTTP/1.1 411"));
+  EXPECT_EQ(post(with("Content-Encoding", "gzip")), 415);  // it may unpack to anything
+}
+
+TEST_F(WebServer, RefusesWhatIsNoJson) {
+  for (const char* body : {"{", "\xff\xfe", "nul"}) EXPECT_EQ(post(with_token, body), 400);
+}
+
+TEST_F(WebServer, SurvivesDeepJson) { EXPECT_EQ(post(with_token, std::string(100000, '[')), 400); }
+
+TEST_F(WebServer, SlowsDownWhoAsksTooOften) {
+  int refused = 0;
+  for (int i = 0; i < static_cast<int>(Server::kBurst) + 50 && refused == 0; ++i)
+    refused += client().Get("/api/echo")->status == 429 ? 1 : 0;
+  EXPECT_EQ(refused, 1);
+}
+
+TEST_F(WebServer, StreamsWhatIsPublished) {
+  const Raw raw(server->port());
+  raw.send("GET /api/stream HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_THAT(raw.receive("hello"), HasSubstr("text/event-stream"));
+  hub.publish(Kind::kEvent, "{\"kind\": \"detected\"}");
+  EXPECT_THAT(raw.receive("detected"), HasSubstr("event: event"));
+}
+
+TEST_F(WebServer, BoundsTheNumberOfStreams) {
+  std::vector<std::unique_ptr<Raw>> readers;
+  for (std::size_t i = 0; i < Server::kMostStreams; ++i) {
+    readers.push_back(std::make_unique<Raw>(server->port()));
+    readers.back()->send("GET /api/stream HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    ASSERT_THAT(readers.back()->receive("hello"), HasSubstr("hello"));
+  }
+  EXPECT_EQ(client().Get("/api/stream")->status, 503);
+  readers.clear();  // and whoever publishes does not notice that they are gone
+  for (int i = 0; i < 10; ++i) hub.publish(Kind::kEvent, "{}");
+}
+
+// Readers that never read and connections that never ask: publishing costs the same.
+TEST_F(WebServer, DoesNotLetPublishersWaitForSlowReaders) {
+  std::vector<std::unique_ptr<Raw>> idle;
+  for (int i = 0; i < 20; ++i) {
+    idle.push_back(std::make_unique<Raw>(server->port()));
+    idle.back()->send("GET /api/stream HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    ASSERT_THAT(idle.back()->receive("hello"), HasSubstr("hello"));
+  }
+  const std::string large(100'000, 'x');
+  for (int i = 0; i < 2000; ++i) hub.publish(Kind::kEvent, large);  // more than sockets hold
+  EXPECT_EQ(hub.last(), 2000u);
+  EXPECT_EQ(client().Get("/api/echo")->status, 200);
+}
+
+TEST_F(WebServer, GoesOnAfterAThousandConnections) {
+  for (int round = 0; round < 2; ++round) {
+    std::vector<std::unique_ptr<Raw>> flood;
+    for (int i = 0; i < 500; ++i) {
+      flood.push_back(std::make_unique<Raw>(server->port(), SOCK_NONBLOCK));
+      flood.back()->send("GET /api/");  // and nothing more
+    }
+  }
+  httplib::Client patient = client();
+  patient.set_connection_timeout(60);
+  patient.set_read_timeout(60);
+  const auto answer = patient.Get("/api/echo");
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 200);
+}
+
+TEST(WebServerStart, SaysWhenThePortIsTaken) {
+  const auto first = start();
+  Server::Options options;
+  options.port = first->port();
+  options.access.token = kToken;
+  const auto second = Server::start(options, {}, nullptr);
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error(), HasSubstr("--port"));
+}
+
+}  // namespace
+}  // namespace culprit::web

@@ -1,0 +1,61 @@
+#include "web/watched_manager.h"
+
+#include <algorithm>
+
+#include "web/robot_json.h"
+
+namespace culprit::web {
+namespace {
+
+bool may_change_graph(const Observation& observation) {
+  const auto& what = observation.what;
+  return std::holds_alternative<NodeAppeared>(what) || std::holds_alternative<NodeVanished>(what) ||
+         std::holds_alternative<EndpointAppeared>(what) ||
+         std::holds_alternative<EndpointVanished>(what) ||
+         std::holds_alternative<ProcessSeen>(what);
+}
+
+}  // namespace
+
+WatchedManager::WatchedManager(Manager& manager, Hub& hub, Time start)
+    : manager_(manager), hub_(hub), start_(start) {
+  hub_.publish(Kind::kRobot, to_line(rules_to_json(manager_.knowledge().rules)));
+}
+
+std::vector<Command> WatchedManager::step(Time now, std::span<const Observation> observations) {
+  std::vector<Command> commands = manager_.step(now, observations);
+  tell_events();
+  is_graph_new_ |= std::any_of(observations.begin(), observations.end(), may_change_graph);
+  if (hub_.has_readers() && now >= next_tell_) tell_state(now);
+  return commands;
+}
+
+Time WatchedManager::next_deadline() const {
+  const Time own = manager_.next_deadline();
+  return hub_.has_readers() ? std::min(own, next_tell_) : own;
+}
+
+void WatchedManager::tell_events() {
+  const RuleSet& rules = manager_.knowledge().rules;
+  for (const Event& event : manager_.events()) {
+    Json json = to_json(event, rules, start_);
+    if (!json["text"].get_ref<const std::string&>().empty())
+      hub_.publish(Kind::kEvent, to_line(json));
+  }
+  if (!manager_.events().empty()) next_tell_ = later(told_, kSoon);
+}
+
+void WatchedManager::tell_state(Time now) {
+  const Knowledge& knowledge = manager_.knowledge();
+  if (is_graph_new_) {
+    is_graph_new_ = false;
+    hub_.publish(Kind::kGraph, to_line(graph_to_json(knowledge)));
+  }
+  std::string control = to_line(control_to_json(manager_, start_));
+  if (control != told_control_) hub_.publish(Kind::kControl, told_control_ = std::move(control));
+  hub_.publish(Kind::kState, to_line(state_to_json(knowledge, start_)));
+  told_ = now;
+  next_tell_ = later(now, kPeriod);
+}
+
+}  // namespace culprit::web

@@ -1,0 +1,39 @@
+// A manager whose work browsers can follow: does what it does, and tells a hub.
+//
+// Events are told as they happen. The graph and the present state are told when they have changed,
+// but not more often than kPeriod, and only while somebody reads: a robot that nobody looks at pays
+// nothing for being visible.
+#pragma once
+
+#include "manager/manager.h"
+#include "web/hub.h"
+
+namespace culprit::web {
+
+class WatchedManager : public ManagingSystem {
+ public:
+  static constexpr Duration kPeriod = std::chrono::milliseconds(200);
+  // After an event the state is told sooner, at most so often.
+  static constexpr Duration kSoon = std::chrono::milliseconds(33);
+
+  // Both must outlive this. Events count their time from `start`.
+  WatchedManager(Manager& manager, Hub& hub, Time start);
+
+  std::vector<Command> step(Time now, std::span<const Observation> observations) override;
+  Time next_deadline() const override;
+  std::span<const Event> events() const override { return manager_.events(); }
+
+ private:
+  void tell_events();
+  void tell_state(Time now);
+
+  Manager& manager_;
+  Hub& hub_;
+  const Time start_;
+  Time told_ = kLongAgo;       // when the state was told last
+  Time next_tell_ = kLongAgo;  // when it may be told again
+  bool is_graph_new_ = true;
+  std::string told_control_;
+};
+
+}  // namespace culprit::web

@@ -1,0 +1,62 @@
+// Bundles the web app and writes it as one C++ file: node build.mjs <folder of node_modules> <output.cpp>
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs'
+import { createRequire } from 'node:module'
+import { dirname, join } from 'node:path'
+import { fileURLToPath } from 'node:url'
+import { gzipSync } from 'node:zlib'
+
+const [modules, output] = process.argv.slice(2)
+const require = createRequire(join(modules, 'package.json'))
+const { buildSync } = require('esbuild')
+const source = join(dirname(fileURLToPath(import.meta.url)), 'src')
+const kMostBytes = 400_000 // compressed: what a tablet in the field has to load
+
+const bundle = buildSync({
+  entryPoints: [join(source, 'app.tsx')],
+  nodePaths: [join(modules, 'node_modules')],
+  bundle: true,
+  minify: true,
+  write: false,
+  outdir: '/',
+  format: 'esm',
+  target: 'es2021',
+  jsx: 'automatic',
+  jsxImportSource: 'preact',
+  legalComments: 'none',
+})
+
+const assets = [
+  ['/', 'text/html; charset=utf-8', readFileSync(join(source, 'index.html'))],
+  ['/icon.svg', 'image/svg+xml', readFileSync(join(source, 'icon.svg'))],
+  ...bundle.outputFiles.map((file) =>
+    file.path.endsWith('.css')
+      ? ['/app.css', 'text/css; charset=utf-8', file.contents]
+      : ['/app.js', 'text/javascript; charset=utf-8', file.contents]
+  ),
+].map(([path, type, contents]) => ({ path, type, gzip: gzipSync(contents, { level: 9 }) }))
+
+const size = assets.reduce((sum, asset) => sum + asset.gzip.length, 0)
+if (size > kMostBytes) throw new Error(`the app has ${size} bytes; it may have ${kMostBytes}`)
+
+// Bytes as a string literal: octal escapes end after three digits, so nothing can run on.
+const literal = (bytes) => {
+  const lines = []
+  for (let i = 0; i < bytes.length; i += 64) {
+    const escapes = Array.from(bytes.subarray(i, i + 64), (b) => '\\' + b.toString(8).padStart(3, '0'))
+    lines.push('"' + escapes.join('') + '"')
+  }
+  return lines.join('\n')
+}
+
+const parts = assets.map((asset, i) => `constexpr char kBytes${i}[] =\n${literal(asset.gzip)};\n`)
+const table = assets.map(
+  (asset, i) => `    {"${asset.path}", "${asset.type}", {kBytes${i}, sizeof kBytes${i} - 1}},\n`
+)
+mkdirSync(dirname(output), { recursive: true })
+writeFileSync(
+  output,
+  `// Generated from ui/ by build.mjs: ${size} bytes.\n#include "web/app.h"\n\nnamespace culprit::web {\nnamespace {\n\n` +
+    `${parts.join('\n')}\nconstexpr Asset kAssets[] = {\n${table.join('')}};\n\n}  // namespace\n\n` +
+    `std::span<const Asset> app() { return kAssets; }\n\n}  // namespace culprit::web\n`
+)
+console.log(`web app: ${size} bytes compressed`)

@@ -1,0 +1,89 @@
+// Talking to the server: calls with the token, and the stream of changes.
+
+const kTokenKey = 'culprit-token'
+
+// The address that culprit prints ends in #token=...; it must not stay in the history of the browser.
+function takeToken(): string {
+  const match = /^#token=([^&]+)/.exec(location.hash)
+  if (match) {
+    sessionStorage.setItem(kTokenKey, decodeURIComponent(match[1]))
+    history.replaceState(null, '', location.pathname)
+  }
+  return sessionStorage.getItem(kTokenKey) ?? ''
+}
+const token = takeToken()
+export const hasToken = token !== ''
+
+function headers(more: Record<string, string> = {}): Record<string, string> {
+  return token ? { Authorization: `Bearer ${token}`, ...more } : more
+}
+
+export class Refusal extends Error {
+  constructor(
+    readonly status: number,
+    message: string
+  ) {
+    super(message)
+  }
+}
+
+export async function call<T>(method: string, path: string, body?: unknown): Promise<T> {
+  const init: RequestInit = { method, headers: headers() }
+  if (body !== undefined) {
+    init.headers = headers({ 'Content-Type': 'application/json' })
+    init.body = JSON.stringify(body)
+  }
+  let response: Response
+  try {
+    response = await fetch(path, init)
+  } catch {
+    throw new Refusal(0, 'culprit does not answer; is it still running?')
+  }
+  const answer = await response.json().catch(() => ({}))
+  if (!response.ok) throw new Refusal(response.status, answer.error ?? `error ${response.status}`)
+  return answer as T
+}
+
+export interface StreamMessage {
+  id: string
+  event: string
+  data: string
+}
+
+// Server-sent events (WHATWG HTML). Not by EventSource, which cannot send the token. Goes on after
+// an interruption where it left off, for ever.
+export async function follow(
+  onMessage: (message: StreamMessage) => void,
+  onConnection: (isConnected: boolean) => void
+): Promise<never> {
+  let lastId = ''
+  for (;;) {
+    try {
+      const more: Record<string, string> = lastId ? { 'Last-Event-ID': lastId } : {}
+      const response = await fetch('/api/stream', { headers: headers(more) })
+      if (!response.ok || !response.body) throw new Error(String(response.status))
+      onConnection(true)
+      const reader = response.body.pipeThrough(new TextDecoderStream()).getReader()
+      let pending = ''
+      for (let part = await reader.read(); !part.done; part = await reader.read()) {
+        const blocks = (pending + part.value).split('\n\n')
+        pending = blocks.pop() ?? ''
+        for (const block of blocks) {
+          const message = { id: '', event: 'message', data: '' }
+          for (const line of block.split('\n')) {
+            const colon = line.indexOf(': ')
+            const field = line.slice(0, colon)
+            if (field === 'id' || field === 'event' || field === 'data')
+              message[field] = line.slice(colon + 2)
+          }
+          if (message.id) lastId = message.id
+          if (message.data) onMessage(message)
+        }
+      }
+    } catch {
+      // The next attempt says the same again.
+    }
+    onConnection(false)
+    await new Promise((resolve) => setTimeout(resolve, 1000))
+  }
+}

@@ -1,0 +1,64 @@
+import './app.css'
+import { signal } from '@preact/signals'
+import { render } from 'preact'
+import { hasToken } from './api'
+import { BeliefsPage } from './beliefs_page'
+import { notice } from './faults'
+import { RobotPage } from './robot_page'
+import { RulesPage } from './rules_page'
+import { SimulatorPage } from './simulator_page'
+import { calls, can, isConnected, robot, start } from './store'
+
+const kPages = [
+  { name: 'robot', title: 'Robot', needs: 'get /api/stream', Page: RobotPage },
+  { name: 'rules', title: 'Rules', needs: 'get /api/rules', Page: RulesPage },
+  { name: 'beliefs', title: 'Beliefs', needs: 'get /api/stream', Page: BeliefsPage },
+  { name: 'simulator', title: 'Simulator', needs: 'post /api/what-if', Page: SimulatorPage },
+]
+
+const page = signal(location.hash.slice(1))
+addEventListener('hashchange', () => (page.value = location.hash.slice(1)))
+const trouble = signal('')
+
+function App() {
+  const offered = kPages.filter((p) => calls.value.has(p.needs))
+  const current = offered.find((p) => p.name === page.value) ?? offered[0]
+  const isLiveServer = can('get', '/api/stream')
+  return (
+    <>
+      <header>
+        <h1>
+          culprit <small>{robot.value?.robot}</small>
+        </h1>
+        <nav aria-label="Pages">
+          {offered.map((p) => (
+            <a href={`#${p.name}`} aria-current={p === current ? 'page' : undefined}>
+              {p.title}
+            </a>
+          ))}
+        </nav>
+        <p class="status" role="status">
+          {notice.value && <span>{notice.value}</span>}
+          {!hasToken && calls.value.size > 0 && (
+            <span>Only to look at: open the address that culprit printed, with its token, to control it.</span>
+          )}
+          {isLiveServer && (
+            <span class={isConnected.value ? 'well' : 'sick'}>
+              {isConnected.value ? '● connected' : '○ connection lost; trying again'}
+            </span>
+          )}
+        </p>
+      </header>
+      {current ? (
+        <current.Page />
+      ) : (
+        <main>
+          <p>{trouble.value || 'Asking culprit …'}</p>
+        </main>
+      )}
+    </>
+  )
+}
+
+render(<App />, document.getElementById('app')!)
+start().catch((error: Error) => (trouble.value = error.message))

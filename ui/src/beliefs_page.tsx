@@ -1,0 +1,114 @@
+// What is believed of each strategy: how often it helps, before and after what was seen.
+import { useEffect, useRef, useState } from 'preact/hooks'
+import uPlot from 'uplot'
+import 'uplot/dist/uPlot.min.css'
+import { beta, density } from './beta'
+import { robot, state } from './store'
+import { colour, isDark } from './theme'
+import type { Strategy } from './types'
+
+interface Entry {
+  rule: string
+  strategy: Strategy
+  belief: [number, number]
+}
+
+// Beliefs come by strategy in the order of the rule set, which is that of the rules.
+function entries(): Entry[] {
+  const list: Entry[] = []
+  let place = 0
+  for (const rule of robot.value?.rules ?? []) {
+    for (const strategy of rule.strategies) {
+      list.push({ rule: rule.name, strategy, belief: state.value?.beliefs[place] ?? strategy.prior })
+      ++place
+    }
+  }
+  return list
+}
+
+function Density({ entry }: { entry: Entry }) {
+  const place = useRef<HTMLDivElement>(null)
+  const { prior } = entry.strategy
+  const [a, b] = entry.belief
+  useEffect(() => {
+    const grid = { stroke: colour('line'), width: 0.5 }
+    const x = Array.from({ length: 201 }, (_, i) => i / 200)
+    const plot = new uPlot(
+      {
+        width: Math.min(640, place.current!.clientWidth),
+        height: 300,
+        scales: { x: { time: false } },
+        axes: [
+          { stroke: colour('text'), grid, label: 'how often it helps' },
+          { stroke: colour('text'), grid, label: 'density' },
+        ],
+        series: [
+          { label: 'success' },
+          { label: 'as the rules say', stroke: colour('muted'), dash: [6, 4], width: 2 },
+          { label: 'as learned', stroke: colour('accent'), width: 2 },
+        ],
+      },
+      [x, x.map((p) => density(p, prior[0], prior[1])), x.map((p) => density(p, a, b))],
+      place.current!
+    )
+    return () => plot.destroy()
+  }, [entry.rule, entry.strategy.name, a, b, isDark.value])
+  return (
+    <figure>
+      <figcaption>
+        {entry.rule}.{entry.strategy.name}: {entry.strategy.actions.join(', ')}
+      </figcaption>
+      <div ref={place} />
+    </figure>
+  )
+}
+
+export function BeliefsPage() {
+  const [chosen, choose] = useState(0)
+  const list = entries()
+  return (
+    <main class="beliefs">
+      <h2>How likely each strategy is to help</h2>
+      <div class="columns">
+        <table>
+          <thead>
+            <tr>
+              <th scope="col">strategy</th>
+              <th scope="col">rules say</th>
+              <th scope="col">believed now</th>
+              <th scope="col">90 % sure of</th>
+              <th scope="col">learned from</th>
+            </tr>
+          </thead>
+          <tbody>
+            {list.map((entry, i) => {
+              const { prior } = entry.strategy
+              const [a, b] = entry.belief
+              const [low, high] = beta(a, b).interval
+              const seen = Math.max(0, a + b - prior[0] - prior[1])
+              const percent = (p: number) => `${(100 * p).toFixed(0)} %`
+              return (
+                <tr class={i === chosen ? 'chosen' : ''}>
+                  <th scope="row">
+                    <button type="button" aria-pressed={i === chosen} onClick={() => choose(i)}>
+                      {entry.rule}.{entry.strategy.name}
+                    </button>
+                  </th>
+                  <td class="number">{percent(prior[0] / (prior[0] + prior[1]))}</td>
+                  <td class="number">{percent(a / (a + b))}</td>
+                  <td class="number">
+                    {percent(low)} to {percent(high)}
+                  </td>
+                  <td class="number">
+                    {seen < 0.5 ? 'nothing yet' : `${seen.toFixed(0)} outcome${seen < 1.5 ? '' : 's'}`}
+                  </td>
+                </tr>
+              )
+            })}
+          </tbody>
+        </table>
+        {list[chosen] && <Density entry={list[chosen]} />}
+      </div>
+    </main>
+  )
+}

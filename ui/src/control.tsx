@@ -1,0 +1,224 @@
+// What people can tell the manager: wait, go on, leave this alone, do that. Each is one call
+// (POST /api/orders); what becomes of it is an event.
+import { signal } from '@preact/signals'
+import { useState } from 'preact/hooks'
+import { call, hasToken } from './api'
+import { act } from './faults'
+import { can, control, now, robot } from './store'
+
+const kAuthorKey = 'culprit-author'
+const author = signal(localStorage.getItem(kAuthorKey) ?? '')
+
+const order = (what: string, body: Record<string, unknown>) =>
+  act(what, () =>
+    call('POST', '/api/orders', { author: author.value || 'somebody at the page', ...body })
+  )
+
+function Author() {
+  return (
+    <label class="field">
+      <span>your name, for the record</span>
+      <input
+        value={author.value}
+        maxLength={100}
+        onChange={(e) => {
+          author.value = e.currentTarget.value.trim()
+          localStorage.setItem(kAuthorKey, author.value)
+        }}
+      />
+    </label>
+  )
+}
+
+// Strategies that wait for a person's word: in front of all else.
+export function Approvals() {
+  const asked = control.value?.asked ?? []
+  const rules = new Map(robot.value?.rules.map((r) => [r.name, r]) ?? [])
+  return (
+    <>
+      {asked.map(({ rule, strategy }) => {
+        const actions = rules.get(rule)?.strategies.find((s) => s.name === strategy)?.actions ?? []
+        return (
+          <section class="approval" role="alert" aria-label={`Approve ${strategy}?`}>
+            <h2>? May culprit do this?</h2>
+            <p>
+              <b>{strategy}</b> against {rule}: {actions.join(', ')}
+            </p>
+            <div class="bar">
+              <button
+                type="button"
+                class="primary"
+                disabled={!hasToken}
+                onClick={() => void order(`Approving ${strategy}`, { order: 'approve', rule, strategy })}
+              >
+                Approve
+              </button>
+              <button
+                type="button"
+                disabled={!hasToken}
+                onClick={() => void order(`Refusing ${strategy}`, { order: 'refuse', rule, strategy })}
+              >
+                Refuse
+              </button>
+            </div>
+          </section>
+        )
+      })}
+    </>
+  )
+}
+
+function Silences() {
+  const [what, choose] = useState('')
+  const [minutes, setMinutes] = useState('10')
+  const [reason, setReason] = useState('')
+  const subject = (chosen: string) => {
+    const [kind, name] = [chosen.slice(0, chosen.indexOf(' ')), chosen.slice(chosen.indexOf(' ') + 1)]
+    return { [kind]: name }
+  }
+  const options = [
+    ...(robot.value?.components ?? []).map((c) => `component ${c.name}`),
+    ...(robot.value?.rules ?? []).map((r) => `rule ${r.name}`),
+  ]
+  const chosen = what || options[0] || ''
+  return (
+    <form
+      onSubmit={(e) => {
+        e.preventDefault()
+        void order(`Silencing ${chosen}`, {
+          order: 'silence',
+          ...subject(chosen),
+          seconds: Number(minutes) * 60,
+          reason,
+        })
+      }}
+    >
+      <h3>Leave alone</h3>
+      <div class="row">
+        <label class="field">
+          <span>what</span>
+          <select value={chosen} onChange={(e) => choose(e.currentTarget.value)}>
+            {options.map((o) => (
+              <option>{o}</option>
+            ))}
+          </select>
+        </label>
+        <label class="field short">
+          <span>minutes</span>
+          <input
+            type="number"
+            min="0.1"
+            max="10000"
+            step="any"
+            required
+            value={minutes}
+            onInput={(e) => setMinutes(e.currentTarget.value)}
+          />
+        </label>
+        <label class="field">
+          <span>why</span>
+          <input value={reason} maxLength={200} onInput={(e) => setReason(e.currentTarget.value)} />
+        </label>
+        <button type="submit" disabled={!hasToken}>
+          Silence
+        </button>
+      </div>
+      <ul>
+        {(control.value?.silences ?? []).map((s) => {
+          const kind = s.component ? 'component' : 'rule'
+          const name = s.component ?? s.rule
+          return (
+            <li class="bar">
+              <span>
+                <b>{name}</b> is left alone
+                {s.until !== null && ` for ${Math.max(0, s.until - now.value).toFixed(0)} s more`}
+                {s.reason && ` (${s.author}: ${s.reason})`}
+              </span>
+              <button
+                type="button"
+                disabled={!hasToken}
+                onClick={() => void order(`Lifting the silence of ${name}`, { order: 'lift', [kind]: name })}
+              >
+                Lift
+              </button>
+            </li>
+          )
+        })}
+      </ul>
+    </form>
+  )
+}
+
+function ByHand() {
+  const all = (robot.value?.rules ?? []).flatMap((r) =>
+    r.strategies.map((s) => ({ rule: r.name, strategy: s.name, actions: s.actions }))
+  )
+  const [place, choose] = useState(0)
+  const chosen = all[place]
+  if (!chosen) return null
+  return (
+    <form
+      onSubmit={(e) => {
+        e.preventDefault()
+        const { rule, strategy } = chosen
+        void order(`Running ${strategy}`, { order: 'run', rule, strategy })
+      }}
+    >
+      <h3>Do it now</h3>
+      <div class="row">
+        <label class="field">
+          <span>strategy</span>
+          <select value={String(place)} onChange={(e) => choose(Number(e.currentTarget.value))}>
+            {all.map((s, i) => (
+              <option value={String(i)}>
+                {s.rule}.{s.strategy}
+              </option>
+            ))}
+          </select>
+        </label>
+        <button type="submit" disabled={!hasToken}>
+          Run
+        </button>
+      </div>
+      <p class="muted">{chosen.actions.join(', ')}</p>
+    </form>
+  )
+}
+
+export function Control() {
+  if (!can('post', '/api/orders') || !control.value) return null
+  const { paused, dry_run } = control.value
+  return (
+    <section class="control" aria-label="Control">
+      <div class="bar">
+        <button
+          type="button"
+          class={paused ? 'primary' : 'danger'}
+          disabled={!hasToken}
+          onClick={() => void order(paused ? 'Resuming' : 'Pausing', { order: paused ? 'resume' : 'pause' })}
+        >
+          {paused ? '▶ Resume' : 'Ⅱ Pause'}
+        </button>
+        <label>
+          <input
+            type="checkbox"
+            disabled={!hasToken}
+            checked={dry_run}
+            onChange={(e) => {
+              const on = e.currentTarget.checked
+              void order(on ? 'Dry run' : 'Acting again', { order: 'dry_run', on })
+            }}
+          />{' '}
+          dry run: only say what would be done
+        </label>
+      </div>
+      {paused && <p class="sick">Ⅱ Paused: nothing is changed on the robot until you resume.</p>}
+      <details>
+        <summary>More control</summary>
+        <Author />
+        <Silences />
+        <ByHand />
+      </details>
+    </section>
+  )
+}

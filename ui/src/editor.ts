@@ -1,0 +1,208 @@
+// The text editor of rule files: CodeMirror, with what culprit's language server knows.
+import { autocompletion, type CompletionContext, type CompletionResult } from '@codemirror/autocomplete'
+import { defaultKeymap, history, historyKeymap, indentWithTab } from '@codemirror/commands'
+import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language'
+import { type Diagnostic, lintGutter, linter } from '@codemirror/lint'
+import { EditorState, type Text } from '@codemirror/state'
+import { EditorView, drawSelection, highlightActiveLine, hoverTooltip, keymap, lineNumbers } from '@codemirror/view'
+import { tags } from '@lezer/highlight'
+import { call } from './api'
+
+interface Position {
+  line: number
+  character: number
+}
+interface LspDiagnostic {
+  range: { start: Position; end: Position }
+  severity: number
+  code: string
+  message: string
+}
+interface Reply<T> {
+  diagnostics: LspDiagnostic[]
+  result: T
+}
+
+const kKeywords =
+  /^(ROBOT|CYCLE|CONST|COMPONENT|NODE|LAUNCH|DEPENDENCY|ON|IGNORE|TOPIC|SIGNAL|DIAGNOSTIC|KEY|FIELD|PARAMETER|STALE|RANGE|RULE|POLICIES|FOR|HOLD|COOLDOWN|ATTEMPTS|ON_CHANGE|TRIGGER|STRATEGY|WHEN|ADAPTATION|ERROR|WARNING|NON_CRITICAL|OK|DEGRADED|FAILURE)\b/
+
+const language = StreamLanguage.define<null>({
+  startState: () => null,
+  token(stream) {
+    if (stream.match(/^(#|\/\/).*/)) return 'comment'
+    if (stream.match(/^"(\\.|[^"\\])*"?/)) return 'string'
+    if (stream.match(kKeywords)) return 'keyword'
+    if (stream.match(/^\d[\d.]*(e[+-]?\d+)?(ns|us|ms|s|min|h)?\b/)) return 'number'
+    if (stream.match(/^\/[\w/]+/)) return 'link'
+    if (stream.match(/^\w+/)) return 'variableName'
+    stream.next()
+    return null
+  },
+  languageData: { commentTokens: { line: '#' } },
+})
+
+const colours = HighlightStyle.define([
+  { tag: tags.keyword, class: 'code-keyword' },
+  { tag: tags.comment, class: 'code-comment' },
+  { tag: tags.string, class: 'code-string' },
+  { tag: tags.number, class: 'code-number' },
+  { tag: tags.link, class: 'code-topic' },
+])
+
+const theme = EditorView.theme({
+  '&': { height: '100%', backgroundColor: 'var(--surface)', color: 'var(--text)', fontSize: '14px' },
+  '.cm-gutters': { backgroundColor: 'var(--raised)', color: 'var(--muted)', borderRight: '1px solid var(--faint)' },
+  '.cm-activeLine': { backgroundColor: 'var(--raised)' },
+  '.cm-cursor': { borderLeftColor: 'var(--text)' },
+  '.cm-tooltip': { backgroundColor: 'var(--raised)', color: 'var(--text)', border: '1px solid var(--line)' },
+  '&.cm-focused .cm-selectionBackground, .cm-selectionBackground': { backgroundColor: 'var(--faint) !important' },
+  '.cm-diagnostic': { whiteSpace: 'pre-wrap' },
+})
+
+// LSP counts lines from 0 and UTF-16 code units within them, as CodeMirror does.
+const offset = (doc: Text, at: Position) => {
+  const line = doc.line(Math.min(at.line + 1, doc.lines))
+  return Math.min(line.from + at.character, line.to)
+}
+const position = (doc: Text, at: number): Position => {
+  const line = doc.lineAt(at)
+  return { line: line.number - 1, character: at - line.from }
+}
+
+async function complete(context: CompletionContext): Promise<CompletionResult | null> {
+  const word = context.matchBefore(/[\w/.]*/)
+  if (!context.explicit && (!word || word.from === word.to)) return null
+  const { doc } = context.state
+  const reply = await call<Reply<{ label: string; detail?: string }[] | { items: { label: string; detail?: string }[] } | null>>(
+    'POST',
+    '/api/rules/ask',
+    {
+      text: doc.toString(),
+      method: 'textDocument/completion',
+      params: { position: position(doc, context.pos) },
+    }
+  ).catch(() => null)
+  const items = Array.isArray(reply?.result) ? reply.result : (reply?.result?.items ?? [])
+  return { from: word?.from ?? context.pos, options: items.map((i) => ({ label: i.label, detail: i.detail })) }
+}
+
+const hover = hoverTooltip(async (view, pos) => {
+  const { doc } = view.state
+  const reply = await call<Reply<{ contents: { value: string } } | null>>('POST', '/api/rules/ask', {
+    text: doc.toString(),
+    method: 'textDocument/hover',
+    params: { position: position(doc, pos) },
+  }).catch(() => null)
+  const text = reply?.result?.contents?.value
+  if (!text) return null
+  return {
+    pos,
+    create() {
+      const dom = document.createElement('div')
+      dom.className = 'hover'
+      dom.textContent = text
+      return { dom }
+    },
+  }
+})
+
+export interface Found {
+  line: number
+  from: number
+  isError: boolean
+  code: string
+  message: string
+}
+
+export interface Editor {
+  view: EditorView
+  setText(text: string): void
+  goTo(at: number): void
+}
+
+// CodeMirror writes its styles into a document by a style element, which the content security policy
+// forbids, but into a shadow root by the object model, which it allows. There, those of the page have to
+// be given too.
+function shadowRoot(parent: HTMLElement): ShadowRoot {
+  const host = document.createElement('div')
+  parent.append(host)
+  const root = host.attachShadow({ mode: 'open' })
+  const sheet = new CSSStyleSheet()
+  const rules = [...document.styleSheets].flatMap((s) => [...s.cssRules])
+  sheet.replaceSync(rules.map((r) => r.cssText).join('\n'))
+  root.adoptedStyleSheets = [sheet]
+  return root
+}
+
+// `onText` is told each new text, `onFound` what a check says about the newest.
+export function makeEditor(
+  parent: HTMLElement,
+  text: string,
+  onText: (text: string) => void,
+  onFound: (found: Found[]) => void
+): Editor {
+  const check = linter(
+    async (view): Promise<Diagnostic[]> => {
+      const { doc } = view.state
+      const reply = await call<Reply<null>>('POST', '/api/rules/ask', { text: doc.toString() })
+      const list = reply.diagnostics.map((d): Diagnostic => {
+        const from = offset(doc, d.range.start)
+        return {
+          from,
+          to: Math.max(from, offset(doc, d.range.end)),
+          severity: d.severity === 1 ? 'error' : 'warning',
+          source: d.code,
+          message: d.message,
+        }
+      })
+      onFound(
+        list.map((d) => ({
+          line: doc.lineAt(d.from).number,
+          from: d.from,
+          isError: d.severity === 'error',
+          code: d.source ?? '',
+          message: d.message,
+        }))
+      )
+      return list
+    },
+    { delay: 150 }
+  )
+  const root = shadowRoot(parent)
+  const view = new EditorView({
+    parent: root,
+    root,
+    state: EditorState.create({
+      doc: text,
+      extensions: [
+        lineNumbers(),
+        history(),
+        drawSelection(),
+        highlightActiveLine(),
+        language,
+        theme,
+        syntaxHighlighting(colours),
+        lintGutter(),
+        check,
+        autocompletion({ override: [complete] }),
+        hover,
+        keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),
+        EditorView.contentAttributes.of({ 'aria-label': 'Rule file' }),
+        EditorView.updateListener.of((update) => {
+          if (update.docChanged) onText(update.state.doc.toString())
+        }),
+      ],
+    }),
+  })
+  return {
+    view,
+    setText(next) {
+      if (next === view.state.doc.toString()) return
+      view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: next } })
+    },
+    goTo(at) {
+      view.dispatch({ selection: { anchor: at }, scrollIntoView: true })
+      view.focus()
+    },
+  }
+}

@@ -1,0 +1,226 @@
+// Why: for each failure who is suspected, what was weighed and why not the others, and what happens
+// next.
+import { culprits, isLive, moment, now, robot, selected, situation, state } from './store'
+import type { Failure } from './store'
+import type { Candidate, ComponentState, Criticality } from './types'
+
+export const kSigns: Record<string, string> = {
+  ERROR: '◆',
+  WARNING: '▲',
+  NON_CRITICAL: '○',
+  EXHAUSTED: '✖',
+  OK: '✓',
+}
+
+export const kWords: Record<Criticality, string> = {
+  ERROR: 'error',
+  WARNING: 'warning',
+  NON_CRITICAL: 'non-critical',
+}
+
+const listed = (words: string[]) =>
+  words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} and ${words[words.length - 1]}`
+
+function Headline() {
+  const failures = situation.value.failures
+  if (failures.length === 0)
+    return (
+      <p class="headline well">
+        <b>✓ All is well.</b> No rule sees a failure.
+      </p>
+    )
+  const blamed = [...culprits.value.keys()]
+  const exhausted = failures.filter((f) => f.phase === 'exhausted')
+  return (
+    <p class="headline sick">
+      {blamed.length > 0 ? (
+        <b>
+          ★ {listed(blamed)} {blamed.length > 1 ? 'are' : 'is'} held responsible
+        </b>
+      ) : (
+        <b>
+          {failures.length} {failures.length > 1 ? 'failures' : 'failure'}, nobody is being repaired
+        </b>
+      )}
+      {exhausted.length > 0 && (
+        <>
+          {' '}
+          Nothing helped against {listed(exhausted.map((f) => f.rule))}: a person must look.
+        </>
+      )}
+    </p>
+  )
+}
+
+function Suspects({ failure }: { failure: Failure }) {
+  const suspects = failure.decision?.suspects ?? []
+  if (suspects.length === 0) return null
+  return (
+    <table class="suspects">
+      <caption>Who may be responsible</caption>
+      <tbody>
+        {suspects.slice(0, 5).map((s) => (
+          <tr>
+            <th scope="row">{s.component}</th>
+            <td class="meter">
+              <meter min={0} max={1} value={s.probability} aria-label={`probability for ${s.component}`} />
+            </td>
+            <td class="number">{(100 * s.probability).toFixed(0)} %</td>
+            <td class="muted">{s.failure === failure.rule ? '' : `by ${s.failure}`}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  )
+}
+
+function Candidates({ list, chosen }: { list: Candidate[]; chosen?: string | null }) {
+  if (list.length === 0) return null
+  return (
+    <table class="candidates">
+      <caption>What could be done</caption>
+      <thead>
+        <tr>
+          <th scope="col">strategy</th>
+          <th scope="col">cost</th>
+          <th scope="col">why, or why not</th>
+        </tr>
+      </thead>
+      <tbody>
+        {list.map((c) => (
+          <tr class={c.strategy === chosen ? 'chosen' : ''}>
+            <th scope="row">{c.strategy}</th>
+            <td class="number">{c.cost.toFixed(2)}</td>
+            <td>{c.excluded ? c.excluded.text : <b>chosen</b>}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  )
+}
+
+// What happens next, and when: of the present only, for the past knows what happened.
+function Next({ failure }: { failure: Failure }) {
+  if (!isLive.value) return null
+  const place = robot.value?.rules.findIndex((r) => r.name === failure.rule) ?? -1
+  const live = state.value?.rules[place]
+  if (!live) return null
+  const t = now.value
+  const left = (at: number | null | undefined) => (at ? Math.max(0, at - t).toFixed(1) : null)
+  if (live.attempt) {
+    const { stage, strategy, deadline } = live.attempt
+    if (stage === 'adapting') return <p class="next">Now: {strategy} is being carried out.</p>
+    if (stage === 'undoing') return <p class="next">Now: what {strategy} changed is being undone.</p>
+    return (
+      <p class="next">
+        Now: waiting for the symptom to go
+        {left(deadline) && `; if it has not in ${left(deadline)} s, the next strategy is tried`}.
+      </p>
+    )
+  }
+  if (live.settling)
+    return (
+      <p class="next">
+        Now: it is expected to go away with {live.settling.with}, within {left(live.settling.until)} s.
+      </p>
+    )
+  if (live.retry_at) return <p class="next">Next: tried anew in {left(live.retry_at)} s.</p>
+  if (failure.phase === 'exhausted') return <p class="next">Nothing more will be tried.</p>
+  return <p class="next">Now: it waits.</p>
+}
+
+function FailureCard({ failure }: { failure: Failure }) {
+  const decision = failure.decision
+  const since = (moment.value ?? now.value) - failure.since
+  return (
+    <article class={`failure ${failure.criticality}`}>
+      <h3>
+        <span aria-hidden="true">{kSigns[failure.phase === 'exhausted' ? 'EXHAUSTED' : failure.criticality]}</span>{' '}
+        {failure.rule}{' '}
+        <small>
+          {kWords[failure.criticality]}, for {Math.max(0, since).toFixed(1)} s
+        </small>
+      </h3>
+      {decision && <p>{decision.text}.</p>}
+      <Next failure={failure} />
+      <Suspects failure={failure} />
+      <Candidates
+        list={decision?.candidates ?? []}
+        chosen={decision?.kind === 'decided' ? decision.strategy : null}
+      />
+    </article>
+  )
+}
+
+function describeComponent(live: ComponentState | undefined): string {
+  if (!live) return 'unknown'
+  const parts = [live.alive === null ? 'not seen yet' : live.alive ? 'alive' : 'not alive']
+  if (live.lifecycle) parts.push(live.lifecycle)
+  if (live.adapting) parts.push(`being adapted (${live.adapting})`)
+  if (live.remark) parts.push(live.remark)
+  return parts.join(', ')
+}
+
+// The same as the graph in words, for whoever cannot see or point at it.
+export function Components() {
+  const sick = situation.value.failures
+  return (
+    <section class="components" aria-label="Components">
+      <h2>Components</h2>
+      <ul>
+        {(robot.value?.components ?? []).map((c, i) => {
+          const live = state.value?.components[i]
+          const rules = (robot.value?.rules ?? []).filter((r) => r.components.includes(c.name))
+          const failing = rules.filter((r) => sick.some((f) => f.rule === r.name))
+          const sign = culprits.value.has(c.name) ? '★' : failing.length > 0 ? '◆' : '✓'
+          return (
+            <li>
+              <button
+                type="button"
+                aria-pressed={selected.value === c.name}
+                onClick={() => (selected.value = selected.value === c.name ? null : c.name)}
+              >
+                <span aria-hidden="true">{sign}</span> {c.name}
+              </button>
+              {selected.value === c.name && (
+                <div class="details">
+                  <p>{isLive.value ? describeComponent(live) : 'its state is shown live only'}</p>
+                  <p>
+                    Rules about it: {listed(rules.map((r) => r.name)) || 'none'}
+                    {failing.length > 0 && `; failing: ${listed(failing.map((r) => r.name))}`}.
+                  </p>
+                </div>
+              )}
+            </li>
+          )
+        })}
+      </ul>
+    </section>
+  )
+}
+
+export function Explanation() {
+  const wanted = selected.value
+  const rules = robot.value?.rules ?? []
+  const failures = situation.value.failures.filter(
+    (f) => !wanted || rules.find((r) => r.name === f.rule)?.components.includes(wanted)
+  )
+  return (
+    <section class="explanation" aria-label="Explanation">
+      <div aria-live="polite">
+        <Headline />
+      </div>
+      {wanted && (
+        <p class="muted">
+          Only what concerns {wanted}.{' '}
+          <button type="button" onClick={() => (selected.value = null)}>
+            Show all
+          </button>
+        </p>
+      )}
+      {failures.map((failure) => (
+        <FailureCard key={failure.rule} failure={failure} />
+      ))}
+    </section>
+  )
+}

@@ -1,0 +1,103 @@
+// A rule file as JSON (docs/rule-json.md), and changes to it. A change gives a new document and
+// leaves all that it is not about as it was: comments, order, spelling.
+
+export interface Statement {
+  statement: string
+  above?: string[]
+  comment?: string
+  [member: string]: unknown
+}
+export interface RuleDocument {
+  version: number
+  statements: Statement[]
+  end?: string[]
+}
+
+// What belongs to a statement stands behind it, up to the next of its own rank or of a higher one.
+const kRanks: Record<string, number> = { POLICIES: 1, TRIGGER: 1, STRATEGY: 1, ADAPTATION: 2 }
+export const rankOf = (s: Statement) => kRanks[s.statement] ?? 0
+
+export function endOf(document: RuleDocument, begin: number): number {
+  const rank = rankOf(document.statements[begin])
+  let end = begin + 1
+  while (end < document.statements.length && rankOf(document.statements[end]) > rank) ++end
+  return end
+}
+
+export function replaced(
+  document: RuleDocument,
+  begin: number,
+  count: number,
+  ...by: Statement[]
+): RuleDocument {
+  const statements = [...document.statements]
+  statements.splice(begin, count, ...by)
+  return { ...document, statements }
+}
+
+// `value` undefined takes the member away.
+export function withMember(
+  document: RuleDocument,
+  place: number,
+  member: string,
+  value: unknown
+): RuleDocument {
+  const changed = { ...document.statements[place] }
+  if (value === undefined) delete changed[member]
+  else changed[member] = value
+  return replaced(document, place, 1, changed)
+}
+
+// The members of each type of adaptation, in front of its impact.
+export const kAdaptations: Record<string, string[]> = {
+  set_parameter: ['parameter', 'value'],
+  increase_parameter: ['parameter', 'value'],
+  decrease_parameter: ['parameter', 'value'],
+  change_communication: ['parameter', 'topic'],
+  activate: [],
+  deactivate: [],
+  restart: [],
+  redeploy: [],
+  start: [],
+  stop: [],
+  change_mode: ['mode'],
+  call: ['service'],
+}
+
+export function newAdaptation(type: string, before?: Statement): Statement {
+  const statement: Statement = { statement: 'ADAPTATION', component: before?.component ?? 'component', type }
+  const kDefaults: Record<string, string> = {
+    parameter: 'parameter', value: 'true', topic: 'topic', mode: 'mode', service: 'service',
+  }
+  for (const member of kAdaptations[type]) statement[member] = before?.[member] ?? kDefaults[member]
+  statement.impact = before?.impact ?? 1
+  if (before?.above) statement.above = before.above
+  if (before?.comment) statement.comment = before.comment
+  return statement
+}
+
+export function newStrategy(name: string): Statement[] {
+  return [
+    { statement: 'STRATEGY', name, probability: 50, confidence: 10 },
+    newAdaptation('restart'),
+  ]
+}
+
+export function newRule(name: string): Statement[] {
+  return [
+    { statement: 'RULE', name, above: [''] },
+    { statement: 'POLICIES', criticality: 'WARNING' },
+    { statement: 'TRIGGER', expression: 'false' },
+    ...newStrategy('strategy'),
+  ]
+}
+
+// A name that is not taken yet: "rule", "rule2".
+export function freeName(document: RuleDocument, keyword: string, wish: string): string {
+  const taken = new Set(
+    document.statements.filter((s) => s.statement === keyword).map((s) => s.name)
+  )
+  let name = wish
+  for (let i = 2; taken.has(name); ++i) name = wish + i
+  return name
+}

@@ -1,0 +1,165 @@
+// What happened when: a lane for each rule that ever failed, bars for failures, marks for strategies
+// and outcomes; and the moment that the page looks at, which can be moved.
+import { computed, signal } from '@preact/signals'
+import { events, isLive, moment, now } from './store'
+import type { Criticality, ManagerEvent } from './types'
+
+const kWindows: [number, string][] = [
+  [30, '30 s'],
+  [120, '2 min'],
+  [600, '10 min'],
+  [Infinity, 'all'],
+]
+const windowLength = signal(120)
+
+interface Bar {
+  from: number
+  to: number | null
+  criticality: Criticality
+  outcome: string
+}
+interface Lane {
+  rule: string
+  bars: Bar[]
+  marks: ManagerEvent[]
+}
+
+const kMarks: Record<string, string> = { decided: '▼', no_help: '✕', pause: 'Ⅱ', exhausted: '✖' }
+
+const lanes = computed((): Lane[] => {
+  const byRule = new Map<string, Lane>()
+  for (const event of events.value) {
+    if (!event.rule) continue
+    if (event.kind === 'detected') {
+      const lane = byRule.get(event.rule) ?? { rule: event.rule, bars: [], marks: [] }
+      lane.bars.push({ from: event.t, to: null, criticality: event.criticality!, outcome: 'open' })
+      byRule.set(event.rule, lane)
+      continue
+    }
+    const lane = byRule.get(event.rule)
+    const bar = lane?.bars[lane.bars.length - 1]
+    if (!lane || !bar) continue
+    if (event.kind === 'resolved' || event.kind === 'lost_sight') {
+      bar.to = event.t
+      bar.outcome = event.text
+    } else if (kMarks[event.kind]) {
+      lane.marks.push(event)
+    }
+  }
+  return [...byRule.values()]
+})
+
+const kRow = 26
+
+export function Timeline() {
+  const end = Math.max(now.value, 1)
+  const begin = Math.max(0, end - windowLength.value)
+  const span = end - begin
+  const percent = (t: number) => `${(100 * (Math.max(begin, Math.min(end, t)) - begin)) / span}%`
+  const at = moment.value ?? end
+  const visible = lanes.value.filter((l) => l.bars.some((b) => (b.to ?? end) >= begin))
+  return (
+    <section class="timeline" aria-label="Timeline">
+      <div class="bar">
+        <button
+          type="button"
+          class={isLive.value ? 'primary' : ''}
+          aria-pressed={isLive.value}
+          onClick={() => (moment.value = null)}
+        >
+          ● Live
+        </button>
+        <output class="moment">
+          {isLive.value ? `now, ${end.toFixed(1)} s` : `at ${at.toFixed(1)} s`}
+        </output>
+        <label>
+          show{' '}
+          <select
+            value={String(windowLength.value)}
+            onChange={(e) => (windowLength.value = Number(e.currentTarget.value))}
+          >
+            {kWindows.map(([length, name]) => (
+              <option value={String(length)}>{name}</option>
+            ))}
+          </select>
+        </label>
+      </div>
+      <div class="lanes">
+        <div class="names">
+          {visible.map((lane) => (
+            <span title={lane.rule}>{lane.rule}</span>
+          ))}
+        </div>
+        <svg class="plot" width="100%" height={Math.max(1, visible.length) * kRow} role="img"
+          aria-label="Failures over time; the list of what happened says the same in words">
+          {visible.length === 0 && (
+            <text x="8" y="18">Nothing has failed in this time.</text>
+          )}
+          {visible.map((lane, row) => (
+            <g key={lane.rule}>
+              {lane.bars
+                .filter((b) => (b.to ?? end) >= begin)
+                .map((b) => (
+                  <svg x={percent(b.from)} y={row * kRow + 5} overflow="visible">
+                    <title>{`${lane.rule}: ${b.outcome}`}</title>
+                    <rect
+                      class={`bar-${b.criticality}`}
+                      width={`${(100 * ((b.to ?? end) - Math.max(begin, b.from))) / span}%`}
+                      height={kRow - 10}
+                      rx="3"
+                    />
+                  </svg>
+                ))}
+              {lane.marks
+                .filter((m) => m.t >= begin)
+                .map((m) => (
+                  <text x={percent(m.t)} y={row * kRow + 18} class="mark" text-anchor="middle">
+                    {kMarks[m.kind]}
+                    <title>{m.text}</title>
+                  </text>
+                ))}
+            </g>
+          ))}
+          <line x1={percent(at)} x2={percent(at)} y1="0" y2="100%" class="playhead" />
+        </svg>
+        <span />
+        <input
+          class="scrub"
+          type="range"
+          aria-label="Moment to look at, in seconds"
+          min={begin}
+          max={end}
+          step="0.1"
+          value={at}
+          onInput={(e) => {
+            const wanted = Number(e.currentTarget.value)
+            moment.value = wanted >= end - 0.05 ? null : wanted
+          }}
+        />
+      </div>
+    </section>
+  )
+}
+
+export function EventLog() {
+  const upTo = moment.value ?? Infinity
+  const list = events.value.filter((e) => e.t <= upTo).slice(-200)
+  list.reverse()
+  return (
+    <section class="log" aria-label="What happened">
+      <h2>What happened</h2>
+      {list.length === 0 && <p class="muted">Nothing yet.</p>}
+      <ol>
+        {list.map((event) => (
+          <li>
+            <button type="button" onClick={() => (moment.value = event.t)} title="Look at this moment">
+              {event.t.toFixed(2)}
+            </button>
+            <span class={`kind kind-${event.kind}`}>{event.kind.replace('_', ' ')}</span>
+            <span>{event.text}</span>
+          </li>
+        ))}
+      </ol>
+    </section>
+  )
+}

@@ -1,0 +1,97 @@
+// The documents of the API (docs/web.md).
+
+export type Criticality = 'NON_CRITICAL' | 'WARNING' | 'ERROR'
+export type Health = 'OK' | Criticality | 'EXHAUSTED'
+
+export interface Strategy {
+  name: string
+  impact: number
+  components: string[]
+  prior: [number, number]
+  actions: string[]
+}
+export interface Rule {
+  name: string
+  criticality: Criticality
+  attempts: number
+  components: string[]
+  inputs: number[]
+  strategies: Strategy[]
+}
+export interface Robot {
+  robot: string
+  cycle_s: number
+  components: { name: string; can_start: boolean }[]
+  topics: string[]
+  inputs: string[]
+  rules: Rule[]
+}
+
+export interface Graph {
+  nodes: { node: string; present: boolean; component?: string }[]
+  edges: [consumer: string, producer: string, channel: string][]
+}
+
+export interface RuleState {
+  phase: 'quiet' | 'failing' | 'attempting' | 'exhausted'
+  trigger?: boolean | null
+  since?: number
+  attempts?: number
+  retry_at?: number
+  settling?: { with: string; until: number }
+  attempt?: { strategy: string; stage: string; chosen: number; deadline: number | null }
+}
+export interface ComponentState {
+  health: Health
+  present: boolean
+  alive: boolean | null
+  lifecycle?: string
+  remark?: string
+  adapting?: string
+}
+export interface State {
+  t: number
+  rules: RuleState[]
+  components: ComponentState[]
+  topics: { rate: number | null; age: number | null }[]
+  inputs: (number | string | boolean | null)[]
+  beliefs: [number, number][]
+}
+
+export interface ControlState {
+  paused: boolean
+  dry_run: boolean
+  silences: { component?: string; rule?: string; until: number | null; author: string; reason: string }[]
+  asked: { rule: string; strategy: string }[]
+}
+
+export interface Candidate {
+  strategy: string
+  impact: number
+  cost: number
+  value: number
+  resolves: number
+  excluded: { condition: string; text: string; because?: string } | null
+}
+export interface Suspect {
+  component: string
+  failure: string
+  probability: number
+}
+export interface ManagerEvent {
+  t: number
+  kind: string
+  text: string
+  rule?: string
+  strategy?: string | null
+  component?: string
+  components?: string[]
+  criticality?: Criticality
+  explains?: string[]
+  actions?: string[]
+  dry_run?: boolean
+  candidates?: Candidate[]
+  suspects?: Suspect[]
+  retry_at?: number | null
+  reaction_s?: number
+}

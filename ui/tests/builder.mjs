@@ -1,0 +1,69 @@
+// The paper's rule SegmentationBad, from nothing, in the form.
+import { readFileSync } from 'node:fs'
+import { expect, file, isAccessible, picture, session } from './session.mjs'
+
+const kRule = `RULE SegmentationBad
+  POLICIES WARNING
+  TRIGGER segmentation_entropy > 0.06
+    STRATEGY recalibration 80 50
+      ADAPTATION fusion set_parameter recalibration true 2
+    STRATEGY enhancement_activate 10 50
+      ADAPTATION image_enhancement activate 5
+      ADAPTATION fusion change_communication camera_input rgb_enhanced 2
+    STRATEGY enhancement_deactivate 10 10
+      ADAPTATION image_enhancement deactivate 5
+      ADAPTATION fusion change_communication camera_input rgb_raw 2
+`
+
+const path = file('new.rules')
+await session(['web', path], async (page) => {
+  const form = page.getByRole('region', { name: 'Form' })
+  // Enters a value and leaves the field, as a person does; the form follows the file.
+  const fill = async (within, label, value) => {
+    const field = within.getByLabel(label, { exact: true }).last()
+    await field.fill(value)
+    await field.press('Tab')
+    await page.locator('.cm-content').filter({ hasText: value }).waitFor()
+  }
+  await form.getByRole('button', { name: '+ Rule' }).click()
+  await fill(form, 'rule', 'SegmentationBad')
+  await fill(form, 'trigger', 'segmentation_entropy > 0.06')
+
+  const named = (name) => form.getByRole('group', { name: `Strategy ${name}`, exact: true })
+  // Into the strategy that was just added.
+  const strategy = async (name, percent, confidence) => {
+    await fill(named('strategy'), 'name', name)
+    await fill(named(name), 'helps in %', percent)
+    await fill(named(name), 'confidence', confidence)
+    return named(name)
+  }
+  // Into the last adaptation.
+  const adaptation = async (within, type, members) => {
+    await within.getByLabel('type').last().selectOption(type)
+    for (const [label, value] of Object.entries(members)) await fill(within, label, value)
+  }
+  const add = (within, what) => within.getByRole('button', { name: `+ ${what}` }).click()
+  const input = (topic) => ({ component: 'fusion', parameter: 'camera_input', topic, impact: '2' })
+
+  const recalibration = await strategy('recalibration', '80', '50')
+  const parameter = { component: 'fusion', parameter: 'recalibration', impact: '2' }
+  await adaptation(recalibration, 'set_parameter', parameter)
+  for (const [type, confidence, topic] of [['activate', '50', 'rgb_enhanced'], ['deactivate', '10', 'rgb_raw']]) {
+    await add(form, 'Strategy')
+    const enhancement = await strategy(`enhancement_${type}`, '10', confidence)
+    await adaptation(enhancement, type, { component: 'image_enhancement', impact: '5' })
+    await add(enhancement, 'Adaptation')
+    await adaptation(enhancement, 'change_communication', input(topic))
+  }
+  await page.getByText('no errors').waitFor()
+  await picture(page, 'form')
+  await isAccessible(page)
+
+  await page.getByRole('button', { name: 'Save …' }).click()
+  await page.getByRole('dialog').getByText('+ RULE SegmentationBad').waitFor()
+  await picture(page, 'save')
+  await page.getByRole('dialog').getByRole('button', { name: 'Save', exact: true }).click()
+  await page.getByText('as saved').waitFor()
+  const saved = readFileSync(path, 'utf8').trim() + '\n'
+  expect(saved === kRule, `this was saved:\n${saved}`)
+})

@@ -1,0 +1,54 @@
+// The first five minutes: open, see, break it, watch it heal, understand why, look back, take control.
+import { expect, isAccessible, picture, session } from './session.mjs'
+
+await session(['demo', '--stay', '--speed', '2'], async (page) => {
+  const explanation = page.getByRole('region', { name: 'Explanation' })
+  const well = explanation.getByText('All is well')
+  await well.waitFor()
+  for (const component of ['camera', 'depth', 'image_enhancement', 'fusion', 'segmentation'])
+    await page.getByRole('button', { name: component, exact: false }).first().waitFor()
+  await picture(page, 'well')
+
+  await page.getByLabel('Break it:').selectOption('kill:camera')
+  await page.getByRole('button', { name: 'Inject fault' }).click()
+  // It may be well again before one has looked: what happened stays.
+  const log = page.getByRole('region', { name: 'What happened' })
+  await log.getByText(/^RGBDead resolved/).waitFor()
+  await well.waitFor()
+
+  // Why was that? The moment of the decision, again.
+  const look = (text) => log.locator('li', { hasText: text }).first().getByRole('button').click()
+  await look('camera is held responsible')
+  await explanation.getByText('camera is held responsible').first().waitFor()
+  const failure = explanation.locator('article', { hasText: 'RGBDead' })
+  await failure.getByRole('row', { name: /rgb_redeploy.*chosen|rgb_restart.*chosen/ }).waitFor()
+  expect((await page.locator('output.moment').innerText()).startsWith('at '), 'no moment is shown')
+  await page.getByRole('slider').press('ArrowLeft')
+  const live = page.getByRole('button', { name: 'Live' })
+  await live.click()
+  await well.waitFor()
+  if (await log.getByText('waits: it depends on').count()) await look('waits: it depends on')
+  await picture(page, 'sick')
+  await live.click()
+
+  await page.getByRole('button', { name: 'Pause' }).click()
+  await page.getByText('Paused: nothing is changed').waitFor()
+  await page.getByRole('button', { name: 'Resume' }).click()
+  await page.getByRole('button', { name: 'Pause' }).waitFor()
+  await isAccessible(page)
+
+  await page.getByRole('link', { name: 'Beliefs' }).click()
+  const learned = page.getByRole('row', { name: /RGBDead\.rgb_re/ }).filter({ hasText: '1 outcome' })
+  await learned.first().waitFor()
+  await isAccessible(page)
+  await picture(page, 'beliefs')
+
+  await page.getByRole('link', { name: 'Simulator' }).click()
+  const plan = page.getByRole('region', { name: 'Plan' })
+  await plan.getByText('Nothing would fail').waitFor()
+  await page.locator('label', { hasText: /^camera/ }).getByRole('combobox').selectOption('killed')
+  await plan.getByText('camera is held responsible').waitFor()
+  await plan.getByText('It would be chosen if').first().waitFor()
+  await isAccessible(page)
+  await picture(page, 'simulator')
+})

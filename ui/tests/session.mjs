@@ -1,0 +1,112 @@
+// A person at the page: culprit as it is, its page in Debian's Chromium, and what goes wrong in it.
+//
+//     node <test>.mjs <culprit> <folder of node_modules> <folder for files>
+//
+// CULPRIT_SCREENSHOTS=<folder> also takes pictures.
+import { spawn } from 'node:child_process'
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs'
+import { createRequire } from 'node:module'
+import { join } from 'node:path'
+
+const [culprit, modules, folder] = process.argv.slice(2)
+const require = createRequire(join(modules, 'package.json'))
+const { chromium } = require('playwright-core')
+const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8')
+
+const kPatience = 60_000 // ms, for what a robot takes its time for
+
+export const file = (name) => join(folder, name)
+
+// Starts culprit and waits for the address that it prints.
+function serve(args) {
+  const program = spawn(culprit, args, { stdio: ['ignore', 'pipe', 'inherit'] })
+  let said = ''
+  const address = new Promise((resolve, reject) => {
+    program.stdout.on('data', (data) => {
+      said += data
+      const match = /(http:\/\/\S+#token=\S+)/.exec(said)
+      if (match) resolve(match[1])
+    })
+    program.on('exit', () => reject(new Error(`culprit ended: ${said}`)))
+  })
+  const end = () =>
+    new Promise((resolve) => {
+      if (program.exitCode !== null) return resolve()
+      program.on('exit', resolve)
+      program.kill('SIGINT')
+    })
+  return { address, end }
+}
+
+export function expect(condition, message) {
+  if (!condition) throw new Error(message)
+}
+
+// Runs `steps` with a page of `culprit <args>`. Whatever the page complains of is a failure.
+export async function session(args, steps) {
+  const server = serve([...args, '--port', '0'])
+  const profile = mkdtempSync(join(folder, 'browser-'))
+  const complaints = []
+  let browser
+  try {
+    const address = await server.address
+    browser = await chromium.launchPersistentContext(profile, {
+      executablePath: '/usr/bin/chromium',
+      args: [
+        '--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
+        '--disable-background-networking', '--disable-component-update', '--disable-sync',
+      ],
+      viewport: { width: 1440, height: 900 },
+    })
+    const page = browser.pages()[0] ?? (await browser.newPage())
+    page.setDefaultTimeout(kPatience)
+    page.on('pageerror', (error) => complaints.push(String(error)))
+    page.on('console', (message) => {
+      // What the server refuses is told to the person by the page itself.
+      const isRefusal = message.text().includes('responded with a status of 4')
+      if (message.type() === 'error' && !isRefusal) complaints.push(message.text())
+    })
+    await page.goto(address)
+    await steps(page)
+    expect(complaints.length === 0, `the page complains: ${complaints.join('\n')}`)
+    console.log('the session passed')
+  } catch (error) {
+    console.error(error, complaints)
+    process.exitCode = 1
+  } finally {
+    await browser?.close()
+    await server.end()
+    rmSync(profile, { recursive: true, force: true })
+  }
+}
+
+// No serious issue of accessibility, in either colour scheme.
+export async function isAccessible(page) {
+  for (const colorScheme of ['light', 'dark']) {
+    await page.emulateMedia({ colorScheme })
+    await page.evaluate(axe)
+    const { violations } = await page.evaluate('axe.run()')
+    const serious = violations.filter((v) => v.impact === 'serious' || v.impact === 'critical')
+    const words = serious.map((v) => `${v.id}: ${v.nodes.map((n) => `${n.html} ${n.failureSummary}`).join('; ')}`)
+    expect(serious.length === 0, `not accessible (${colorScheme}):\n${words.join('\n')}`)
+  }
+  await page.emulateMedia({ colorScheme: null })
+}
+
+export async function picture(page, name) {
+  const pictures = process.env.CULPRIT_SCREENSHOTS
+  if (!pictures) return
+  for (const colorScheme of ['light', 'dark']) {
+    for (const [size, viewport] of [
+      ['desktop', { width: 1440, height: 900 }],
+      ['tablet', { width: 820, height: 1180 }],
+    ]) {
+      await page.emulateMedia({ colorScheme })
+      await page.setViewportSize(viewport)
+      await page.waitForTimeout(300) // a picture of what settles is no test
+      await page.screenshot({ path: join(pictures, `${name}-${colorScheme}-${size}.png`) })
+    }
+  }
+  await page.emulateMedia({ colorScheme: null })
+  await page.setViewportSize({ width: 1440, height: 900 })
+}
