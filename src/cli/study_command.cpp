@@ -9,6 +9,7 @@
 #include "cli/console.h"
 #include "cli/progress.h"
 #include "cli/study_output.h"
+#include "cli/study_rca_command.h"
 #include "cli/study_suave_command.h"
 #include "study/ordered_work.h"
 #include "study/shards/merge.h"
@@ -277,6 +278,7 @@ void add_study(CLI::App& app, const std::string& version, int& exit_code) {
   command->require_subcommand(1);
   add_sunset(*command, version, exit_code);
   add_study_suave(*command, exit_code);
+  add_study_rca(*command, exit_code);
   add_merge(*command, exit_code);
 }
 
