@@ -157,7 +157,7 @@ void Analyzer::succeed(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   const bool caused = can_have_caused(id);
   const Attempt attempt = *std::exchange(state.attempt, std::nullopt);
-  const bool is_proven = caused && !attempt.is_ambiguous;
+  const bool is_proven = caused && !attempt.is_ambiguous && !couplings_.is_echo(attempt);
   if (is_proven) knowledge_.beliefs.helped(attempt.strategy);
   if (caused) couplings_.resolved(attempt, is_proven, now);
   couplings_.ended(attempt, now);

@@ -19,7 +19,7 @@
 //
 // Success and failure go to the beliefs only where this strategy alone can have caused them: the
 // symptom went away after the first request that changed anything, and no other strategy upstream
-// of it was under way.
+// of it was under way or had only just ended.
 #pragma once
 
 #include <algorithm>

@@ -60,7 +60,8 @@ TEST_F(Plan, SaysWhatTheManualSays) {
 }
 
 TEST_F(Plan, GivesTheSameAsData) {
-  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--format", "json"}), kOk) << err;
+  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--planner", "paper", "--format", "json"}), kOk)
+      << err;
   const auto json = nlohmann::json::parse(out);
   ASSERT_EQ(json["failures"].size(), 4u);
   const auto& dead = json["failures"][0];
@@ -80,7 +81,9 @@ TEST_F(Plan, GivesTheSameAsData) {
 }
 
 TEST_F(Plan, TakesTheSwitchesOfRun) {
-  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--no-impact", "--no-dependencies"}), kOk);
+  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--planner", "paper", "--no-impact",
+                  "--no-dependencies"}),
+            kOk);
   EXPECT_THAT(out, HasSubstr("would redeploy camera (rgb_redeploy, cost 0.10)"));
   EXPECT_THAT(out, HasSubstr("would redeploy segmentation"));
 }

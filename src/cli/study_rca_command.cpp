@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/text_file.h"
 #include "study/rca/report.h"
+#include "study/rca/scenario_json.h"
 #include "study/tables/render.h"
 
 namespace culprit::cli {
@@ -33,7 +34,9 @@ struct RcaOptions {
   unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
   bool timing = false;
   std::string format = "text";
-  std::string output;  // empty: the standard output
+  std::string output;           // empty: the standard output
+  std::string scenario;         // a file; empty: random robots
+  std::string scenario_output;  // empty: the episodes are played
 
   Times times() const { return timing ? Times::kShown : Times::kLeftOut; }
 };
@@ -43,10 +46,19 @@ int fail(const std::string& what, int code) {
   return code;
 }
 
-// Every combination of what was asked for.
+// Of one file, or of every combination of what was asked for.
 Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
   RcaCampaign campaign;
+  if (!options.scenario.empty()) {
+    const auto text = read_text(options.scenario);
+    if (!text) return Error{text.error()};
+    auto scenario = study::rca::scenario_from_json(*text);
+    if (!scenario) return Error{options.scenario + ": " + scenario.error()};
+    campaign.settings = {study::rca::setting_of(*scenario)};
+    campaign.scenario = std::move(*scenario);
+  }
   for (const std::size_t components : options.components) {
+    if (campaign.scenario) break;
     for (const std::size_t faults : options.faults) {
       if (faults > components)
         return Error{fmt::format("{} faults do not fit on {} components: each has its own", faults,
@@ -80,6 +92,11 @@ std::string in_format(const RcaOptions& options, const RcaCampaign& campaign,
 int study_rca(const RcaOptions& options) {
   const auto campaign = campaign_of(options);
   if (!campaign) return fail(campaign.error(), kUsage);
+  if (!options.scenario_output.empty()) {
+    const auto first = study::rca::scenario_of(*campaign, campaign->settings.front(), 0);
+    const auto written = write_text(options.scenario_output, study::rca::to_json(first));
+    return written ? kOk : fail(written.error(), kFailed);
+  }
   const StopSignals signals;
   const auto rows =
       study::rca::run_campaign(*campaign, options.jobs, [&] { return signals.stopped().load(); });
@@ -113,6 +130,13 @@ void add_study_rca(CLI::App& study, int& exit_code) {
       ->add_option("--planner", options->planners,
                    fmt::format("Only these of {}", fmt::join(study::rca::planner_names(), ", ")))
       ->delimiter(',');
+  auto* scenario = command->add_option("--scenario", options->scenario,
+                                       "Play this scenario (docs/study-rca.md), with other luck in "
+                                       "each episode, instead of random ones");
+  for (const std::string random : {"--components", "--faults", "--noise", "--cyclic"})
+    scenario->excludes(random);
+  command->add_option("--write-scenario", options->scenario_output,
+                      "Write the first episode's scenario there, and play nothing");
   command->add_option("--objective", options->objective, "What the bayes planner spares most")
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
       ->capture_default_str();

@@ -27,7 +27,7 @@ enum class RulePhase : std::uint8_t {
 // A failure is expected to go away with another one that was just resolved.
 struct Settling {
   RuleId with;
-  Time since = kNever;  // when that was resolved
+  Time since = kNever;  // from when on a fresh reading says whether it did
   Time until = kNever;  // when what its trigger reads would have shown it
 };
 

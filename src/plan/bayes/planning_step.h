@@ -36,6 +36,7 @@ class PlanningStep {
   void exclude(Entry& entry, double chance) const;
   void exclude(Entry& entry, const Surroundings::Obstacle& obstacle) const;
   void exclude_effect(Entry& entry) const;
+  bool has_producers(RuleId rule) const;
   void select(Criticality level);
   ComponentId likeliest_component(RuleId rule) const;
   std::vector<Suspect> suspects(std::size_t failure) const;
@@ -47,6 +48,7 @@ class PlanningStep {
   std::vector<RuleId> planned_;
   std::vector<RuleId> suspicious_;
   Reach reach_;
+  Ways ways_;
   Failures failures_;
   Responsibility responsibility_;
   Surroundings surroundings_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "knowledge/condensation.h"
 #include "plan/bayes/bayes_planner.h"
 #include "plan/paper_planner.h"
 #include "simulation/random.h"
@@ -60,8 +61,30 @@ void RcaRow::add(const EpisodeResult& result) {
   planning_us += result.planning_us;
 }
 
-RcaScenario scenario_of(const RcaSetting& setting, std::uint64_t seed, std::uint32_t episode) {
-  return generate(setting, simulation::mix(simulation::mix(seed) + episode));
+RcaScenario scenario_of(const RcaCampaign& campaign, const RcaSetting& setting,
+                        std::uint32_t episode) {
+  if (!campaign.scenario)
+    return generate(setting, simulation::mix(simulation::mix(campaign.seed) + episode));
+  RcaScenario scenario = *campaign.scenario;
+  if (episode > 0) scenario.seed = simulation::mix(scenario.seed + episode);
+  return scenario;
+}
+
+RcaSetting setting_of(const RcaScenario& scenario) {
+  RcaSetting setting{scenario.components.size(), scenario.faults.size(), 0, false};
+  for (const RcaComponent& c : scenario.components)
+    setting.noise = std::max({setting.noise, c.detector.miss, c.detector.false_alarm});
+  ChannelEdges edges(scenario.components.size());
+  for (const RcaTopic& topic : scenario.topics) {
+    const std::vector<std::uint32_t> publishers(topic.publishers.begin(), topic.publishers.end());
+    std::vector<std::uint32_t> subscribers;
+    for (const Subscription& s : topic.subscribers) {
+      if (s.passes > 0) subscribers.push_back(static_cast<std::uint32_t>(s.component));
+    }
+    if (!publishers.empty() && !subscribers.empty()) edges.add(publishers, subscribers);
+  }
+  setting.is_cyclic = Condensation(edges.vertices(), edges.edges()).size() < edges.vertices();
+  return setting;
 }
 
 std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, unsigned jobs,
@@ -81,7 +104,7 @@ std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, uns
       [&](std::uint64_t i) {
         const RcaRow& row = rows[i / campaign.episodes];
         const auto episode = static_cast<std::uint32_t>(i % campaign.episodes);
-        const RcaScenario scenario = scenario_of(row.setting, campaign.seed, episode);
+        const RcaScenario scenario = scenario_of(campaign, row.setting, episode);
         return play(scenario, std::move(*make_planner(row.planner, campaign.objective, scenario)));
       },
       [&](std::uint64_t i, const EpisodeResult& result) {

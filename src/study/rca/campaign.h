@@ -24,6 +24,9 @@ struct RcaCampaign {
   Objective objective = Objective::kBalanced;  // of bayes
   std::uint32_t episodes = 0;                  // of each setting and planner
   std::uint64_t seed = 0;
+  // Instead of random ones: its settings are what setting_of() says, and each episode has other
+  // luck.
+  std::optional<RcaScenario> scenario;
 };
 
 // Of one planner in one setting: shares and means over the episodes.
@@ -62,6 +65,10 @@ std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, uns
                                                 const std::function<bool()>& is_stopped);
 
 // The scenario of an episode: the same for every planner.
-RcaScenario scenario_of(const RcaSetting& setting, std::uint64_t seed, std::uint32_t episode);
+RcaScenario scenario_of(const RcaCampaign& campaign, const RcaSetting& setting,
+                        std::uint32_t episode);
+
+// How large a scenario is, how noisy its worst detector, and whether illness can go in circles.
+RcaSetting setting_of(const RcaScenario& scenario);
 
 }  // namespace culprit::study::rca

@@ -59,7 +59,8 @@ class SunsetStudy {
   std::uint64_t seed_;
 };
 
-// The planners that there are: "paper", "reference", "bayes".
+// The planners that there are: "paper", "reference", "bayes" (balanced), and "bayes:downtime" and
+// so on with another objective.
 std::vector<std::string_view> sunset_planners();
 
 }  // namespace culprit::study
