@@ -34,8 +34,9 @@ struct RcaOptions {
   unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
   bool timing = false;
   std::string format = "text";
-  std::string output;           // empty: the standard output
-  std::string scenario;         // a file; empty: random robots
+  std::string output;    // empty: the standard output
+  std::string scenario;  // a file; empty: random robots
+  std::optional<std::uint32_t> explained;
   std::string scenario_output;  // empty: the episodes are played
 
   Times times() const { return timing ? Times::kShown : Times::kLeftOut; }
@@ -97,6 +98,15 @@ int study_rca(const RcaOptions& options) {
     const auto written = write_text(options.scenario_output, study::rca::to_json(first));
     return written ? kOk : fail(written.error(), kFailed);
   }
+  if (options.explained) {
+    for (const std::string& planner : campaign->planners) {
+      const auto scenario =
+          study::rca::scenario_of(*campaign, campaign->settings.front(), *options.explained);
+      auto made = study::rca::make_planner(planner, campaign->objective, scenario);
+      fmt::print("{}\n{}\n", planner, study::rca::tell(scenario, std::move(*made)));
+    }
+    return kOk;
+  }
   const StopSignals signals;
   const auto rows =
       study::rca::run_campaign(*campaign, options.jobs, [&] { return signals.stopped().load(); });
@@ -137,6 +147,8 @@ void add_study_rca(CLI::App& study, int& exit_code) {
     scenario->excludes(random);
   command->add_option("--write-scenario", options->scenario_output,
                       "Write the first episode's scenario there, and play nothing");
+  command->add_option("--explain", options->explained,
+                      "Tell what happened in this episode, from 0, with each planner");
   command->add_option("--objective", options->objective, "What the bayes planner spares most")
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
       ->capture_default_str();

@@ -45,6 +45,9 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
       has_choice_(failures_.size(), false) {}
 
 std::vector<Verdict> PlanningStep::run() {
+  if (std::any_of(planned_.begin(), planned_.end(),
+                  [&](RuleId rule) { return is_newborn(rule, knowledge_); }))
+    watchers_.emplace(knowledge_);
   find_stakes();
   for (const RuleId rule : planned_) examine(failures_.index_of(rule));
   std::sort(entries_.begin(), entries_.end(),
@@ -152,7 +155,9 @@ void PlanningStep::exclude(Entry& entry, double chance) const {
   if (entry.candidate.excluded) return;
   const RuleId rule = failures_[entry.failure];
   const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
-  if (is_newborn(rule, knowledge_) && has_producers(rule))
+  const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
+  if (watchers_ && is_newborn(rule, knowledge_) && !needs_no_verdict &&
+      watchers_->are_upstream_of(rule))
     return exclude(entry, {Condition::kSuspect, likeliest_component(rule), rule});
   for (const ComponentId c : strategy.components) {
     if (const auto obstacle = surroundings_.obstacle(reach_.place_of(c), strategy, chance))
@@ -172,15 +177,6 @@ void PlanningStep::exclude(Entry& entry, const Surroundings::Obstacle& obstacle)
   entry.candidate.excluded = obstacle.condition;
   entry.candidate.component = obstacle.component;
   entry.candidate.because = obstacle.because;
-}
-
-// Does it touch a component that depends on another?
-bool PlanningStep::has_producers(RuleId rule) const {
-  const auto& touched = knowledge_.rules[rule].components;
-  return std::any_of(touched.begin(), touched.end(), [&](ComponentId c) {
-    const auto knot = knowledge_.graph.knot_of(c);
-    return knot && !knowledge_.graph.condensation().producers(*knot).empty();
-  });
 }
 
 // A failure that others more likely explain waits for them.

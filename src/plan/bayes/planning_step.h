@@ -9,6 +9,7 @@
 #include "plan/bayes/responsibility.h"
 #include "plan/bayes/surroundings.h"
 #include "plan/bayes/value.h"
+#include "plan/bayes/watchers.h"
 #include "plan/planner.h"
 
 namespace culprit::plan {
@@ -36,7 +37,6 @@ class PlanningStep {
   void exclude(Entry& entry, double chance) const;
   void exclude(Entry& entry, const Surroundings::Obstacle& obstacle) const;
   void exclude_effect(Entry& entry) const;
-  bool has_producers(RuleId rule) const;
   void select(Criticality level);
   ComponentId likeliest_component(RuleId rule) const;
   std::vector<Suspect> suspects(std::size_t failure) const;
@@ -49,6 +49,7 @@ class PlanningStep {
   std::vector<RuleId> suspicious_;
   Reach reach_;
   Ways ways_;
+  std::optional<Watchers> watchers_;  // while a failure is newborn
   Failures failures_;
   Responsibility responsibility_;
   Surroundings surroundings_;

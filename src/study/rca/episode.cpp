@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <set>
 
+#include <fmt/core.h>
+
+#include "knowledge/describe.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
 #include "study/rca/rca_robot.h"
@@ -132,9 +136,11 @@ class Clock {
   Time last_change_{};
 };
 
-}  // namespace
+using Told = std::function<void(Time, const std::string&)>;
 
-EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner) {
+// `told` may be null.
+EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner,
+                   const Told& told) {
   const RuleSet rules = rules_of(scenario);
   EpisodeResult result;
   RcaRobot robot(scenario, rules);
@@ -145,7 +151,11 @@ EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> p
   options.settling = Duration::zero();
   Manager manager(rules, std::make_unique<TimedPlanner>(std::move(planner), result), options);
   Runtime runtime(manager, robot);
-  runtime.on_events = [&](std::span<const Event> events) { judge.see(events); };
+  runtime.on_events = [&](std::span<const Event> events) {
+    judge.see(events);
+    if (!told) return;
+    for (const Event& event : events) told(event.at, describe(event, rules));
+  };
   runtime.run(robot.is_over(), Time(from_seconds(scenario.horizon_s)));
 
   judge.conclude();
@@ -158,6 +168,23 @@ EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> p
   result.recovery_s = std::max(0.0, seconds(end.time_since_epoch()) - first_s);
   result.downtime_s = clock.downtime_s(robot.now());
   return result;
+}
+
+}  // namespace
+
+EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner) {
+  return play(scenario, std::move(planner), nullptr);
+}
+
+std::string tell(const RcaScenario& scenario, std::unique_ptr<const Planner> planner) {
+  std::string text;
+  for (const InjectedFault& fault : scenario.faults)
+    text += fmt::format("{:9.3f}  fault: {} {}\n", fault.at_s,
+                        scenario.components[fault.component].name, to_string(fault.kind));
+  play(scenario, std::move(planner), [&](Time at, const std::string& what) {
+    if (!what.empty()) text += fmt::format("{:9.3f}  {}\n", seconds(at.time_since_epoch()), what);
+  });
+  return text;
 }
 
 }  // namespace culprit::study::rca

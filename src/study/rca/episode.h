@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "plan/planner.h"
 #include "study/rca/scenario.h"
@@ -31,6 +32,9 @@ struct EpisodeResult {
   std::int64_t plans = 0;
   double planning_us = 0;  // wall time in all plans
 };
+
+// What happened, line by line, with the faults.
+std::string tell(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);
 
 // `planner` decides. The same scenario and planner, the same result but for `planning_us`.
 EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);
