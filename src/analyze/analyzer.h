@@ -42,6 +42,8 @@ class Analyzer {
   // A failing rule whose trigger is unknown for longer is no longer called failing: nobody can see
   // whether it is.
   static constexpr Duration kLostAfter = std::chrono::seconds(30);
+  // A failure that is back within so long is the same one.
+  static constexpr Duration kRecurs = std::chrono::seconds(5);
 
   // `knowledge` must outlive the analyzer.
   explicit Analyzer(Knowledge& knowledge);

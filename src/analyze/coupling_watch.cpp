@@ -29,9 +29,11 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
 
 // How long `effect` may take to go away after `cause`.
 Duration CouplingWatch::delay(RuleId cause, RuleId effect) const {
-  const Duration came =
-      knowledge_.states[effect].failing_since - knowledge_.states[cause].failing_since;
-  return came > kLongestDelay ? Duration::zero() : std::max(Duration::zero(), came + came / 2);
+  const RuleState& of_cause = knowledge_.states[cause];
+  const Duration came = knowledge_.states[effect].first_detected() - of_cause.first_detected();
+  if (came <= kLongestDelay) return std::max(Duration::zero(), came + came / 2);
+  const bool recurs = of_cause.first_detected() != of_cause.failing_since;
+  return recurs ? duration_of(kUsualDelay, knowledge_.rules) : Duration::zero();
 }
 
 // What depends on these components is given the time to show that it is well, now that the failure
@@ -45,14 +47,14 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
     for (const ComponentId d : knowledge_.graph.downstream(c)) is_downstream[d.index] = true;
   }
   const Duration slack = std::max(knowledge_.signals.latency(cause), knowledge_.rules.cycle);
+  const Time begun = knowledge_.states[cause].first_detected();
   for (const RuleId effect : knowledge_.states.active()) {
     RuleState& state = knowledge_.states.state(effect);
     if (effect == cause || state.attempt || state.failing_since > changed) continue;
     const auto& touched = knowledge_.rules[effect].components;
     const bool depends = std::any_of(touched.begin(), touched.end(),
                                      [&](ComponentId c) { return is_downstream[c.index]; });
-    if (!depends || later(state.failing_since, slack) < knowledge_.states[cause].failing_since)
-      continue;
+    if (!depends || later(state.first_detected(), slack) < begun) continue;
     const Duration latency = std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle);
     const Time since = later(now, delay(cause, effect));
     if (!state.settling || state.settling->until < later(since, latency))

@@ -8,7 +8,8 @@
 // of i went away by itself.
 //
 // A failure goes as it came: if i was detected some time after j, it may take as long to go after j
-// is gone, and half as long again. So long it is given to settle, and so long nobody asks.
+// is gone, and half as long again. So long it is given to settle, and so long nobody asks. What
+// comes and goes (flapping) may have effects that are there from the time before.
 #pragma once
 
 #include <vector>
@@ -25,6 +26,8 @@ class CouplingWatch {
   static constexpr std::size_t kMostWatched = 1000;
   // An effect that comes or goes later than so long after its cause is taken for none.
   static constexpr Duration kLongestDelay = std::chrono::seconds(5);
+  // For an effect from the time before: how long it may take to go.
+  static constexpr Cycles kUsualDelay{10};
 
   // `knowledge` must outlive the watch.
   explicit CouplingWatch(Knowledge& knowledge) : knowledge_(knowledge) {}

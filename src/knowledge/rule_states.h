@@ -7,6 +7,7 @@
 // it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -36,6 +37,8 @@ struct RuleState {
   Slot trigger;                   // as last evaluated
   Time trigger_since = kLongAgo;  // since when it has that value
   Time failing_since = kNever;    // when the failure was detected
+  Time recurring_since = kNever;  // if it went away and is back: when it was detected first
+  Time gone_since = kLongAgo;     // when it went away last
   Time quiet_until = kLongAgo;    // COOLDOWN
   bool armed = true;              // ON_CHANGE: the trigger was not true since the rule acted
 
@@ -53,6 +56,9 @@ struct RuleState {
   std::optional<Attempt> attempt;
   bool is_advised = false;  // dry run: what would be done was said
   std::optional<Settling> settling;
+
+  // Since when the failure is there, with pauses or without.
+  Time first_detected() const { return std::min(failing_since, recurring_since); }
 };
 
 class RuleStates {

@@ -63,14 +63,14 @@ bool looks_well(RuleId rule, const Knowledge& knowledge) {
 
 bool is_young(RuleId failure, const Knowledge& knowledge) {
   return symptom_of(failure, knowledge) == Symptom::kValue &&
-         knowledge.now < later(knowledge.states[failure].failing_since,
+         knowledge.now < later(knowledge.states[failure].first_detected(),
                                duration_of(kLongestWait, knowledge.rules));
 }
 
 bool is_newborn(RuleId failure, const Knowledge& knowledge) {
   return is_young(failure, knowledge) &&
          knowledge.now <
-             later(knowledge.states[failure].failing_since, knowledge.signals.latency(failure));
+             later(knowledge.states[failure].first_detected(), knowledge.signals.latency(failure));
 }
 
 }  // namespace culprit::plan

@@ -1,6 +1,7 @@
 #include "plan/bayes/ways.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "plan/bayes/suspicion.h"
 
@@ -34,6 +35,13 @@ std::vector<Signs> signs_of(const Knowledge& knowledge) {
   return signs;
 }
 
+// Are so many of the consumers well only by chance, if most of them would be ill?
+bool can_carry(std::size_t well, std::size_t ill) {
+  const auto all = static_cast<double>(well + ill);
+  return static_cast<double>(well) <=
+         kSpared * all + kDeviations * std::sqrt(kSpared * (1 - kSpared) * all);
+}
+
 class Narrowing {
  public:
   Narrowing(const Knowledge& knowledge, const std::vector<Signs>& signs, Symptom symptom)
@@ -64,8 +72,7 @@ class Narrowing {
             ill += is_ill_[v] ? 1 : 0;
           }
           const std::size_t well = to.size() - consumers.size();
-          const bool carries = well < kFewWell || 2 * well < ill;
-          if (carries && !consumers.empty()) edges.add(producers, consumers);
+          if (!consumers.empty() && can_carry(well, ill)) edges.add(producers, consumers);
         });
     const Condensation graph(edges.vertices(), edges.edges());
     Reach::Knots knots(knowledge_.rules.components.size());
@@ -80,7 +87,6 @@ class Narrowing {
 
  private:
   static constexpr Vertex kOut = static_cast<Vertex>(-1);
-  static constexpr std::size_t kFewWell = 3;
 
   const Knowledge& knowledge_;
   std::vector<Vertex> place_;  // among what is left

@@ -4,8 +4,9 @@
 // kind of symptom (an outage, or a bad value), are
 //   - components that are well: a rule of that kind touches them and is quiet, and no rule that
 //     touches them fails or is suspicious;
-//   - topics and services that evidently carry no failures: three or more of their consumers are
-//     well, and at least half as many as those that fail. /tf and its like are read by many.
+//   - topics and services that evidently carry no failures: of n consumers that are well or
+//     fail, more are well than kSpared n and kDeviations standard deviations of the binomial
+//     distribution. /tf and its like are read by many.
 // A young failure has the whole graph: what lies between may only not have been detected yet.
 //
 // This is what tells a cause from what is upstream by the graph alone, which on a robot with
@@ -18,6 +19,10 @@
 #include "plan/bayes/reach.h"
 
 namespace culprit::plan {
+
+// The share of consumers that a failure spares, or does not reach at once.
+inline constexpr double kSpared = 0.25;
+inline constexpr double kDeviations = 3;
 
 class Ways {
  public:
