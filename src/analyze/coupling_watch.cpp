@@ -27,13 +27,17 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
   }
 }
 
-// How long `effect` may take to go away after `cause`.
+// How long `effect` may take to go away after `cause`; with HOLD, so many evaluations longer as it
+// looks at.
 Duration CouplingWatch::delay(RuleId cause, RuleId effect) const {
+  const RuleSet& rules = knowledge_.rules;
+  const int window = rules[effect].policies.hold_window;
+  const Duration held = duration_of(Cycles{window > 1 ? window : 0}, rules);
   const RuleState& of_cause = knowledge_.states[cause];
   const Duration came = knowledge_.states[effect].first_detected() - of_cause.first_detected();
-  if (came <= kLongestDelay) return std::max(Duration::zero(), came + came / 2);
+  if (came <= kLongestDelay) return held + std::max(Duration::zero(), came + came / 2);
   const bool recurs = of_cause.first_detected() != of_cause.failing_since;
-  return recurs ? duration_of(kUsualDelay, knowledge_.rules) : Duration::zero();
+  return held + (recurs ? duration_of(kUsualDelay, rules) : Duration::zero());
 }
 
 // What depends on these components is given the time to show that it is well, now that the failure

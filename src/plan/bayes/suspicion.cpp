@@ -27,6 +27,16 @@ bool is_coming(const RuleState& state, const Policies& policies) {
   return 2 * state.true_in_history > policies.hold_needed;
 }
 
+// Is it a bad value, and was it detected less than `time` ago? One with HOLD may be seen earlier or
+// later by as many evaluations as may be missed.
+bool is_within(RuleId failure, Duration time, const Knowledge& knowledge) {
+  const Policies& policies = knowledge.rules[failure].policies;
+  const Cycles missed{policies.hold_window - policies.hold_needed};
+  return symptom_of(failure, knowledge) == Symptom::kValue &&
+         knowledge.now < later(knowledge.states[failure].first_detected(),
+                               time + duration_of(missed, knowledge.rules));
+}
+
 }  // namespace
 
 bool is_suspicious(RuleId rule, const Knowledge& knowledge) {
@@ -62,15 +72,12 @@ bool looks_well(RuleId rule, const Knowledge& knowledge) {
 }
 
 bool is_young(RuleId failure, const Knowledge& knowledge) {
-  return symptom_of(failure, knowledge) == Symptom::kValue &&
-         knowledge.now < later(knowledge.states[failure].first_detected(),
-                               duration_of(kLongestWait, knowledge.rules));
+  return is_within(failure, duration_of(kLongestWait, knowledge.rules), knowledge);
 }
 
 bool is_newborn(RuleId failure, const Knowledge& knowledge) {
   return is_young(failure, knowledge) &&
-         knowledge.now <
-             later(knowledge.states[failure].first_detected(), knowledge.signals.latency(failure));
+         is_within(failure, knowledge.signals.latency(failure), knowledge);
 }
 
 }  // namespace culprit::plan

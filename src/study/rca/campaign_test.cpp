@@ -48,7 +48,8 @@ TEST(RcaRules, NumberThingsAsTheScenarioDoes) {
     EXPECT_EQ(rules.rules[i].name, name + "_fails");
     EXPECT_EQ(rules.signals[i].name, name + "_ill");
     EXPECT_EQ(rules.signals[i].type, Type::kBool);
-    EXPECT_EQ(rules.rules[i].policies.hold_needed + 2, rules.rules[i].policies.hold_window);
+    EXPECT_EQ(rules.rules[i].policies.hold_needed, 9);
+    EXPECT_EQ(rules.rules[i].policies.hold_window, 13);
   }
 }
 

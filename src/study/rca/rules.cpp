@@ -19,16 +19,19 @@ double tail(int needed, int window, double wrong) {
   return sum;
 }
 
-// The shortest window with a false detection in less than a million evaluations, and two readings
-// that may be missed.
-std::string hold(double wrong) {
-  constexpr double kRare = 1e-6;
-  if (wrong <= 0) return "";
-  for (int window = 3; window <= 20; ++window) {
-    if (tail(window - 2, window, wrong) < kRare)
-      return fmt::format(" HOLD {}/{}", window - 2, window);
-  }
-  return " HOLD 18/20";
+// The shortest window with a false detection in less than a million evaluations, and with so many
+// readings that may be missed that a false recovery is rarer than one in a hundred thousand.
+std::string hold(const Detector& detector) {
+  constexpr double kRareAlarm = 1e-6;
+  constexpr double kRareMiss = 1e-5;
+  constexpr int kLongest = 30;
+  if (detector.false_alarm <= 0 && detector.miss <= 0) return "";
+  int missed = 0;
+  while (missed < kLongest / 3 && std::pow(detector.miss, missed + 1) >= kRareMiss) ++missed;
+  int window = missed + 1;
+  while (window < kLongest && tail(window - missed, window, detector.false_alarm) >= kRareAlarm)
+    ++window;
+  return fmt::format(" HOLD {}/{}", window - missed, window);
 }
 
 const char* level(Criticality criticality) {
@@ -66,7 +69,7 @@ std::string rules_text(const RcaScenario& scenario) {
   for (const RcaComponent& c : scenario.components) {
     text +=
         fmt::format("\nRULE {0}_fails\n  POLICIES {1}{2} ATTEMPTS 12\n  TRIGGER {0}_ill == true\n",
-                    c.name, level(c.criticality), hold(c.detector.false_alarm));
+                    c.name, level(c.criticality), hold(c.detector));
     for (const Treatment& t : c.treatments)
       text += fmt::format("    STRATEGY {} {:g} {:g}\n      ADAPTATION {}\n", to_string(t.repair),
                           t.success, t.confidence, adaptation(c.name, t));
