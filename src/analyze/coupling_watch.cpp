@@ -107,6 +107,12 @@ Time CouplingWatch::next_deadline() const {
   return next;
 }
 
+// When `change` has had its effect on the failure of `rule`, if it has one.
+Time CouplingWatch::shown(const Change& change, RuleId rule) const {
+  const Duration latency = std::max(knowledge_.signals.latency(rule), knowledge_.rules.cycle);
+  return later(change.end, delay(knowledge_.rules[change.strategy].rule, rule) + latency);
+}
+
 // Can nothing but `strategy` have changed `effect` since then?
 bool CouplingWatch::is_only_cause(StrategyId strategy, RuleId effect, Time since) const {
   const RuleId cause = knowledge_.rules[strategy].rule;
@@ -118,7 +124,7 @@ bool CouplingWatch::is_only_cause(StrategyId strategy, RuleId effect, Time since
   for (const Change& change : changes_) {
     // What was tried before for the same failure did not help.
     const bool is_own = knowledge_.rules[change.strategy].rule == cause;
-    const Time over = is_own ? change.end : later(change.end, kLongestDelay);
+    const Time over = is_own ? change.end : shown(change, effect);
     if (over >= since && is_rival(change.strategy)) return false;
   }
   for (const RuleId id : knowledge_.states.active()) {
@@ -138,7 +144,7 @@ bool CouplingWatch::is_echo(const Attempt& attempt) const {
   const Sources sources(knowledge_, rule);
   return std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
     return knowledge_.rules[change.strategy].rule != rule &&
-           later(change.end, kLongestDelay) >= attempt.first_change &&
+           shown(change, rule) >= attempt.first_change &&
            sources.have(knowledge_.rules[change.strategy].components);
   });
 }

@@ -65,6 +65,7 @@ class CouplingWatch {
 
   void settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed, Time now);
   Duration delay(RuleId cause, RuleId effect) const;
+  Time shown(const Change& change, RuleId rule) const;
   bool is_only_cause(StrategyId strategy, RuleId effect, Time since) const;
   void forget_what_is_settled(Time now);
 

@@ -80,6 +80,13 @@ TEST_F(Plan, GivesTheSameAsData) {
             nlohmann::json({"SensorFusionDead", "RGBDead"}));
 }
 
+TEST_F(Plan, IsTheBayesPlannersUnlessSaidOtherwise) {
+  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--format", "json"}), kOk) << err;
+  const auto json = nlohmann::json::parse(out);
+  EXPECT_EQ(json["failures"][0]["chosen"], "rgb_restart");
+  EXPECT_TRUE(json["failures"][0]["candidates"][0].contains("value")) << out;
+}
+
 TEST_F(Plan, TakesTheSwitchesOfRun) {
   ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--planner", "paper", "--no-impact",
                   "--no-dependencies"}),

@@ -272,7 +272,7 @@ ComponentId PlanningStep::likeliest_component(RuleId rule) const {
 std::vector<Suspect> PlanningStep::suspects(std::size_t failure) const {
   std::vector<Suspect> all;
   const RuleId rule = failures_[failure];
-  all.push_back({likeliest_component(rule), rule, responsibility_.of(failure)});
+  all.push_back({{}, rule, responsibility_.of(failure)});
   responsibility_.for_each_share(failure, [&](std::size_t j, double share) {
     all.push_back({{}, failures_[j], share});
   });
