@@ -109,8 +109,7 @@ Time CouplingWatch::next_deadline() const {
 
 // When `change` has had its effect on the failure of `rule`, if it has one.
 Time CouplingWatch::shown(const Change& change, RuleId rule) const {
-  const Duration latency = std::max(knowledge_.signals.latency(rule), knowledge_.rules.cycle);
-  return later(change.end, delay(knowledge_.rules[change.strategy].rule, rule) + latency);
+  return later(change.end, delay(knowledge_.rules[change.strategy].rule, rule));
 }
 
 // Can nothing but `strategy` have changed `effect` since then?
@@ -124,8 +123,8 @@ bool CouplingWatch::is_only_cause(StrategyId strategy, RuleId effect, Time since
   for (const Change& change : changes_) {
     // What was tried before for the same failure did not help.
     const bool is_own = knowledge_.rules[change.strategy].rule == cause;
-    const Time over = is_own ? change.end : shown(change, effect);
-    if (over >= since && is_rival(change.strategy)) return false;
+    const bool is_over = change.end < since && (is_own || shown(change, effect) <= since);
+    if (!is_over && is_rival(change.strategy)) return false;
   }
   for (const RuleId id : knowledge_.states.active()) {
     const auto& attempt = knowledge_.states[id].attempt;
@@ -144,7 +143,7 @@ bool CouplingWatch::is_echo(const Attempt& attempt) const {
   const Sources sources(knowledge_, rule);
   return std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
     return knowledge_.rules[change.strategy].rule != rule &&
-           shown(change, rule) >= attempt.first_change &&
+           shown(change, rule) > attempt.first_change &&
            sources.have(knowledge_.rules[change.strategy].components);
   });
 }

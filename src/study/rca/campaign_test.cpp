@@ -48,8 +48,8 @@ TEST(RcaRules, NumberThingsAsTheScenarioDoes) {
     EXPECT_EQ(rules.rules[i].name, name + "_fails");
     EXPECT_EQ(rules.signals[i].name, name + "_ill");
     EXPECT_EQ(rules.signals[i].type, Type::kBool);
-    EXPECT_EQ(rules.rules[i].policies.hold_needed, 9);
-    EXPECT_EQ(rules.rules[i].policies.hold_window, 13);
+    EXPECT_EQ(rules.rules[i].policies.hold_needed, 10);
+    EXPECT_EQ(rules.rules[i].policies.hold_window, 15);
   }
 }
 

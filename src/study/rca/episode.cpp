@@ -82,7 +82,9 @@ class Judge {
     for (const Candidate& candidate : held.candidates) {
       if (candidate.excluded != Condition::kDependency || !candidate.because) continue;
       const std::size_t cause = rules_[*candidate.because].components.front().index;
-      grounded_[held.rule] = plant_.is_ill(cause) && plant_.passes(cause, effect);
+      // What is repaired already may still be said to fail.
+      if (!plant_.is_ill(cause)) break;
+      grounded_[held.rule] = plant_.passes(cause, effect);
       return;
     }
     grounded_.emplace(held.rule, false);

@@ -142,7 +142,7 @@ bool Plant::passes(std::size_t from, std::size_t to) const {
     open.pop_back();
     if (c == to) return true;
     for (const Way& way : states_[c].ways) {
-      if (is_visited[way.to] || !states_[way.to].is_ill) continue;
+      if (is_visited[way.to]) continue;
       is_visited[way.to] = true;
       open.push_back(way.to);
     }

@@ -36,7 +36,7 @@ class Plant {
   bool looks_ill(std::size_t component) const { return states_[component].looks_ill; }
   std::optional<FaultKind> fault(std::size_t component) const { return states_[component].fault; }
   bool is_well() const { return ill_ == 0 && faults_ == 0 && !has_faults_to_come(); }
-  // Does illness pass from one to the other, directly or through others that are ill now?
+  // Does illness pass from one to the other in this episode, directly or through others?
   bool passes(std::size_t from, std::size_t to) const;
 
   // It is taken down, or is back.
