@@ -106,6 +106,7 @@ void Analyzer::detect(RuleId id, Time now) {
   state.attempts = 0;
   state.round = 0;
   state.retry_at = now;
+  state.is_at_last_resort = false;
   state.is_advised = false;
   state.settling.reset();
   std::fill(state.tried.begin(), state.tried.end(), false);
@@ -134,12 +135,17 @@ void Analyzer::judge(RuleId id, Time now) {
       break;
     case Attempt::Stage::kUndoing:
       return;
-    case Attempt::Stage::kOver:
-      couplings_.ended(attempt, now);
-      state.attempt.reset();
-      knowledge_.states.enter(id, RulePhase::kFailing);
+    case Attempt::Stage::kOver: {
+      const bool had_failure = !attempt.has_no_failure;
+      end_attempt(id, now);
+      if (!had_failure) return;
       exhaust_if_spent(id, now);
       return watch_failing(id, now);
+    }
+  }
+  if (attempt.has_no_failure) {
+    knowledge_.tell(now, OrderCarriedOut{attempt.strategy});
+    return end_attempt(id, now);
   }
   // Anew each time: how long a signal takes to show a change may have become known meanwhile.
   const Duration impact = duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
@@ -147,6 +153,19 @@ void Analyzer::judge(RuleId id, Time now) {
   if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
   if (now < attempt.deadline || is_false(state.trigger)) return;
   if (state.trigger.known || now >= later(attempt.deadline, kLostAfter)) fail(id, now);
+}
+
+void Analyzer::end_attempt(RuleId id, Time now) {
+  const Attempt attempt = *std::exchange(knowledge_.states.state(id).attempt, std::nullopt);
+  couplings_.ended(attempt, now);
+  knowledge_.states.enter(id, attempt.has_no_failure ? RulePhase::kQuiet : RulePhase::kFailing);
+  // The failure may have come meanwhile.
+  if (attempt.has_no_failure) knowledge_.signals.touch(id);
+}
+
+void Analyzer::abandon(RuleId id, Time now) {
+  end_attempt(id, now);
+  look_at(id, now);  // the failure may be gone already
 }
 
 bool Analyzer::can_have_caused(RuleId id) const {
@@ -173,11 +192,13 @@ void Analyzer::succeed(RuleId id, Time now) {
 void Analyzer::fail(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   Attempt& attempt = *state.attempt;
-  knowledge_.states.set_tried(attempt.strategy, true);
-  ++state.attempts;
-  // An unknown trigger proves nothing, nor does an overlap with another strategy.
-  if (!attempt.is_ambiguous && state.trigger.known)
-    knowledge_.beliefs.did_not_help(attempt.strategy);
+  if (!attempt.has_no_failure) {
+    knowledge_.states.set_tried(attempt.strategy, true);
+    ++state.attempts;
+    // An unknown trigger proves nothing, nor does an overlap with another strategy.
+    if (!attempt.is_ambiguous && state.trigger.known)
+      knowledge_.beliefs.did_not_help(attempt.strategy);
+  }
   const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
                              : state.trigger.known
                                  ? "the failure is still there"
@@ -203,15 +224,33 @@ void Analyzer::round_is_spent(RuleId id, Time now) {
   const int doublings = std::min(state.round - 1, 10);
   state.retry_at =
       later(now, std::min<Duration>(kFirstBackoff * (1 << doublings), kLongestBackoff));
-  exhaust_if_spent(id, now);
-  if (state.phase == RulePhase::kFailing) knowledge_.tell(now, RoundSpent{id, state.retry_at});
+  if (state.is_at_last_resort) {
+    exhaust(id, now);
+  } else {
+    exhaust_if_spent(id, now);
+  }
+  const bool goes_on = state.phase == RulePhase::kFailing && !state.is_at_last_resort;
+  if (goes_on) knowledge_.tell(now, RoundSpent{id, state.retry_at});
   schedule(id, now);
 }
 
 void Analyzer::exhaust_if_spent(RuleId id, Time now) {
-  const RuleState& state = knowledge_.states[id];
+  RuleState& state = knowledge_.states.state(id);
   const int limit = knowledge_.rules[id].policies.attempts;
-  if (state.attempts < limit && state.round < limit) return;
+  // The last resorts end with their round.
+  if (state.is_at_last_resort || (state.attempts < limit && state.round < limit)) return;
+  const auto& strategies = knowledge_.rules[id].strategies;
+  const bool has_last_resort = std::any_of(strategies.begin(), strategies.end(), [&](StrategyId s) {
+    return knowledge_.rules[s].is_last_resort;
+  });
+  if (!has_last_resort) return exhaust(id, now);
+  state.is_at_last_resort = true;
+  state.retry_at = now;
+  std::fill(state.tried.begin(), state.tried.end(), false);
+  knowledge_.tell(now, LastResortReached{id});
+}
+
+void Analyzer::exhaust(RuleId id, Time now) {
   knowledge_.states.enter(id, RulePhase::kExhausted);
   knowledge_.tell(now, RuleExhausted{id});
 }

@@ -12,7 +12,8 @@
 //              as its period is not known, five seconds
 //   a round    of strategies is followed by a back-off that doubles each time; after ATTEMPTS
 //   strategies (or as many
-//              rounds without any valid strategy) the rule is exhausted
+//              rounds without any valid strategy) its LASTRESORT strategies follow, each once, and
+//              then the rule is exhausted
 //
 // A rule with ON_CHANGE acts once on the rising edge of its trigger; its strategy succeeds when its
 // adaptations took effect, because the condition is expected to last.
@@ -58,6 +59,9 @@ class Analyzer {
   // Whether there is any, for steps where nothing is wrong.
   bool anything_active() const { return !knowledge_.states.active().empty(); }
 
+  // The rule's strategy under way ends without a verdict.
+  void abandon(RuleId id, Time now);
+
   // No untried strategy of the rule is valid: its round is over.
   void round_is_spent(RuleId id, Time now);
 
@@ -72,10 +76,12 @@ class Analyzer {
   void detect(RuleId id, Time now);
   void watch_failing(RuleId id, Time now);
   void judge(RuleId id, Time now);
+  void end_attempt(RuleId id, Time now);
   void succeed(RuleId id, Time now);
   void fail(RuleId id, Time now);
   void resolve(RuleId id, FailureResolved how, Time now);
   void exhaust_if_spent(RuleId id, Time now);
+  void exhaust(RuleId id, Time now);
   bool can_have_caused(RuleId id) const;
   void schedule(RuleId id, Time now);
 

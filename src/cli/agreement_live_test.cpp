@@ -36,27 +36,55 @@ Story of_the_model(const study::SunsetStudy& model, const sunset::Scenario& scen
   return story;
 }
 
-TEST(Agreement, TheModelTellsTheSameStoryAsTheLiveRobot) {
+// What comes late on a busy machine can be one failure more or one less, so a story that differs is
+// played again. One that the model does not know differs every time.
+constexpr int kPlays = 3;
+
+class Agreement : public testing::Test {
+ protected:
+  Agreement() {
+    SunsetDemo::Options options;
+    options.on_event = [this](const Event& event, const RuleSet& rules, Time start) {
+      transcript_ += line(event, rules, start, Colour::kOff) + "\n";
+    };
+    auto demo = SunsetDemo::start(std::move(options), stop_);
+    if (demo) {
+      demo_ = std::move(*demo);
+    } else {
+      ADD_FAILURE() << demo.error();
+    }
+  }
+
+  Expected<Story> of_the_live_robot(const sunset::Scenario& scenario) {
+    transcript_.clear();
+    const auto outcome = demo_->play(*find_play(scenario.label()));
+    if (!outcome) return Error{outcome.error()};
+    return Story{{outcome->failures.begin(), outcome->failures.end()},
+                 {outcome->strategies.begin(), outcome->strategies.end()}};
+  }
+
+  std::atomic<bool> stop_ = false;
+  std::string transcript_;
+  std::unique_ptr<SunsetDemo> demo_;
+};
+
+TEST_F(Agreement, TheModelTellsTheSameStoryAsTheLiveRobot) {
   study::Configuration live;
   live.profile = "live";
   const auto model = study::SunsetStudy::make({live}, 1);
   ASSERT_TRUE(model) << model.error();
-
-  const std::atomic<bool> stop = false;
-  std::string transcript;
-  SunsetDemo::Options options;
-  options.on_event = [&](const Event& event, const RuleSet& rules, Time start) {
-    transcript += line(event, rules, start, Colour::kOff) + "\n";
-  };
-  const auto demo = SunsetDemo::start(std::move(options), stop);
-  ASSERT_TRUE(demo) << demo.error();
+  ASSERT_NE(demo_, nullptr);
   for (const sunset::Scenario& scenario : sunset::scenarios()) {
-    transcript.clear();
-    const auto outcome = (*demo)->play(*find_play(scenario.label()));
-    ASSERT_TRUE(outcome) << scenario.name() << ": " << outcome.error();
-    const Story story{{outcome->failures.begin(), outcome->failures.end()},
-                      {outcome->strategies.begin(), outcome->strategies.end()}};
-    EXPECT_EQ(story, of_the_model(*model, scenario)) << scenario.name() << "\n" << transcript;
+    const Story told = of_the_model(*model, scenario);
+    Story seen;
+    std::string transcripts;
+    for (int i = 0; i < kPlays && seen != told; ++i) {
+      const auto story = of_the_live_robot(scenario);
+      ASSERT_TRUE(story) << scenario.name() << ": " << story.error();
+      seen = *story;
+      transcripts += transcript_ + "\n";
+    }
+    EXPECT_EQ(seen, told) << scenario.name() << "\n" << transcripts;
   }
 }
 

@@ -13,7 +13,7 @@ constexpr int kOk = 0;
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 
-void add_run(CLI::App& app, int& exit_code);
+void add_run(CLI::App& app, const std::string& version, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_explain(CLI::App& app, int& exit_code);
 void add_fmt(CLI::App& app, int& exit_code);
@@ -24,6 +24,12 @@ void add_demo(CLI::App& app, int& exit_code);
 void add_lsp(CLI::App& app, const std::string& version, int& exit_code);
 void add_import(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, const std::string& version, int& exit_code);
+void add_log(CLI::App& app, int& exit_code);
+void add_audit(CLI::App& app, int& exit_code);
+void add_beliefs(CLI::App& app, int& exit_code);
+void add_replay(CLI::App& app, int& exit_code);
+void add_modes(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
+void add_torture(CLI::App& app, int& exit_code);
 
 }  // namespace culprit::cli

@@ -27,12 +27,25 @@ struct Labels {
   Label operator()(const AdaptationDone&) const { return {"done", "\033[36m"}; }
   Label operator()(const AdaptationFailed&) const { return {"failed", "\033[33m"}; }
   Label operator()(const StrategyFailed&) const { return {"no help", "\033[33m"}; }
+  Label operator()(const StrategyResumed&) const { return {"resumed", "\033[36m"}; }
   Label operator()(const Undone&) const { return {"undone", "\033[36m"}; }
   Label operator()(const RoundSpent&) const { return {"pause", "\033[33m"}; }
   Label operator()(const RuleExhausted&) const { return {"EXHAUSTED", "\033[1;31m"}; }
+  Label operator()(const LastResortReached&) const { return {"LAST", "\033[1;31m"}; }
   Label operator()(const ComponentLost&) const { return {"lost", "\033[31m"}; }
   Label operator()(const ComponentFound&) const { return {"found", "\033[32m"}; }
+  Label operator()(const RivalSeen&) const { return {"RIVAL", "\033[1;33m"}; }
   Label operator()(const Trouble&) const { return {"trouble", "\033[33m"}; }
+  Label operator()(const OrderAccepted&) const { return {"order", "\033[1;35m"}; }
+  Label operator()(const OrderRefused&) const { return {"refused", "\033[35m"}; }
+  Label operator()(const ActionHeldBack&) const { return {"held back", "\033[33m"}; }
+  Label operator()(const ApprovalAsked&) const { return {"APPROVE?", "\033[1;35m"}; }
+  Label operator()(const ApprovalLapsed&) const { return {"lapsed", "\033[35m"}; }
+  Label operator()(const StrategyAbandoned&) const { return {"abandoned", "\033[33m"}; }
+  Label operator()(const OrderCarriedOut&) const { return {"done", "\033[36m"}; }
+  Label operator()(const SilenceEnded&) const { return {"silence", "\033[35m"}; }
+  Label operator()(const StormBegan&) const { return {"STORM", "\033[1;31m"}; }
+  Label operator()(const StormEnded&) const { return {"calm", "\033[32m"}; }
 };
 
 }  // namespace

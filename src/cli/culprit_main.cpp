@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
       "A first look:  culprit demo\nYour robot:    culprit graph; culprit check my.rules; culprit "
       "run --dry-run my.rules");
   int exit_code = culprit::cli::kOk;
-  culprit::cli::add_run(app, exit_code);
+  culprit::cli::add_run(app, CULPRIT_VERSION, exit_code);
   culprit::cli::add_check(app, exit_code);
   culprit::cli::add_explain(app, exit_code);
   culprit::cli::add_fmt(app, exit_code);
@@ -23,7 +23,13 @@ int main(int argc, char** argv) {
   culprit::cli::add_lsp(app, CULPRIT_VERSION, exit_code);
   culprit::cli::add_import(app, exit_code);
   culprit::cli::add_study(app, CULPRIT_VERSION, exit_code);
+  culprit::cli::add_modes(app, exit_code);
   culprit::cli::add_export(app, exit_code);
+  culprit::cli::add_torture(app, exit_code);
+  culprit::cli::add_log(app, exit_code);
+  culprit::cli::add_audit(app, exit_code);
+  culprit::cli::add_beliefs(app, exit_code);
+  culprit::cli::add_replay(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -10,12 +10,14 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/planner_options.h"
+#include "cli/suave_demo_command.h"
 #include "cli/sunset_demo.h"
 
 namespace culprit::cli {
 namespace {
 
 struct DemoOptions {
+  std::string robot = "sunset";
   std::string scenario;
   std::uint64_t seed = 1;
   double speed = 1;
@@ -102,7 +104,7 @@ void print_summary(const std::vector<PlayOutcome>& outcomes) {
       "redeploys: those that were not necessary. reaction: mean, from detection to resolution.\n");
 }
 
-int demo(const DemoOptions& options) {
+int demo_sunset(const DemoOptions& options) {
   const auto plays = plays_for(options);
   if (!plays) {
     fmt::print(stderr, "culprit: {}\n", plays.error());
@@ -156,6 +158,19 @@ int demo(const DemoOptions& options) {
   return all_healed ? kOk : kFailed;
 }
 
+int demo(const DemoOptions& options) {
+  if (options.robot == "sunset") return demo_sunset(options);
+  if (!options.scenario.empty()) {
+    fmt::print(stderr, "culprit: --scenario is for --robot sunset; SUAVE has one mission\n");
+    return kUsage;
+  }
+  SuaveDemo::Options setup;
+  setup.speed = options.speed;
+  setup.seed = options.seed;
+  setup.planner = options.planner.factory();
+  return demo_suave(std::move(setup), options.json);
+}
+
 }  // namespace
 
 void add_demo(CLI::App& app, int& exit_code) {
@@ -163,13 +178,18 @@ void add_demo(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "demo",
       "Let culprit heal a live robot: SUNSET, a drone's segmentation pipeline of real processes.\n"
-      "Plays three scenarios, each with an ERROR, a WARNING and a NON_CRITICAL fault at once.");
+      "Plays three scenarios, each with an ERROR, a WARNING and a NON_CRITICAL fault at once.\n"
+      "With --robot suave: an underwater robot that must find a pipeline in murky water, and loses "
+      "a thruster.");
+  command->add_option("--robot", options->robot, "Which robot")
+      ->check(CLI::IsMember({"sunset", "suave"}))
+      ->capture_default_str();
   command->add_option(
       "--scenario", options->scenario,
       "One scenario instead: 001 to 018, a name such as image_shift+gpu_failure, 'random', or what "
       "happens to "
       "processes: kill:camera, stop:depth, crash:segmentation, kill:camera+segmentation");
-  command->add_option("--seed", options->seed, "Of the drone's flight, and of 'random'")
+  command->add_option("--seed", options->seed, "Of the flight or dive, and of 'random'")
       ->capture_default_str();
   command->add_option("--speed", options->speed, "How much faster than real time the robot lives")
       ->check(CLI::Range(0.1, 20.0))

@@ -1,32 +1,56 @@
+#include <charconv>
 #include <memory>
 
 #include <fmt/core.h>
 
 #include "cli/commands.h"
+#include "cli/decision_report.h"
+#include "cli/journal_file.h"
 #include "language/explanations.h"
 
 namespace culprit::cli {
 namespace {
 
 struct ExplainOptions {
-  std::string code;
+  std::string what;
+  bool last = false;
+  JournalOption journal;
   bool markdown = false;
 };
 
+int explain_row(const ExplainOptions& options) {
+  std::int64_t id = 0;
+  const std::string& text = options.what;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+  if (!options.last && (error != std::errc() || end != text.data() + text.size() || id < 1))
+    return complain("'" + text + "' is no row of a journal"), kUsage;
+  const auto journal = options.journal.open();
+  if (!journal) return complain(journal.error());
+  const auto report = explain_decision(*journal, id);
+  if (!report) return complain(report.error());
+  fmt::print("{}", *report);
+  return kOk;
+}
+
+bool is_number(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+}
+
 int explain(const ExplainOptions& options) {
+  if (options.last || is_number(options.what)) return explain_row(options);
   if (options.markdown) {
     fmt::print("{}", diagnostics_as_markdown());
     return kOk;
   }
-  if (options.code.empty()) {
+  if (options.what.empty()) {
     for (const Explanation& e : explanations()) fmt::print("{}  {}\n", to_string(e.code), e.title);
     return kOk;
   }
-  const Explanation* explanation = find_explanation(options.code);
+  const Explanation* explanation = find_explanation(options.what);
   if (explanation == nullptr) {
     fmt::print(stderr,
                "culprit: there is no diagnostic '{}'; culprit explain without a code lists all\n",
-               options.code);
+               options.what);
     return kUsage;
   }
   fmt::print("{}", page(*explanation));
@@ -37,9 +61,13 @@ int explain(const ExplainOptions& options) {
 
 void add_explain(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ExplainOptions>();
-  CLI::App* command =
-      app.add_subcommand("explain", "Explain what culprit check says: R012, or all codes");
-  auto* code = command->add_option("CODE", options->code, "The code of a diagnostic, as in R012");
+  CLI::App* command = app.add_subcommand(
+      "explain", "Explain a decision from the journal, or what culprit check says");
+  auto* code = command->add_option("WHAT", options->what,
+                                   "A row of culprit log, as in 123; or the code of a diagnostic, "
+                                   "as in R012; nothing: all codes");
+  command->add_flag("--last", options->last, "The latest decision")->excludes(code);
+  options->journal.add_to(*command);
   command->add_flag("--markdown", options->markdown, "All explanations, as docs/diagnostics.md")
       ->excludes(code);
   command->callback([options, &exit_code] { exit_code = explain(*options); });

@@ -24,8 +24,10 @@ class LiveRobot : public Robot {
   void observe(Time until, std::vector<Observation>& observations) override;
   void execute(const Command& command) override;
 
-  // Lets a waiting observe() return. From any thread.
-  void interrupt() { inbox_.interrupt(); }
+  void interrupt() override { inbox_.interrupt(); }
+
+  // Something about culprit itself that a person should know. From any thread.
+  void report(std::string trouble) { inbox_.put(LinkTrouble{std::move(trouble)}); }
 
   ros2::Link& link() { return *link_; }
   process::Supervisor& supervisor() { return *supervisor_; }

@@ -1,5 +1,8 @@
 #include "cli/planner_options.h"
 
+#include <nlohmann/json.hpp>
+
+#include "journal/json.h"
 #include "plan/bayes/bayes_planner.h"
 #include "plan/paper_planner.h"
 
@@ -44,6 +47,27 @@ std::unique_ptr<const Planner> PlannerOptions::planner() const {
 
 PlannerFactory PlannerOptions::factory() const {
   return [options = *this] { return options.planner(); };
+}
+
+nlohmann::ordered_json PlannerOptions::to_json() const {
+  return {{"name", name},
+          {"objective", objective},
+          {"no_dependencies", no_dependencies},
+          {"no_criticality", no_criticality},
+          {"no_impact", no_impact}};
+}
+
+Expected<PlannerOptions> PlannerOptions::from_json(const nlohmann::ordered_json& json) {
+  PlannerOptions options;
+  options.name = journal::text_of(json, "name");
+  options.objective = journal::text_of(json, "objective");
+  options.no_dependencies = journal::flag_of(json, "no_dependencies");
+  options.no_criticality = journal::flag_of(json, "no_criticality");
+  options.no_impact = journal::flag_of(json, "no_impact");
+  const bool is_known = options.name == "bayes" || options.name == "paper";
+  if (!is_known || !parse_objective(options.objective))
+    return Error{"it was recorded with a planner that this culprit does not have"};
+  return options;
 }
 
 }  // namespace culprit::cli

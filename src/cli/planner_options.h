@@ -6,7 +6,9 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 
+#include "language/expected.h"
 #include "plan/planner.h"
 
 namespace culprit::cli {
@@ -23,6 +25,10 @@ struct PlannerOptions {
   void add_to(CLI::App& command);
   std::unique_ptr<const Planner> planner() const;
   PlannerFactory factory() const;
+
+  // For the journal. Errors: the planner or its objective is not known.
+  nlohmann::ordered_json to_json() const;
+  static Expected<PlannerOptions> from_json(const nlohmann::ordered_json& json);
 };
 
 }  // namespace culprit::cli

@@ -5,44 +5,69 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/governor_options.h"
 #include "cli/health.h"
+#include "cli/journal_file.h"
 #include "cli/live_robot.h"
 #include "cli/paths.h"
 #include "cli/planner_options.h"
 #include "cli/rule_file.h"
+#include "cli/run_journal.h"
+#include "cli/service_manager.h"
 #include "knowledge/describe.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
+#include "replay/replay.h"
+#include "ros2/named_lock.h"
 
 namespace culprit::cli {
 namespace {
 
 struct RunOptions {
+  std::string version;  // of culprit
   std::string rules;
   bool dry_run = false;
   bool launch = false;
   PlannerOptions planner;
+  GovernorOptions governor;
   double forgetting = 1;
   double settle_seconds = seconds(Manager::kDiscovery);
   std::string state_folder;
+  std::string journal;
+  bool no_journal = false;
   std::vector<std::filesystem::path> message_path;
 };
 
 ros2::Severity severity_of(const Event& event) {
-  if (std::holds_alternative<RuleExhausted>(event.what)) return ros2::Severity::kError;
+  if (std::holds_alternative<RuleExhausted>(event.what) ||
+      std::holds_alternative<LastResortReached>(event.what) ||
+      std::holds_alternative<StormBegan>(event.what))
+    return ros2::Severity::kError;
   const bool is_bad = std::holds_alternative<FailureDetected>(event.what) ||
                       std::holds_alternative<StrategyFailed>(event.what) ||
                       std::holds_alternative<ComponentLost>(event.what) ||
                       std::holds_alternative<AdaptationFailed>(event.what) ||
+                      std::holds_alternative<ActionHeldBack>(event.what) ||
+                      std::holds_alternative<ApprovalAsked>(event.what) ||
+                      std::holds_alternative<StrategyAbandoned>(event.what) ||
+                      std::holds_alternative<RivalSeen>(event.what) ||
                       std::holds_alternative<Trouble>(event.what);
   return is_bad ? ros2::Severity::kWarn : ros2::Severity::kInfo;
+}
+
+std::filesystem::path state_folder(const RunOptions& options) {
+  return options.state_folder.empty() ? default_state_folder()
+                                      : std::filesystem::path(options.state_folder);
+}
+
+std::filesystem::path journal_file(const RunOptions& options, const RuleSet& rules) {
+  return options.journal.empty() ? default_journal(state_folder(options), rules.robot)
+                                 : std::filesystem::path(options.journal);
 }
 
 Expected<LiveRobot::Options> robot_options(const RunOptions& options) {
   auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
-  const auto state = options.state_folder.empty() ? default_state_folder()
-                                                  : std::filesystem::path(options.state_folder);
   LiveRobot::Options out;
   out.link.participant = *participant;
   out.link.message_path =
@@ -50,7 +75,7 @@ Expected<LiveRobot::Options> robot_options(const RunOptions& options) {
   out.link.parameters = {{"rules", Value(options.rules)},
                          {"planner", Value(options.planner.name)},
                          {"dry_run", Value(options.dry_run)}};
-  out.supervisor = {state / "log", {own_folder()}};
+  out.supervisor = {state_folder(options) / "log", {own_folder()}};
   return out;
 }
 
@@ -77,14 +102,69 @@ void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Ob
   }
 }
 
+// Two managers on one robot would undo each other's work: the second one only looks on. It neither
+// acts nor writes the journal.
+Expected<std::optional<ros2::NamedLock>> claim_robot(const RuleSet& rules, std::uint32_t domain) {
+  return ros2::NamedLock::take("culprit-manages-" + std::to_string(domain) + "-" + rules.robot);
+}
+
+// The manager and its journal begin from the same record, so that a replay begins from it too.
+journal::Session session_of(const RunOptions& options, const RuleSet& rules, bool advises,
+                            Time start, const RunBeginning& beginning) {
+  journal::Session session;
+  session.version = options.version;
+  session.robot = rules.robot;
+  session.rules_path = options.rules;
+  if (const auto source = Source::read(options.rules)) session.rules_text = source->text();
+  session.planner = options.planner.to_json();
+  session.governor = options.governor.to_json();
+  session.advises = advises;
+  session.boot = journal::boot_id();
+  session.start = start;
+  session.settling = from_seconds(options.settle_seconds);
+  session.forgetting = options.forgetting;
+  session.learned = beginning.learned;
+  session.interrupted = beginning.interrupted;
+  return session;
+}
+
+RunBeginning begin_run(const RunOptions& options, const RuleSet& rules, bool is_only_manager) {
+  if (options.no_journal || !is_only_manager) return {};
+  RunBeginning beginning = begin_journal(journal_file(options, rules), rules);
+  for (const std::string& finding : beginning.findings) fmt::print("culprit: {}\n", finding);
+  return beginning;
+}
+
+std::unique_ptr<journal::Recorder> record(const RunOptions& options, RunBeginning beginning,
+                                          const journal::Session& session, const Manager& manager,
+                                          LiveRobot& robot) {
+  journal::Recorder::Options recorder;
+  recorder.path = journal_file(options, manager.knowledge().rules);
+  recorder.wall_clock = wall_now;
+  recorder.on_trouble = [&robot](const std::string& what) { robot.report(what); };
+  return std::make_unique<journal::Recorder>(std::move(beginning.writer), std::move(recorder),
+                                             session, manager.knowledge());
+}
+
 int run(const RunOptions& options) {
   const auto rules = load_rules(options.rules);
   if (rules == nullptr) return kFailed;
+  const auto governor = options.governor.options();
+  if (!governor) {
+    fmt::print(stderr, "culprit: {}\n", governor.error());
+    return kUsage;
+  }
   auto robot_setup = robot_options(options);
   if (!robot_setup) {
     fmt::print(stderr, "culprit: {}\n", robot_setup.error());
     return kUsage;
   }
+  const auto claim = claim_robot(*rules, robot_setup->link.participant.domain);
+  if (!claim) return complain(claim.error());
+  const bool advises = options.dry_run || !*claim;
+  if (!*claim)
+    fmt::print(
+        "culprit: another culprit manages this robot; this one only says what it would do\n");
   StopSignals signals;
   auto robot = LiveRobot::open(*rules, std::move(*robot_setup));
   if (!robot) {
@@ -92,48 +172,69 @@ int run(const RunOptions& options) {
     return kFailed;
   }
   signals.on_stop([&] { (*robot)->interrupt(); });
+  RunBeginning beginning = begin_run(options, *rules, claim->has_value());
   fmt::print("culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot as it is\n",
              rules->robot.empty() ? "the robot" : rules->robot, rules->rules.size(),
              options.dry_run ? " (dry run)" : "");
   std::fflush(stdout);
 
   std::vector<Observation> seen;
-  if (options.launch) {
+  if (options.launch && !advises) {
     seen = discover(**robot, signals.stopped());
     launch_missing(**robot, *rules, seen);
   }
-  Manager::Options manager_options;
-  manager_options.autonomy = options.dry_run ? Autonomy::kAdvise : Autonomy::kAct;
-  manager_options.start = (*robot)->now();
-  manager_options.settling = from_seconds(options.settle_seconds);
-  manager_options.forgetting = options.forgetting;
-  Manager manager(*rules, options.planner.planner(), manager_options);
+  const bool is_paused = beginning.is_paused;
+  const journal::Session session = session_of(options, *rules, advises, (*robot)->now(), beginning);
+  const auto manager =
+      replay::manager_for(session, *rules, options.planner.planner(),
+                          {advises ? Autonomy::kAdvise : Autonomy::kAct, *governor});
+  std::unique_ptr<journal::Recorder> recorder;
+  if (!options.no_journal && claim->has_value())
+    recorder = record(options, std::move(beginning), session, *manager, **robot);
 
   const Colour colour = colour_of(STDOUT_FILENO);
-  Runtime runtime(manager, **robot);
+  Runtime runtime(*manager, **robot);
+  if (recorder != nullptr) {
+    runtime.on_step = [&](const Runtime::Step& step) {
+      recorder->stepped(step.now, step.observations, step.commands, step.events);
+    };
+  }
   runtime.on_events = [&](std::span<const Event> events) {
     for (const Event& event : events) {
-      const std::string text = line(event, *rules, manager_options.start, colour);
+      const std::string text = line(event, *rules, session.start, colour);
       if (text.empty()) continue;
       fmt::print("{}\n", text);
       (*robot)->link().log(severity_of(event), describe(event, *rules));
     }
     std::fflush(stdout);
-    (*robot)->link().publish(health(manager.knowledge()));
+    (*robot)->link().publish(health(manager->knowledge()));
   };
-  (*robot)->link().publish(health(manager.knowledge()));
-  for (const Command& command : manager.step((*robot)->now(), seen)) (*robot)->execute(command);
-  if (!manager.events().empty()) runtime.on_events(manager.events());
-  runtime.run(signals.stopped());
+  (*robot)->link().publish(health(manager->knowledge()));
+  if (is_paused)
+    seen.push_back(
+        {session.start, Order{0, "the last run", "it was paused when it ended", Pause{}}});
+  runtime.step(seen);
+  ServiceManager systemd;
+  systemd.ready(fmt::format("watching {}", rules->robot.empty() ? "the robot" : rules->robot));
+  while (!signals.stopped()) {
+    systemd.feed((*robot)->now());
+    runtime.run(signals.stopped(), systemd.next_feeding());
+  }
+  systemd.stopping();
   signals.on_stop({});
+  if (recorder != nullptr) {
+    if (const auto written = recorder->end(); !written)
+      fmt::print(stderr, "culprit: {}\n", written.error());
+  }
   fmt::print("culprit: stopped; the robot goes on as it is\n");
   return kOk;
 }
 
 }  // namespace
 
-void add_run(CLI::App& app, int& exit_code) {
+void add_run(CLI::App& app, const std::string& version, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
+  options->version = version;
   CLI::App* command =
       app.add_subcommand("run",
                          "Watch a live robot and heal it until Ctrl-C.\nJoins the DDS domain that "
@@ -149,6 +250,11 @@ void add_run(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--state-dir", options->state_folder, "Where logs of started components go")
       ->default_str("~/.local/state/culprit");
+  auto* journal = command->add_option(
+      "--journal", options->journal,
+      "Where everything is written down (default: <robot>.journal in the state folder)");
+  command->add_flag("--no-journal", options->no_journal, "Write nothing down, and know nothing")
+      ->excludes(journal);
   command->add_option("--message-path", options->message_path,
                       "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
   command
@@ -158,6 +264,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.5, 1.0))
       ->capture_default_str();
   options->planner.add_to(*command);
+  options->governor.add_to(*command);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

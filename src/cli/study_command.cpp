@@ -77,7 +77,7 @@ std::vector<study::Configuration> rows_of(const StudyOptions& options) {
       for (const bool c : {false, true}) {
         for (const bool s : {false, true}) {
           const bool is_full = d && c && s;
-          if (planner.starts_with("bayes") && !is_full) continue;  // it has no such switches
+          if (!study::has_switches(planner) && !is_full) continue;
           if (options.has_ablation() || (options.has_robustness() && is_full))
             rows.push_back({{d, c, s}, planner, options.profile, Probabilities::kIdeal});
         }
@@ -245,9 +245,11 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
   command->add_flag("--learning", options->learning,
                     "What the paper's planner learns of F1 and F4");
   command
-      ->add_option("--planner", options->planners,
-                   "paper (Algorithm 1 as meant), reference (the authors' public code with its "
-                   "slips), bayes (culprit's own); several, one after the other")
+      ->add_option(
+          "--planner", options->planners,
+          "paper (Algorithm 1 as meant), reference (the authors' public code with its "
+          "slips), bayes (culprit's own); bt, metacontrol, rosa (others': one failure and one "
+          "strategy at a time); several, one after the other")
       ->capture_default_str();
   command
       ->add_option("--objective", options->objectives,
@@ -301,7 +303,7 @@ void add_study(CLI::App& app, const std::string& version, int& exit_code) {
       "study", "Campaigns over an exemplar: metrics, statistics and tables beside the paper's");
   command->require_subcommand(1);
   add_sunset(*command, version, exit_code);
-  add_study_suave(*command, exit_code);
+  add_study_suave(*command, version, exit_code);
   add_study_rca(*command, exit_code);
   add_merge(*command, exit_code);
 }

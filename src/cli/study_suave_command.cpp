@@ -6,10 +6,12 @@
 #include <thread>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/text_file.h"
+#include "study/suave/html_report.h"
 #include "study/suave/report.h"
 #include "study/tables/render.h"
 
@@ -26,6 +28,8 @@ struct SuaveOptions {
   unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
   std::string format = "text";
   std::string output;  // empty: the standard output
+  std::string html;    // a report; empty: none
+  std::string version;
 };
 
 int fail(const std::string& what, int code) {
@@ -72,6 +76,15 @@ std::string in_format(const std::string& format, const study::SuaveCampaign& cam
   return out;
 }
 
+// What makes the campaign again.
+std::string command_of(const study::SuaveCampaign& campaign) {
+  const std::string mission(campaign.plan->name);
+  return fmt::format("culprit study suave {}--managers {} --generation {} --runs {} --seed {}",
+                     mission == "standard" ? "" : "--" + mission + " ",
+                     fmt::join(campaign.managers, ","), campaign.generation->name, campaign.runs,
+                     campaign.seed);
+}
+
 int study_suave(const SuaveOptions& options) {
   const auto campaign = campaign_of(options);
   if (!campaign) return fail(campaign.error(), kUsage);
@@ -80,14 +93,20 @@ int study_suave(const SuaveOptions& options) {
       study::run_campaign(*campaign, options.jobs, [&] { return signals.stopped().load(); });
   if (!rows) return fail("interrupted; nothing is written", kFailed);
   const std::string text = in_format(options.format, *campaign, *rows);
-  const auto written = write_text(options.output, text);
+  if (auto written = write_text(options.output, text); !written)
+    return fail(written.error(), kFailed);
+  if (options.html.empty()) return kOk;
+  const auto written =
+      write_text(options.html, study::suave_html(*campaign, *rows, study::first_tracks(*campaign),
+                                                 command_of(*campaign), options.version));
   return written ? kOk : fail(written.error(), kFailed);
 }
 
 }  // namespace
 
-void add_study_suave(CLI::App& study, int& exit_code) {
+void add_study_suave(CLI::App& study, const std::string& version, int& exit_code) {
   auto options = std::make_shared<SuaveOptions>();
+  options->version = version;
   CLI::App* command = study.add_subcommand(
       "suave", "The paper's evaluation on SUAVE, with the managers that it compares with");
   auto* extended =
@@ -118,6 +137,9 @@ void add_study_suave(CLI::App& study, int& exit_code) {
   command->add_flag_callback(
       "--json", [options] { options->format = "json"; }, "The same as --format json");
   command->add_option("-o,--output", options->output, "Write there (default: the terminal)");
+  command->add_option(
+      "--html", options->html,
+      "Also write a report there: tables, and the first run of each manager, moving");
   command->callback([options, &exit_code] { exit_code = study_suave(*options); });
 }
 

@@ -6,9 +6,9 @@
 
 #include <fmt/core.h>
 
+#include "cli/demo_setup.h"
 #include "cli/embedded_rules.h"
 #include "cli/paths.h"
-#include "language/checker.h"
 
 namespace culprit::cli {
 namespace {
@@ -20,29 +20,14 @@ COMPONENT world     LAUNCH "sunset-node world"
 COMPONENT evaluator LAUNCH "sunset-node evaluator"
 )";
 
-RuleSet checked(const char* name, const char* text) { return *check(Source(name, text)).rules; }
-
-void start_all(process::Supervisor& supervisor, const RuleSet& rules) {
-  for (std::size_t c = 0; c < rules.components.size(); ++c) supervisor.start({}, ComponentId(c));
-}
-
-Expected<std::filesystem::path> make_state_folder() {
-  std::string path = (std::filesystem::temp_directory_path() / "culprit-demo-XXXXXX").string();
-  if (mkdtemp(path.data()) == nullptr)
-    return Error{"cannot make a folder in " + std::filesystem::temp_directory_path().string()};
-  return std::filesystem::path(path);
-}
-
 }  // namespace
 
 Expected<std::unique_ptr<SunsetDemo>> SunsetDemo::start(Options options,
                                                         const std::atomic<bool>& stop) {
-  auto domain = ros2::DomainLock::reserve();
+  auto domain = make_own_domain();
   if (!domain) return Error{domain.error()};
-  setenv("ROS_DOMAIN_ID", std::to_string(domain->domain()).c_str(), 1);
-  setenv("ROS_LOCALHOST_ONLY", "1", 1);
   std::unique_ptr<SunsetDemo> demo(new SunsetDemo(std::move(options), stop, std::move(*domain),
-                                                  checked("sunset.rules", kSunsetRules)));
+                                                  embedded_rules("sunset.rules", kSunsetRules)));
   if (auto opened = demo->open(); !opened) return Error{opened.error()};
   return demo;
 }
@@ -53,7 +38,7 @@ SunsetDemo::SunsetDemo(Options options, const std::atomic<bool>& stop, ros2::Dom
       stop_(stop),
       domain_(std::move(domain)),
       rules_(std::move(rules)),
-      extras_rules_(checked("extras.rules", kExtras)),
+      extras_rules_(embedded_rules("extras.rules", kExtras)),
       start_(live_now()) {}
 
 SunsetDemo::~SunsetDemo() {

@@ -1,6 +1,7 @@
 #include "execute/executor.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "knowledge/ambiguity.h"
 
@@ -15,12 +16,52 @@ void Executor::begin(StrategyId strategy, Time now) {
   state.attempt.emplace();
   state.attempt->strategy = strategy;
   state.attempt->chosen = now;
+  state.attempt->has_no_failure = state.phase == RulePhase::kQuiet;
   knowledge_.states.enter(rule, RulePhase::kAttempting);
   std::erase_if(runs_, [&](const Run& old) { return old.rule == rule; });
   Run run;
   run.rule = rule;
   run.strategy = strategy;
   runs_.push_back(std::move(run));
+}
+
+void Executor::resume(Interrupted interrupted, Time now, Time from) {
+  const StrategyId strategy = interrupted.strategy;
+  const RuleId rule = knowledge_.rules[strategy].rule;
+  knowledge_.states.state(rule).failing_since = now;
+  begin(strategy, now);
+  Attempt& attempt = *knowledge_.states.state(rule).attempt;
+  attempt.first_change = now;
+  attempt.is_ambiguous = true;  // nobody saw what happened meanwhile
+  attempt.has_no_failure = false;
+  // An answer to a request of the earlier process must not be taken for one to ours.
+  for (const Interrupted::Request& request : interrupted.requests)
+    last_command_ = std::max(last_command_, request.command.id.number);
+  Run& run = runs_.back();
+  run.interrupted = std::move(interrupted);
+  run.from = from;
+}
+
+// Gives false while a resumed attempt has to wait, or if it cannot go on.
+bool Executor::take_up(Run& run, Time now) {
+  if (!run.interrupted) return true;
+  if (now < run.from) return false;
+  const Interrupted interrupted = *std::exchange(run.interrupted, std::nullopt);
+  knowledge_.tell(now, StrategyResumed{run.strategy});
+  run.undo = execute::undo_of(interrupted, knowledge_.rules);
+  if (interrupted.has_failed) {
+    knowledge_.states.set_tried(run.strategy, true);
+    enter(run, Attempt::Stage::kUndoing);
+    return true;
+  }
+  execute::Resumption rest = execute::resumption_of(interrupted, knowledge_);
+  run.adaptation = rest.adaptation;
+  run.goals = std::move(rest.goals);
+  if (rest.obstacle.empty()) return true;
+  attempt_of(run)->obstacle = rest.obstacle;
+  knowledge_.tell(now, AdaptationFailed{run.strategy, run.adaptation, rest.obstacle});
+  knowledge_.signals.touch(run.rule);
+  return false;
 }
 
 void Executor::answered(const Reply& reply, Time now) {
@@ -35,24 +76,31 @@ void Executor::answered(const Reply& reply, Time now) {
 
 void Executor::advance(Time now, std::vector<Command>& commands) {
   // An attempt that succeeded left its rule; nothing of it is left to do.
-  std::erase_if(runs_, [&](const Run& run) { return attempt_of(run) == nullptr; });
+  std::erase_if(runs_, [&](const Run& run) {
+    if (attempt_of(run) != nullptr) return false;
+    forget_routines(run);
+    return true;
+  });
   for (Run& run : runs_) advance(run, now, commands);
 }
 
 void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
+  if (!take_up(run, now)) return;
   const Attempt::Stage stage = attempt_of(run)->stage;
   if (stage == Attempt::Stage::kUndoing && !run.is_undoing) {
     run.is_undoing = true;
     run.pursuit.reset();
   }
   if (stage == Attempt::Stage::kWaiting || stage == Attempt::Stage::kOver) return;
+  // The analysis has not taken it from here yet.
+  if (!attempt_of(run)->obstacle.empty() && !run.is_undoing) return;
   while (run.pursuit || (run.is_undoing ? next_undo(run, now) : next_goal(run, now))) {
     const bool had_changed = run.pursuit->has_changed_anything();
     if (run.pending == CommandId{} || run.pursuit->next_deadline() <= now) {
       if (auto request = run.pursuit->advance(knowledge_, now)) {
         run.pending = {++last_command_};
-        commands.push_back(
-            {run.pending, run.pursuit->component(), *request, Pursuit::timeout(*request)});
+        commands.push_back({run.pending, run.pursuit->component(), *request,
+                            Pursuit::timeout(*request), purpose_of(run)});
       }
     }
     if (!had_changed && run.pursuit->has_changed_anything()) note_change(run, now);
@@ -61,6 +109,19 @@ void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
     if (!attempt_of(run)->obstacle.empty() && !run.is_undoing)
       return;  // the analysis takes it from here
   }
+}
+
+Purpose Executor::purpose_of(const Run& run) const {
+  Purpose purpose{run.strategy, static_cast<std::uint32_t>(run.adaptation), run.is_undoing};
+  const Pursuit& pursuit = *run.pursuit;
+  const bool is_process = std::holds_alternative<execute::GoneGoal>(pursuit.goal()) ||
+                          std::holds_alternative<execute::PresentGoal>(pursuit.goal());
+  if (is_process) {
+    purpose.before = knowledge_.components[pursuit.component()].intended_lifecycle;
+  } else if (pursuit.before()) {
+    purpose.before = pursuit.before()->value;
+  }
+  return purpose;
 }
 
 // Sets out for the next goal; gives false if the attempt has none left.
@@ -96,7 +157,9 @@ bool Executor::next_goal(Run& run, Time now) {
 void Executor::finish_goal(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const AdaptationType type = knowledge_.rules[run.strategy].adaptations[run.adaptation].type;
-  if (pursuit.has_changed_anything() && pursuit.before()) {
+  // A last resort is to last: whether the failure is gone is not what it is for.
+  const bool is_to_last = knowledge_.rules[run.strategy].is_last_resort;
+  if (!is_to_last && pursuit.has_changed_anything() && pursuit.before()) {
     if (auto goal = execute::undoing(pursuit.goal(), type, *pursuit.before())) {
       run.undo.push_back({pursuit.component(), std::move(*goal)});
     }
@@ -105,8 +168,10 @@ void Executor::finish_goal(Run& run, Time now) {
     const bool switches = type == AdaptationType::kActivate || type == AdaptationType::kDeactivate;
     if (switches) note_lifecycle(pursuit);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
+    note_setting(pursuit, now);
     ++run.goal;
   } else {
+    if (pursuit.met_rival()) note_rival(run, now);
     attempt_of(run)->obstacle =
         knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark();
     knowledge_.tell(now, AdaptationFailed{run.strategy, run.adaptation, pursuit.remark()});
@@ -117,7 +182,7 @@ void Executor::finish_goal(Run& run, Time now) {
 
 bool Executor::next_undo(Run& run, Time now) {
   // What was set in a process that is gone went with it.
-  std::erase_if(run.undo, [this](const Undo& undo) {
+  std::erase_if(run.undo, [this](const execute::Undo& undo) {
     return knowledge_.components[undo.component].process == ProcessState::kGone;
   });
   if (run.undo.empty()) {
@@ -132,6 +197,11 @@ void Executor::finish_undo(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const bool reached = pursuit.is_reached();
   if (reached) note_lifecycle(pursuit);
+  // A mode that is back by itself was set back, and that is remembered.
+  const bool is_mode = std::holds_alternative<execute::ModeGoal>(pursuit.goal());
+  if (const auto subject = execute::subject_of(pursuit.goal(), pursuit.component());
+      subject && (!is_mode || pursuit.has_changed_anything()))
+    knowledge_.rivals.forget(*subject);
   // What came back by itself was not undone.
   if (!reached || pursuit.has_changed_anything()) {
     const std::string what =
@@ -157,6 +227,37 @@ void Executor::note_lifecycle(const Pursuit& pursuit) {
     knowledge_.components[pursuit.component()].intended_lifecycle = lifecycle->target;
 }
 
+// What was set, and from what: something else may set it back.
+void Executor::note_setting(const Pursuit& pursuit, Time now) {
+  const auto setting = execute::setting_of(pursuit.goal(), pursuit.component());
+  const auto* before = pursuit.before() ? std::get_if<Value>(&pursuit.before()->value) : nullptr;
+  // An odd remark says that it does not read back what was set.
+  if (!setting || before == nullptr || !pursuit.has_changed_anything() || !pursuit.remark().empty())
+    return;
+  knowledge_.rivals.changed(setting->subject, *before, execute::in_type_of(setting->value, *before),
+                            knowledge_.began(pursuit.component()), now);
+}
+
+void Executor::note_rival(const Run& run, Time now) {
+  const auto subject = execute::subject_of(run.pursuit->goal(), run.pursuit->component());
+  knowledge_.rivals.leave_alone(*subject, now);
+  knowledge_.tell(now, RivalSeen{subject->component, subject->parameter});
+  attempt_of(run)->is_ambiguous = true;  // that nothing was tried proves nothing
+}
+
+// What resets itself before the failure is over is no rival's work.
+void Executor::forget_routines(const Run& run) {
+  for (const Adaptation& adaptation : knowledge_.rules[run.strategy].adaptations) {
+    const bool is_parameter = adaptation.type == AdaptationType::kSetParameter ||
+                              adaptation.type == AdaptationType::kChangeCommunication;
+    if (!is_parameter) continue;
+    const Subject subject{adaptation.component, adaptation.subject};
+    const Value* ours = knowledge_.rivals.ours(subject);
+    const auto& present = knowledge_.components[adaptation.parameter];
+    if (ours != nullptr && present && *present != *ours) knowledge_.rivals.forget(subject);
+  }
+}
+
 Attempt* Executor::attempt_of(const Run& run) {
   auto& attempt = knowledge_.states.state(run.rule).attempt;
   return attempt && attempt->strategy == run.strategy ? &*attempt : nullptr;
@@ -170,7 +271,10 @@ void Executor::enter(Run& run, Attempt::Stage stage) {
 Time Executor::next_deadline() const {
   Time next = kNever;
   for (const Run& run : runs_) {
+    const bool is_abandoned = !knowledge_.states[run.rule].attempt;
+    if (is_abandoned) continue;
     if (run.pursuit) next = std::min(next, run.pursuit->next_deadline());
+    if (run.interrupted) next = std::min(next, run.from);
   }
   return next;
 }

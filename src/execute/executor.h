@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "execute/pursuit.h"
+#include "execute/resumption.h"
 #include "knowledge/knowledge.h"
 
 namespace culprit {
@@ -19,8 +20,12 @@ class Executor {
   // `knowledge` must outlive the executor.
   explicit Executor(Knowledge& knowledge) : knowledge_(knowledge) {}
 
-  // The rule's attempt begins. @pre the rule is failing and none is under way.
+  // The rule's attempt begins. @pre none of the rule is under way, none has its components
   void begin(StrategyId strategy, Time now);
+
+  // Goes on from `from` on with an attempt of an earlier process; its outcome will prove nothing.
+  // @pre nothing was begun yet
+  void resume(Interrupted interrupted, Time now, Time from);
 
   // An answer; one that nobody waits for any more is ignored.
   void answered(const Reply& reply, Time now);
@@ -32,10 +37,6 @@ class Executor {
   Time next_deadline() const;
 
  private:
-  struct Undo {
-    ComponentId component;
-    execute::Goal goal;
-  };
   struct Run {
     RuleId rule;
     StrategyId strategy;
@@ -46,15 +47,23 @@ class Executor {
     std::optional<execute::Pursuit> pursuit;
     CommandId pending;
     std::string remark;
-    std::vector<Undo> undo;
+    std::vector<execute::Undo> undo;
+    // Of a resumed one, until the robot was given time to show itself.
+    std::optional<Interrupted> interrupted;
+    Time from = kLongAgo;
   };
 
   void advance(Run& run, Time now, std::vector<Command>& commands);
+  bool take_up(Run& run, Time now);
+  Purpose purpose_of(const Run& run) const;
   bool next_goal(Run& run, Time now);
   bool next_undo(Run& run, Time now);
   void finish_goal(Run& run, Time now);
   void finish_undo(Run& run, Time now);
   void note_change(Run& run, Time now);
+  void note_setting(const execute::Pursuit& pursuit, Time now);
+  void note_rival(const Run& run, Time now);
+  void forget_routines(const Run& run);
   void note_lifecycle(const execute::Pursuit& pursuit);
   Attempt* attempt_of(const Run& run);
   void enter(Run& run, Attempt::Stage stage);

@@ -1,5 +1,7 @@
 #include "execute/goal.h"
 
+#include <cmath>
+
 #include "language/evaluate.h"
 #include "language/ros_names.h"
 
@@ -20,6 +22,12 @@ Value negated(const Value& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value))
     return *whole == INT64_MIN ? INT64_MAX : -*whole;
   return -std::get<double>(value);
+}
+
+// What is no number is no value that could be set and read back.
+bool is_nan(const Value& value) {
+  const auto* number = std::get_if<double>(&value);
+  return number != nullptr && std::isnan(*number);
 }
 
 }  // namespace
@@ -100,14 +108,14 @@ std::optional<Look> look_for(const Goal& goal) {
 std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& before) {
   if (const auto* parameter = std::get_if<ParameterGoal>(&goal)) {
     const auto* value = std::get_if<Value>(&before.value);
-    if (value == nullptr) return std::nullopt;
+    if (value == nullptr || is_nan(*value)) return std::nullopt;
     return ParameterGoal{parameter->name, *value, ParameterGoal::Kind::kRestore};
   }
   if (std::holds_alternative<ModeGoal>(goal)) {
     const auto* value = std::get_if<Value>(&before.value);
     const auto* mode = value != nullptr ? std::get_if<std::string>(value) : nullptr;
-    if (mode == nullptr || mode->empty()) return std::nullopt;
-    return ModeGoal{*mode};
+    const bool is_known = mode != nullptr && !mode->empty() && *mode != kUnknownMode;
+    return is_known ? std::optional<Goal>(ModeGoal{*mode}) : std::nullopt;
   }
   // A restart or a redeploy ends where it began; there is nothing to go back to.
   const bool switches = type == AdaptationType::kActivate || type == AdaptationType::kDeactivate;
@@ -117,6 +125,21 @@ std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& 
   if (std::holds_alternative<LifecycleGoal>(goal) && switches && was_settled)
     return LifecycleGoal{*state, {}};
   return std::nullopt;
+}
+
+std::optional<Subject> subject_of(const Goal& goal, ComponentId component) {
+  if (std::holds_alternative<ModeGoal>(goal)) return Subject{component, ""};
+  const auto* parameter = std::get_if<ParameterGoal>(&goal);
+  if (parameter == nullptr) return std::nullopt;
+  return Subject{component, parameter->name};
+}
+
+std::optional<Setting> setting_of(const Goal& goal, ComponentId component) {
+  if (const auto* mode = std::get_if<ModeGoal>(&goal))
+    return Setting{{component, ""}, Value(mode->mode)};
+  const auto* parameter = std::get_if<ParameterGoal>(&goal);
+  if (parameter == nullptr || parameter->kind != ParameterGoal::Kind::kSet) return std::nullopt;
+  return Setting{{component, parameter->name}, parameter->value};
 }
 
 std::string describe(const Goal& goal) {

@@ -36,8 +36,16 @@ struct ModeGoal {
 struct ServiceGoal {
   std::string service;
 };
-struct GoneGoal {};
-struct PresentGoal {};
+// Reached at once if another process than `pid` has taken its place; 0: whichever is there is
+// meant.
+struct GoneGoal {
+  int pid = 0;
+};
+// `instead_of`: set if the process may have been started already. Then one with another pid will
+// do; otherwise one that appears from now on is wanted.
+struct PresentGoal {
+  std::optional<int> instead_of{};
+};
 
 using Goal =
     std::variant<ParameterGoal, LifecycleGoal, ModeGoal, ServiceGoal, GoneGoal, PresentGoal>;
@@ -54,8 +62,18 @@ using Look = std::variant<ReadParameter, ReadLifecycle, ReadMode>;
 std::optional<Look> look_for(const Goal& goal);
 
 // The goal that brings back what was read before the change; nothing if a change of this kind is
-// not undone.
+// not undone, or what was read is no state to go back to: an unknown mode, a number that is none.
 std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& before);
+
+// Which parameter or mode a goal is about; nothing if it is about none.
+std::optional<Subject> subject_of(const Goal& goal, ComponentId component);
+
+// What a goal sets that something else might set back (knowledge/rivals.h), and to which value.
+struct Setting {
+  Subject subject;
+  Value value;
+};
+std::optional<Setting> setting_of(const Goal& goal, ComponentId component);
 
 // For people: "exposure = 0.5", "active", "stopped".
 std::string describe(const Goal& goal);

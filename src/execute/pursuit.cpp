@@ -4,12 +4,9 @@
 #include <cmath>
 
 namespace culprit::execute {
-namespace {
 
 using namespace std::chrono_literals;
 
-// A whole number for a parameter that holds numbers, and the other way round where nothing is lost:
-// ROS parameters are strictly typed, rule files are not.
 Value in_type_of(const Value& value, const Value& present) {
   if (const auto* whole = std::get_if<std::int64_t>(&value);
       whole != nullptr && std::holds_alternative<double>(present)) {
@@ -23,6 +20,8 @@ Value in_type_of(const Value& value, const Value& present) {
   }
   return value;
 }
+
+namespace {
 
 std::optional<Value> sum(const Value& present, const Value& change) {
   const auto* whole = std::get_if<std::int64_t>(&present);
@@ -128,8 +127,11 @@ std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Tim
 
 std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time now) {
   const ComponentState& state = knowledge.components[component_];
-  if (std::holds_alternative<GoneGoal>(goal_)) return pursue_gone(state, now);
-  if (std::holds_alternative<PresentGoal>(goal_)) return pursue_present(state, now);
+  if (std::holds_alternative<ModeGoal>(goal_) && has_changed_anything() &&
+      !state.alive.value_or(true))
+    return give_up("whoever changes its mode is gone");
+  if (const auto* gone = std::get_if<GoneGoal>(&goal_)) return pursue(*gone, state, now);
+  if (const auto* present = std::get_if<PresentGoal>(&goal_)) return pursue(*present, state, now);
   if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return pursue(*service, now);
   // The change was not sent, for there was nobody to send it to.
   if (answer_ && answer_->outcome == Outcome::kUnreachable) return give_up(why(*answer_));
@@ -142,9 +144,22 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   }
   if (seen_->outcome == Outcome::kRefused) return give_up(why(*seen_));
   if (!before_) before_ = seen_;
+  if (!has_changed_anything() && would_fight(knowledge)) {
+    met_rival_ = true;
+    return give_up("something else sets it back; it is left alone");
+  }
   if (const auto* parameter = std::get_if<ParameterGoal>(&goal_)) return pursue(*parameter, now);
   if (const auto* lifecycle = std::get_if<LifecycleGoal>(&goal_)) return pursue(*lifecycle, now);
   return pursue(std::get<ModeGoal>(goal_), now);
+}
+
+bool Pursuit::would_fight(const Knowledge& knowledge) const {
+  const auto setting = setting_of(goal_, component_);
+  const auto* present = std::get_if<Value>(&seen_->value);
+  return setting && present != nullptr &&
+         knowledge.rivals.would_fight(setting->subject, *present,
+                                      in_type_of(setting->value, *present),
+                                      knowledge.began(component_));
 }
 
 std::optional<Pursuit::Request> Pursuit::pursue(const ParameterGoal& goal, Time now) {
@@ -198,16 +213,28 @@ std::optional<Pursuit::Request> Pursuit::pursue(const ServiceGoal& goal, Time no
   return answer_->outcome == Outcome::kDone ? reach() : give_up(why(*answer_));
 }
 
-std::optional<Pursuit::Request> Pursuit::pursue_gone(const ComponentState& state, Time now) {
+std::optional<Pursuit::Request> Pursuit::pursue(const GoneGoal& goal, const ComponentState& state,
+                                                Time now) {
+  const bool is_replaced = goal.pid != 0 && state.in_graph && state.known_pid() != goal.pid;
+  if (is_replaced && !has_changed_anything()) return reach();
   if (state.in_graph && state.known_pid() == 0)
     return give_up("its process is not known; is it on another machine?");
-  if (!has_changed_anything()) return change(StopProcess{state.known_pid()}, now);
+  if (!has_changed_anything())
+    return change(StopProcess{goal.pid != 0 ? goal.pid : state.known_pid()}, now);
   const bool is_gone = !state.in_graph && state.process == ProcessState::kGone;
-  if (answer_->outcome == Outcome::kDone || is_gone) return reach();
-  return answer_->outcome == Outcome::kTimedOut ? look_again(now) : give_up(why(*answer_));
+  // Where the operating system is asked, its word is needed too: a new process must not begin
+  // beside the old one because of a wrong answer.
+  const bool still_runs = state.pid != 0 && state.process != ProcessState::kGone;
+  if (is_gone || (answer_->outcome == Outcome::kDone && !still_runs)) return reach();
+  const bool may_come =
+      answer_->outcome == Outcome::kTimedOut || answer_->outcome == Outcome::kDone;
+  return may_come ? look_again(now) : give_up(why(*answer_));
 }
 
-std::optional<Pursuit::Request> Pursuit::pursue_present(const ComponentState& state, Time now) {
+std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal,
+                                                const ComponentState& state, Time now) {
+  const bool is_there = goal.instead_of && state.in_graph && state.known_pid() != *goal.instead_of;
+  if (is_there && !has_changed_anything()) return reach();
   if (!has_changed_anything()) return change(StartProcess{}, now);
   if (state.in_graph && state.node_seen >= begun_) return reach();
   if (did_not_come(*answer_) || answer_->outcome == Outcome::kRefused)
@@ -228,8 +255,11 @@ std::optional<Pursuit::Request> Pursuit::change(Request request, Time now) {
 }
 
 std::optional<Pursuit::Request> Pursuit::look_again(Time now) {
-  if (now >= deadline_)
-    return give_up("not " + describe(goal_) + " after " + to_string(patience(goal_)));
+  if (now >= deadline_) {
+    const bool was_accepted = answer_ && answer_->outcome == Outcome::kDone;
+    return give_up((was_accepted ? "it accepted and did nothing: not " : "not ") + describe(goal_) +
+                   " after " + to_string(patience(goal_)));
+  }
   wake_ = std::min(later(now, kPause), deadline_);
   step_ = Step::kPausing;
   return std::nullopt;

@@ -12,6 +12,10 @@
 
 namespace culprit::execute {
 
+// A whole number for a parameter that holds numbers, and the other way round where nothing is lost:
+// ROS parameters are strictly typed, rule files are not.
+Value in_type_of(const Value& value, const Value& present);
+
 class Pursuit {
  public:
   using Request = decltype(Command::what);
@@ -31,6 +35,9 @@ class Pursuit {
   bool is_reached() const { return status_ == Status::kReached; }
   // Why the goal was given up; or what was odd about reaching it; or empty.
   const std::string& remark() const { return remark_; }
+
+  // It was given up because something else sets back what it sets.
+  bool met_rival() const { return met_rival_; }
 
   // What was read before anything was changed.
   const std::optional<Reply>& before() const { return before_; }
@@ -53,9 +60,10 @@ class Pursuit {
   std::optional<Request> pursue(const LifecycleGoal& goal, Time now);
   std::optional<Request> pursue(const ModeGoal& goal, Time now);
   std::optional<Request> pursue(const ServiceGoal& goal, Time now);
-  std::optional<Request> pursue_gone(const ComponentState& state, Time now);
-  std::optional<Request> pursue_present(const ComponentState& state, Time now);
+  std::optional<Request> pursue(const GoneGoal& goal, const ComponentState& state, Time now);
+  std::optional<Request> pursue(const PresentGoal& goal, const ComponentState& state, Time now);
 
+  bool would_fight(const Knowledge& knowledge) const;
   std::optional<Request> change(Request request, Time now);
   std::optional<Request> look_again(Time now);
   std::optional<Request> reach(std::string remark = "");
@@ -75,6 +83,7 @@ class Pursuit {
   std::vector<Request> sent_;    // changes
   std::optional<Value> wanted_;  // ParameterGoal, once the present value is known
   std::string remark_;
+  bool met_rival_ = false;
 };
 
 }  // namespace culprit::execute

@@ -26,6 +26,8 @@ struct Attempt {
   // Another strategy that can have had the same effect overlapped with it: its outcome proves
   // nothing.
   bool is_ambiguous = false;
+  // A person ordered it while the failure was not there: there is nothing to judge.
+  bool has_no_failure = false;
 };
 
 }  // namespace culprit

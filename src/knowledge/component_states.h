@@ -17,6 +17,7 @@ struct ComponentState {
   bool in_graph = false;      // its node is there, and its process is not known to be gone
   Time node_seen = kLongAgo;  // when the node joined the graph last
   int node_pid = 0;           // the process that the node runs in; 0 = not known
+  int namesakes = 0;          // other nodes of its name
   ProcessState process = ProcessState::kRunning;  // meaningful if pid is set
   int pid = 0;                 // the process that the operating system was asked about
   std::string process_remark;  // how it ended

@@ -64,6 +64,7 @@ class Describer {
     };
     const auto waiting = std::find_if_not(e.candidates.begin(), e.candidates.end(), is_out);
     const Candidate& shown = waiting == e.candidates.end() ? e.candidates.front() : *waiting;
+    if (shown.excluded == Condition::kWithheld) return "";  // ActionHeldBack says it
     return rules_[e.rule].name + " waits: " + describe_exclusion(shown, rules_);
   }
   std::string operator()(const AdaptationDone& e) const {
@@ -78,6 +79,11 @@ class Describer {
     const Strategy& strategy = rules_[e.strategy];
     return strategy.name + " did not resolve " + rules_[strategy.rule].name + ": " + e.reason;
   }
+  std::string operator()(const StrategyResumed& e) const {
+    const Strategy& strategy = rules_[e.strategy];
+    return strategy.name + " for " + rules_[strategy.rule].name +
+           " was under way when culprit ended, and is finished now";
+  }
   std::string operator()(const Undone& e) const {
     return e.succeeded ? e.what + " again" : "cannot be undone: " + e.what;
   }
@@ -87,6 +93,9 @@ class Describer {
   std::string operator()(const RuleExhausted& e) const {
     return rules_[e.rule].name + " is exhausted: nothing helped, a person must look";
   }
+  std::string operator()(const LastResortReached& e) const {
+    return rules_[e.rule].name + ": nothing helped, and only the last resort is left";
+  }
   std::string operator()(const ComponentLost& e) const {
     return rules_[e.component].name + " is lost" + (e.remark.empty() ? "" : ": " + e.remark);
   }
@@ -94,9 +103,74 @@ class Describer {
     return rules_[e.component].name + " is there" +
            (e.pid == 0 ? "" : " (process " + std::to_string(e.pid) + ")");
   }
+  std::string operator()(const RivalSeen& e) const {
+    return "something else sets " + (e.parameter.empty() ? "the mode" : e.parameter) + " of " +
+           rules_[e.component].name + " back; it is left alone";
+  }
   std::string operator()(const Trouble& e) const { return e.text; }
+  std::string operator()(const OrderAccepted& e) const {
+    return e.order.author + ": " + describe(e.order, rules_) +
+           (e.order.reason.empty() ? "" : " (" + e.order.reason + ")");
+  }
+  std::string operator()(const OrderRefused& e) const {
+    return e.order.author + " is refused: " + e.reason;
+  }
+  std::string operator()(const ActionHeldBack& e) const {
+    return with_rule(e.strategy) + " is held back: " + e.reason;
+  }
+  std::string operator()(const ApprovalAsked& e) const {
+    const Strategy& strategy = rules_[e.strategy];
+    std::vector<std::string> actions;
+    for (const Adaptation& adaptation : strategy.adaptations)
+      actions.push_back(describe(adaptation, rules_));
+    return "shall " + with_rule(e.strategy) + " " + listed(actions) + "? It waits for approval";
+  }
+  std::string operator()(const ApprovalLapsed& e) const {
+    return with_rule(e.strategy) + " needs no approval any more";
+  }
+  std::string operator()(const StrategyAbandoned& e) const {
+    return with_rule(e.strategy) + " is left where it is: " + e.reason;
+  }
+  std::string operator()(const OrderCarriedOut& e) const {
+    return with_rule(e.strategy) + " was carried out";
+  }
+  std::string operator()(const SilenceEnded& e) const {
+    return name_of(e.what) + " is no longer silenced";
+  }
+  std::string operator()(const StormBegan& e) const {
+    return "nothing more is done, a person must look: " + e.reason;
+  }
+  std::string operator()(const StormEnded&) const { return "action is allowed again"; }
+
+  std::string operator()(const Pause&) const { return "pause"; }
+  std::string operator()(const Resume&) const { return "resume"; }
+  std::string operator()(const SetDryRun& o) const {
+    return o.is_on ? "dry run on" : "dry run off";
+  }
+  std::string operator()(const Approve& o) const { return with_rule(o.strategy) + " is approved"; }
+  std::string operator()(const Refuse& o) const { return with_rule(o.strategy) + " is refused"; }
+  std::string operator()(const Silence& o) const {
+    return name_of(o.what) + " is silenced" + (o.lasts ? " for " + to_string(*o.lasts) : "");
+  }
+  std::string operator()(const LiftSilence& o) const {
+    return "the silence of " + name_of(o.what) + " is lifted";
+  }
+  std::string operator()(const RunStrategy& o) const { return "run " + with_rule(o.strategy); }
 
  private:
+  // Strategies of different rules may have the same name. An order may name one that is not there.
+  std::string with_rule(StrategyId id) const {
+    if (id.index >= rules_.strategies.size()) return "an unknown strategy";
+    return rules_[rules_[id].rule].name + "." + rules_[id].name;
+  }
+  std::string name_of(const Silenceable& what) const {
+    if (const auto* rule = std::get_if<RuleId>(&what))
+      return rule->index < rules_.rules.size() ? rules_[*rule].name : "an unknown rule";
+    const ComponentId component = std::get<ComponentId>(what);
+    return component.index < rules_.components.size() ? rules_[component].name
+                                                      : "an unknown component";
+  }
+
   // " (62 %; 38 %: fusion, by FusionDead)"; empty if nobody else is suspected.
   std::string doubt(const StrategyChosen& e) const {
     if (e.suspects.size() < 2) return "";
@@ -141,6 +215,8 @@ std::string_view to_string(Condition condition) {
       return "settling";
     case Condition::kInTheWay:
       return "in_the_way";
+    case Condition::kWithheld:
+      return "withheld";
   }
   return "";
 }
@@ -234,6 +310,10 @@ std::string describe(const Adaptation& adaptation, const RuleSet& rules) {
   }
 }
 
+std::string describe(const Order& order, const RuleSet& rules) {
+  return std::visit(Describer(rules), order.what);
+}
+
 std::string describe(const Event& event, const RuleSet& rules) {
   return std::visit(Describer(rules), event.what);
 }
@@ -268,6 +348,8 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
     case Condition::kInTheWay:
       return strategy + " would be in the way of what is done about " +
              rules[*candidate.because].name;
+    case Condition::kWithheld:
+      return strategy + " is withheld: " + candidate.remark;
   }
   return "";
 }

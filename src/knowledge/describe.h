@@ -21,6 +21,9 @@ std::string to_string(Probability probability);
 // "a, b and c"
 std::string listed(const std::vector<std::string>& items);
 
+// "camera is silenced for 10min", "restart_camera is approved"
+std::string describe(const Order& order, const RuleSet& rules);
+
 // "restart camera", "set exposure of camera"
 std::string describe(const Adaptation& adaptation, const RuleSet& rules);
 

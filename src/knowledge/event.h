@@ -24,7 +24,9 @@ enum class Condition : std::uint8_t {
   kDownstream,  // a component of it depends on one that is being adapted
   kSuspect,     // a component of it depends on one that looks ill, and nobody knows yet whether
   kSettling,    // the failure is expected to go away with one that was just resolved
-  kInTheWay     // it would be in the way of what is to be done about another failure
+  kInTheWay,    // it would be in the way of what is to be done about another failure
+  // Of both planners:
+  kWithheld  // the governor does not allow it now
 };
 
 struct Candidate {
@@ -34,7 +36,7 @@ struct Candidate {
   ComponentId component;              // that the condition is about
   std::optional<RuleId> because;  // kDependency: the failure that `component` may be the cause of;
                                   // likewise kSuspect, kSettling, kInTheWay: the other failure
-  std::string remark;             // kInvalid: why
+  std::string remark;             // kInvalid, kWithheld: why
   // Of a planner that weighs them (bayes) and only if nothing excludes it beforehand.
   double resolves = 0;  // the probability that it resolves the failure
   double value = 0;     // what that is worth, before its cost
@@ -103,6 +105,11 @@ struct StrategyFailed {
   std::string reason;
 };
 
+// A strategy that an earlier process of culprit did not live to end is being finished.
+struct StrategyResumed {
+  StrategyId strategy;
+};
+
 // Something that a failed strategy had changed is back as it was, or could not be brought back.
 struct Undone {
   StrategyId strategy;
@@ -114,6 +121,11 @@ struct Undone {
 struct RoundSpent {
   RuleId rule;
   Time retry_at;
+};
+
+// Nothing is left to try but the rule's last resorts.
+struct LastResortReached {
+  RuleId rule;
 };
 
 // Nothing is left to try. A person must look.
@@ -130,15 +142,91 @@ struct ComponentFound {
   int pid = 0;
 };
 
+// Something else sets back what strategies set (rivals.h). It is left alone from now on.
+struct RivalSeen {
+  ComponentId component;
+  std::string parameter;  // empty: the mode
+};
+
 struct Trouble {
   std::string text;
 };
 
+// What became of a person's order.
+struct OrderAccepted {
+  Order order;
+};
+struct OrderRefused {
+  Order order;
+  std::string reason;
+};
+
+// Why the governor lets nothing, or not this, be done now (docs/governor.md).
+enum class Restraint : std::uint8_t {
+  kPaused,              // by a person
+  kQuietPeriod,         // after start-up, or after a launch
+  kStorm,               // too much is ill at once
+  kGraphInDoubt,        // nodes vanished whose processes are there: it may be our own network
+  kInterlock,           // INTERLOCK is not true
+  kOverallIntensity,    // too many strategies lately
+  kApproval,            // a person has to approve it first
+  kSilenced,            // by a person
+  kRefused,             // by a person
+  kComponentIntensity,  // too many strategies lately at this component
+  kClassIntensity,      // too many strategies of this kind lately
+  kBackoff,             // it was restarted a short while ago
+  kIdentity             // nobody knows for sure which process it would hit
+};
+
+// A strategy was chosen and is not begun. Told again only when the reason is another one.
+struct ActionHeldBack {
+  StrategyId strategy;
+  Restraint restraint = Restraint::kPaused;
+  std::string reason;
+  Time until = kNever;  // when the reason may be gone; kNever: nobody knows
+};
+
+// The strategy waits for a person to approve or refuse it. The question lapses when the failure is
+// gone, or another strategy has become the better one.
+struct ApprovalAsked {
+  StrategyId strategy;
+  std::vector<Candidate> candidates;  // as StrategyChosen's
+  std::vector<Suspect> suspects{};
+};
+struct ApprovalLapsed {
+  StrategyId strategy;
+};
+
+// A strategy under way was left where it was, without a verdict.
+struct StrategyAbandoned {
+  StrategyId strategy;
+  std::string reason;
+};
+
+// A strategy that a person ordered while its failure was not there took effect.
+struct OrderCarriedOut {
+  StrategyId strategy;
+};
+
+// Its time is over.
+struct SilenceEnded {
+  Silenceable what;
+};
+
+// The governor stops all action, or lets it go on. A person should look.
+struct StormBegan {
+  Restraint restraint = Restraint::kStorm;  // or kGraphInDoubt
+  std::string reason;
+};
+struct StormEnded {};
+
 struct Event {
   Time at;
   std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
-               AdaptationDone, AdaptationFailed, StrategyFailed, Undone, RoundSpent, RuleExhausted,
-               ComponentLost, ComponentFound, Trouble>
+               AdaptationDone, AdaptationFailed, StrategyFailed, StrategyResumed, Undone,
+               RoundSpent, RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble, OrderAccepted,
+               OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed, StrategyAbandoned,
+               OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached>
       what;
 };
 

@@ -8,6 +8,7 @@
 #include "knowledge/couplings.h"
 #include "knowledge/dependency_graph.h"
 #include "knowledge/event.h"
+#include "knowledge/rivals.h"
 #include "knowledge/rule_states.h"
 #include "knowledge/signal_store.h"
 #include "language/rule_set.h"
@@ -23,7 +24,8 @@ struct Knowledge {
         components(rules),
         states(rules),
         beliefs(rules),
-        couplings(rules) {}
+        couplings(rules),
+        withheld(rules.strategies.size()) {}
 
   // What `other` knows, for `rule_set`: a copy of its rules. Its events are left out.
   Knowledge(const RuleSet& rule_set, const Knowledge& other)
@@ -34,6 +36,8 @@ struct Knowledge {
         states(rules, other.states),
         beliefs(other.beliefs),
         couplings(other.couplings),
+        withheld(other.withheld),
+        rivals(other.rivals),
         now(other.now) {}
   Knowledge(const Knowledge&) = delete;
 
@@ -44,8 +48,14 @@ struct Knowledge {
   RuleStates states;
   Beliefs beliefs;
   Couplings couplings;
+  // By strategy: why the governor does not allow it now; empty where it does.
+  std::vector<std::string> withheld;
+  Rivals rivals;
   Time now{};                 // of the step under way
   std::vector<Event> events;  // of the step under way
+
+  // When the component, or something that it depends on, last joined the graph.
+  Time began(ComponentId component) const;
 
   template <class What>
   void tell(Time at, What what) {

@@ -54,7 +54,8 @@ struct RuleState {
   Time retry_at = kLongAgo;  // back-off after a round
   std::vector<bool> tried;   // in this round, by place in Rule::strategies
   std::optional<Attempt> attempt;
-  bool is_advised = false;  // dry run: what would be done was said
+  bool is_at_last_resort = false;  // only the last resorts are left to try
+  bool is_advised = false;         // dry run: what would be done was said
   std::optional<Settling> settling;
 
   // Since when the failure is there, with pauses or without.

@@ -32,6 +32,7 @@ class Checker {
     dependencies();
     infer();
     for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
+    interlocks();
     for (const syntax::Rule& rule : file_.rules) add_rule(rule);
     symbols_.drop_forgotten_reports();
     for (Input& input : rules_.inputs) sort_unique(input.thresholds);
@@ -129,7 +130,16 @@ class Checker {
     }
   }
 
+  void interlocks() {
+    for (const syntax::Interlock& written : file_.interlocks) {
+      if (auto typed = boolean(written.condition, "an INTERLOCK"))
+        rules_.interlocks.push_back({compile(*typed), written.text});
+    }
+  }
+
   void infer() {
+    for (const syntax::Interlock& interlock : file_.interlocks)
+      infer_types(interlock.condition, Type::kBool, symbols_);
     for (const syntax::Rule& rule : file_.rules) {
       if (rule.trigger) infer_types(*rule.trigger, Type::kBool, symbols_);
       for (const syntax::Strategy& strategy : rule.strategies) {
@@ -211,7 +221,10 @@ class Checker {
     };
     need(rule.policies.has_value(), "POLICIES");
     need(rule.trigger.has_value(), "TRIGGER");
-    need(!rule.strategies.empty(), "STRATEGY");
+    // A last resort is nothing to begin with.
+    need(std::any_of(rule.strategies.begin(), rule.strategies.end(),
+                     [](const syntax::Strategy& s) { return !s.is_last_resort; }),
+         "STRATEGY");
     if (missing.empty()) return;
     report(Code::kIncomplete, rule.name.span,
            "rule '" + rule.name.text + "' is incomplete: no " + missing,
@@ -253,6 +266,7 @@ class Checker {
     Strategy strategy;
     strategy.name = written.name.text;
     strategy.rule = rule;
+    strategy.is_last_resort = written.is_last_resort;
     const auto in_percent = [](const syntax::Number& n) { return n.value > 0 && n.value <= 100; };
     if (!in_percent(written.probability)) {
       report(Code::kProbabilityRange, written.probability.span,

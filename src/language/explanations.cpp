@@ -26,8 +26,8 @@ std::vector<Explanation> syntax_explanations() {
   return {
       {Code::kUnknownStatement, "a line begins with a word that is no statement",
        "Every line is one statement, and its first word says which: ROBOT, CYCLE, CONST, "
-       "COMPONENT, DEPENDENCY, IGNORE, SIGNAL, RULE, POLICIES, TRIGGER, STRATEGY or ADAPTATION, in "
-       "upper case. The line counts for nothing until the word is right.",
+       "COMPONENT, DEPENDENCY, IGNORE, INTERLOCK, SIGNAL, RULE, POLICIES, TRIGGER, STRATEGY or "
+       "ADAPTATION, in upper case. The line counts for nothing until the word is right.",
        "robot sunset\n", "ROBOT sunset\n"},
       {Code::kSyntax, "something else is expected at this place",
        "The statement is known, but its line is not built as this statement is. The message says "

@@ -27,6 +27,7 @@ class Collector {
       for (const syntax::Name& producer : d.producers) add(Kind::kComponent, producer);
     }
     for (const syntax::Name& topic : file_.ignored_topics) add(Kind::kTopic, topic);
+    for (const syntax::Interlock& i : file_.interlocks) expression(i.condition);
     for (const syntax::Signal& s : file_.signals) signal(s);
     for (const syntax::Rule& r : file_.rules) rule(r);
     std::stable_sort(all_.begin(), all_.end(), [](const Occurrence& a, const Occurrence& b) {

@@ -32,12 +32,19 @@ class Parser {
       bool (Parser::*parse)(Scanner&);
     };
     static constexpr std::array kStatements = {
-        Statement{"ROBOT", &Parser::robot},           Statement{"CYCLE", &Parser::cycle},
-        Statement{"CONST", &Parser::constant},        Statement{"COMPONENT", &Parser::component},
-        Statement{"DEPENDENCY", &Parser::dependency}, Statement{"IGNORE", &Parser::ignore},
-        Statement{"SIGNAL", &Parser::signal},         Statement{"RULE", &Parser::rule},
-        Statement{"POLICIES", &Parser::policies},     Statement{"TRIGGER", &Parser::trigger},
-        Statement{"STRATEGY", &Parser::strategy},     Statement{"ADAPTATION", &Parser::adaptation},
+        Statement{"ROBOT", &Parser::robot},
+        Statement{"CYCLE", &Parser::cycle},
+        Statement{"CONST", &Parser::constant},
+        Statement{"COMPONENT", &Parser::component},
+        Statement{"DEPENDENCY", &Parser::dependency},
+        Statement{"IGNORE", &Parser::ignore},
+        Statement{"INTERLOCK", &Parser::interlock},
+        Statement{"SIGNAL", &Parser::signal},
+        Statement{"RULE", &Parser::rule},
+        Statement{"POLICIES", &Parser::policies},
+        Statement{"TRIGGER", &Parser::trigger},
+        Statement{"STRATEGY", &Parser::strategy},
+        Statement{"ADAPTATION", &Parser::adaptation},
     };
     const Token head = s.next();
     if (head.kind == Token::Kind::kBad) {
@@ -64,13 +71,12 @@ class Parser {
     std::string near = lower_case ? upper : closest(upper, keywords);
     if (near.empty()) near = word_of_other_tools(upper);
     const std::string word = head.text.empty() ? std::string(source_.text(head.span)) : head.text;
-    read_.fail(
-        Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
-        !near.empty()
-            ? "did you mean " + near + "?"
-            : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY IGNORE SIGNAL RULE "
-              "POLICIES TRIGGER STRATEGY ADAPTATION",
-        replacement(head.span, near));
+    read_.fail(Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
+               !near.empty() ? "did you mean " + near + "?"
+                             : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY "
+                               "IGNORE INTERLOCK SIGNAL RULE "
+                               "POLICIES TRIGGER STRATEGY ADAPTATION",
+               replacement(head.span, near));
     broken();
     broken_declaration(near, s);
   }
@@ -214,6 +220,14 @@ class Parser {
       if (!topic) return false;
       file_.ignored_topics.push_back(std::move(*topic));
     } while (!s.at_end());
+    return true;
+  }
+
+  bool interlock(Scanner& s) {
+    auto condition = read_.expression(s);
+    if (!condition || !read_.line_ends(s)) return false;
+    std::string text(source_.text(condition->span));
+    file_.interlocks.push_back({std::move(*condition), std::move(text)});
     return true;
   }
 
@@ -376,14 +390,16 @@ class Parser {
     if (!probability) return false;
     const auto confidence = read_.number(s, "the confidence in it (1 to 100)");
     if (!confidence) return false;
+    const bool is_last_resort = s.peek().text == "LASTRESORT";
+    if (is_last_resort) s.next();
     std::optional<syntax::Expression> when;
     if (s.peek().text == "WHEN") {
       s.next();
       when = read_.expression(s);
       if (!when || !read_.line_ends(s)) return false;
     }
-    rule.strategies.back() = {std::move(*name), *probability, *confidence,
-                              std::move(when),  {},           false};
+    rule.strategies.back() = {std::move(*name), *probability, *confidence, std::move(when), {},
+                              is_last_resort,   false};
     return true;
   }
 

@@ -114,9 +114,10 @@ struct Adaptation {
 struct Strategy {
   std::string name;
   RuleId rule;
-  Probability success;    // paper: P_s,init
-  double confidence = 1;  // paper: c_p, in pseudo-counts
-  Program when;           // empty: always
+  Probability success;          // paper: P_s,init
+  double confidence = 1;        // paper: c_p, in pseudo-counts
+  Program when;                 // empty: always
+  bool is_last_resort = false;  // only when the rule's other strategies are exhausted
   std::vector<Adaptation> adaptations;
   Cycles impact;                        // paper: i_exec,s, the maximum over the adaptations
   std::vector<ComponentId> components;  // that it adapts, each once, ascending
@@ -142,6 +143,12 @@ struct Rule {
   syntax::Name declaration;             // where it stands
 };
 
+// Nothing is begun while the condition is not true.
+struct Interlock {
+  Program condition;
+  std::string text;  // as written
+};
+
 struct Dependency {
   ComponentId consumer;
   ComponentId producer;
@@ -160,6 +167,7 @@ struct RuleSet {
   std::vector<Strategy> strategies;
   std::vector<Dependency> dependencies;
   std::vector<std::string> ignored_topics;
+  std::vector<Interlock> interlocks;
 
   Cycles heaviest;  // paper: i_max, the highest impact of any strategy
 

@@ -143,6 +143,7 @@ struct Strategy {
   Number confidence;
   std::optional<Expression> when;
   std::vector<Adaptation> adaptations;
+  bool is_last_resort = false;
   bool has_broken_adaptation = false;
 };
 
@@ -175,6 +176,12 @@ struct Rule {
   bool has_broken_part = false;  // a POLICIES, TRIGGER or STRATEGY line is there and does not parse
 };
 
+// A condition without which nothing is done, and how it is written.
+struct Interlock {
+  Expression condition;
+  std::string text;
+};
+
 // A line that declares something and does not parse: what uses the name is not at fault.
 struct BrokenDeclaration {
   enum class Kind : std::uint8_t { kConstant, kComponent, kSignal };
@@ -193,6 +200,7 @@ struct File {
   std::vector<Component> components;
   std::vector<Dependency> dependencies;
   std::vector<Name> ignored_topics;
+  std::vector<Interlock> interlocks;
   std::vector<Signal> signals;
   std::vector<Rule> rules;
   std::vector<BrokenDeclaration> broken_declarations;

@@ -152,7 +152,7 @@ std::string signal_line() {
 }
 
 std::string declaration() {
-  switch (below(5)) {
+  switch (below(6)) {
     case 0:
       return words({"CONST", identifier() + maybe_blanks() + "=" + maybe_blanks() + expression(2)});
     case 1:
@@ -161,6 +161,8 @@ std::string declaration() {
       return words({"DEPENDENCY", component(), "ON", component(), maybe(component())});
     case 3:
       return words({"IGNORE", "TOPIC", ros_name(), maybe(ros_name())});
+    case 4:
+      return words({"INTERLOCK", expression(2)});
     default:
       return signal_line();
   }
@@ -250,8 +252,8 @@ void rule(File& file) {
   file.line(swapped ? trigger : policies);
   file.line(swapped ? policies : trigger);
   for (int strategies = below(3); strategies >= 0; --strategies) {
-    file.line(words(
-        {"STRATEGY", identifier(), number(), number(), maybe(words({"WHEN", expression(2)}))}));
+    file.line(words({"STRATEGY", identifier(), number(), number(), maybe("LASTRESORT"),
+                     maybe(words({"WHEN", expression(2)}))}));
     for (int adaptations = below(3); adaptations >= 0; --adaptations) file.line(adaptation_line());
     if (below(8) == 0) file.line(declaration());
   }

@@ -51,8 +51,10 @@ class Writer {
     all(a.component, std::string(keyword(a.type)), a.subject, a.topic, a.value, a.impact);
   }
   void put(const syntax::Strategy& s) {
-    all(s.name, s.probability, s.confidence, s.when, s.adaptations, s.has_broken_adaptation);
+    all(s.name, s.probability, s.confidence, s.when, s.adaptations, s.is_last_resort,
+        s.has_broken_adaptation);
   }
+  void put(const syntax::Interlock& i) { put(i.condition); }  // its text is how it is written
   void put(const syntax::Policies::Hold& h) { all(h.needed, h.window); }
   void put(const syntax::Policies::Attempts& a) { put(a.count); }
   void put(const syntax::Policies& p) {
@@ -64,8 +66,8 @@ class Writer {
   }
   void put(const File::Cycle& c) { put(c.length); }
   void put(const File& f) {
-    all(f.robot, f.cycle, f.constants, f.components, f.dependencies, f.ignored_topics, f.signals,
-        f.rules);
+    all(f.robot, f.cycle, f.constants, f.components, f.dependencies, f.ignored_topics, f.interlocks,
+        f.signals, f.rules);
   }
 
  private:

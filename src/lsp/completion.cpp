@@ -81,7 +81,7 @@ class Completion {
   std::vector<Proposal> find() {
     if (words_.empty()) {
       return keywords({"RULE", "POLICIES", "TRIGGER", "STRATEGY", "ADAPTATION", "COMPONENT",
-                       "SIGNAL", "CONST", "DEPENDENCY", "IGNORE", "ROBOT", "CYCLE"});
+                       "SIGNAL", "CONST", "DEPENDENCY", "IGNORE", "INTERLOCK", "ROBOT", "CYCLE"});
     }
     if (const OpenCall call = open_call(before_); call.function != nullptr) return argument(call);
     const std::string& statement = words_.front();
@@ -97,13 +97,13 @@ class Completion {
       return words_.size() == 1 ? keywords({"ERROR", "WARNING", "NON_CRITICAL"})
                                 : keywords({"FOR", "HOLD", "COOLDOWN", "ATTEMPTS", "ON_CHANGE"});
     }
-    if (statement == "STRATEGY" && words_.size() == 4) return keywords({"WHEN"});
+    if (statement == "STRATEGY" && words_.size() == 4) return keywords({"WHEN", "LASTRESORT"});
     if (statement == "DEPENDENCY") {
       if (words_.size() == 2) return keywords({"ON"});
       return components();
     }
-    const bool has_expression =
-        statement == "TRIGGER" || statement == "CONST" || statement == "STRATEGY";
+    const bool has_expression = statement == "TRIGGER" || statement == "CONST" ||
+                                statement == "STRATEGY" || statement == "INTERLOCK";
     return has_expression ? expression() : std::vector<Proposal>{};
   }
 

@@ -30,22 +30,44 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
       analyzer_(knowledge_),
       planner_(std::move(planner)),
       executor_(knowledge_),
+      governor_(knowledge_, options.governor, options.start),
       autonomy_(options.autonomy),
+      settling_(options.settling),
       now_(options.start),
       held_back_(rules.rules.size()) {
   knowledge_.beliefs.set_forgetting(options.forgetting);
   knowledge_.couplings.set_forgetting(options.forgetting);
 }
 
+void Manager::resume(Interrupted interrupted) {
+  if (autonomy_ == Autonomy::kAdvise) return;
+  const StrategyId strategy = interrupted.strategy;
+  executor_.resume(std::move(interrupted), now_, later(now_, settling_));
+  governor_.began(strategy, now_);
+}
+
 std::vector<Command> Manager::step(Time now, std::span<const Observation> observations) {
   knowledge_.events.clear();
+  take_in(now, observations);
   std::vector<Command> commands;
+  if (analyzer_.anything_active()) {
+    react(commands);
+  } else {
+    executor_.advance(now_, commands);  // lets go of what has just succeeded
+    next_plan_ = kNever;
+  }
+  governor_.note(knowledge_.events);
+  return commands;
+}
+
+void Manager::take_in(Time now, std::span<const Observation> observations) {
   for (const Observation& observation : observations) {
     // Late observations of an earlier time count for now: time does not go back.
     now_ = std::max(now_, std::min(observation.at, now));
     monitor_.advance(now_);
     monitor_.observe(observation, now_);
     if (const auto* reply = std::get_if<Reply>(&observation.what)) executor_.answered(*reply, now_);
+    if (const auto* order = std::get_if<Order>(&observation.what)) obey(*order, now_);
     news_ |= is_news(observation);
     analyzer_.advance(now_);
   }
@@ -53,12 +75,11 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
   knowledge_.now = now_;
   monitor_.advance(now_);
   analyzer_.advance(now_);
-  if (!analyzer_.anything_active()) {
-    next_plan_ = kNever;
-    return commands;
-  }
+  governor_.advance(now_);
   news_ |= !knowledge_.events.empty();
+}
 
+void Manager::react(std::vector<Command>& commands) {
   // Each stage can give the others something to do at once: a failed strategy makes room for the
   // next. A chain of more rounds than this goes on in the next step.
   constexpr int kRounds = 8;
@@ -72,19 +93,48 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
     if (said == knowledge_.events.size() && asked == commands.size()) break;
     news_ = true;
   }
-  return commands;
+}
+
+void Manager::obey(const Order& order, Time now) {
+  if (const auto* run = std::get_if<RunStrategy>(&order.what))
+    refresh_conditions(run->strategy, now);
+  if (auto reason = governor_.objection(order, autonomy_))
+    return knowledge_.tell(now, OrderRefused{order, std::move(*reason)});
+  knowledge_.tell(now, OrderAccepted{order});
+  governor_.obey(order, now);
+  if (std::holds_alternative<Pause>(order.what)) {
+    abandon_all("paused by " + order.author, now);
+  } else if (const auto* dry_run = std::get_if<SetDryRun>(&order.what)) {
+    autonomy_ = dry_run->is_on ? Autonomy::kAdvise : Autonomy::kAct;
+    for (const RuleId id : knowledge_.states.active())
+      knowledge_.states.state(id).is_advised = false;
+  } else if (const auto* run = std::get_if<RunStrategy>(&order.what)) {
+    begin(run->strategy, now);
+  }
+}
+
+void Manager::abandon_all(const std::string& reason, Time now) {
+  const std::vector<RuleId> active = knowledge_.states.active();
+  for (const RuleId id : active) {
+    const auto& attempt = knowledge_.states[id].attempt;
+    if (!attempt) continue;
+    knowledge_.tell(now, StrategyAbandoned{attempt->strategy, reason});
+    analyzer_.abandon(id, now);
+  }
 }
 
 void Manager::plan(Time now) {
   const std::vector<RuleId> failures = analyzer_.plannable(now);
   for (const RuleId failure : failures) {
-    for (const StrategyId strategy : knowledge_.rules[failure].strategies) {
-      monitor_.refresh(knowledge_.rules[strategy].when, now);
-    }
+    for (const StrategyId strategy : knowledge_.rules[failure].strategies)
+      refresh_conditions(strategy, now);
   }
-  for (const Verdict& verdict : planner_->plan(failures, knowledge_)) {
+  for (const Verdict& verdict : allowed_plan(failures, now)) {
     if (verdict.chosen) {
-      carry_out(verdict, now);
+      // What was allowed when the plan was made may have been the last of its kind.
+      const bool has_to_wait =
+          governor_.holds_back(*verdict.chosen, now) || governor_.withholds(*verdict.chosen, now);
+      if (!has_to_wait) carry_out(verdict, now);
     } else if (verdict.is_spent) {
       hold_back(verdict, now);
       analyzer_.round_is_spent(verdict.rule, now);
@@ -94,6 +144,26 @@ void Manager::plan(Time now) {
   }
   news_ = false;
   next_plan_ = next_planning(now);
+}
+
+// What has to be true for the strategy to be begun.
+void Manager::refresh_conditions(StrategyId strategy, Time now) {
+  if (strategy.index < knowledge_.rules.strategies.size())
+    monitor_.refresh(knowledge_.rules[strategy].when, now);
+  for (const Interlock& interlock : knowledge_.rules.interlocks)
+    monitor_.refresh(interlock.condition, now);
+}
+
+// A strategy that may not be begun makes room for the next best.
+std::vector<Verdict> Manager::allowed_plan(const std::vector<RuleId>& failures, Time now) {
+  governor_.begin_planning();
+  while (true) {
+    std::vector<Verdict> verdicts = planner_->plan(failures, knowledge_);
+    bool is_any_withheld = false;
+    for (const Verdict& verdict : verdicts)
+      is_any_withheld |= verdict.chosen && governor_.withholds(*verdict.chosen, now);
+    if (!is_any_withheld) return verdicts;
+  }
 }
 
 // While a failure waits for its turn it is planned anew once per cycle, and when its back-off ends.
@@ -112,6 +182,8 @@ void Manager::carry_out(const Verdict& verdict, Time now) {
   const StrategyId strategy = *verdict.chosen;
   held_back_[verdict.rule.index] = {};
   const bool is_dry = autonomy_ == Autonomy::kAdvise;
+  if (!is_dry && governor_.awaits_approval({strategy, verdict.candidates, verdict.suspects}, now))
+    return;
   knowledge_.tell(
       now, StrategyChosen{strategy, verdict.candidates, plan::explained_by(strategy, knowledge_),
                           is_dry, verdict.suspects});
@@ -119,9 +191,14 @@ void Manager::carry_out(const Verdict& verdict, Time now) {
     knowledge_.states.state(verdict.rule).is_advised = true;
     return;
   }
+  begin(strategy, now);
+}
+
+void Manager::begin(StrategyId strategy, Time now) {
   for (const Adaptation& adaptation : knowledge_.rules[strategy].adaptations)
     monitor_.refresh(adaptation.value, now);
   executor_.begin(strategy, now);
+  governor_.began(strategy, now);
 }
 
 void Manager::hold_back(const Verdict& verdict, Time now) {
@@ -133,8 +210,8 @@ void Manager::hold_back(const Verdict& verdict, Time now) {
 }
 
 Time Manager::next_deadline() const {
-  return std::min(
-      {monitor_.next_deadline(), analyzer_.next_deadline(), executor_.next_deadline(), next_plan_});
+  return std::min({monitor_.next_deadline(), analyzer_.next_deadline(), executor_.next_deadline(),
+                   governor_.next_deadline(), next_plan_});
 }
 
 }  // namespace culprit

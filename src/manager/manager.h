@@ -13,17 +13,13 @@
 
 #include "analyze/analyzer.h"
 #include "execute/executor.h"
+#include "execute/governor.h"
 #include "knowledge/knowledge.h"
 #include "manager/managing_system.h"
 #include "monitor/monitor.h"
 #include "plan/planner.h"
 
 namespace culprit {
-
-enum class Autonomy : std::uint8_t {
-  kAct,
-  kAdvise  // dry run: strategies are chosen and said, and nothing is done
-};
 
 class Manager : public ManagingSystem {
  public:
@@ -36,6 +32,7 @@ class Manager : public ManagingSystem {
     Duration settling = kDiscovery;  // for so long nothing is called absent because it was not seen
     // What was learned n outcomes ago weighs forgetting^n; 1: nothing is forgotten.
     double forgetting = 1;
+    Governor::Options governor{};
   };
 
   // `rules` must outlive the manager and keep its address.
@@ -46,6 +43,8 @@ class Manager : public ManagingSystem {
   Time next_deadline() const override;
   std::span<const Event> events() const override { return knowledge_.events; }
   const Knowledge& knowledge() const { return knowledge_; }
+  const Governor& governor() const { return governor_; }
+  Autonomy autonomy() const { return autonomy_; }
 
   // The failures that wait for a decision now, ascending.
   std::vector<RuleId> plannable() const { return analyzer_.plannable(now_); }
@@ -55,9 +54,19 @@ class Manager : public ManagingSystem {
   void set_coupling(RuleId cause, RuleId effect, Coupling coupling) {
     knowledge_.couplings.set(cause, effect, coupling);
   }
+  // A strategy that an earlier process left in the middle is finished, once the robot had the time
+  // of settling to show itself. Before the first step; one for each rule at most.
+  void resume(Interrupted interrupted);
 
  private:
+  void take_in(Time now, std::span<const Observation> observations);
+  void react(std::vector<Command>& commands);
+  void obey(const Order& order, Time now);
+  void refresh_conditions(StrategyId strategy, Time now);
+  void abandon_all(const std::string& reason, Time now);
   void plan(Time now);
+  std::vector<Verdict> allowed_plan(const std::vector<RuleId>& failures, Time now);
+  void begin(StrategyId strategy, Time now);
   void carry_out(const Verdict& verdict, Time now);
   void hold_back(const Verdict& verdict, Time now);
   Time next_planning(Time now) const;
@@ -67,7 +76,9 @@ class Manager : public ManagingSystem {
   Analyzer analyzer_;
   std::unique_ptr<const Planner> planner_;
   Executor executor_;
+  Governor governor_;
   Autonomy autonomy_;
+  Duration settling_;
   Time now_;
   bool news_ = false;        // something a plan depends on changed since the last plan
   Time next_plan_ = kNever;  // while failures are held back

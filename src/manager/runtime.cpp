@@ -9,10 +9,31 @@ void Runtime::run(const std::atomic<bool>& stop, Time end) {
   while (!stop && robot_.now() < end) {
     observations.clear();
     robot_.observe(std::min(end, manager_.next_deadline()), observations);
-    for (const Command& command : manager_.step(robot_.now(), observations))
-      robot_.execute(command);
-    if (!manager_.events().empty() && on_events) on_events(manager_.events());
+    take_orders(observations);
+    step(observations);
   }
+}
+
+void Runtime::step(std::vector<Observation>& observations) {
+  const Time now = robot_.now();
+  const std::vector<Command> commands = manager_.step(now, observations);
+  if (on_step) on_step({now, observations, commands, manager_.events()});
+  for (const Command& command : commands) robot_.execute(command);
+  if (!manager_.events().empty() && on_events) on_events(manager_.events());
+}
+
+void Runtime::submit(Order order) {
+  {
+    const std::lock_guard lock(mutex_);
+    orders_.push_back(std::move(order));
+  }
+  robot_.interrupt();
+}
+
+void Runtime::take_orders(std::vector<Observation>& observations) {
+  const std::lock_guard lock(mutex_);
+  for (Order& order : orders_) observations.push_back({robot_.now(), std::move(order)});
+  orders_.clear();
 }
 
 }  // namespace culprit

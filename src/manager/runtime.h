@@ -7,6 +7,8 @@
 
 #include <atomic>
 #include <functional>
+#include <mutex>
+#include <vector>
 
 #include "manager/managing_system.h"
 #include "robot/robot.h"
@@ -18,6 +20,16 @@ class Runtime {
   // Both must outlive the runtime.
   Runtime(ManagingSystem& manager, Robot& robot) : manager_(manager), robot_(robot) {}
 
+  // Called after every step, before its commands go out, on the thread of run(). It may take the
+  // observations.
+  struct Step {
+    Time now;
+    std::vector<Observation>& observations;
+    std::span<const Command> commands;
+    std::span<const Event> events;
+  };
+  std::function<void(const Step&)> on_step;
+
   // Called after every step in which something happened, on the thread of run(). It must not block.
   std::function<void(std::span<const Event>)> on_events;
 
@@ -25,9 +37,20 @@ class Runtime {
   // to interrupt the robot's waiting.
   void run(const std::atomic<bool>& stop, Time end = kNever);
 
+  // One step, with what was observed otherwise.
+  void step(std::vector<Observation>& observations);
+
+  // Gives the managing system an order, with its next step, which comes at once. From any thread,
+  // as long as the runtime lives; what is submitted while run() does not run waits for it.
+  void submit(Order order);
+
  private:
+  void take_orders(std::vector<Observation>& observations);
+
   ManagingSystem& manager_;
   Robot& robot_;
+  std::mutex mutex_;
+  std::vector<Order> orders_;  // guarded by mutex_
 };
 
 }  // namespace culprit

@@ -7,15 +7,23 @@
 namespace culprit::test {
 
 TestRobot::TestRobot(const std::string& text, std::unique_ptr<const Planner> planner,
-                     Autonomy autonomy) {
+                     Manager::Options options) {
   const Source source("test.rules", text);
   Checked checked = check(source);
   for (const Diagnostic& d : checked.diagnostics) {
     if (d.severity == Severity::kError) ADD_FAILURE() << render(d, source);
   }
   rules_ = std::make_unique<RuleSet>(checked.rules.value_or(RuleSet{}));
-  manager_ =
-      std::make_unique<Manager>(*rules_, std::move(planner), Manager::Options{autonomy, now});
+  options.start = now;
+  manager_ = std::make_unique<Manager>(*rules_, std::move(planner), options);
+}
+
+void TestRobot::replace_manager(std::unique_ptr<Manager> manager) {
+  manager_ = std::move(manager);
+  inbox_.clear();
+  for (const auto& [name, component] : components_) {
+    if (component.process == ProcessState::kRunning) appear(component);
+  }
 }
 
 TestRobot::Component& TestRobot::add(const std::string& name, std::vector<std::string> needs,
@@ -115,13 +123,15 @@ void TestRobot::run_for(Duration time) {
 
 void TestRobot::step() {
   const std::vector<Command> commands = manager_->step(now, inbox_);
-  inbox_.clear();
   for (const Event& event : manager_->events()) {
     events.push_back(event);
     const std::string line = describe(event, *rules_);
     if (!line.empty()) said.push_back(line);
   }
   if (after_step) after_step();
+  const bool lives = !before_commands || before_commands(inbox_, commands);
+  inbox_.clear();
+  if (!lives) return;
   for (const Command& command : commands) {
     asked.push_back(rules_->components[command.component.index].name + ": " + to_string(command));
     later(5ms, [this, command] { serve(command); });

@@ -25,7 +25,11 @@ class TestRobot {
  public:
   explicit TestRobot(const std::string& rules,
                      std::unique_ptr<const Planner> planner = std::make_unique<BayesPlanner>(),
-                     Autonomy autonomy = Autonomy::kAct);
+                     Autonomy autonomy = Autonomy::kAct)
+      : TestRobot(rules, std::move(planner), options_of(autonomy)) {}
+  // `options.start` is when the robot's time begins.
+  TestRobot(const std::string& rules, std::unique_ptr<const Planner> planner,
+            Manager::Options options);
 
   struct Component {
     std::string name;
@@ -55,6 +59,13 @@ class TestRobot {
       const std::string& name);  // -9: its process is gone, its node lingers until its lease ends
   void stop(const std::string& name);  // -STOP
   void run_for(Duration time);
+  void order(Order order) { tell(std::move(order)); }
+  // An observation that comes now.
+  template <class What>
+  void tell(What what) {
+    observe(std::move(what));
+    step();
+  }
 
   // Says each node, topic and state to the manager, as discovery does. Call once, after add().
   void discover();
@@ -73,10 +84,20 @@ class TestRobot {
 
   // Called after each step of the manager.
   std::function<void()> after_step;
+  // Called after each step and before its commands are served. If it gives false they never are:
+  // the manager died with them.
+  std::function<bool(std::vector<Observation>&, std::span<const Command>)> before_commands;
+  // Another process of culprit takes over: it knows nothing, and discovers the robot anew.
+  void replace_manager(std::unique_ptr<Manager> manager);
 
   Time now{};
 
  private:
+  static Manager::Options options_of(Autonomy autonomy) {
+    Manager::Options options;
+    options.autonomy = autonomy;
+    return options;
+  }
   struct Topic {
     std::string name;
     std::string producer;

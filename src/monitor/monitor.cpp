@@ -373,6 +373,11 @@ void Monitor::on(Time at, const NodeVanished& seen) {
   update_alive(*component, at, "its node left the graph");
 }
 
+void Monitor::on(Time, const NamesakesSeen& seen) {
+  const auto component = knowledge_.graph.component_of(seen.node);
+  if (component) knowledge_.components[*component].namesakes = seen.others;
+}
+
 void Monitor::on(Time, const EndpointAppeared& seen) {
   knowledge_.graph.endpoint_appeared(seen.node, seen.kind, seen.name);
 }

@@ -68,6 +68,7 @@ class Monitor {
 
   void on(Time at, const NodeAppeared& seen);
   void on(Time at, const NodeVanished& seen);
+  void on(Time at, const NamesakesSeen& seen);
   void on(Time at, const EndpointAppeared& seen);
   void on(Time at, const EndpointVanished& seen);
   void on(Time at, const SampleArrived& seen);
@@ -78,6 +79,7 @@ class Monitor {
   void on(Time at, const ProcessSeen& seen);
   void on(Time at, const Probed& seen);
   void on(Time, const Reply&) {}  // the executor's
+  void on(Time, const Order&) {}  // the governor's
   void on(Time at, const LinkTrouble& seen);
 
   void read_signal(SignalId signal, const Value& value, Time at);

@@ -90,6 +90,12 @@ void PaperPlanner::examine(Candidate& candidate, Criticality level, const Knowle
     candidate.remark = std::move(invalid->reason);
     return;
   }
+  if (const std::string& reason = knowledge.withheld[candidate.strategy.index]; !reason.empty()) {
+    candidate.excluded = Condition::kWithheld;
+    candidate.component = strategy.components.front();
+    candidate.remark = reason;
+    return;
+  }
   for (const ComponentId component : strategy.components) {
     candidate.component = component;
     if (knowledge.states.reservation(component) != nullptr) {

@@ -9,6 +9,16 @@ bool has_lifecycle(Lifecycle state) {
   return state != Lifecycle::kUnknown && state != Lifecycle::kFinalized;
 }
 
+bool is_left_alone(const Adaptation& adaptation, const Knowledge& knowledge) {
+  if (!knowledge.rivals.is_anything_left_alone()) return false;
+  const bool is_mode = adaptation.type == AdaptationType::kChangeMode;
+  const bool is_parameter = adaptation.type == AdaptationType::kSetParameter ||
+                            adaptation.type == AdaptationType::kChangeCommunication;
+  if (!is_mode && !is_parameter) return false;
+  return knowledge.rivals.is_left_alone({adaptation.component, is_mode ? "" : adaptation.subject},
+                                        knowledge.began(adaptation.component));
+}
+
 // Why `adaptation` is invalid; empty if it is not.
 std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
@@ -26,6 +36,7 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
       break;
   }
   if (!is_alive) return "is not alive";
+  if (is_left_alone(adaptation, knowledge)) return "is set back by something else";
   switch (adaptation.type) {
     case AdaptationType::kActivate:
       if (state.lifecycle == Lifecycle::kActive) return "is active already";
@@ -47,6 +58,11 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
 }  // namespace
 
 std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge) {
+  const bool is_at_last_resort = knowledge.states[strategy.rule].is_at_last_resort;
+  if (strategy.is_last_resort != is_at_last_resort) {
+    return Invalid{strategy.adaptations.front().component,
+                   is_at_last_resort ? "only the last resort is left" : "it is the last resort"};
+  }
   if (!strategy.when.empty()) {
     const Slot when = evaluate(strategy.when, knowledge.signals.slots());
     if (!when.known)

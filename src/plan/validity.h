@@ -1,7 +1,8 @@
 // Does a strategy make sense in the present state of the system? (paper, Algorithm 1, condition 2)
 //
 // An adaptation is valid if it would change something and can be carried out:
-//   - set, increase, decrease parameter, change mode, call: its component is alive;
+//   - set, increase, decrease parameter, change mode, call: its component is alive, and nothing
+//     else sets back what it sets;
 //   - change communication: likewise, and the parameter does not name the topic already;
 //   - activate: its component is alive, has a lifecycle, and is not active;
 //   - deactivate: its component is alive and active;
@@ -9,8 +10,8 @@
 //   - redeploy: it has a LAUNCH command;
 //   - start: it has a LAUNCH command and is not there;
 //   - stop: it is there.
-// A strategy is valid if each of its adaptations is, given the ones before it, and its WHEN
-// condition is true.
+// A strategy is valid if each of its adaptations is, given the ones before it, its WHEN condition
+// is true, and it is a LASTRESORT just when nothing else is left.
 #pragma once
 
 #include <optional>

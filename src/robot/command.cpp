@@ -31,6 +31,12 @@ struct Describe {
 
 }  // namespace
 
+bool is_read(const Command& command) {
+  return std::holds_alternative<ReadLifecycle>(command.what) ||
+         std::holds_alternative<ReadParameter>(command.what) ||
+         std::holds_alternative<ReadMode>(command.what);
+}
+
 std::string to_string(const Command& command) { return std::visit(Describe{}, command.what); }
 
 }  // namespace culprit

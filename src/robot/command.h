@@ -38,7 +38,9 @@ struct CallService {
 struct ChangeMode {
   std::string mode;
 };
+// Read back as kUnknownMode while what its parts are in fits no mode.
 struct ReadMode {};
+inline constexpr const char* kUnknownMode = "unknown";
 
 // Ends the component's process: politely, then harder, until it is proven gone. Done when it is
 // gone, also if it was.
@@ -50,6 +52,15 @@ struct StopProcess {
 // is seen there.
 struct StartProcess {};
 
+// What a command is for, for whoever has to finish it or bring back what it changed.
+struct Purpose {
+  StrategyId strategy;
+  std::uint32_t adaptation = 0;  // index in Strategy::adaptations
+  bool undoes = false;           // it brings back what an earlier command changed
+  // What it is going to change, as read before; of a redeploy the lifecycle state to come back to.
+  decltype(Reply::value) before{};
+};
+
 struct Command {
   CommandId id;
   ComponentId component;
@@ -57,7 +68,11 @@ struct Command {
                ReadMode, StopProcess, StartProcess>
       what;
   Duration timeout{};  // after which the adapter answers kTimedOut
+  Purpose purpose{};
 };
+
+// Whether it only looks.
+bool is_read(const Command& command);
 
 // What is asked, in words: "set exposure to 0.5".
 std::string to_string(const Command& command);

@@ -1,8 +1,8 @@
 // What a robot tells: the only way in for facts about the managed system.
 //
 // Adapters (ros2, process, simulation, recorded bags) produce observations, the monitor consumes
-// them. Things that the rule set names come with their number in the rule set; the rest of the
-// robot's graph comes with its names.
+// them; people's orders come the same way. Things that the rule set names come with their number in
+// the rule set; the rest of the robot's graph comes with its names.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 
 #include "language/ids.h"
 #include "language/value.h"
+#include "robot/order.h"
 #include "robot/time.h"
 
 namespace culprit {
@@ -25,6 +26,13 @@ struct NodeAppeared {
 // A node left the graph: it said good-bye, or its lease ran out.
 struct NodeVanished {
   std::string node;
+};
+
+// How many other nodes there are with the name of this one, that may be alive. Whoever speaks to
+// that name does not know whom it reaches.
+struct NamesakesSeen {
+  std::string node;
+  int others = 0;
 };
 
 enum class EndpointKind : std::uint8_t { kPublisher, kSubscriber, kServer, kClient };
@@ -140,7 +148,7 @@ struct Observation {
   Time at;
   std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived,
                SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply,
-               LinkTrouble>
+               LinkTrouble, Order, NamesakesSeen>
       what;
 };
 

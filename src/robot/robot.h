@@ -9,7 +9,7 @@
 
 namespace culprit {
 
-// One thread calls all members of a Robot.
+// One thread calls all members of a Robot but interrupt().
 class Robot {
  public:
   virtual ~Robot() = default;
@@ -23,6 +23,10 @@ class Robot {
 
   // Begins to carry out `command` and returns at once; a Reply follows as an observation.
   virtual void execute(const Command& command) = 0;
+
+  // Lets the present or the next observe() return at once. From any thread. A robot that moves its
+  // clock instead of waiting has nothing to do.
+  virtual void interrupt() {}
 };
 
 }  // namespace culprit

@@ -65,6 +65,7 @@ void ComponentLink::service_seen(const std::string& service, const std::string& 
     read_lifecycle();
   }
   if (service == node_ + "/get_parameters") read_parameters();
+  if (service == node_ + "/change_mode") modes();
 }
 
 // ---- clients

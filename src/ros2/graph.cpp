@@ -174,6 +174,7 @@ void Graph::claim(const GuidPrefix& prefix, const std::string& name) {
     tell_left(name, node);
   }
   tell_joined(name, node);
+  count_namesakes(name, node);
 }
 
 void Graph::disclaim(const GuidPrefix& prefix, const std::string& name) {
@@ -182,9 +183,10 @@ void Graph::disclaim(const GuidPrefix& prefix, const std::string& name) {
   if (node.told == prefix) tell_left(name, node);
   if (node.claimants.empty()) {
     nodes_.erase(name);
-  } else if (!node.told) {
-    tell_joined(name, node);
+    return;
   }
+  if (!node.told) tell_joined(name, node);
+  count_namesakes(name, node);
 }
 
 void Graph::show(const Guid& guid) {
@@ -263,6 +265,17 @@ void Graph::warn_of_duplicate(const std::string& name, const Node& node) {
   pid_of(newer);
   tell(GraphTrouble{"two nodes have the name " + name + ": one in " + where(describe(name, older)) +
                     ", one in " + where(describe(name, newer)) + "; the latter counts"});
+}
+
+// Told only when it changes. A predecessor whose lease still runs is none.
+void Graph::count_namesakes(const std::string& name, Node& node) {
+  int others = -1;
+  for (const GuidPrefix& claimant : node.claimants) {
+    const int pid = claimant == node.told ? 0 : pid_of(peers_.at(claimant));
+    const bool is_gone = pid != 0 && options_.is_running && !options_.is_running(pid);
+    if (!is_gone) ++others;
+  }
+  if (std::exchange(node.namesakes, others) != others) tell(NodeNamesakes{name, others});
 }
 
 void Graph::warn_of_limit(const char* what) {

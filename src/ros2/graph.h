@@ -64,10 +64,16 @@ struct EndpointLeft {
   EndpointKind kind;
   std::string name;
 };
+// How many nodes there are beside the one that counts, in processes that are not known to be gone.
+struct NodeNamesakes {
+  std::string node;
+  int others = 0;
+};
 struct GraphTrouble {
   std::string text;
 };
-using GraphChange = std::variant<NodeJoined, NodeLeft, EndpointJoined, EndpointLeft, GraphTrouble>;
+using GraphChange =
+    std::variant<NodeJoined, NodeLeft, EndpointJoined, EndpointLeft, NodeNamesakes, GraphTrouble>;
 
 class Graph {
  public:
@@ -132,6 +138,7 @@ class Graph {
     std::vector<GuidPrefix> claimants;  // who says it holds this node; the last one counts
     std::optional<GuidPrefix> told;     // whose node the listener knows
     std::map<EdgeKey, Edge> edges;      // that the listener knows
+    int namesakes = 0;                  // that the listener knows
   };
 
   void add(const ParticipantInfo& info);
@@ -153,6 +160,7 @@ class Graph {
   int pid_of(Peer& peer);
   GraphNode describe(const std::string& name, const Peer& peer) const;
   void warn_of_duplicate(const std::string& name, const Node& node);
+  void count_namesakes(const std::string& name, Node& node);
   void warn_of_limit(const char* what);
   void tell(const GraphChange& change) const;
 

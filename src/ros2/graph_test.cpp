@@ -111,6 +111,8 @@ class Watched {
     }
     if (const auto* c = std::get_if<EndpointLeft>(&change))
       return "-" + c->node + " " + kind(c->kind) + c->name;
+    if (const auto* c = std::get_if<NodeNamesakes>(&change))
+      return "=" + c->node + " has " + std::to_string(c->others) + " namesakes";
     return "!" + std::get<GraphTrouble>(change).text;
   }
 
@@ -266,9 +268,10 @@ TEST(Graph, TwoLivingNodesOfOneNameAreTrouble) {
       watched.told(),
       ElementsAre(
           "!two nodes have the name /a: one in process 10, one in process 20; the latter counts",
-          "-/a publishes /t", "-/a", "+/a in 20"));
+          "-/a publishes /t", "-/a", "+/a in 20", "=/a has 1 namesakes"));
   watched.leaves(2);
-  EXPECT_THAT(watched.told(), ElementsAre("-/a", "+/a in 10", "+/a publishes /t"));
+  EXPECT_THAT(watched.told(),
+              ElementsAre("-/a", "+/a in 10", "+/a publishes /t", "=/a has 0 namesakes"));
 }
 
 TEST(Graph, AnEndedProcessIsGoneAtOnce) {

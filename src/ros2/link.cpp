@@ -6,6 +6,7 @@
 #include <signal.h>
 
 #include "ros2/process_finder.h"
+#include "ros2/services.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -16,14 +17,16 @@ constexpr Duration kPublishPeriod = std::chrono::seconds(1);
 // Services that managers and tools use, of every node or of every managed node: who uses them
 // depends on nobody.
 bool is_for_management(std::string_view service) {
-  constexpr std::array<std::string_view, 14> kNames = {
+  constexpr std::array<std::string_view, 17> kNames = {
       "get_parameters",       "get_parameter_types",
       "set_parameters",       "set_parameters_atomically",
       "describe_parameters",  "list_parameters",
       "change_state",         "get_state",
       "get_available_states", "get_available_transitions",
       "get_transition_graph", "get_type_description",
-      "get_logger_levels",    "set_logger_levels"};
+      "get_logger_levels",    "set_logger_levels",
+      "change_mode",          "get_mode",
+      "get_available_modes"};
   const std::string_view last = service.substr(service.rfind('/') + 1);
   return std::find(kNames.begin(), kNames.end(), last) != kNames.end();
 }
@@ -125,13 +128,14 @@ void Link::on_change(const GraphChange& change) {
   if (const auto* joined = std::get_if<NodeJoined>(&change)) {
     on_joined(joined->node);
   } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
-    probed_.erase(left->node);
-    inbox_.put(NodeVanished{left->node});
+    on_left(left->node);
   } else if (const auto* endpoint = std::get_if<EndpointJoined>(&change)) {
     on_endpoint(endpoint->node, endpoint->endpoint);
   } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
     if (is_service(gone->kind) && is_for_management(gone->name)) return;
     inbox_.put(EndpointVanished{gone->node, gone->kind, gone->name});
+  } else if (const auto* namesakes = std::get_if<NodeNamesakes>(&change)) {
+    inbox_.put(NamesakesSeen{namesakes->node, namesakes->others});
   } else if (const auto* trouble = std::get_if<GraphTrouble>(&change)) {
     inbox_.put(LinkTrouble{trouble->text});
   }
@@ -139,6 +143,7 @@ void Link::on_change(const GraphChange& change) {
 
 void Link::on_joined(const GraphNode& node) {
   inbox_.put(NodeAppeared{node.name, node.pid});
+  pids_[node.name] = node.pid;
   const auto component = binding_.bind(node.name);
   if (!component) return;
   make_link(*component, node.name);
@@ -149,10 +154,32 @@ void Link::on_joined(const GraphNode& node) {
   }
 }
 
+void Link::on_left(const std::string& node) {
+  probed_.erase(node);
+  pids_.erase(node);
+  const auto managed = systems_.extract(node);
+  if (managed) {
+    for (const std::string& system : managed.mapped()) inbox_.put(NodeVanished{system});
+  }
+  inbox_.put(NodeVanished{node});
+}
+
+// A system of system_modes is no node: its mode manager offers its services, and it is there as
+// long as the manager is.
+void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
+  const std::string system = service.name.substr(0, service.name.rfind('/'));
+  const auto component = binding_.bind(system);
+  if (system == manager || !component || rules_[*component].node != system) return;
+  systems_[manager].push_back(system);
+  inbox_.put(NodeAppeared{system, pids_[manager]});
+  make_link(*component, system)->service_seen(service.name, service.type);
+}
+
 void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
   if (endpoint.kind == EndpointKind::kServer) {
     const auto component = binding_.bind(node);
     if (component) make_link(*component, node)->service_seen(endpoint.name, endpoint.type);
+    if (endpoint.type == srv::ChangeMode::kType) on_system(node, endpoint);
   }
   if (endpoint.kind == EndpointKind::kPublisher) {
     const auto watch = watches_.find(endpoint.name);

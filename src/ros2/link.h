@@ -65,6 +65,8 @@ class Link {
   // On the executor's thread.
   void on_change(const GraphChange& change);
   void on_joined(const GraphNode& node);
+  void on_left(const std::string& node);
+  void on_system(const std::string& manager, const GraphEndpoint& service);
   void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
   void on_parameter_event(const msg::ParameterEvent& event);
   void probe();
@@ -87,6 +89,8 @@ class Link {
   std::unique_ptr<DiagnosticsWatch> diagnostics_watch_;
   std::unique_ptr<Subscription> parameter_events_;
   std::map<std::string, ComponentId> probed_;  // nodes whose process is not known
+  std::map<std::string, int> pids_;            // of nodes that are there; 0 where it is not known
+  std::map<std::string, std::vector<std::string>> systems_;  // by the mode manager's node
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;
 

@@ -179,10 +179,15 @@ std::string LineWriter::write() {
                 std::string("it is ") + describe(clause.part));
     }
   }
-  for (const auto& [member, value] : statement_.items()) {
-    const bool is_off = value == false;
-    for (const Clause& clause : form->free) {
-      if (clause.member == member && !(is_off && clause.part == Part::kFlag)) add(clause);
+  // An expression goes on to the end of its line.
+  for (const bool is_last : {false, true}) {
+    for (const auto& [member, value] : statement_.items()) {
+      const bool is_off = value == false;
+      for (const Clause& clause : form->free) {
+        const bool is_wanted =
+            clause.member == member && (clause.part == Part::kExpression) == is_last;
+        if (is_wanted && !(is_off && clause.part == Part::kFlag)) add(clause);
+      }
     }
   }
   if (!statement_.contains("comment")) return line_;

@@ -31,9 +31,9 @@ constexpr std::array kVerbs = {
 };
 
 constexpr std::array kConditions = {
-    Condition::kTried,      Condition::kInvalid, Condition::kAdapting,   Condition::kAffected,
-    Condition::kDependency, Condition::kOneEach, Condition::kDownstream, Condition::kSuspect,
-    Condition::kSettling,   Condition::kInTheWay};
+    Condition::kTried,      Condition::kInvalid,  Condition::kAdapting,   Condition::kAffected,
+    Condition::kDependency, Condition::kOneEach,  Condition::kDownstream, Condition::kSuspect,
+    Condition::kSettling,   Condition::kInTheWay, Condition::kWithheld};
 
 class ExpectationReader {
  public:

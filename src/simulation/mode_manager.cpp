@@ -97,7 +97,7 @@ std::string ModeManager::mode_of(const std::string& system) const {
     if (target != targets_.end() && target->second == mode.name) return mode.name;
     if (first == nullptr) first = &mode;
   }
-  return first == nullptr ? kUnknown : first->name;
+  return first == nullptr ? kUnknownMode : first->name;
 }
 
 // A new process declares its parameters, and that is announced as well.

@@ -41,8 +41,6 @@ struct ModeSystem {
 
 class ModeManager : public Node, private Watcher {
  public:
-  static constexpr const char* kUnknown = "unknown";  // what a system is in that fits no mode
-
   // `world` must outlive it.
   ModeManager(World& world, std::string name, std::vector<ModeSystem> systems, NodeTraits traits);
   ~ModeManager() override;

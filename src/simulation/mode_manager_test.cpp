@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "knowledge/describe.h"
 #include "language/checker.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
@@ -44,9 +45,9 @@ std::vector<ModeSystem> pump_modes() {
 struct Plant {
   World world{1};
   Pump pump{world};
-  ModeManager modes{world, "/modes", pump_modes(), {}};
+  ModeManager modes;
 
-  Plant() {
+  explicit Plant(NodeTraits manager = {}) : modes(world, "/modes", pump_modes(), manager) {
     for (Node* node : world.nodes()) node->launch();
     run(1s);
   }
@@ -91,7 +92,7 @@ TEST(ModeManager, KnowsNoModeOfWhatFitsNone) {
   plant.change("fast");
   plant.pump.set_parameter("rate", std::int64_t{5});
   plant.run(1s);
-  EXPECT_EQ(plant.mode(), ModeManager::kUnknown);
+  EXPECT_EQ(plant.mode(), kUnknownMode);
 }
 
 TEST(ModeManager, SeesAPartThatBeganAnew) {
@@ -124,7 +125,7 @@ RC_GTEST_PROP(ModeManager, EndsInTheLastModeThatItAccepted, ()) {
   plant.run(5s);
   // Requests that cross on their way may leave another mode, but never none.
   const std::string mode = plant.mode();
-  RC_ASSERT(mode != ModeManager::kUnknown);
+  RC_ASSERT(mode != kUnknownMode);
   RC_ASSERT(plant.change(wanted.back()));
   RC_ASSERT(plant.mode() == wanted.back());
 }
@@ -193,6 +194,194 @@ TEST(SimulatedSystem, RefusesAModeThatThereIsNot) {
     rules.replace(at, 16, "change_mode turbo");
   EXPECT_THAT(resolved_by(plant, rules), testing::IsEmpty());
   EXPECT_EQ(plant.mode(), "off");
+}
+
+// ---- what can go wrong with a mode
+
+// Does what a test wants, at times, beside the manager.
+struct Later {
+  Duration at;
+  std::function<void(Plant&)> what;
+};
+
+// What the manager says while it watches `plant` for `time`.
+std::vector<std::string> said(Plant& plant, const std::string& text, Duration time,
+                              const std::vector<Later>& meanwhile = {}) {
+  const RuleSet rules = *check(Source("test.rules", text)).rules;
+  SimulatedRobot robot(rules, plant.world);
+  Manager manager(rules, std::make_unique<PaperPlanner>(PaperSwitches{}), {});
+  Runtime runtime(manager, robot);
+  std::vector<std::string> lines;
+  runtime.on_events = [&](std::span<const Event> events) {
+    for (const Event& event : events) lines.push_back(describe(event, rules));
+  };
+  for (const Later& each : meanwhile)
+    plant.world.after(each.at, [&plant, what = each.what] { what(plant); });
+  const std::atomic<bool> never = false;
+  runtime.run(never, later(plant.world.now(), time));
+  return lines;
+}
+
+TEST(SimulatedSystem, IsNeverBroughtBackToAnUnknownMode) {
+  Plant plant;
+  plant.change("fast");
+  plant.pump.set_parameter("rate", std::int64_t{5});
+  plant.run(1s);
+  ASSERT_EQ(plant.mode(), kUnknownMode);
+  const auto lines = said(plant, R"(
+COMPONENT pump NODE /pump
+COMPONENT pump_node NODE /pump_node
+SIGNAL rate PARAMETER pump_node rate
+RULE NotSix
+  POLICIES ERROR ATTEMPTS 1
+  TRIGGER rate != 6
+    STRATEGY slow 90 10
+      ADAPTATION pump change_mode slow 5
+)",
+                          10s);
+  EXPECT_THAT(lines, testing::Contains(testing::StartsWith("slow did not resolve NotSix")));
+  EXPECT_THAT(lines, testing::Not(testing::Contains(testing::HasSubstr("undone"))));
+  EXPECT_EQ(plant.mode(), "slow");
+}
+
+// Killed at any moment of the change: the mode is reached all the same, by a manager begun anew.
+TEST(SimulatedSystem, ReachesItsModeThoughItsModeManagerDiesInBetween) {
+  const std::string rules = std::string(kRules) + R"(
+RULE ModesDead
+  POLICIES ERROR
+  TRIGGER !alive(modes)
+    STRATEGY redeploy_modes 90 10
+      ADAPTATION modes redeploy 5
+)";
+  for (Duration at = 0ms; at < 60ms; at += 3ms) {
+    NodeTraits slow;
+    slow.service = {5ms, 5ms};
+    Plant plant(slow);
+    said(plant, rules, 60s, {{at, [](Plant& p) { p.modes.kill(); }}});
+    EXPECT_EQ(plant.mode(), "fast") << "killed at " << to_string(at);
+    EXPECT_EQ(plant.modes.process(), ProcessState::kRunning);
+  }
+}
+
+// Something that sets a mode back, so many times, a second after it was changed.
+std::vector<Later> rival(const std::string& mode, Duration until) {
+  std::vector<Later> all;
+  for (Duration at = 1s; at < until; at += 1s) {
+    all.push_back({at, [mode](Plant& plant) {
+                     if (plant.mode() == "fast") plant.modes.change_mode("/pump", mode);
+                   }});
+  }
+  return all;
+}
+
+TEST(SimulatedSystem, WhoseModeSomethingElseSetsBackTwiceIsLeftAlone) {
+  Plant plant;
+  plant.change("slow");
+  const auto lines = said(plant, kRules, 60s, rival("slow", 60s));
+  EXPECT_EQ(std::count(lines.begin(), lines.end(),
+                       "something else sets the mode of pump back; it is left alone"),
+            1);
+  EXPECT_EQ(plant.mode(), "slow");
+  EXPECT_THAT(lines, testing::Contains(testing::HasSubstr("pump is set back by something else")));
+}
+
+TEST(SimulatedSystem, IsNoRivalsWhenItsPartBeganAnew) {
+  Plant plant;
+  plant.change("off");
+  const std::string rules = std::string(kRules) + "DEPENDENCY pump ON pump_node\n";
+  std::vector<Later> restarts;
+  for (Duration at = 2s; at < 20s; at += 3s) {
+    restarts.push_back({at, [](Plant& p) {
+                          p.pump.kill();
+                          p.pump.launch();
+                        }});
+  }
+  const auto lines = said(plant, rules, 30s, restarts);
+  EXPECT_THAT(lines, testing::Not(testing::Contains(testing::HasSubstr("left alone"))));
+  EXPECT_EQ(plant.mode(), "fast");
+}
+
+constexpr const char* kSetsRate = R"(
+COMPONENT pump_node NODE /pump_node
+SIGNAL rate PARAMETER pump_node rate
+RULE Slow
+  POLICIES ERROR
+  TRIGGER rate < 9
+    STRATEGY faster 90 10
+      ADAPTATION pump_node set_parameter rate 9 5
+)";
+
+TEST(SimulatedParameter, ThatSomethingElseSetsBackTwiceIsLeftAlone) {
+  Plant plant;
+  std::vector<Later> rival;
+  for (Duration at = 1s; at < 30s; at += 1s)
+    rival.push_back({at, [](Plant& p) { p.pump.set_parameter("rate", std::int64_t{0}); }});
+  const auto lines = said(plant, kSetsRate, 30s, rival);
+  EXPECT_EQ(std::count(lines.begin(), lines.end(),
+                       "something else sets rate of pump_node back; it is left alone"),
+            1);
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), "set rate of pump_node: done"), Rivals::kTimes)
+      << testing::PrintToString(lines);
+  EXPECT_EQ(*plant.pump.parameter("rate"), Value(std::int64_t{0}));
+}
+
+// A routine that resets its parameter when it is done is no rival.
+class Washer : public Node {
+ public:
+  explicit Washer(World& world) : Node(world, "/washer", {}) {
+    declare("wash", false);
+    declare("dirt", std::int64_t{0});
+  }
+
+ private:
+  bool on_set(const std::string& name, const Value& value) override {
+    if (name != "wash" || value != Value(true)) return true;
+    world().after(20ms, [this] {
+      assign("wash", false);
+      assign("dirt", std::int64_t{0});
+    });
+    return true;
+  }
+};
+
+TEST(SimulatedParameter, ThatResetsItselfIsSetAsOftenAsItHelps) {
+  Plant plant;
+  Washer washer(plant.world);
+  washer.launch();
+  std::vector<Later> dirt;
+  for (Duration at = 1s; at < 20s; at += 4s)
+    dirt.push_back({at, [&](Plant&) { washer.set_parameter("dirt", std::int64_t{7}); }});
+  const auto lines = said(plant, R"(
+COMPONENT washer NODE /washer
+SIGNAL dirt PARAMETER washer dirt
+RULE Dirty
+  POLICIES ERROR
+  TRIGGER dirt > 5
+    STRATEGY wash 90 10
+      ADAPTATION washer set_parameter wash true 5
+)",
+                          25s, dirt);
+  EXPECT_THAT(lines, testing::Not(testing::Contains(testing::HasSubstr("left alone"))));
+  EXPECT_EQ(*washer.parameter("dirt"), Value(std::int64_t{0}));
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), "Dirty detected (ERROR)"), 5);
+}
+
+TEST(SimulatedSystem, ThatAcceptsAModeAndDoesNothingIsSaidSo) {
+  Plant plant;
+  plant.pump.stop();  // its mode manager tells it, and it never hears
+  const auto lines = said(plant, R"(
+COMPONENT modes NODE /modes
+COMPONENT pump NODE /pump
+SIGNAL reading TOPIC /reading FIELD data
+RULE Off
+  POLICIES ERROR ATTEMPTS 1
+  TRIGGER alive(modes)
+    STRATEGY fast 90 10
+      ADAPTATION pump change_mode fast 5
+)",
+                          30s);
+  EXPECT_THAT(lines, testing::Contains(testing::HasSubstr(
+                         "it accepted and did nothing: not mode fast after 10s")));
 }
 
 }  // namespace

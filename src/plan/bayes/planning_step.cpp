@@ -101,7 +101,7 @@ void PlanningStep::examine(std::size_t failure) {
   std::vector<Option> possible;
   double helps = 0;
   for (const std::size_t s : order) {
-    if (!all[s].is_out()) possible.push_back(tries[s]);
+    if (!all[s].is_out() && !all[s].is_withheld) possible.push_back(tries[s]);
     helps += all[s].chance;
   }
   const std::vector<double> costs = expected_costs(possible);
@@ -118,6 +118,10 @@ void PlanningStep::examine(std::size_t failure) {
       entry.candidate.excluded = Condition::kInvalid;
       entry.candidate.component = all[s].invalid->component;
       entry.candidate.remark = all[s].invalid->reason;
+    } else if (all[s].is_withheld) {
+      entry.candidate.excluded = Condition::kWithheld;
+      entry.candidate.component = knowledge_.rules[all[s].strategy].components.front();
+      entry.candidate.remark = knowledge_.withheld[all[s].strategy.index];
     } else {
       entry.candidate.resolves = root * all[s].chance;
       entry.candidate.value = root * std::min(1.0, helps) * stakes_[failure];

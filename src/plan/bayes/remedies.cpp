@@ -26,6 +26,7 @@ std::vector<Remedy> remedies(RuleId rule, const Knowledge& knowledge) {
     Remedy remedy{strategies[s], state.tried[s], {}, knowledge.beliefs[strategies[s]].mean().value};
     if (is_down && !replaces_what_is_down(strategy, knowledge)) remedy.chance *= kUnlikely;
     if (!remedy.is_tried) remedy.invalid = invalidity(strategy, knowledge);
+    remedy.is_withheld = !remedy.is_out() && !knowledge.withheld[strategies[s].index].empty();
     if (remedy.is_out()) out += std::exchange(remedy.chance, 0);
     all.push_back(std::move(remedy));
   }

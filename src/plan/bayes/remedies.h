@@ -27,7 +27,8 @@ struct Remedy {
   StrategyId strategy;
   bool is_tried = false;
   std::optional<Invalid> invalid;
-  double chance = 0;  // u_s; 0 if it is out
+  double chance = 0;         // u_s; 0 if it is out
+  bool is_withheld = false;  // by the governor; it would help as well as ever
 
   bool is_out() const { return is_tried || invalid.has_value(); }
 };

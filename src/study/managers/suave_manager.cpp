@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "exemplars/suave/model/vehicle.h"
 #include "study/managers/bt_manager.h"
 #include "study/managers/metacontrol_manager.h"
 #include "study/managers/random_manager.h"

@@ -35,7 +35,12 @@ std::string plot_style(Surroundings surroundings) {
       ".plot .axis{{stroke:{1};stroke-width:1}}\n"
       ".plot .bar{{fill:{3};fill-opacity:.45}}\n"
       ".plot .ours{{stroke:{3};stroke-width:2;fill:{3}}}\n"
-      ".plot .theirs{{stroke:{4};stroke-width:2;fill:none}}\n",
+      ".plot .theirs{{stroke:{4};stroke-width:2;fill:none}}\n"
+      ".plot .pipeline{{stroke:{1};stroke-opacity:.45;stroke-width:9;stroke-linecap:round;"
+      "stroke-linejoin:round;fill:none}}\n"
+      ".plot .mark{{stroke:{4};stroke-width:1.5;fill:{2}}}\n"
+      ".plot .vehicle{{fill:{4}}}\n"
+      "@media (prefers-reduced-motion:reduce){{.plot .vehicle{{display:none}}}}\n",
       palette.ink, palette.faint_ink, palette.grid, palette.ours, palette.theirs);
   for (int i = 0; i < kCurveColours; ++i) {
     style += fmt::format(

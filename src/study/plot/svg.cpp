@@ -59,6 +59,23 @@ void Svg::circle(Point centre, double radius, std::string_view css_class) {
                        place(centre.y), place(radius), css_class);
 }
 
+void Svg::moving_circle(const std::vector<Point>& points, double duration_s, double radius,
+                        std::string_view css_class) {
+  std::string xs;
+  std::string ys;
+  for (const Point& point : points) {
+    xs += (xs.empty() ? "" : ";") + place(point.x);
+    ys += (ys.empty() ? "" : ";") + place(point.y);
+  }
+  const auto animated = [&](char axis, const std::string& values) {
+    return fmt::format(
+        "<animate attributeName=\"c{}\" values=\"{}\" dur=\"{}s\" repeatCount=\"indefinite\"/>",
+        axis, values, place(duration_s));
+  };
+  body_ += fmt::format("<circle r=\"{}\" class=\"{}\">{}{}</circle>\n", place(radius), css_class,
+                       animated('x', xs), animated('y', ys));
+}
+
 void Svg::text(Point at, Anchor anchor, std::string_view css_class, std::string_view text) {
   body_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\" class=\"{}\">{}</text>\n",
                        place(at.x), place(at.y), name(anchor), css_class, markup_escaped(text));

@@ -25,6 +25,9 @@ class Svg {
   void polyline(const std::vector<Point>& points, std::string_view css_class);
   void polygon(const std::vector<Point>& points, std::string_view css_class);
   void circle(Point centre, double radius, std::string_view css_class);
+  // Goes along `points`, at even times, in so many seconds, again and again.
+  void moving_circle(const std::vector<Point>& points, double duration_s, double radius,
+                     std::string_view css_class);
   void text(Point at, Anchor anchor, std::string_view css_class, std::string_view text);
 
   // For a page that has the style sheet.

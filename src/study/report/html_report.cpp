@@ -6,8 +6,8 @@
 #include "study/comparison.h"
 #include "study/markup.h"
 #include "study/plot/plots.h"
-#include "study/plot/style.h"
 #include "study/report/assets.h"
+#include "study/report/page.h"
 #include "study/tables/render.h"
 #include "study/tables/study_tables.h"
 
@@ -16,32 +16,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string style() {
-  return "<style>\n" + std::string(kReportStyle) + plot_style(Surroundings::kLight) +
-         "@media (prefers-color-scheme: dark) {\n" + plot_style(Surroundings::kDark) +
-         "}\n</style>\n";
-}
-
-std::string head(const std::string& title) {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-         "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
-         "<title>" +
-         markup_escaped(title) + " – culprit study</title>\n" + style() + "</head>\n";
-}
-
-std::string fact(std::string_view name, const std::string& value_html) {
-  return fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, value_html);
-}
-
 std::string provenance(const Campaign& campaign) {
   return "<dl class=\"facts\">\n" +
-         fact("Command", "<code>" + markup_escaped(campaign.command) + "</code>") +
-         fact("Seed", fmt::format("<code>{}</code>", campaign.seed)) +
-         fact("Version", "culprit " + markup_escaped(campaign.version)) +
-         fact("Runs",
-              fmt::format("{} configurations × {} runs", campaign.rows.size(), campaign.runs)) +
+         page_fact("Command", "<code>" + markup_escaped(campaign.command) + "</code>") +
+         page_fact("Seed", fmt::format("<code>{}</code>", campaign.seed)) +
+         page_fact("Version", "culprit " + markup_escaped(campaign.version)) +
+         page_fact("Runs", fmt::format("{} configurations × {} runs", campaign.rows.size(),
+                                       campaign.runs)) +
          "</dl>\n<p>The command with this seed and this version gives this page again, to the last "
          "digit.</p>\n";
 }
@@ -150,7 +131,7 @@ std::string contents(const Findings& findings, bool has_agreement) {
 
 std::string html_report(const Findings& findings, const std::string& title) {
   const std::vector<Ablation> found = ablations(findings.campaign);
-  return head(title) +
+  return page_head(title) +
          "<body>\n<a class=\"skip\" href=\"#main\">Skip to the results</a>\n<header>\n<h1>" +
          markup_escaped(title) + "</h1>\n" + provenance(findings.campaign.campaign) +
          contents(findings, !found.empty()) + "</header>\n<main id=\"main\">\n" +

@@ -44,6 +44,12 @@ SuaveRow fold(const std::string& manager, const suave::model::MissionPlan& plan,
   return row;
 }
 
+SuaveRun play(const SuaveCampaign& campaign, const std::string& manager, std::uint64_t run,
+              Track* track = nullptr) {
+  return play_suave(manager, *campaign.generation, *campaign.plan, campaign.vehicle,
+                    simulation::mix(campaign.seed) + run, track);
+}
+
 }  // namespace
 
 std::optional<std::vector<SuaveRow>> run_campaign(const SuaveCampaign& campaign, unsigned jobs,
@@ -54,9 +60,7 @@ std::optional<std::vector<SuaveRow>> run_campaign(const SuaveCampaign& campaign,
   work_in_order(
       0, size, jobs,
       [&](std::uint64_t i) {
-        const std::uint64_t seed = simulation::mix(campaign.seed) + i % campaign.runs;
-        return play_suave(campaign.managers[i / campaign.runs], *campaign.generation,
-                          *campaign.plan, campaign.vehicle, seed);
+        return play(campaign, campaign.managers[i / campaign.runs], i % campaign.runs);
       },
       [&](std::uint64_t i, SuaveRun run) {
         runs.push_back(std::move(run));
@@ -68,6 +72,13 @@ std::optional<std::vector<SuaveRow>> run_campaign(const SuaveCampaign& campaign,
       });
   if (rows.size() < campaign.managers.size()) return std::nullopt;
   return rows;
+}
+
+std::vector<Track> first_tracks(const SuaveCampaign& campaign) {
+  std::vector<Track> tracks(campaign.managers.size());
+  for (std::size_t m = 0; m < tracks.size(); ++m)
+    (void)play(campaign, campaign.managers[m], 0, &tracks[m]);
+  return tracks;
 }
 
 }  // namespace culprit::study

@@ -53,4 +53,7 @@ struct SuaveRow {
 std::optional<std::vector<SuaveRow>> run_campaign(const SuaveCampaign& campaign, unsigned jobs,
                                                   const std::function<bool()>& is_stopped);
 
+// The first run of each manager again, with its track.
+std::vector<Track> first_tracks(const SuaveCampaign& campaign);
+
 }  // namespace culprit::study

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "study/statistics/welch.h"
+#include "study/suave/html_report.h"
 #include "study/suave/published.h"
 #include "study/suave/report.h"
 
@@ -163,6 +164,35 @@ TEST(SuaveReport, HasARowForEachManagerAndTestsAgainstEach) {
   const auto tables = suave_tables(small, rows);
   ASSERT_EQ(tables.size(), 3u);
   EXPECT_EQ(tables[0].rows.size(), 3u + 2u);  // and the paper's, of those that it has
+}
+
+TEST(SuaveTracks, AreWrittenDownWithoutChangingTheRun) {
+  const SuaveCampaign extended = campaign("extended", {"culprit"}, 1);
+  const std::uint64_t seed = simulation::mix(extended.seed);
+  Track track;
+  const SuaveRun with =
+      play_suave("culprit", *extended.generation, *extended.plan, extended.vehicle, seed, &track);
+  const SuaveRun without =
+      play_suave("culprit", *extended.generation, *extended.plan, extended.vehicle, seed);
+  EXPECT_EQ(with.found_s, without.found_s);
+  EXPECT_EQ(with.whole_distance_m, without.whole_distance_m);
+  EXPECT_GE(track.points.size(), 299u);
+  std::vector<std::string> happened;
+  for (const TrackMark& mark : track.marks) happened.push_back(mark.what);
+  for (const char* wanted : {"thruster 1 fails", "thruster 1 is recovered", "the pipeline is found",
+                             "it inspects", "it leaves for the charging station"})
+    EXPECT_THAT(happened, testing::Contains(wanted));
+}
+
+TEST(SuaveReport, ShowsTheWayOfEachManagerAndLetsItMove) {
+  const SuaveCampaign standard = campaign("standard", {"none", "culprit"}, 2);
+  const std::string page =
+      suave_html(standard, play(standard), first_tracks(standard), "the command", "1.0");
+  for (const char* wanted :
+       {"id=\"track-none\"", "id=\"track-culprit\"", "class=\"pipeline\"",
+        "<animate attributeName=\"cx\"", "thruster 1 fails", "the command", "<table"})
+    EXPECT_THAT(page, testing::HasSubstr(wanted));
+  EXPECT_THAT(page, testing::Not(testing::HasSubstr("<script")));
 }
 
 }  // namespace

@@ -74,10 +74,15 @@ std::vector<SuaveContender> suave_contenders() {
 
 SuaveRun play_suave(const std::string& manager, const suave::model::Generation& generation,
                     const suave::model::MissionPlan& plan,
-                    const suave::model::VehicleTraits& vehicle, std::uint64_t seed) {
+                    const suave::model::VehicleTraits& vehicle, std::uint64_t seed, Track* track) {
   const SuaveBaseline* baseline = find_baseline(manager);
   const auto leader = baseline != nullptr ? baseline->leader : suave::model::Leader::kMission;
   SuaveModel model({generation, plan, leader, vehicle}, seed);
+  std::optional<TrackRecorder> recorder;
+  if (track != nullptr) {
+    track->manager = manager;
+    recorder.emplace(model, *track);
+  }
   if (baseline != nullptr) {
     const auto system = baseline->make({generation, plan.needs_battery, seed});
     run_mission(model, suave_names(), *system);

@@ -7,6 +7,7 @@
 
 #include "exemplars/suave/model/suave_model.h"
 #include "manager/managing_system.h"
+#include "study/suave/track.h"
 
 namespace culprit::study {
 
@@ -34,9 +35,11 @@ struct SuaveContender {
 };
 std::vector<SuaveContender> suave_contenders();
 
-// Plays a mission. `manager` is a contender's name. The same seed, the same run.
+// Plays a mission. `manager` is a contender's name. The same seed, the same run, whether its track
+// is written down or not.
 SuaveRun play_suave(const std::string& manager, const suave::model::Generation& generation,
                     const suave::model::MissionPlan& plan,
-                    const suave::model::VehicleTraits& vehicle, std::uint64_t seed);
+                    const suave::model::VehicleTraits& vehicle, std::uint64_t seed,
+                    Track* track = nullptr);
 
 }  // namespace culprit::study

@@ -6,6 +6,8 @@
 #include "language/checker.h"
 #include "plan/bayes/bayes_planner.h"
 #include "plan/paper_planner.h"
+#include "study/managers/one_by_one_planner.h"
+#include "study/managers/paced_manager.h"
 #include "study/reference/reference_manager.h"
 #include "study/reference/sunset_blackboard.h"
 #include "study/sunset/rules.h"
@@ -81,8 +83,11 @@ std::string component_of(sunset::Member member, const RuleSet& rules) {
 
 std::vector<std::string_view> sunset_planners() {
   return {"paper",          "reference",         "bayes",
-          "bayes:downtime", "bayes:adaptations", "bayes:redeployments"};
+          "bayes:downtime", "bayes:adaptations", "bayes:redeployments",
+          "bt",             "metacontrol",       "rosa"};
 }
+
+bool has_switches(std::string_view planner) { return planner == "paper" || planner == "reference"; }
 
 Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::uint64_t seed) {
   std::vector<Setting> settings;
@@ -90,8 +95,8 @@ Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::ui
     const auto planners = sunset_planners();
     if (std::find(planners.begin(), planners.end(), row.planner) == planners.end())
       return Error{"there is no planner '" + row.planner +
-                   "'; there are paper, reference, bayes, and bayes with an objective "
-                   "(bayes:downtime)"};
+                   "'; there are paper, reference, bayes, bayes with an objective "
+                   "(bayes:downtime), bt, metacontrol, rosa"};
     const auto profile = sunset::model::find_profile(row.profile);
     if (!profile) return Error{profile.error()};
     if (row.planner == "reference" && !(*profile)->has_blackboard)
@@ -117,7 +122,8 @@ Manager::Options SunsetStudy::manager_options(const Setting& setting) {
   return options;
 }
 
-std::unique_ptr<ManagingSystem> SunsetStudy::manager(const Setting& setting) const {
+std::unique_ptr<ManagingSystem> SunsetStudy::manager(const Setting& setting,
+                                                     std::uint64_t seed) const {
   if (setting.configuration.planner == "reference") {
     ReferenceOptions options;
     options.switches = setting.configuration.switches;
@@ -125,6 +131,12 @@ std::unique_ptr<ManagingSystem> SunsetStudy::manager(const Setting& setting) con
     options.initial = sunset_blackboard();
     // The rules are made for it.
     return std::move(*ReferenceManager::make(*setting.rules, std::move(options)));
+  }
+  if (const Pace* pace = find_pace(setting.configuration.planner)) {
+    const Manager::Options options = manager_options(setting);
+    return std::make_unique<PacedManager>(
+        std::make_unique<Manager>(*setting.rules, std::make_unique<OneByOnePlanner>(), options),
+        *pace, options.start, seed);
   }
   std::unique_ptr<const Planner> planner;
   if (const auto objective = objective_of(setting.configuration.planner)) {
@@ -140,7 +152,7 @@ SunsetRun SunsetStudy::play(RunId id) const {
   static const std::vector<sunset::Scenario> kScenarios = sunset::scenarios();
   const std::uint64_t seed = seed_of(id);
   sunset::model::SunsetModel model(*setting.profile, seed);
-  const auto managing = manager(setting);
+  const auto managing = manager(setting, seed);
   return study::play(model, *setting.rules, *managing, kScenarios[id.run % kScenarios.size()]);
 }
 

@@ -53,14 +53,17 @@ class SunsetStudy {
 
   std::uint64_t seed_of(RunId id) const;
   static Manager::Options manager_options(const Setting& setting);
-  std::unique_ptr<ManagingSystem> manager(const Setting& setting) const;
+  std::unique_ptr<ManagingSystem> manager(const Setting& setting, std::uint64_t seed) const;
 
   std::vector<Setting> settings_;
   std::uint64_t seed_;
 };
 
-// The planners that there are: "paper", "reference", "bayes" (balanced), and "bayes:downtime" and
-// so on with another objective.
+// The planners that there are: "paper", "reference", "bayes" (balanced), "bayes:downtime" and so on
+// with another objective, and the managers of others, "bt", "metacontrol" and "rosa".
 std::vector<std::string_view> sunset_planners();
+
+// Whether a planner has the paper's D, C and S to switch off.
+bool has_switches(std::string_view planner);
 
 }  // namespace culprit::study

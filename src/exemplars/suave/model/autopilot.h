@@ -20,6 +20,7 @@ class Autopilot : public simulation::Node {
   Time guided() const { return guided_; }
   bool is_guided() const { return world().now() >= guided_; }
   Vehicle& vehicle() { return vehicle_; }
+  const Vehicle& vehicle() const { return vehicle_; }
 
   // Where the spiral is centred; nothing while the autopilot does not know yet where it is.
   std::optional<Position> centre() const;

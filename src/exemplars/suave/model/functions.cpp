@@ -1,5 +1,8 @@
 #include "exemplars/suave/model/functions.h"
 
+#include "exemplars/suave/model/pipeline.h"
+#include "exemplars/suave/model/vehicle.h"
+
 namespace culprit::suave::model {
 namespace {
 
@@ -20,8 +23,8 @@ simulation::NodeTraits function_node() {
 
 // ---- search
 
-SearchNode::SearchNode(simulation::World& world, const Generation& generation, Autopilot& autopilot)
-    : Node(world, nodes::kSearch, function_node()), generation_(generation), autopilot_(autopilot) {
+SearchNode::SearchNode(simulation::World& world, const Generation& generation, Helm& helm)
+    : Node(world, nodes::kSearch, function_node()), generation_(generation), helm_(helm) {
   declare(kAltitude, 2.0);
 }
 
@@ -37,23 +40,21 @@ void SearchNode::on_activate() {
 void SearchNode::tick() {
   if (!is_active()) return;
   if (!spiral_.has_begun()) {
-    const auto centre = autopilot_.centre();
+    const auto centre = helm_.centre();
     if (!centre) return;
     spiral_.restart(*centre);
   }
   const double altitude = std::get<double>(*parameter(kAltitude));
-  if (const auto goal = spiral_.tick(autopilot_.vehicle().seen(), altitude))
-    autopilot_.vehicle().go_to(*goal);
+  if (const auto goal = spiral_.tick(helm_.seen(), altitude)) helm_.go_to(*goal);
 }
 
 // ---- follow
 
 FollowNode::FollowNode(simulation::World& world, Topics& topics, const Generation& generation,
-                       Autopilot& autopilot, const Detector& detector)
+                       Helm& helm)
     : Node(world, nodes::kFollow, function_node()),
       generation_(generation),
-      autopilot_(autopilot),
-      detector_(detector),
+      helm_(helm),
       distance_topic_(*this, topics.distance),
       inspected_topic_(*this, topics.inspected) {}
 
@@ -66,8 +67,8 @@ void FollowNode::on_start() {
 }
 
 void FollowNode::on_activate() {
-  if (!has_path_ && detector_.found()) {
-    const auto path = inspection_path(*detector_.found());
+  if (!has_path_ && helm_.found()) {
+    const auto path = inspection_path(*helm_.found());
     path_.assign(path.begin(), path.end());
     has_path_ = true;
   }
@@ -81,7 +82,7 @@ void FollowNode::on_activate() {
 
 bool FollowNode::is_there() const {
   constexpr double kTolerance = 0.5;
-  return is_near(autopilot_.vehicle().seen(), *goal_, kTolerance);
+  return is_near(helm_.seen(), *goal_, kTolerance);
 }
 
 // Every two seconds: whoever waits for the vehicle looks whether it arrived.
@@ -91,7 +92,7 @@ void FollowNode::poll() {
   if (is_there()) return go_on();
   if (++polls_ <= kPatience) return;
   polls_ = 0;
-  autopilot_.vehicle().go_to(*goal_);
+  helm_.go_to(*goal_);
 }
 
 // To the next point, and at once to the one after it if the vehicle is there already.
@@ -112,16 +113,14 @@ void FollowNode::go_on() {
     goal_ = {path_.front().x, path_.front().y, kSeabed + kHeight};
     path_.pop_front();
     polls_ = 0;
-    autopilot_.vehicle().go_to(*goal_);
+    helm_.go_to(*goal_);
   } while (is_there());
 }
 
 // ---- recover
 
-MotionNode::MotionNode(simulation::World& world, const Generation& generation, Autopilot& autopilot)
-    : Node(world, nodes::kMotion, function_node()),
-      generation_(generation),
-      autopilot_(autopilot) {}
+MotionNode::MotionNode(simulation::World& world, const Generation& generation, Helm& helm)
+    : Node(world, nodes::kMotion, function_node()), generation_(generation), helm_(helm) {}
 
 void MotionNode::on_activate() {
   ++activations_;
@@ -135,7 +134,7 @@ void MotionNode::on_deactivate() {
 void MotionNode::recover(int thruster, int activation) {
   const bool is_cancelled = !generation_.recovers_anyway && activation != activations_;
   if (is_cancelled || process() != ProcessState::kRunning || thruster > kThrusters) return;
-  autopilot_.vehicle().set_failed(thruster, false);
+  helm_.recover(thruster);
   world().diagnose("", std::string(diagnostics::kThrusterKey) + std::to_string(thruster),
                    std::string(diagnostics::kRecovered));
   world().after(milliseconds(250),
@@ -144,12 +143,8 @@ void MotionNode::recover(int thruster, int activation) {
 
 // ---- recharge
 
-RechargeNode::RechargeNode(simulation::World& world, const Generation& generation,
-                           Autopilot& autopilot, BatteryMonitor& battery)
-    : Node(world, nodes::kRecharge, function_node()),
-      generation_(generation),
-      autopilot_(autopilot),
-      battery_(battery) {}
+RechargeNode::RechargeNode(simulation::World& world, const Generation& generation, Helm& helm)
+    : Node(world, nodes::kRecharge, function_node()), generation_(generation), helm_(helm) {}
 
 void RechargeNode::on_start() {
   every(from_seconds(culprit::seconds(generation_.recharge_poll) * random().uniform()),
@@ -160,8 +155,8 @@ void RechargeNode::tick() {
   constexpr Position kStation = {-3, -2, -18.75};
   constexpr double kTolerance = 0.5;
   if (!is_active()) return;
-  autopilot_.vehicle().go_to(kStation);
-  if (is_near(autopilot_.vehicle().seen(), kStation, kTolerance)) battery_.recharge();
+  helm_.go_to(kStation);
+  if (is_near(helm_.seen(), kStation, kTolerance)) helm_.recharge();
 }
 
 }  // namespace culprit::suave::model

@@ -5,7 +5,9 @@
 
 #include <deque>
 
-#include "exemplars/suave/model/monitors.h"
+#include "exemplars/suave/model/helm.h"
+#include "exemplars/suave/model/members.h"
+#include "exemplars/suave/model/mission_plan.h"
 #include "exemplars/suave/model/spiral.h"
 
 namespace culprit::suave::model {
@@ -13,7 +15,7 @@ namespace culprit::suave::model {
 // All that is referred to must outlive the node, here and below.
 class SearchNode : public simulation::Node {
  public:
-  SearchNode(simulation::World& world, const Generation& generation, Autopilot& autopilot);
+  SearchNode(simulation::World& world, const Generation& generation, Helm& helm);
 
  private:
   void on_start() override;
@@ -21,14 +23,13 @@ class SearchNode : public simulation::Node {
   void tick();
 
   const Generation& generation_;
-  Autopilot& autopilot_;
+  Helm& helm_;
   Spiral spiral_;
 };
 
 class FollowNode : public simulation::Node {
  public:
-  FollowNode(simulation::World& world, Topics& topics, const Generation& generation,
-             Autopilot& autopilot, const Detector& detector);
+  FollowNode(simulation::World& world, Topics& topics, const Generation& generation, Helm& helm);
 
  private:
   void on_start() override;
@@ -38,8 +39,7 @@ class FollowNode : public simulation::Node {
   bool is_there() const;
 
   const Generation& generation_;
-  Autopilot& autopilot_;
-  const Detector& detector_;
+  Helm& helm_;
   simulation::Publisher<Data> distance_topic_;
   simulation::Publisher<Data> inspected_topic_;
   bool has_path_ = false;
@@ -53,7 +53,7 @@ class FollowNode : public simulation::Node {
 // Recovers all thrusters, one after the other.
 class MotionNode : public simulation::Node {
  public:
-  MotionNode(simulation::World& world, const Generation& generation, Autopilot& autopilot);
+  MotionNode(simulation::World& world, const Generation& generation, Helm& helm);
 
  private:
   void on_activate() override;
@@ -61,23 +61,21 @@ class MotionNode : public simulation::Node {
   void recover(int thruster, int activation);
 
   const Generation& generation_;
-  Autopilot& autopilot_;
+  Helm& helm_;
   int activations_ = 0;
 };
 
 // Goes to the charging station.
 class RechargeNode : public simulation::Node {
  public:
-  RechargeNode(simulation::World& world, const Generation& generation, Autopilot& autopilot,
-               BatteryMonitor& battery);
+  RechargeNode(simulation::World& world, const Generation& generation, Helm& helm);
 
  private:
   void on_start() override;
   void tick();
 
   const Generation& generation_;
-  Autopilot& autopilot_;
-  BatteryMonitor& battery_;
+  Helm& helm_;
 };
 
 }  // namespace culprit::suave::model

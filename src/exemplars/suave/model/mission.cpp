@@ -33,15 +33,13 @@ std::vector<simulation::ModeSystem> mode_systems() {
 }
 
 Mission::Mission(simulation::World& world, Topics& topics, const Generation& generation,
-                 const MissionPlan& plan, Leader leader, const Autopilot& autopilot,
-                 const Detector& detector, simulation::ModeManager& modes)
+                 const MissionPlan& plan, Leader leader, Time guided, const Helm& helm)
     : Node(world, nodes::kMission, {}),
       generation_(generation),
       plan_(plan),
       leader_(leader),
-      autopilot_(autopilot),
-      detector_(detector),
-      modes_(modes),
+      guided_(guided),
+      helm_(helm),
       inspected_topic_(topics.inspected),
       task_topic_(*this, topics.task, simulation::Use::kAlways) {
   inspected_topic_.set_watched(true);
@@ -52,13 +50,13 @@ Mission::Mission(simulation::World& world, Topics& topics, const Generation& gen
 Mission::~Mission() { world().unwatch(*this); }
 
 void Mission::on_start() {
-  world().at(autopilot_.guided(), [this] { begin(); });
+  world().at(guided_, [this] { begin(); });
 }
 
 void Mission::begin() {
   constexpr Duration kTimePoll = std::chrono::milliseconds(500);
   every(from_seconds(seconds(kTimePoll) * random().uniform()), kTimePoll, [this] {
-    if (world().now() >= later(autopilot_.guided(), plan_.time_limit)) end();
+    if (world().now() >= later(guided_, plan_.time_limit)) end();
   });
   if (leader_ == Leader::kManager) return;
   begin_task("search");
@@ -67,7 +65,7 @@ void Mission::begin() {
 }
 
 void Mission::poll() {
-  if (is_inspecting_ || !detector_.found()) return;
+  if (is_inspecting_ || !helm_.found()) return;
   is_inspecting_ = true;
   ground(systems::kSearch, modes::kOff);
   begin_task("inspect");
@@ -77,10 +75,7 @@ void Mission::poll() {
 void Mission::begin_task(const char* task) { task_topic_.publish({std::string(task)}); }
 
 void Mission::ground(const char* system, const char* mode) {
-  if (leader_ != Leader::kMission) return;
-  world().after(modes_.traits().service.draw(random()), [this, system, mode] {
-    modes_.post([this, system, mode] { (void)modes_.change_mode(system, mode); });
-  });
+  if (leader_ == Leader::kMission) change_mode(system, mode);
 }
 
 // Whoever leads: what is inspected wholly is done.

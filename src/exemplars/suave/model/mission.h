@@ -1,7 +1,11 @@
 // The mission: first search the pipeline, then inspect it, until the time is over (facts 1.9).
 #pragma once
 
-#include "exemplars/suave/model/functions.h"
+#include <functional>
+
+#include "exemplars/suave/model/helm.h"
+#include "exemplars/suave/model/members.h"
+#include "exemplars/suave/model/mission_plan.h"
 #include "simulation/mode_manager.h"
 
 namespace culprit::suave::model {
@@ -20,14 +24,15 @@ class Mission : public simulation::Node, private simulation::Watcher {
  public:
   // All must outlive the mission.
   Mission(simulation::World& world, Topics& topics, const Generation& generation,
-          const MissionPlan& plan, Leader leader, const Autopilot& autopilot,
-          const Detector& detector, simulation::ModeManager& modes);
+          const MissionPlan& plan, Leader leader, Time guided, const Helm& helm);
   ~Mission() override;
 
   // When it ended; nothing while it goes on.
   std::optional<Time> ended() const { return ended_; }
   // Called when it ends.
   std::function<void()> on_end;
+  // Has a system's mode changed. Whoever builds a mission that leads itself sets it.
+  std::function<void(const char* system, const char* mode)> change_mode;
 
  private:
   void on_start() override;
@@ -42,9 +47,8 @@ class Mission : public simulation::Node, private simulation::Watcher {
   const Generation& generation_;
   const MissionPlan& plan_;
   Leader leader_;
-  const Autopilot& autopilot_;
-  const Detector& detector_;
-  simulation::ModeManager& modes_;
+  Time guided_;
+  const Helm& helm_;
   simulation::Topic<Data>& inspected_topic_;
   simulation::Publisher<Data> task_topic_;
   bool is_inspecting_ = false;

@@ -31,14 +31,19 @@ SuaveModel::SuaveModel(const Setting& setting, std::uint64_t seed)
       visibility_(world_, autopilot_),
       battery_(world_, topics_, autopilot_, setting.plan),
       thrusters_(world_, autopilot_, setting.plan),
-      search_(world_, setting.generation, autopilot_),
-      follow_(world_, topics_, setting.generation, autopilot_, detector_),
-      motion_(world_, setting.generation, autopilot_),
-      recharge_(world_, setting.generation, autopilot_, battery_),
+      search_(world_, setting.generation, *this),
+      follow_(world_, topics_, setting.generation, *this),
+      motion_(world_, setting.generation, *this),
+      recharge_(world_, setting.generation, *this),
       modes_(world_, nodes::kModeManager, mode_systems(), mode_manager()),
-      mission_(world_, topics_, setting.generation, setting.plan, setting.leader, autopilot_,
-               detector_, modes_),
+      mission_(world_, topics_, setting.generation, setting.plan, setting.leader,
+               autopilot_.guided(), *this),
       metrics_(world_, topics_) {
+  mission_.change_mode = [this](const char* system, const char* mode) {
+    world_.after(modes_.traits().service.draw(mission_.random()), [this, system, mode] {
+      modes_.post([this, system, mode] { (void)modes_.change_mode(system, mode); });
+    });
+  };
   for (simulation::Node* node : world_.nodes()) node->launch();
   for (simulation::Fault fault : plan_.faults) {
     fault.at = later(guided(), fault.at.time_since_epoch());

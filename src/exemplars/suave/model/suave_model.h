@@ -6,11 +6,13 @@
 // who changes the modes of its functions.
 #pragma once
 
+#include "exemplars/suave/model/functions.h"
 #include "exemplars/suave/model/metrics.h"
+#include "exemplars/suave/model/monitors.h"
 
 namespace culprit::suave::model {
 
-class SuaveModel {
+class SuaveModel : private Helm {
  public:
   struct Setting {
     const Generation& generation;
@@ -30,10 +32,18 @@ class SuaveModel {
   // The mission is over by then at the latest.
   Time latest_end() const;
   Mission& mission() { return mission_; }
+  const Vehicle& vehicle() const { return autopilot_.vehicle(); }
   const BatteryMonitor& battery() const { return battery_; }
   Metrics& metrics() { return metrics_; }
 
  private:
+  Position seen() const override { return autopilot_.vehicle().seen(); }
+  void go_to(const Position& goal) override { autopilot_.vehicle().go_to(goal); }
+  std::optional<Position> centre() const override { return autopilot_.centre(); }
+  std::optional<std::size_t> found() const override { return detector_.found(); }
+  void recover(int thruster) override { autopilot_.vehicle().set_failed(thruster, false); }
+  void recharge() override { battery_.recharge(); }
+
   const MissionPlan& plan_;
   simulation::World world_;
   Topics topics_;

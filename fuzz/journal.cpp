@@ -1,0 +1,100 @@
+// Journal files: whatever their rows say, they are read to their end or refused. What is read as
+// steps can be written and is the same then, and the manager can be stepped with it.
+//
+// The first line of the input is the kind of a row, the rest its body, which is read as the row
+// would be. If it is `file`, the rest is the whole database.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "journal/recovery.h"
+#include "journal/requests.h"
+#include "journal/step_codec.h"
+#include "journal/verify.h"
+#include "plan/bayes/bayes_planner.h"
+#include "replay/replay.h"
+
+namespace {
+
+using namespace culprit;
+
+const RuleSet& rules() {
+  static const RuleSet set = *check(Source("fuzz.rules", R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+SIGNAL entropy DIAGNOSTIC segmentation KEY entropy STALE 2s
+RULE Silent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms || entropy > 0.5 || level(segmentation) > 1
+    STRATEGY redeploy 50 10
+      ADAPTATION camera redeploy 5
+    STRATEGY tune 50 10 WHEN parameter(camera, gain) < 2
+      ADAPTATION camera increase_parameter gain 0.5 5
+)"))
+                                  .rules;
+  return set;
+}
+
+void read_steps(const std::string& body) {
+  Manager manager(rules(), std::make_unique<BayesPlanner>(), {});
+  journal::StepReader reader(body, rules());
+  journal::Step step;
+  std::string again;
+  int steps = 0;
+  for (auto more = reader.next(step); more && *more; more = reader.next(step)) {
+    ++steps;
+    journal::ByteWriter out(again);
+    journal::encode(step.now, step.observations, step.digest, out);
+    manager.step(step.now, step.observations);
+  }
+  journal::StepReader second(again, rules());
+  for (int i = 0; i < steps; ++i) {
+    const auto more = second.next(step);
+    if (!more || !*more) __builtin_trap();
+  }
+}
+
+void read_row(const std::string& body) {
+  const journal::Json json = journal::from_text(body);
+  (void)journal::session_from_json(json);
+  (void)journal::learned_from_json(json);
+  (void)journal::command_from_json(json, rules());
+  if (auto interrupted = journal::interrupted_from_json(json, rules())) {
+    Manager manager(rules(), std::make_unique<BayesPlanner>(), {});
+    manager.resume(std::move(*interrupted));
+    for (int i = 0; i < 20; ++i) manager.step(Time(std::chrono::seconds(i)), {});
+  }
+}
+
+void read_file(const std::string& bytes) {
+  const int file = memfd_create("journal", 0);
+  const bool is_there = write(file, bytes.data(), bytes.size()) >= 0;
+  const std::string path = "/proc/self/fd/" + std::to_string(file);
+  if (const auto journal = journal::Reader::open(path); is_there && journal) {
+    (void)journal::verify(*journal);
+    (void)journal::recover(*journal, rules());
+    if (auto recording = replay::Recording::open(*journal))
+      (void)replay::repeat(*recording, *journal, std::make_unique<BayesPlanner>());
+  }
+  close(file);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  const std::size_t line = text.find('\n');
+  if (line == std::string::npos) return 0;
+  const std::string kind = text.substr(0, line);
+  const std::string body = text.substr(line + 1);
+  if (kind == "file") {
+    read_file(body);
+  } else if (kind == journal::kind::kSteps) {
+    read_steps(body);
+  } else {
+    read_row(body);
+  }
+  return 0;
+}

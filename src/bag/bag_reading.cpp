@@ -1,0 +1,134 @@
+#include "bag/bag_reading.h"
+
+#include <algorithm>
+
+#include "knowledge/component_states.h"
+#include "ros2/parameter_store.h"
+
+namespace culprit::bag {
+namespace {
+
+constexpr std::string_view kTransitions = "/transition_event";
+
+ros2::ByteView view(std::string_view bytes) {
+  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+}
+
+Lifecycle lifecycle_from(const std::string& label) {
+  for (const Lifecycle state : {Lifecycle::kUnconfigured, Lifecycle::kInactive, Lifecycle::kActive,
+                                Lifecycle::kFinalized}) {
+    if (label == to_string(state)) return state;
+  }
+  return Lifecycle::kTransition;
+}
+
+}  // namespace
+
+BagReading::BagReading(const RuleSet& rules, const std::vector<BagTopic>& topics,
+                       ros2::MessageLibrary& library)
+    : rules_(rules), diagnostics_(rules), binding_(rules) {
+  diagnostics_.on_level = [this](DiagnosticId id, std::uint8_t level) {
+    put(DiagnosticRead{id, level});
+  };
+  diagnostics_.on_signal = [this](SignalId id, const std::string& text) {
+    put(SignalRead{id, Value(text)});
+  };
+  for (const BagTopic& topic : topics) plans_.push_back(plan_for(topic, library));
+  look_for_missing(topics);
+}
+
+BagReading::Plan BagReading::plan_for(const BagTopic& topic, ros2::MessageLibrary& library) {
+  Plan plan;
+  if (topic.type == ros2::msg::DiagnosticArray::kType && diagnostics_.is_wanted())
+    plan.use = Use::kDiagnostics;
+  if (topic.type == ros2::msg::ParameterEvent::kType) plan.use = Use::kParameters;
+  if (topic.type == ros2::msg::TransitionEvent::kType && topic.name.ends_with(kTransitions)) {
+    plan.use = Use::kTransition;
+    plan.node = topic.name.substr(0, topic.name.size() - kTransitions.size());
+  }
+  for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
+    if (rules_.topics[t].name == topic.name) plan.topic = TopicId(t);
+  }
+  for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
+    const auto* field = std::get_if<TopicField>(&rules_.signals[s].source);
+    if (field == nullptr || plan.topic != field->topic) continue;
+    auto reader = ros2::FieldReader::compile(library, topic.type, field->field);
+    if (reader) {
+      plan.fields.push_back({SignalId(s), std::move(*reader)});
+    } else {
+      missing_.push_back("signal " + rules_.signals[s].name + ": " + reader.error());
+    }
+  }
+  return plan;
+}
+
+void BagReading::look_for_missing(const std::vector<BagTopic>& topics) {
+  const auto has = [&](const auto& is_it) {
+    return std::any_of(topics.begin(), topics.end(), is_it);
+  };
+  for (const Topic& topic : rules_.topics) {
+    if (!has([&](const BagTopic& each) { return each.name == topic.name; }))
+      missing_.push_back("topic " + topic.name);
+  }
+  if (diagnostics_.is_wanted() &&
+      !has([](const BagTopic& each) { return each.type == ros2::msg::DiagnosticArray::kType; }))
+    missing_.emplace_back("/diagnostics");
+}
+
+void BagReading::read(const BagMessage& message, std::vector<Observation>& observations) {
+  const Plan& plan = plans_[message.topic];
+  const ros2::ByteView payload = view(message.bytes);
+  now_ = Time(Duration(message.at));
+  out_ = &observations;
+  if (plan.topic) put(SampleArrived{*plan.topic, 1});
+  for (const Field& field : plan.fields) {
+    Value value;
+    if (field.reader.read(payload, value) == ros2::FieldStatus::kRead)
+      put(SignalRead{field.signal, std::move(value)});
+  }
+  if (plan.use == Use::kDiagnostics) {
+    if (const auto array = ros2::decode<ros2::msg::DiagnosticArray>(payload))
+      diagnostics_.read(*array);
+  } else if (plan.use == Use::kParameters) {
+    read_parameters(payload);
+  } else if (plan.use == Use::kTransition) {
+    read_transition(plan.node, payload);
+  }
+}
+
+void BagReading::read_parameters(ros2::ByteView payload) {
+  const auto event = ros2::decode<ros2::msg::ParameterEvent>(payload);
+  if (!event) return;
+  const auto component = node_seen(event->node);
+  if (!component) return;
+  for (const auto* changes : {&event->new_parameters, &event->changed_parameters}) {
+    for (const ros2::msg::Parameter& changed : *changes) {
+      for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
+        const Parameter& wanted = rules_.parameters[p];
+        if (wanted.component != *component || wanted.name != changed.name) continue;
+        if (auto value = ros2::to_value(changed.value))
+          put(ParameterRead{ParameterId(p), std::move(*value)});
+      }
+    }
+  }
+}
+
+void BagReading::read_transition(const std::string& node, ros2::ByteView payload) {
+  const auto event = ros2::decode<ros2::msg::TransitionEvent>(payload);
+  if (!event) return;
+  if (const auto component = node_seen(node))
+    put(LifecycleRead{*component, lifecycle_from(event->goal_state.label)});
+}
+
+std::optional<ComponentId> BagReading::node_seen(const std::string& node) {
+  constexpr std::size_t kMaxNodes = 100'000;  // the file decides how many there are
+  const auto known = nodes_.find(node);
+  if (known != nodes_.end()) return known->second;
+  if (nodes_.size() >= kMaxNodes) return std::nullopt;
+  put(NodeAppeared{node, 0});
+  return nodes_[node] = binding_.bind(node);
+}
+
+void BagReading::put(decltype(Observation::what) what) { out_->push_back({now_, std::move(what)}); }
+
+}  // namespace culprit::bag

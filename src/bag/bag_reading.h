@@ -1,0 +1,64 @@
+// What a recorded bag would have told a manager: the rhythm of topics, values of their fields,
+// diagnostics, parameters and lifecycle states.
+//
+// A bag does not say which node published what, nor which processes ran. So nodes are known from
+// what they say of themselves only (/parameter_events, ~/transition_event), and dependencies from
+// the rule file.
+#pragma once
+
+#include <unordered_map>
+#include <vector>
+
+#include "bag/bag_file.h"
+#include "language/rule_set.h"
+#include "robot/component_binding.h"
+#include "robot/observation.h"
+#include "ros2/diagnostics_reading.h"
+#include "ros2/field_reader.h"
+
+namespace culprit::bag {
+
+class BagReading {
+ public:
+  // `rules`, `topics` and `library` must outlive the reading.
+  BagReading(const RuleSet& rules, const std::vector<BagTopic>& topics,
+             ros2::MessageLibrary& library);
+  BagReading(const BagReading&) = delete;
+
+  // Appends what the rules want of `message`.
+  void read(const BagMessage& message, std::vector<Observation>& observations);
+
+  // What the rules read and the bag does not have, one line each.
+  const std::vector<std::string>& missing() const { return missing_; }
+
+ private:
+  enum class Use : std::uint8_t { kNone, kDiagnostics, kParameters, kTransition };
+  struct Field {
+    SignalId signal;
+    ros2::FieldReader reader;
+  };
+  struct Plan {
+    Use use = Use::kNone;
+    std::string node;  // kTransition
+    std::optional<TopicId> topic;
+    std::vector<Field> fields;
+  };
+
+  Plan plan_for(const BagTopic& topic, ros2::MessageLibrary& library);
+  void look_for_missing(const std::vector<BagTopic>& topics);
+  void read_parameters(ros2::ByteView payload);
+  void read_transition(const std::string& node, ros2::ByteView payload);
+  std::optional<ComponentId> node_seen(const std::string& node);
+  void put(decltype(Observation::what) what);
+
+  const RuleSet& rules_;
+  ros2::DiagnosticsReading diagnostics_;
+  ComponentBinding binding_;
+  std::unordered_map<std::string, std::optional<ComponentId>> nodes_;
+  std::vector<Plan> plans_;  // by topic of the bag
+  std::vector<std::string> missing_;
+  Time now_{};
+  std::vector<Observation>* out_ = nullptr;  // while reading
+};
+
+}  // namespace culprit::bag

@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <charconv>
+#include <memory>
+
+#include <fmt/core.h>
+
+#include "cli/commands.h"
+#include "cli/journal_file.h"
+#include "journal/verify.h"
+
+namespace culprit::cli {
+namespace {
+
+struct VerifyOptions {
+  JournalOption journal;
+  std::string noted;
+};
+
+// "1234:<64 hexadecimal digits>"
+std::optional<journal::Link> link_from(const std::string& text) {
+  journal::Link link;
+  const char* end = text.data() + text.size();
+  const auto [colon, error] = std::from_chars(text.data(), end, link.id);
+  if (error != std::errc() || end - colon != 65 || *colon != ':') return std::nullopt;
+  for (std::size_t i = 0; i < link.hash.size(); ++i) {
+    const char* digits = colon + 1 + 2 * i;
+    const auto [rest, bad] = std::from_chars(digits, digits + 2, link.hash[i], 16);
+    if (bad != std::errc() || rest != digits + 2) return std::nullopt;
+  }
+  return link;
+}
+
+int verify(const VerifyOptions& options) {
+  std::optional<journal::Link> noted;
+  if (!options.noted.empty()) {
+    noted = link_from(options.noted);
+    if (!noted) return complain("--noted wants <row>:<hash>, as this command prints it"), kUsage;
+  }
+  const auto journal = options.journal.open();
+  if (!journal) return complain(journal.error());
+  const auto result = journal::verify(*journal, noted);
+  if (!result) return complain(result.error());
+  constexpr std::size_t kShown = 20;
+  for (std::size_t i = 0; i < std::min(kShown, result->findings.size()); ++i)
+    fmt::print("{}\n", result->findings[i]);
+  if (result->findings.size() > kShown)
+    fmt::print("... and {} more\n", result->findings.size() - kShown);
+  const bool is_whole = result->findings.empty();
+  fmt::print(
+      "{} rows{}: {}\n", result->rows,
+      result->first > 1 ? fmt::format(" ({} older ones were dropped)", result->first - 1) : "",
+      is_whole ? "all as they were written" : "NOT as they were written");
+  fmt::print("newest {}:{}\n", result->newest.id, journal::to_hex(result->newest.hash));
+  return is_whole ? kOk : kFailed;
+}
+
+}  // namespace
+
+void add_audit(CLI::App& app, int& exit_code) {
+  CLI::App* audit = app.add_subcommand("audit", "Whether the journal can be trusted");
+  audit->require_subcommand(1);
+  auto options = std::make_shared<VerifyOptions>();
+  CLI::App* command =
+      audit->add_subcommand("verify", "Check every row against the chain of hashes");
+  options->journal.add_to(*command);
+  command->add_option("--noted", options->noted,
+                      "<row>:<hash> as it was printed earlier: it must still be in the chain");
+  command->callback([options, &exit_code] { exit_code = verify(*options); });
+}
+
+}  // namespace culprit::cli

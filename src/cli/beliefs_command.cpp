@@ -1,0 +1,134 @@
+#include <memory>
+
+#include <fmt/core.h>
+
+#include "cli/commands.h"
+#include "cli/journal_file.h"
+#include "cli/text_file.h"
+#include "journal/session.h"
+#include "journal/writer.h"
+
+namespace culprit::cli {
+namespace {
+
+constexpr const char* kFormat = "culprit-beliefs";
+
+struct BeliefsOptions {
+  JournalOption journal;
+  std::string rule;
+  std::string output;
+  std::vector<std::string> files;
+  bool all = false;
+};
+
+double learned_of(double now, double prior) { return now - prior; }
+
+int show(const BeliefsOptions& options) {
+  const auto journal = options.journal.open();
+  if (!journal) return complain(journal.error());
+  const auto learned = journal->learned();
+  if (!learned) return complain(learned.error());
+  if (learned->beliefs.empty()) {
+    fmt::print("nothing was learned yet\n");
+    return kOk;
+  }
+  fmt::print("{:<28} {:<28} {:>7} {:>7} {:>8} {:>8}\n", "rule", "strategy", "rules", "now",
+             "helped", "did not");
+  for (const journal::LearnedBelief& each : learned->beliefs)
+    fmt::print("{:<28} {:<28} {:>5.1f} % {:>5.1f} % {:>8.6g} {:>8.6g}\n", each.rule, each.strategy,
+               100 * each.prior.mean().value, 100 * each.belief.mean().value,
+               learned_of(each.belief.alpha, each.prior.alpha),
+               learned_of(each.belief.beta, each.prior.beta));
+  if (learned->couplings.empty()) return kOk;
+  fmt::print("\n{:<28} {:<28} {:>8} {:>8}\n", "when this was resolved", "this went away", "yes",
+             "no");
+  for (const journal::LearnedCoupling& each : learned->couplings)
+    fmt::print("{:<28} {:<28} {:>8.6g} {:>8.6g}\n", each.cause, each.effect, each.coupling.cleared,
+               each.coupling.stayed);
+  return kOk;
+}
+
+int write_out(const BeliefsOptions& options) {
+  const auto journal = options.journal.open();
+  if (!journal) return complain(journal.error());
+  const auto learned = journal->learned();
+  if (!learned) return complain(learned.error());
+  journal::Json document = {{"format", kFormat}, {"format_version", 1}};
+  document.update(journal::to_json(*learned));
+  const auto written = write_text(options.output, document.dump(2) + "\n");
+  return written ? kOk : complain(written.error());
+}
+
+Expected<journal::Learned> read_file(const std::string& path) {
+  const auto text = read_text(path);
+  if (!text) return Error{text.error()};
+  const journal::Json document = journal::from_text(*text);
+  if (journal::text_of(document, "format") != kFormat ||
+      journal::integer_of(document, "format_version") != 1)
+    return Error{"'" + path + "' is not what culprit beliefs export writes"};
+  auto learned = journal::learned_from_json(document);
+  if (!learned) return Error{"'" + path + "': " + learned.error()};
+  return learned;
+}
+
+Expected<journal::Writer> open_writer(const BeliefsOptions& options) {
+  const auto file = options.journal.file();
+  if (!file) return Error{file.error()};
+  return journal::Writer::open(*file, {});
+}
+
+int read_in(const BeliefsOptions& options) {
+  journal::Learned added;
+  for (const std::string& path : options.files) {
+    const auto learned = read_file(path);
+    if (!learned) return complain(learned.error());
+    journal::merge(added, *learned);
+  }
+  auto writer = open_writer(options);
+  if (!writer) return complain(writer.error());
+  auto learned = writer->learned();
+  if (!learned) return complain(learned.error());
+  journal::merge(*learned, added);
+  const auto written =
+      writer->append({{}, *learned}, wall_now(), journal::Durability::kPowerFailure);
+  if (!written) return complain(written.error());
+  fmt::print("{} beliefs and {} couplings added to '{}'\n", added.beliefs.size(),
+             added.couplings.size(), writer->path().string());
+  return kOk;
+}
+
+int reset(const BeliefsOptions& options) {
+  if (options.rule.empty() == !options.all)
+    return complain("say which rule to forget, or --all"), kUsage;
+  auto writer = open_writer(options);
+  if (!writer) return complain(writer.error());
+  const auto count = writer->forget(options.rule, wall_now());
+  if (!count) return complain(count.error());
+  fmt::print("{} beliefs forgotten\n", *count);
+  return kOk;
+}
+
+}  // namespace
+
+void add_beliefs(CLI::App& app, int& exit_code) {
+  CLI::App* beliefs =
+      app.add_subcommand("beliefs", "What culprit has learned of the strategies on this robot");
+  beliefs->require_subcommand(1);
+  const auto add = [&](const char* name, const char* help, int (*run)(const BeliefsOptions&)) {
+    auto options = std::make_shared<BeliefsOptions>();
+    CLI::App* command = beliefs->add_subcommand(name, help);
+    options->journal.add_to(*command);
+    command->callback([options, run, &exit_code] { exit_code = run(*options); });
+    return std::pair(command, options);
+  };
+  add("show", "Each strategy's success rate: as the rules have it, and now", show);
+  const auto out = add("export", "Write what was learned as JSON", write_out);
+  out.first->add_option("-o,--output", out.second->output, "Where to (default: stdout)");
+  const auto in = add("import", "Add what other robots learned", read_in);
+  in.first->add_option("FILE", in.second->files, "What culprit beliefs export wrote")->required();
+  const auto forget = add("reset", "Forget what was learned", reset);
+  forget.first->add_option("RULE", forget.second->rule, "Of this rule");
+  forget.first->add_flag("--all", forget.second->all, "Of all rules");
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,128 @@
+#include "cli/decision_report.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "cli/journal_file.h"
+#include "journal/json.h"
+
+namespace culprit::cli {
+namespace {
+
+using journal::Entry;
+using journal::Json;
+using journal::text_of;
+
+bool is_decision(const Entry& entry, const Json& body) {
+  const std::string type = text_of(body, "type");
+  return entry.kind == journal::kind::kEvent &&
+         (type == "strategy_chosen" || type == "failure_held_back");
+}
+
+// The latest decision of the rule that row `id` is about, not after it.
+Expected<std::optional<Entry>> decision_at(const journal::Reader& journal, std::int64_t id) {
+  std::string rule;
+  if (id != 0) {
+    const auto row = journal.entry(id);
+    if (!row) return Error{row.error()};
+    if (!*row) return std::optional<Entry>();
+    const Json body = journal::from_text((*row)->body);
+    rule = text_of(body, "rule");
+    if (is_decision(**row, body) || rule.empty()) return row;
+  }
+  // Of no row in particular: a strategy that was chosen says more than a failure that waits.
+  std::int64_t before = id;
+  while (true) {
+    auto row = journal.newest(journal::kind::kEvent, before);
+    if (!row || !*row) return row;
+    const Json body = journal::from_text((*row)->body);
+    const bool fits = id == 0 ? text_of(body, "type") == "strategy_chosen"
+                              : is_decision(**row, body) && text_of(body, "rule") == rule;
+    if (fits) return row;
+    before = (*row)->id;
+  }
+}
+
+std::string suspects_of(const Json& body) {
+  const Json suspects = body.value("suspects", Json::array());
+  if (!suspects.is_array() || suspects.empty()) return "";
+  std::string out = "\nWho may be responsible\n";
+  for (const Json& each : suspects)
+    out += fmt::format("  {:>3.0f} %  {}, by {}\n", 100 * journal::number_of(each, "probability"),
+                       text_of(each, "component"), text_of(each, "failure"));
+  return out;
+}
+
+std::string candidates_of(const Json& body) {
+  const Json candidates = body.value("candidates", Json::array());
+  if (!candidates.is_array() || candidates.empty()) return "";
+  std::string out = "\nWhat was weighed\n";
+  for (const Json& each : candidates) {
+    std::string numbers = fmt::format("cost {:.2f}", journal::number_of(each, "cost"));
+    if (each.is_object() && each.contains("resolves"))
+      numbers += fmt::format(", resolves it with {:.0f} %, value {:.2f}",
+                             100 * journal::number_of(each, "resolves"),
+                             journal::number_of(each, "value"));
+    const std::string because = text_of(each, "because");
+    out += fmt::format("  {:<24} {}: {}\n", text_of(each, "strategy"), numbers,
+                       because.empty() ? "chosen" : "not chosen, " + because);
+  }
+  return out;
+}
+
+bool is_over(const std::string& type) {
+  return type == "failure_resolved" || type == "failure_lost";
+}
+
+// What followed for the same rule, up to the end of the strategy; the other rows in between are of
+// other failures.
+Expected<std::string> sequel_of(const journal::Reader& journal, const Entry& decision,
+                                const std::string& rule) {
+  std::string out;
+  auto rows = journal.entries(journal::Which::kReadable, decision.id + 1);
+  if (!rows) return Error{rows.error()};
+  std::vector<std::int64_t> commands;
+  Entry entry;
+  auto more = rows->next(entry);
+  // A strategy that was interrupted is finished by the next run.
+  for (; more && *more; more = rows->next(entry)) {
+    const Json body = journal::from_text(entry.body);
+    const auto number = journal::integer_of(body, "command", -1);
+    const bool is_outcome = entry.kind == journal::kind::kOutcome;
+    const bool is_ours = is_outcome
+                             ? std::find(commands.begin(), commands.end(), number) != commands.end()
+                             : text_of(body, "rule") == rule;
+    if (!is_ours) continue;
+    if (is_decision(entry, body)) break;
+    if (entry.kind == journal::kind::kIntent) commands.push_back(number);
+    out += log_line(entry) + "\n";
+    const std::string type = text_of(body, "type");
+    if (is_over(type)) break;
+  }
+  if (!more) return Error{more.error()};
+  return out.empty() ? out : "\nWhat came of it\n" + out;
+}
+
+}  // namespace
+
+Expected<std::string> explain_decision(const journal::Reader& journal, std::int64_t id) {
+  const auto decision = decision_at(journal, id);
+  if (!decision) return Error{decision.error()};
+  if (!*decision)
+    return Error{id == 0 ? "nothing was decided yet"
+                         : fmt::format("there is no row {}, or nothing was decided about it; "
+                                       "culprit log shows the rows",
+                                       id)};
+  const Entry& entry = **decision;
+  const Json body = journal::from_text(entry.body);
+  std::string out =
+      fmt::format("Row {}, {} UTC\n{}\n", entry.id, timestamp(entry.at), text_of(body, "text"));
+  if (!is_decision(entry, body)) return out + body.dump(2) + "\n";
+  out += suspects_of(body) + candidates_of(body);
+  const auto sequel = sequel_of(journal, entry, text_of(body, "rule"));
+  if (!sequel) return Error{sequel.error()};
+  return out + *sequel;
+}
+
+}  // namespace culprit::cli

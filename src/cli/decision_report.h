@@ -1,0 +1,13 @@
+// One decision from the journal, explained: who was suspected, what was weighed and why not, what
+// was asked for, and what came of it.
+#pragma once
+
+#include "journal/reader.h"
+
+namespace culprit::cli {
+
+// Row `id`, or the decision that it belongs to; the latest decision if `id` is 0. Errors: there is
+// no such row, or the file cannot be read.
+Expected<std::string> explain_decision(const journal::Reader& journal, std::int64_t id);
+
+}  // namespace culprit::cli

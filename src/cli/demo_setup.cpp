@@ -1,0 +1,32 @@
+#include "cli/demo_setup.h"
+
+#include <stdlib.h>
+
+#include "language/checker.h"
+
+namespace culprit::cli {
+
+RuleSet embedded_rules(const char* name, const char* text) {
+  return *check(Source(name, text)).rules;
+}
+
+Expected<std::filesystem::path> make_state_folder() {
+  std::string path = (std::filesystem::temp_directory_path() / "culprit-demo-XXXXXX").string();
+  if (mkdtemp(path.data()) == nullptr)
+    return Error{"cannot make a folder in " + std::filesystem::temp_directory_path().string()};
+  return std::filesystem::path(path);
+}
+
+Expected<ros2::DomainLock> make_own_domain() {
+  auto domain = ros2::DomainLock::reserve();
+  if (!domain) return domain;
+  setenv("ROS_DOMAIN_ID", std::to_string(domain->domain()).c_str(), 1);
+  setenv("ROS_LOCALHOST_ONLY", "1", 1);
+  return domain;
+}
+
+void start_all(process::Supervisor& supervisor, const RuleSet& rules) {
+  for (std::size_t c = 0; c < rules.components.size(); ++c) supervisor.start({}, ComponentId(c));
+}
+
+}  // namespace culprit::cli

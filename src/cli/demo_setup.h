@@ -1,0 +1,26 @@
+// What the demonstrations have in common: a world of their own for a live robot.
+#pragma once
+
+#include <filesystem>
+
+#include "language/rule_set.h"
+#include "process/supervisor.h"
+#include "ros2/domain_lock.h"
+
+namespace culprit::cli {
+
+// The rules of an embedded file, which has no errors.
+RuleSet embedded_rules(const char* name, const char* text);
+
+// A new folder for logs and state.
+Expected<std::filesystem::path> make_state_folder();
+
+// A DDS domain on loopback that nobody else uses, as long as the lock lives. Sets ROS_DOMAIN_ID and
+// ROS_LOCALHOST_ONLY of this process, so call it before there are threads that read the
+// environment.
+Expected<ros2::DomainLock> make_own_domain();
+
+// Starts each component's process.
+void start_all(process::Supervisor& supervisor, const RuleSet& rules);
+
+}  // namespace culprit::cli

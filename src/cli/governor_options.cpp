@@ -1,0 +1,137 @@
+#include "cli/governor_options.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include <nlohmann/json.hpp>
+
+#include "journal/json.h"
+
+namespace culprit::cli {
+namespace {
+
+constexpr double kLongest = 86400;  // seconds
+
+std::string to_text(const Intensity& intensity) {
+  if (intensity.most == 0) return "none";
+  return std::to_string(intensity.most) + "/" + to_string(intensity.period);
+}
+
+// "20/1min": at most 20 in a minute; "none": no limit.
+Expected<Intensity> parse_intensity(const std::string& option, const std::string& text) {
+  if (text == "none") return Intensity{};
+  const Error error{option + ": '" + text + "' is no intensity; write for example 5/1min, or none"};
+  const auto slash = text.find('/');
+  if (slash == std::string::npos) return error;
+  Intensity intensity;
+  const auto [end, bad] = std::from_chars(text.data(), text.data() + slash, intensity.most);
+  const auto period = parse_duration(text.substr(slash + 1));
+  const bool is_count = bad == std::errc() && end == text.data() + slash;
+  if (!is_count || intensity.most < 1 || intensity.most > 1'000'000 || !period ||
+      *period <= Duration::zero())
+    return error;
+  intensity.period = *period;
+  return intensity;
+}
+
+}  // namespace
+
+GovernorOptions::GovernorOptions() {
+  const auto recommended = Governor::Options::recommended();
+  quiet_seconds = seconds(recommended.quiet_at_start);
+  overall = to_text(recommended.limits.overall);
+  per_kind = to_text(recommended.limits.per_kind);
+  per_component = to_text(recommended.limits.per_component);
+  backoff_seconds = seconds(recommended.limits.backoff.first);
+  backoff_most_seconds = seconds(recommended.limits.backoff.longest);
+  healthy_seconds = seconds(recommended.limits.backoff.healthy);
+  storm_percent = static_cast<int>(recommended.storm.share * 100 + 0.5);
+}
+
+void GovernorOptions::add_to(CLI::App& command) {
+  const std::string kGroup = "The governor (docs/governor.md)";
+  command.add_flag("--approve", approve, "Ask a person before each strategy")->group(kGroup);
+  const auto time = [&](const char* option, double& value, const char* help) {
+    command.add_option(option, value, help)
+        ->check(CLI::Range(0.0, kLongest))
+        ->capture_default_str()
+        ->group(kGroup);
+  };
+  const auto intensity = [&](const char* option, std::string& value, const char* help) {
+    command.add_option(option, value, help)->capture_default_str()->group(kGroup);
+  };
+  time("--quiet", quiet_seconds, "Begin nothing in the first so many seconds");
+  intensity("--intensity", overall, "At most so many strategies in such a time, or none");
+  intensity("--intensity-kind", per_kind,
+            "The same of each kind: reconfigurations, lifecycle changes, restarts of processes");
+  intensity("--intensity-component", per_component, "The same at each component");
+  time("--backoff", backoff_seconds,
+       "Seconds between two restarts of a component, doubled with each; 0: no back-off");
+  time("--backoff-most", backoff_most_seconds, "At most so many seconds");
+  time("--healthy", healthy_seconds, "A component that was well for so many seconds begins anew");
+  command
+      .add_option("--storm", storm_percent,
+                  "Stop acting when so many percent of the components are ill and nothing explains "
+                  "it; 0: never")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str()
+      ->group(kGroup);
+}
+
+Expected<Governor::Options> GovernorOptions::options() const {
+  Governor::Options out = Governor::Options::recommended();
+  out.approval = approve ? Approval::kEach : Approval::kNone;
+  out.quiet_at_start = from_seconds(quiet_seconds);
+  struct Wanted {
+    const char* option;
+    const std::string& text;
+    Intensity& value;
+  };
+  for (const Wanted& wanted :
+       {Wanted{"--intensity", overall, out.limits.overall},
+        Wanted{"--intensity-kind", per_kind, out.limits.per_kind},
+        Wanted{"--intensity-component", per_component, out.limits.per_component}}) {
+    const auto parsed = parse_intensity(wanted.option, wanted.text);
+    if (!parsed) return Error{parsed.error()};
+    wanted.value = *parsed;
+  }
+  out.limits.backoff = {from_seconds(backoff_seconds), from_seconds(backoff_most_seconds),
+                        from_seconds(healthy_seconds)};
+  out.storm.share = storm_percent / 100.0;
+  return out;
+}
+
+nlohmann::ordered_json GovernorOptions::to_json() const {
+  return {{"approve", approve},
+          {"quiet", quiet_seconds},
+          {"intensity", overall},
+          {"intensity_kind", per_kind},
+          {"intensity_component", per_component},
+          {"backoff", backoff_seconds},
+          {"backoff_most", backoff_most_seconds},
+          {"healthy", healthy_seconds},
+          {"storm", storm_percent}};
+}
+
+GovernorOptions GovernorOptions::from_json(const nlohmann::ordered_json& json) {
+  GovernorOptions options;
+  const auto intensity = [&json](const char* key, std::string& value) {
+    if (const std::string text = journal::text_of(json, key); !text.empty()) value = text;
+  };
+  const auto time = [&json](const char* key, double& value) {
+    value = std::clamp(journal::number_of(json, key, value), 0.0, kLongest);
+  };
+  options.approve = journal::flag_of(json, "approve");
+  time("quiet", options.quiet_seconds);
+  intensity("intensity", options.overall);
+  intensity("intensity_kind", options.per_kind);
+  intensity("intensity_component", options.per_component);
+  time("backoff", options.backoff_seconds);
+  time("backoff_most", options.backoff_most_seconds);
+  time("healthy", options.healthy_seconds);
+  options.storm_percent = static_cast<int>(
+      std::clamp(journal::number_of(json, "storm", options.storm_percent), 0.0, 100.0));
+  return options;
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,90 @@
+#include "cli/journal_file.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+
+#include <fmt/core.h>
+
+#include "cli/commands.h"
+#include "cli/paths.h"
+#include "journal/json.h"
+
+namespace culprit::cli {
+
+namespace fs = std::filesystem;
+
+fs::path default_journal(const fs::path& state_folder, const std::string& robot) {
+  return state_folder / ((robot.empty() ? "robot" : robot) + ".journal");
+}
+
+void JournalOption::add_to(CLI::App& command) {
+  command.add_option("--journal", path,
+                     "The journal file (default: the only one in ~/.local/state/culprit)");
+}
+
+Expected<fs::path> JournalOption::file() const {
+  if (!path.empty()) return fs::path(path);
+  const fs::path folder = default_state_folder();
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".journal") found.push_back(entry.path());
+  }
+  if (found.size() == 1) return found.front();
+  if (found.empty())
+    return Error{"there is no journal in '" + folder.string() +
+                 "': culprit run writes one; name another with --journal"};
+  std::sort(found.begin(), found.end());
+  std::string names;
+  for (const fs::path& each : found) names += "\n  --journal " + each.string();
+  return Error{"there is more than one journal; name one:" + names};
+}
+
+Expected<journal::Reader> JournalOption::open() const {
+  const auto name = file();
+  if (!name) return Error{name.error()};
+  return journal::Reader::open(*name);
+}
+
+int complain(const std::string& what) {
+  fmt::print(stderr, "culprit: {}\n", what);
+  return kFailed;
+}
+
+std::string timestamp(std::int64_t at) {
+  const std::int64_t milliseconds = at / 1'000'000;
+  const auto seconds = static_cast<std::time_t>(milliseconds / 1000);
+  std::tm parts{};
+  if (at < 0 || gmtime_r(&seconds, &parts) == nullptr) return "?";
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:03}", parts.tm_year + 1900,
+                     parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
+                     milliseconds % 1000);
+}
+
+std::string log_line(const journal::Entry& entry) {
+  const journal::Json body = journal::from_text(entry.body);
+  std::string what = entry.kind;
+  if (entry.kind == journal::kind::kEvent) {
+    what = journal::text_of(body, "type");
+    std::replace(what.begin(), what.end(), '_', ' ');
+  }
+  std::string text = journal::text_of(body, "text");
+  if (text.empty() && body.contains("alpha"))
+    text = fmt::format("{} of {}: {:.2f} helped, {:.2f} did not",
+                       journal::text_of(body, "strategy"), journal::text_of(body, "rule"),
+                       journal::number_of(body, "alpha"), journal::number_of(body, "beta"));
+  if (text.empty() && body.contains("cause"))
+    text = fmt::format("{} with {}: went away {:g} times, stayed {:g} times",
+                       journal::text_of(body, "effect"), journal::text_of(body, "cause"),
+                       journal::number_of(body, "cleared"), journal::number_of(body, "stayed"));
+  return fmt::format("{:>7}  {}  {:<17}  {}", entry.id, timestamp(entry.at), what, text);
+}
+
+std::int64_t wall_now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace culprit::cli

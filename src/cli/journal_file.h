@@ -1,0 +1,39 @@
+// Which journal a command is about, and its rows for people.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "journal/reader.h"
+
+namespace culprit::cli {
+
+// Where `culprit run` keeps the journal of a robot unless told otherwise.
+std::filesystem::path default_journal(const std::filesystem::path& state_folder,
+                                      const std::string& robot);
+
+// The option --journal FILE. Without it the only journal of the default folder is meant.
+struct JournalOption {
+  std::string path;
+
+  void add_to(CLI::App& command);
+  Expected<std::filesystem::path> file() const;
+  Expected<journal::Reader> open() const;
+};
+
+// Says what went wrong on stderr, and gives kFailed.
+int complain(const std::string& what);
+
+// "2026-11-21 18:36:01.123", UTC. `at`: nanoseconds since 1970.
+std::string timestamp(std::int64_t at);
+
+// "   123  2026-11-21 18:36:01.123  strategy chosen    camera is held responsible …"
+std::string log_line(const journal::Entry& entry);
+
+// Now, in nanoseconds since 1970.
+std::int64_t wall_now();
+
+}  // namespace culprit::cli

@@ -1,0 +1,104 @@
+// The journal as a user meets it: culprit killed in the middle of a repair, started again, asked
+// what it did, and replayed.
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/test_program.h"
+
+namespace culprit::cli {
+namespace {
+
+using testing::HasSubstr;
+
+// The camera takes its time to come up, and whoever restarts it can be killed meanwhile.
+constexpr const char* kRules = R"(
+ROBOT one_camera
+COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
+RULE CameraGone
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera redeploy 5
+)";
+
+struct Journal : testing::Test {
+  TestProgram culprit(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "culprit");
+    return TestProgram(world, std::move(arguments));
+  }
+  std::string said_by(std::vector<std::string> arguments, int code = 0) {
+    TestProgram program = culprit(std::move(arguments));
+    EXPECT_EQ(program.wait(), code) << program.output();
+    return program.output();
+  }
+
+  TestWorld world;
+  const std::string rules = world.write("one.rules", kRules);
+  const std::string state = (world.folder() / "state").string();
+  const std::string journal = (world.folder() / "state" / "one_camera.journal").string();
+};
+
+TEST_F(Journal, SurvivesAKillAndTellsAndReplaysWhatHappened) {
+  TestProgram camera(world, {"sunset-node", "camera"});
+  {
+    TestProgram first = culprit({"run", rules, "--settle", "1", "--state-dir", state});
+    ASSERT_TRUE(first.prints("camera is there")) << first.output();
+
+    TestProgram onlooker = culprit({"run", rules, "--state-dir", state});
+    EXPECT_TRUE(onlooker.prints("another culprit manages this robot")) << onlooker.output();
+    onlooker.signal(SIGINT);
+    EXPECT_EQ(onlooker.wait(), 0);
+
+    camera.signal(SIGKILL);
+    camera.wait();
+    ASSERT_TRUE(first.prints("CameraGone detected")) << first.output();
+    ASSERT_TRUE(first.prints("camera is held responsible")) << first.output();
+    first.signal(SIGKILL);
+    EXPECT_EQ(first.wait(), -SIGKILL);
+  }
+  TestProgram second = culprit({"run", rules, "--settle", "3", "--state-dir", state});
+  ASSERT_TRUE(second.prints("camera is there (process ")) << second.output();
+  EXPECT_THAT(second.output(), HasSubstr("the last run ended"));
+  second.signal(SIGINT);
+  EXPECT_EQ(second.wait(), 0);
+
+  EXPECT_THAT(said_by({"log", "--journal", journal}), HasSubstr("CameraGone detected"));
+  const std::string why = said_by({"explain", "--last", "--journal", journal});
+  EXPECT_THAT(why, HasSubstr("camera_redeploy"));
+  EXPECT_THAT(why, HasSubstr("What was weighed"));
+  EXPECT_THAT(said_by({"audit", "verify", "--journal", journal}),
+              HasSubstr("all as they were written"));
+  EXPECT_THAT(said_by({"replay", journal}), HasSubstr("all decided as recorded"));
+  EXPECT_THAT(said_by({"replay", journal, "--planner", "bayes"}), HasSubstr("lines differ"));
+}
+
+TEST_F(Journal, ThatCannotBeWrittenKeepsNobodyFromManaging) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  TestProgram run = culprit({"run", rules, "--journal", "/proc/nowhere/a.journal"});
+  ASSERT_TRUE(run.prints("cannot write the journal '/proc/nowhere/a.journal'")) << run.output();
+  ASSERT_TRUE(run.prints("camera is there")) << run.output();
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(), 0);
+  EXPECT_THAT(run.output(), HasSubstr("are lost"));
+}
+
+TEST_F(Journal, BeliefsGoFromRobotToRobot) {
+  const std::string file = (world.folder() / "beliefs.json").string();
+  world.write("beliefs.json", R"({"format": "culprit-beliefs", "format_version": 1,
+    "beliefs": [{"rule": "CameraGone", "strategy": "camera_redeploy",
+                 "belief": [12, 1], "prior": [9, 1]}], "couplings": []})");
+  const std::string other = (world.folder() / "other.journal").string();
+  said_by({"beliefs", "import", file, file, "--journal", other});
+  EXPECT_THAT(said_by({"beliefs", "export", "--journal", other}), HasSubstr("15.0"));
+  EXPECT_THAT(said_by({"beliefs", "show", "--journal", other}), HasSubstr("93.8 %"));
+  said_by({"beliefs", "reset", "--journal", other}, 2);
+  said_by({"beliefs", "reset", "CameraGone", "--journal", other});
+  EXPECT_THAT(said_by({"beliefs", "show", "--journal", other}), HasSubstr("nothing was learned"));
+  EXPECT_THAT(said_by({"audit", "verify", "--journal", other}),
+              HasSubstr("all as they were written"));
+}
+
+}  // namespace
+}  // namespace culprit::cli

@@ -1,0 +1,293 @@
+#include "execute/governor.h"
+
+#include <algorithm>
+
+#include "language/evaluate.h"
+
+namespace culprit {
+namespace {
+
+template <class... F>
+struct Overload : F... {
+  using F::operator()...;
+};
+// clang before 17 does not deduce this by itself.
+template <class... F>
+Overload(F...) -> Overload<F...>;
+
+bool touches(const Strategy& strategy, const Silenceable& what) {
+  if (const auto* rule = std::get_if<RuleId>(&what)) return strategy.rule == *rule;
+  return std::binary_search(strategy.components.begin(), strategy.components.end(),
+                            std::get<ComponentId>(what));
+}
+
+bool exists(const Silenceable& what, const RuleSet& rules) {
+  if (const auto* rule = std::get_if<RuleId>(&what)) return rule->index < rules.rules.size();
+  return std::get<ComponentId>(what).index < rules.components.size();
+}
+
+}  // namespace
+
+Governor::Options Governor::Options::recommended() {
+  using namespace std::chrono_literals;
+  Options options;
+  options.quiet_at_start = 2s;
+  options.limits.overall = {20, 60s};
+  options.limits.per_kind = {12, 60s};
+  options.limits.per_component = {6, 60s};
+  options.limits.backoff = {1s, 60s, 60s};
+  options.limits.quiet_after_launch = 1s;
+  options.storm.share = 0.6;
+  return options;
+}
+
+Governor::Governor(Knowledge& knowledge, Options options, Time start)
+    : knowledge_(knowledge),
+      options_(options),
+      start_(start),
+      limits_(knowledge, options.limits),
+      storm_(knowledge, options.storm),
+      refused_(knowledge.rules.strategies.size(), kNever),
+      told_(knowledge.rules.strategies.size()) {}
+
+// ---- orders
+
+std::optional<std::string> Governor::objection(const Order& order, Autonomy autonomy) const {
+  using Objection = std::optional<std::string>;
+  const RuleSet& rules = knowledge_.rules;
+  const auto about_question = [&](StrategyId strategy) -> Objection {
+    if (strategy.index >= rules.strategies.size()) return "there is no such strategy";
+    if (question_of(strategy) == nullptr)
+      return rules[strategy].name + " does not wait for approval";
+    return std::nullopt;
+  };
+  return std::visit(
+      Overload{[&](const Pause&) -> Objection {
+                 return is_paused_ ? Objection("it is paused already") : std::nullopt;
+               },
+               [&](const Resume&) -> Objection {
+                 return is_paused_ ? std::nullopt : Objection("it is not paused");
+               },
+               [&](const SetDryRun& o) -> Objection {
+                 if (o.is_on != (autonomy == Autonomy::kAdvise)) return std::nullopt;
+                 return o.is_on ? "the dry run is on already" : "the dry run is off already";
+               },
+               [&](const Approve& o) { return about_question(o.strategy); },
+               [&](const Refuse& o) { return about_question(o.strategy); },
+               [&](const Silence& o) -> Objection {
+                 if (!exists(o.what, rules)) return "there is no such component or rule";
+                 if (o.lasts && *o.lasts <= Duration::zero()) return "a silence takes some time";
+                 return std::nullopt;
+               },
+               [&](const LiftSilence& o) -> Objection {
+                 const bool is_there =
+                     std::any_of(silences_.begin(), silences_.end(),
+                                 [&](const ActiveSilence& s) { return s.what == o.what; });
+                 return is_there ? std::nullopt : Objection("it is not silenced");
+               },
+               [&](const RunStrategy& o) { return objection_to_run(o.strategy, autonomy); }},
+      order.what);
+}
+
+// A person's word goes before the limits, not before what keeps the robot safe.
+std::optional<std::string> Governor::objection_to_run(StrategyId id, Autonomy autonomy) const {
+  const RuleSet& rules = knowledge_.rules;
+  if (id.index >= rules.strategies.size()) return "there is no such strategy";
+  if (is_paused_) return "it is paused; resume first";
+  if (autonomy == Autonomy::kAdvise) return "this is a dry run; switch it off first";
+  const Strategy& strategy = rules[id];
+  if (knowledge_.states[strategy.rule].attempt)
+    return "another strategy of " + rules[strategy.rule].name + " is under way";
+  for (const ComponentId component : strategy.components) {
+    if (knowledge_.states.reservation(component) != nullptr)
+      return rules[component].name + " is being adapted";
+  }
+  if (const auto held = interlock()) return held->reason;
+  if (const auto held = doubt_of_identity(strategy)) return held->reason;
+  if (strategy.when.empty()) return std::nullopt;
+  const Slot when = evaluate(strategy.when, knowledge_.signals.slots());
+  return when.known && when.b ? std::nullopt
+                              : std::optional<std::string>("its WHEN condition is not true");
+}
+
+void Governor::obey(const Order& order, Time now) {
+  std::visit(
+      Overload{[&](const Pause&) { is_paused_ = true; }, [&](const Resume&) { is_paused_ = false; },
+               [&](const Approve& o) { question_of(o.strategy)->is_approved = true; },
+               [&](const Refuse& o) {
+                 const Question& question = *question_of(o.strategy);
+                 refused_[o.strategy.index] = question.failing_since;
+                 questions_.erase(questions_.begin() + (&question - questions_.data()));
+               },
+               [&](const Silence& o) {
+                 std::erase_if(silences_, [&](const ActiveSilence& s) { return s.what == o.what; });
+                 silences_.push_back(
+                     {o.what, o.lasts ? later(now, *o.lasts) : kNever, order.author, order.reason});
+               },
+               [&](const LiftSilence& o) {
+                 std::erase_if(silences_, [&](const ActiveSilence& s) { return s.what == o.what; });
+               },
+               // The manager's.
+               [](const SetDryRun&) {}, [](const RunStrategy&) {}},
+      order.what);
+}
+
+std::vector<StrategyId> Governor::asked() const {
+  std::vector<StrategyId> strategies;
+  for (const Question& question : questions_) {
+    if (!question.is_approved) strategies.push_back(question.strategy);
+  }
+  return strategies;
+}
+
+const Governor::Question* Governor::question_of(StrategyId strategy) const {
+  const auto found =
+      std::find_if(questions_.begin(), questions_.end(),
+                   [&](const Question& question) { return question.strategy == strategy; });
+  return found == questions_.end() ? nullptr : &*found;
+}
+
+Governor::Question* Governor::question_of(StrategyId strategy) {
+  return const_cast<Question*>(std::as_const(*this).question_of(strategy));
+}
+
+// ---- plans
+
+void Governor::begin_planning() {
+  for (std::string& reason : knowledge_.withheld) reason.clear();
+}
+
+bool Governor::withholds(StrategyId strategy, Time now) {
+  const auto held = restraint_on(strategy, now);
+  if (!held) return false;
+  knowledge_.withheld[strategy.index] = held->reason;
+  tell(strategy, *held, now);
+  return true;
+}
+
+bool Governor::holds_back(StrategyId strategy, Time now) {
+  const auto held = restraint_on_all(now);
+  if (held) tell(strategy, *held, now);
+  return held.has_value();
+}
+
+std::optional<Governor::Held> Governor::restraint_on_all(Time now) const {
+  if (is_paused_) return Held{Restraint::kPaused, "paused by a person", kNever};
+  if (storm_.storm())
+    return Held{storm_.storm()->restraint, storm_.storm()->reason, storm_.next_deadline()};
+  if (auto held = interlock()) return held;
+  const Time quiet_until = later(start_, options_.quiet_at_start);
+  if (now < quiet_until)
+    return Held{Restraint::kQuietPeriod, "watching began a moment ago", quiet_until};
+  return limits_.on_all(now);
+}
+
+std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) const {
+  if (auto held = restraint_by_person(id)) return held;
+  if (auto held = doubt_of_identity(knowledge_.rules[id])) return held;
+  return limits_.on(id, now);
+}
+
+std::optional<Governor::Held> Governor::restraint_by_person(StrategyId id) const {
+  const Strategy& strategy = knowledge_.rules[id];
+  for (const ActiveSilence& silence : silences_) {
+    if (!touches(strategy, silence.what)) continue;
+    const auto* component = std::get_if<ComponentId>(&silence.what);
+    const std::string& what = component != nullptr ? knowledge_.rules[*component].name
+                                                   : knowledge_.rules[strategy.rule].name;
+    return Held{Restraint::kSilenced,
+                what + " is silenced by " + silence.author +
+                    (silence.reason.empty() ? "" : ": " + silence.reason),
+                silence.until};
+  }
+  if (refused_[id.index] == knowledge_.states[strategy.rule].failing_since)
+    return Held{Restraint::kRefused, "a person refused it", kNever};
+  return std::nullopt;
+}
+
+std::optional<Governor::Held> Governor::interlock() const {
+  for (const Interlock& interlock : knowledge_.rules.interlocks) {
+    const Slot value = evaluate(interlock.condition, knowledge_.signals.slots());
+    if (value.known && value.b) continue;
+    return Held{Restraint::kInterlock,
+                "INTERLOCK " + interlock.text + (value.known ? " is false" : " is unknown"),
+                kNever};
+  }
+  return std::nullopt;
+}
+
+// Requests go to a name, signals to a process: it must be clear which.
+std::optional<Governor::Held> Governor::doubt_of_identity(const Strategy& strategy) const {
+  for (const ComponentId component : strategy.components) {
+    const ComponentState& state = knowledge_.components[component];
+    if (!state.in_graph) continue;
+    if (state.namesakes > 0) {
+      return Held{Restraint::kIdentity,
+                  "several nodes have the name " + knowledge_.graph.node_name(component), kNever};
+    }
+  }
+  return std::nullopt;
+}
+
+bool Governor::awaits_approval(const ApprovalAsked& choice, Time now) {
+  if (options_.approval == Approval::kNone) return false;
+  if (const Question* question = question_of(choice.strategy)) return !question->is_approved;
+  const RuleId rule = knowledge_.rules[choice.strategy].rule;
+  // The question about another strategy of the same failure is no longer the question.
+  std::erase_if(questions_, [&](const Question& question) {
+    const bool is_old = knowledge_.rules[question.strategy].rule == rule;
+    if (is_old) knowledge_.tell(now, ApprovalLapsed{question.strategy});
+    return is_old;
+  });
+  questions_.push_back({choice.strategy, knowledge_.states[rule].failing_since, false});
+  knowledge_.tell(now, choice);
+  return true;
+}
+
+void Governor::tell(StrategyId strategy, const Held& held, Time now) {
+  Told& told = told_[strategy.index];
+  const Time since = knowledge_.states[knowledge_.rules[strategy].rule].failing_since;
+  if (told.failing_since == since && told.restraint == held.restraint) return;
+  told = {since, held.restraint};
+  knowledge_.tell(now, ActionHeldBack{strategy, held.restraint, held.reason, held.until});
+}
+
+void Governor::began(StrategyId strategy, Time now) {
+  limits_.began(strategy, now);
+  told_[strategy.index] = {};
+  std::erase_if(questions_, [&](const Question& q) { return q.strategy == strategy; });
+}
+
+// ---- time
+
+bool Governor::is_open(const Question& question) const {
+  const RuleState& state = knowledge_.states[knowledge_.rules[question.strategy].rule];
+  return state.phase == RulePhase::kFailing && state.failing_since == question.failing_since;
+}
+
+void Governor::advance(Time now) {
+  storm_.advance(now);
+  std::erase_if(silences_, [&](const ActiveSilence& silence) {
+    if (silence.until > now) return false;
+    knowledge_.tell(now, SilenceEnded{silence.what});
+    return true;
+  });
+  std::erase_if(questions_, [&](const Question& question) {
+    if (is_open(question)) return false;
+    knowledge_.tell(now, ApprovalLapsed{question.strategy});
+    return true;
+  });
+}
+
+void Governor::note(std::span<const Event> events) {
+  for (const Event& event : events) limits_.note(event);
+  storm_.note(events);
+}
+
+Time Governor::next_deadline() const {
+  Time next = storm_.next_deadline();
+  for (const ActiveSilence& silence : silences_) next = std::min(next, silence.until);
+  return next;
+}
+
+}  // namespace culprit

@@ -1,0 +1,121 @@
+// Decides whether what was planned may be done now (docs/governor.md).
+//
+// It chooses nothing and does nothing by itself: it says yes, or no with a reason. A reason is
+// about everything (paused, a storm), or about one strategy; then the next best one may be tried.
+// A person's orders go through it too.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "execute/limits.h"
+#include "execute/storm_watch.h"
+#include "knowledge/knowledge.h"
+#include "robot/order.h"
+
+namespace culprit {
+
+enum class Autonomy : std::uint8_t {
+  kAct,
+  kAdvise  // dry run: strategies are chosen and said, and nothing is done
+};
+
+// Whether a person has to approve each strategy before it is begun.
+enum class Approval : std::uint8_t { kNone, kEach };
+
+class Governor {
+ public:
+  struct Options {
+    Approval approval = Approval::kNone;
+    Duration quiet_at_start{};  // nothing is begun for so long
+    Limits::Options limits{};
+    StormWatch::Options storm{};
+
+    // Nothing is limited unless it is asked for: a study measures the planner. This is what a
+    // robot is run with; why these numbers, says docs/governor.md.
+    static Options recommended();
+  };
+  struct ActiveSilence {
+    Silenceable what;
+    Time until = kNever;
+    std::string author;
+    std::string reason;
+  };
+  using Held = Limits::Limit;
+
+  // `knowledge` must outlive the governor.
+  Governor(Knowledge& knowledge, Options options, Time start);
+
+  // ---- orders
+
+  // Why the order cannot be followed; nothing if it can.
+  std::optional<std::string> objection(const Order& order, Autonomy autonomy) const;
+  // What the order changes here. @pre there is no objection to it
+  void obey(const Order& order, Time now);
+
+  bool is_paused() const { return is_paused_; }
+  const std::optional<StormWatch::Storm>& storm() const { return storm_.storm(); }
+  const std::vector<ActiveSilence>& silences() const { return silences_; }
+  // The strategies that wait for approval.
+  std::vector<StrategyId> asked() const;
+
+  // ---- plans
+
+  // Before each plan: what was withheld may be allowed by now.
+  void begin_planning();
+  // Whether the strategy may not be begun although others may. If so, it is marked
+  // (Knowledge::withheld), so that a new plan finds what else there is, and told.
+  bool withholds(StrategyId strategy, Time now);
+  // Whether everything has to wait now, the strategy that was chosen too. If so, that is told.
+  bool holds_back(StrategyId strategy, Time now);
+  // Whether a person has to approve it first, and did not yet. If so, the person is asked.
+  bool awaits_approval(const ApprovalAsked& choice, Time now);
+  // It is begun.
+  void began(StrategyId strategy, Time now);
+
+  // ---- time
+
+  void advance(Time now);
+  // What happened in the step that is over.
+  void note(std::span<const Event> events);
+  Time next_deadline() const;
+
+ private:
+  struct Told {
+    Time failing_since = kNever;
+    Restraint restraint = Restraint::kPaused;
+  };
+  struct Question {
+    StrategyId strategy;
+    Time failing_since = kNever;
+    bool is_approved = false;
+  };
+
+  std::optional<std::string> objection_to_run(StrategyId id, Autonomy autonomy) const;
+  std::optional<Held> restraint_on_all(Time now) const;
+  std::optional<Held> restraint_on(StrategyId strategy, Time now) const;
+  std::optional<Held> restraint_by_person(StrategyId strategy) const;
+  // What no person can order either.
+  std::optional<Held> interlock() const;
+  std::optional<Held> doubt_of_identity(const Strategy& strategy) const;
+  void tell(StrategyId strategy, const Held& held, Time now);
+  Question* question_of(StrategyId strategy);
+  const Question* question_of(StrategyId strategy) const;
+  bool is_open(const Question& question) const;
+
+  Knowledge& knowledge_;
+  Options options_;
+  Time start_;
+  Limits limits_;
+  StormWatch storm_;
+  bool is_paused_ = false;
+  std::vector<ActiveSilence> silences_;
+  std::vector<Question> questions_;
+  std::vector<Time>
+      refused_;             // by strategy: since when the failure was there that it was refused for
+  std::vector<Told> told_;  // by strategy: what was said last
+};
+
+}  // namespace culprit

@@ -1,0 +1,166 @@
+#include "execute/limits.h"
+
+#include <algorithm>
+
+namespace culprit {
+namespace {
+
+StrategyKind kind_of(AdaptationType type) {
+  switch (type) {
+    case AdaptationType::kRedeploy:
+    case AdaptationType::kStart:
+    case AdaptationType::kStop:
+      return StrategyKind::kProcess;
+    case AdaptationType::kActivate:
+    case AdaptationType::kDeactivate:
+    case AdaptationType::kRestart:
+      return StrategyKind::kLifecycle;
+    default:
+      return StrategyKind::kConfiguration;
+  }
+}
+
+bool restarts(const Adaptation& adaptation) {
+  return adaptation.type == AdaptationType::kRestart ||
+         kind_of(adaptation.type) == StrategyKind::kProcess;
+}
+
+bool launches(const Adaptation& adaptation) {
+  return adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
+}
+
+std::string_view words(StrategyKind kind) {
+  switch (kind) {
+    case StrategyKind::kConfiguration:
+      return "reconfigurations";
+    case StrategyKind::kLifecycle:
+      return "lifecycle changes";
+    case StrategyKind::kProcess:
+      return "restarts of processes";
+  }
+  return "";
+}
+
+// Nothing while one more is available.
+std::optional<Limits::Limit> exceeded(const IntensityBudget& budget, Restraint restraint,
+                                      const std::string& what, Time now) {
+  if (budget.available() <= now) return std::nullopt;
+  const auto& [most, period] = budget.limit();
+  return Limits::Limit{
+      restraint,
+      std::to_string(most) + " " + what + " in " + to_string(period) + ", and no more are allowed",
+      budget.available()};
+}
+
+}  // namespace
+
+StrategyKind kind_of(const Strategy& strategy) {
+  StrategyKind kind = StrategyKind::kConfiguration;
+  for (const Adaptation& adaptation : strategy.adaptations)
+    kind = std::max(kind, kind_of(adaptation.type));
+  return kind;
+}
+
+Limits::Limits(const Knowledge& knowledge, Options options)
+    : knowledge_(knowledge),
+      options_(options),
+      overall_(options.overall),
+      kinds_{IntensityBudget(options.per_kind), IntensityBudget(options.per_kind),
+             IntensityBudget(options.per_kind)} {
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c)
+    components_.push_back(PerComponent{IntensityBudget(options.per_component)});
+}
+
+std::optional<Limits::Limit> Limits::on_all(Time now) const {
+  return exceeded(overall_, Restraint::kOverallIntensity, "strategies were begun", now);
+}
+
+std::optional<Limits::Limit> Limits::on(StrategyId id, Time now) const {
+  const Strategy& strategy = knowledge_.rules[id];
+  const StrategyKind kind = kind_of(strategy);
+  if (auto limit = exceeded(kinds_[static_cast<std::size_t>(kind)], Restraint::kClassIntensity,
+                            std::string(words(kind)), now))
+    return limit;
+  for (const ComponentId component : strategy.components) {
+    const std::string& name = knowledge_.rules[component].name;
+    if (auto limit = exceeded(components_[component.index].budget, Restraint::kComponentIntensity,
+                              "strategies were begun at " + name, now))
+      return limit;
+    if (auto limit = quiet(component, now)) return limit;
+  }
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    if (!restarts(adaptation)) continue;
+    if (auto limit = backoff(adaptation.component, strategy.rule, now)) return limit;
+  }
+  return std::nullopt;
+}
+
+bool Limits::was_healthy(ComponentId component, RuleId rule) const {
+  const PerComponent& state = components_[component.index];
+  const Time failed = knowledge_.states[rule].failing_since;
+  return state.well_since >= state.restarted &&
+         later(state.well_since, options_.backoff.healthy) <= failed &&
+         !knowledge_.states.is_sick(component, Criticality::kNonCritical, rule);
+}
+
+std::optional<Limits::Limit> Limits::backoff(ComponentId component, RuleId rule, Time now) const {
+  const PerComponent& state = components_[component.index];
+  if (options_.backoff.first == Duration::zero() || state.restarts == 0 ||
+      was_healthy(component, rule))
+    return std::nullopt;
+  const int doublings = std::min(state.restarts - 1, 20);
+  const Duration wait =
+      std::min<Duration>(options_.backoff.first * (1 << doublings), options_.backoff.longest);
+  const Time until = later(state.restarted, wait);
+  if (until <= now) return std::nullopt;
+  return Limit{Restraint::kBackoff,
+               knowledge_.rules[component].name + " was restarted a short while ago", until};
+}
+
+std::optional<Limits::Limit> Limits::quiet(ComponentId component, Time now) const {
+  const auto is_quiet = [&](ComponentId c) {
+    const Time launched = components_[c.index].launched;
+    return launched != kLongAgo && later(launched, options_.quiet_after_launch) > now;
+  };
+  const auto limit = [&](ComponentId c) {
+    return Limit{Restraint::kQuietPeriod, knowledge_.rules[c].name + " was launched a moment ago",
+                 later(components_[c.index].launched, options_.quiet_after_launch)};
+  };
+  if (is_quiet(component)) return limit(component);
+  for (const ComponentId upstream : knowledge_.graph.upstream(component)) {
+    if (is_quiet(upstream)) return limit(upstream);
+  }
+  return std::nullopt;
+}
+
+void Limits::began(StrategyId id, Time now) {
+  const Strategy& strategy = knowledge_.rules[id];
+  overall_.spend(now);
+  kinds_[static_cast<std::size_t>(kind_of(strategy))].spend(now);
+  for (const ComponentId component : strategy.components)
+    components_[component.index].budget.spend(now);
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    if (!restarts(adaptation)) continue;
+    PerComponent& state = components_[adaptation.component.index];
+    if (was_healthy(adaptation.component, strategy.rule)) state.restarts = 0;
+    ++state.restarts;
+    state.restarted = now;
+  }
+}
+
+void Limits::note(const Event& event) {
+  const auto is_well = [&](RuleId rule) {
+    for (const ComponentId component : knowledge_.rules[rule].components)
+      components_[component.index].well_since = event.at;
+  };
+  if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) {
+    is_well(resolved->rule);
+  } else if (const auto* lost = std::get_if<FailureLost>(&event.what)) {
+    is_well(lost->rule);
+  } else if (const auto* done = std::get_if<AdaptationDone>(&event.what)) {
+    const Adaptation& adaptation = knowledge_.rules[done->strategy].adaptations[done->adaptation];
+    if (launches(adaptation)) components_[adaptation.component.index].launched = event.at;
+  }
+}
+
+}  // namespace culprit

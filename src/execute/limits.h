@@ -1,0 +1,77 @@
+// How often strategies may be begun: in total, of each kind, at each component; and how long a
+// component that was restarted is left alone.
+//
+// What is asked for and what is spent are two steps: may_begin() has no effect. Strategies that a
+// person ran by hand are spent like any other.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "execute/intensity.h"
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+// By the most drastic of its adaptations.
+enum class StrategyKind : std::uint8_t {
+  kConfiguration,  // parameters, communication, modes, routines
+  kLifecycle,      // activate, deactivate, restart
+  kProcess         // redeploy, start, stop
+};
+StrategyKind kind_of(const Strategy& strategy);
+
+class Limits {
+ public:
+  // A component's restarts get apart: `first` after the first one, doubled with each further one
+  // up to `longest`; all is forgotten once it was well for `healthy`. first 0: no back-off.
+  struct Backoff {
+    Duration first{};
+    Duration longest{};
+    Duration healthy{};
+  };
+  struct Options {
+    Intensity overall{};
+    Intensity per_kind{};
+    Intensity per_component{};
+    Backoff backoff{};
+    Duration quiet_after_launch{};  // for a component that was started, and what depends on it
+  };
+  struct Limit {
+    Restraint restraint = Restraint::kOverallIntensity;
+    std::string reason;
+    Time until = kNever;
+  };
+
+  // `knowledge` must outlive the limits.
+  Limits(const Knowledge& knowledge, Options options);
+
+  std::optional<Limit> on_all(Time now) const;
+  std::optional<Limit> on(StrategyId strategy, Time now) const;
+  void began(StrategyId strategy, Time now);
+  // Of the step that is over.
+  void note(const Event& event);
+
+ private:
+  struct PerComponent {
+    IntensityBudget budget;
+    int restarts = 0;  // since it was proven healthy
+    Time restarted = kLongAgo;
+    Time well_since = kLongAgo;
+    Time launched = kLongAgo;
+  };
+
+  std::optional<Limit> backoff(ComponentId component, RuleId rule, Time now) const;
+  std::optional<Limit> quiet(ComponentId component, Time now) const;
+  bool was_healthy(ComponentId component, RuleId rule) const;
+
+  const Knowledge& knowledge_;
+  Options options_;
+  IntensityBudget overall_;
+  std::array<IntensityBudget, 3> kinds_;
+  std::vector<PerComponent> components_;
+};
+
+}  // namespace culprit

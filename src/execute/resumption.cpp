@@ -1,0 +1,105 @@
+#include "execute/resumption.h"
+
+#include <algorithm>
+
+namespace culprit::execute {
+namespace {
+
+using Sent = std::vector<const Interrupted::Request*>;
+
+// The requests of the adaptation that was under way.
+Sent sent_for(const Interrupted& interrupted) {
+  Sent sent;
+  for (const Interrupted::Request& request : interrupted.requests) {
+    const Purpose& purpose = request.command.purpose;
+    if (!purpose.undoes && purpose.adaptation == interrupted.adaptations_done)
+      sent.push_back(&request);
+  }
+  return sent;
+}
+
+template <class Request>
+const Interrupted::Request* last_of(const Sent& sent) {
+  const auto found = std::find_if(sent.rbegin(), sent.rend(), [](const auto* request) {
+    return std::holds_alternative<Request>(request->command.what);
+  });
+  return found == sent.rend() ? nullptr : *found;
+}
+
+// The process of a component is, or was about to be, replaced.
+std::vector<Goal> goals_of_process(const Sent& sent, AdaptationType type) {
+  const auto* stop = last_of<StopProcess>(sent);
+  const bool is_started = last_of<StartProcess>(sent) != nullptr;
+  const int old_pid = stop != nullptr ? std::get<StopProcess>(stop->command.what).pid : 0;
+  std::vector<Goal> goals;
+  if (!is_started && stop != nullptr) goals.push_back(GoneGoal{old_pid});
+  if (type == AdaptationType::kStop) return goals;
+  goals.push_back(PresentGoal{old_pid});
+  const auto* was = std::get_if<Lifecycle>(&sent.front()->command.purpose.before);
+  if (was != nullptr && (*was == Lifecycle::kActive || *was == Lifecycle::kInactive))
+    goals.push_back(LifecycleGoal{*was, std::chrono::seconds(1)});
+  return goals;
+}
+
+std::vector<Goal> goals_of_lifecycle(const Sent& sent, AdaptationType type) {
+  const auto target = [&] {
+    const auto last = std::get<ChangeLifecycle>(sent.back()->command.what).transition;
+    return last == Transition::kDeactivate ? Lifecycle::kInactive : Lifecycle::kActive;
+  };
+  std::vector<Goal> goals{LifecycleGoal{target(), {}}};
+  if (type == AdaptationType::kRestart && target() == Lifecycle::kInactive)
+    goals.push_back(LifecycleGoal{Lifecycle::kActive, {}});
+  return goals;
+}
+
+}  // namespace
+
+Resumption resumption_of(const Interrupted& interrupted, const Knowledge& knowledge) {
+  Resumption resumption{interrupted.adaptations_done, {}, ""};
+  const Sent sent = sent_for(interrupted);
+  if (sent.empty()) return resumption;
+  const auto& adaptations = knowledge.rules[interrupted.strategy].adaptations;
+  const AdaptationType type = adaptations[interrupted.adaptations_done].type;
+  const Interrupted::Request& last = *sent.back();
+  if (last_of<StopProcess>(sent) != nullptr || last_of<StartProcess>(sent) != nullptr) {
+    resumption.goals = goals_of_process(sent, type);
+  } else if (std::holds_alternative<ChangeLifecycle>(last.command.what)) {
+    resumption.goals = goals_of_lifecycle(sent, type);
+  } else if (const auto* set = std::get_if<SetParameter>(&last.command.what)) {
+    resumption.goals = {ParameterGoal{set->name, set->value, ParameterGoal::Kind::kRestore, {}}};
+  } else if (const auto* change = std::get_if<ChangeMode>(&last.command.what)) {
+    resumption.goals = {ModeGoal{change->mode}};
+  } else if (last.outcome == Outcome::kDone) {
+    ++resumption.adaptation;
+  } else {
+    resumption.obstacle = last.outcome
+                              ? to_string(last.command) + " failed before culprit ended"
+                              : "culprit ended while it asked to " + to_string(last.command) +
+                                    "; nobody knows whether that was done";
+  }
+  return resumption;
+}
+
+std::vector<Undo> undo_of(const Interrupted& interrupted, const RuleSet& rules) {
+  std::vector<Undo> all;
+  for (const Interrupted::Request& request : interrupted.requests) {
+    const Command& command = request.command;
+    if (command.purpose.undoes) continue;
+    std::optional<Goal> changed;
+    if (const auto* set = std::get_if<SetParameter>(&command.what)) {
+      changed = ParameterGoal{set->name, set->value, ParameterGoal::Kind::kSet, {}};
+    } else if (const auto* change = std::get_if<ChangeMode>(&command.what)) {
+      changed = ModeGoal{change->mode};
+    } else if (std::holds_alternative<ChangeLifecycle>(command.what)) {
+      changed = LifecycleGoal{};
+    }
+    if (!changed) continue;
+    const auto& adaptation = rules[interrupted.strategy].adaptations[command.purpose.adaptation];
+    const Reply before{{}, Outcome::kDone, command.purpose.before, ""};
+    if (auto goal = undoing(*changed, adaptation.type, before))
+      all.push_back({command.component, std::move(*goal)});
+  }
+  return all;
+}
+
+}  // namespace culprit::execute

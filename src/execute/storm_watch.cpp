@@ -1,0 +1,72 @@
+#include "execute/storm_watch.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace culprit {
+
+StormWatch::StormWatch(Knowledge& knowledge, Options options)
+    : knowledge_(knowledge), options_(options) {}
+
+void StormWatch::advance(Time now) {
+  if (options_.share <= 0) return;
+  note(knowledge_.events);
+  if (!std::exchange(has_news_, false) && !storm_) return;
+  if (auto seen = look()) {
+    if (!storm_) knowledge_.tell(now, StormBegan{seen->restraint, seen->reason});
+    storm_ = std::move(seen);
+    over_ = later(now, options_.calm);
+  } else if (storm_ && over_ <= now) {
+    storm_.reset();
+    knowledge_.tell(now, StormEnded{});
+  }
+}
+
+bool StormWatch::is_much(std::size_t components) const {
+  const auto all = static_cast<double>(knowledge_.rules.components.size());
+  return components >= static_cast<std::size_t>(options_.least) &&
+         static_cast<double>(components) >= options_.share * all;
+}
+
+std::optional<StormWatch::Storm> StormWatch::look() const {
+  const std::size_t all = knowledge_.rules.components.size();
+  std::size_t unseen = 0;
+  for (std::size_t c = 0; c < all; ++c) {
+    const ComponentState& state = knowledge_.components[ComponentId(c)];
+    const bool runs = state.pid != 0 && state.process == ProcessState::kRunning;
+    if (state.alive == false && !state.in_graph && state.node_seen != kLongAgo && runs) ++unseen;
+  }
+  const auto count = [all](std::size_t some) {
+    return std::to_string(some) + " of " + std::to_string(all) + " components";
+  };
+  if (is_much(unseen)) {
+    return Storm{Restraint::kGraphInDoubt,
+                 count(unseen) + " left the graph while their processes run; is it the network?"};
+  }
+  if (knowledge_.states.active().size() < static_cast<std::size_t>(options_.least)) return {};
+  const std::size_t ill = ill_roots();
+  if (is_much(ill))
+    return Storm{Restraint::kStorm, count(ill) + " are ill at once, and none explains the others"};
+  return std::nullopt;
+}
+
+// Components that a failing rule is about, and that nothing upstream explains.
+std::size_t StormWatch::ill_roots() const {
+  std::vector<ComponentId> roots;
+  for (const RuleId id : knowledge_.states.active()) {
+    for (const ComponentId component : knowledge_.rules[id].components) {
+      const auto& upstream = knowledge_.graph.upstream(component);
+      const bool is_explained =
+          std::any_of(upstream.begin(), upstream.end(), [&](ComponentId other) {
+            return other != component &&
+                   knowledge_.states.is_sick(other, Criticality::kNonCritical, id);
+          });
+      if (!is_explained) roots.push_back(component);
+    }
+  }
+  std::sort(roots.begin(), roots.end());
+  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+  return roots.size();
+}
+
+}  // namespace culprit

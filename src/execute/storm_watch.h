@@ -1,0 +1,52 @@
+// Is so much ill at once that acting on it would do more harm than good?
+//
+// A storm: components that nothing upstream explains are ill, many of them (NodeHealthCheck's
+// minHealthy, with the dependency graph taken into account: a dead camera and all that needs it is
+// no storm). A graph in doubt: nodes are gone from the graph whose processes run: more likely our
+// own network is ill than all of them.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+class StormWatch {
+ public:
+  struct Options {
+    double share = 0;                         // of the components; 0: there are no storms
+    int least = 4;                            // so few are never a storm
+    Duration calm = std::chrono::seconds(5);  // it is over when it was not seen for so long
+  };
+  struct Storm {
+    Restraint restraint = Restraint::kStorm;
+    std::string reason;
+  };
+
+  // `knowledge` must outlive the watch.
+  StormWatch(Knowledge& knowledge, Options options);
+
+  // Tells StormBegan and StormEnded. Looks only when something has happened in this step or since
+  // the last look: what makes a storm comes with events.
+  void advance(Time now);
+  void note(std::span<const Event> events) { has_news_ |= !events.empty(); }
+  const std::optional<Storm>& storm() const { return storm_; }
+  Time next_deadline() const { return storm_ ? over_ : kNever; }
+
+ private:
+  std::optional<Storm> look() const;
+  std::size_t ill_roots() const;
+  bool is_much(std::size_t components) const;
+
+  Knowledge& knowledge_;
+  Options options_;
+  std::optional<Storm> storm_;
+  Time over_ = kNever;
+  bool has_news_ = false;
+};
+
+}  // namespace culprit

@@ -1,0 +1,53 @@
+// What an onlooker sees of a live mission: when the pipeline was found, how much of it was
+// inspected, when the mission was over.
+//
+// A node of its own on a thread of its own; it touches nothing. Times are robot seconds since the
+// mission began.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "exemplars/suave/live_names.h"
+#include "robot/time.h"
+#include "ros2/node.h"
+
+namespace culprit::suave {
+
+struct MissionSeen {
+  bool has_begun = false;
+  std::optional<double> found_s;  // the search time
+  double inspected_m = 0;
+  std::optional<double> done_s;
+};
+
+class MissionObserver {
+ public:
+  static Expected<std::unique_ptr<MissionObserver>> start(
+      double speed, const ros2::ParticipantOptions& participant);
+  ~MissionObserver();
+
+  // From any thread.
+  MissionSeen seen() const;
+
+ private:
+  explicit MissionObserver(double speed) : speed_(speed) {}
+  Expected<void> open(const ros2::ParticipantOptions& participant);
+  Expected<void> subscribe();
+  double robot_s() const;  // with the mutex
+
+  const double speed_;
+  ros2::Executor executor_;
+  std::unique_ptr<ros2::Context> context_;
+  std::unique_ptr<ros2::Node> node_;
+  mutable std::mutex mutex_;  // guards the rest of this block
+  std::optional<ros2::Executor::Clock::time_point> begun_;
+  MissionSeen seen_;
+  std::vector<std::unique_ptr<ros2::Subscription>> subscriptions_;
+  std::thread thread_;
+};
+
+}  // namespace culprit::suave

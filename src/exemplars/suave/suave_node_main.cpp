@@ -1,0 +1,87 @@
+// suave-node <name>: one process of the live SUAVE robot.
+//
+// Which robot it joins is told by the environment, as to every ROS 2 node: ROS_DOMAIN_ID,
+// ROS_LOCALHOST_ONLY and so on (ros2/options.h).
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "exemplars/suave/function_process.h"
+#include "exemplars/suave/mission_process.h"
+#include "exemplars/suave/vehicle_process.h"
+
+namespace culprit::suave {
+namespace {
+
+int fail(const std::string& why) {
+  std::fprintf(stderr, "suave-node: %s\n", why.c_str());
+  return 1;
+}
+
+int run(const std::function<int(ros2::Executor&, ros2::Context&)>& with) {
+  ros2::Executor executor;
+  if (auto stops = executor.stop_on({SIGINT, SIGTERM}); !stops) return fail(stops.error());
+  const auto participant = ros2::options_from_environment();
+  if (!participant) return fail(participant.error());
+  const auto context = ros2::Context::create(executor, *participant);
+  if (!context) return fail(context.error());
+  return with(executor, **context);
+}
+
+template <class Process>
+int run_process(Process& process, ros2::Executor& executor, ros2::Context& context) {
+  if (auto opened = process.open(context); !opened) return fail(opened.error());
+  executor.run();
+  return 0;
+}
+
+int main(int argc, char** argv) {
+  static const std::map<std::string, Function> kFunctions = {{"search", Function::kSearch},
+                                                             {"follow", Function::kFollow},
+                                                             {"motion", Function::kMotion},
+                                                             {"recharge", Function::kRecharge}};
+  CLI::App app("One process of the SUAVE exemplar's robot.");
+  std::string name;
+  NodeOptions options;
+  app.add_option("name", name, "Which one")
+      ->required()
+      ->check(CLI::IsMember({"vehicle", "mission", "search", "follow", "motion", "recharge"}));
+  app.add_option("--speed", options.speed, "Robot seconds in a second, 1 unless given")
+      ->envname("SUAVE_SPEED")
+      ->check(CLI::Range(0.01, 100.0));
+  app.add_option("--seed", options.seed, "Of the mission, 1 unless given")->envname("SUAVE_SEED");
+  CLI11_PARSE(app, argc, argv);
+
+  // The newest: only it publishes what a live manager can rely on. Its faults are the standard
+  // ones.
+  const model::Generation& generation = **model::find_generation("new");
+  const model::MissionPlan& plan = **model::find_mission_plan("standard");
+  return run([&](ros2::Executor& executor, ros2::Context& context) {
+    const auto function = kFunctions.find(name);
+    if (function != kFunctions.end()) {
+      FunctionProcess process(function->second, options, generation);
+      return run_process(process, executor, context);
+    }
+    if (name == "vehicle") {
+      VehicleProcess process(options, generation, plan);
+      return run_process(process, executor, context);
+    }
+    MissionProcess process(options, generation, plan);
+    return run_process(process, executor, context);
+  });
+}
+
+}  // namespace
+}  // namespace culprit::suave
+
+int main(int argc, char** argv) {
+  const int code = culprit::suave::main(argc, argv);
+  std::fflush(nullptr);
+  // Everything is closed by now; Fast DDS's static objects would sleep for another 100 ms.
+  std::_Exit(code);
+}

@@ -1,0 +1,151 @@
+#include "journal/database.h"
+
+#include <sqlite3.h>
+
+namespace culprit::journal {
+namespace {
+
+constexpr int kBusyMilliseconds = 250;
+constexpr const char* kDamaged = "it is damaged";
+constexpr const char* kNoDatabase = "it is no journal, or its beginning is damaged";
+
+std::string why(int code, const char* message) {
+  switch (code & 0xff) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return "another program holds it locked";
+    case SQLITE_FULL:
+      return "the disk is full";
+    case SQLITE_READONLY:
+      return "it may not be written";
+    case SQLITE_CANTOPEN:
+      return "it cannot be opened; does its folder exist, and may it be written?";
+    case SQLITE_CORRUPT:
+      return kDamaged + (" (" + std::string(message) + ")");
+    case SQLITE_NOTADB:
+      return kNoDatabase;
+    default:
+      return message;
+  }
+}
+
+// As a URI, in which '?', '#' and '%' would mean something.
+std::string uri_of(const std::filesystem::path& path, const char* query) {
+  std::string uri = "file:";
+  for (const char c : std::filesystem::absolute(path).string()) {
+    constexpr char kDigits[] = "0123456789ABCDEF";
+    if (c == '?' || c == '#' || c == '%') {
+      uri += '%';
+      uri += kDigits[static_cast<unsigned char>(c) >> 4];
+      uri += kDigits[static_cast<unsigned char>(c) & 15];
+    } else {
+      uri += c;
+    }
+  }
+  return uri + query;
+}
+
+}  // namespace
+
+void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+
+Statement& Statement::bind(int place, std::int64_t value) {
+  sqlite3_bind_int64(statement_.get(), place, value);
+  return *this;
+}
+
+Statement& Statement::bind(int place, double value) {
+  sqlite3_bind_double(statement_.get(), place, value);
+  return *this;
+}
+
+Statement& Statement::bind(int place, std::string_view text) {
+  sqlite3_bind_text64(statement_.get(), place, text.data(), text.size(), SQLITE_TRANSIENT,
+                      SQLITE_UTF8);
+  return *this;
+}
+
+Statement& Statement::bind_blob(int place, std::string_view bytes) {
+  sqlite3_bind_blob64(statement_.get(), place, bytes.data(), bytes.size(), SQLITE_TRANSIENT);
+  return *this;
+}
+
+Expected<bool> Statement::step() {
+  const int code = sqlite3_step(statement_.get());
+  if (code == SQLITE_ROW) return true;
+  sqlite3* connection = sqlite3_db_handle(statement_.get());
+  const std::string message = sqlite3_errmsg(connection);
+  sqlite3_reset(statement_.get());
+  if (code == SQLITE_DONE) return false;
+  return Error{why(code, message.c_str())};
+}
+
+std::int64_t Statement::integer(int column) const {
+  return sqlite3_column_int64(statement_.get(), column);
+}
+
+double Statement::real(int column) const { return sqlite3_column_double(statement_.get(), column); }
+
+std::string_view Statement::bytes(int column) const {
+  const void* data = sqlite3_column_blob(statement_.get(), column);
+  const int size = sqlite3_column_bytes(statement_.get(), column);
+  return data == nullptr
+             ? std::string_view()
+             : std::string_view(static_cast<const char*>(data), static_cast<std::size_t>(size));
+}
+
+void Database::Close::operator()(sqlite3* connection) const { sqlite3_close_v2(connection); }
+
+Expected<Database> Database::open(const std::filesystem::path& path, Mode mode) {
+  const auto attempt = [&](const char* query) -> Expected<Database> {
+    sqlite3* connection = nullptr;
+    const int flags =
+        mode == Mode::kWrite ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
+    const int code = sqlite3_open_v2(uri_of(path, query).c_str(), &connection,
+                                     flags | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);
+    Database database(connection);
+    if (code != SQLITE_OK) return Error{why(code, sqlite3_errmsg(connection))};
+    sqlite3_extended_result_codes(connection, 1);
+    sqlite3_busy_timeout(connection, kBusyMilliseconds);
+    // Whether it can be read shows with the first look only.
+    if (const auto look = database.number("SELECT count(*) FROM sqlite_schema"); !look)
+      return Error{look.error()};
+    return database;
+  };
+  auto opened = attempt("");
+  if (opened || mode == Mode::kWrite || !std::filesystem::exists(path)) return opened;
+  auto unshared = attempt("?immutable=1");
+  return unshared ? std::move(unshared) : std::move(opened);
+}
+
+Expected<void> Database::run(const std::string& sql) {
+  if (sqlite3_exec(connection_.get(), sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK)
+    return {};
+  return error();
+}
+
+Expected<Statement> Database::prepare(std::string_view sql) const {
+  sqlite3_stmt* statement = nullptr;
+  const int code = sqlite3_prepare_v2(connection_.get(), sql.data(), static_cast<int>(sql.size()),
+                                      &statement, nullptr);
+  if (code != SQLITE_OK) return error();
+  return Statement(statement);
+}
+
+Expected<std::int64_t> Database::number(const std::string& sql) const {
+  auto statement = prepare(sql);
+  if (!statement) return Error{statement.error()};
+  const auto row = statement->step();
+  if (!row) return Error{row.error()};
+  return *row ? statement->integer(0) : 0;
+}
+
+bool Database::is_damage(const std::string& error) {
+  return error.starts_with(kDamaged) || error.starts_with(kNoDatabase);
+}
+
+Error Database::error() const {
+  return {why(sqlite3_extended_errcode(connection_.get()), sqlite3_errmsg(connection_.get()))};
+}
+
+}  // namespace culprit::journal

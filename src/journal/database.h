@@ -1,0 +1,77 @@
+// SQLite with owners and errors as values.
+//
+// A Database is one connection, used by one thread at a time. Statements must not outlive it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "language/expected.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace culprit::journal {
+
+class Statement {
+ public:
+  Statement(Statement&&) noexcept = default;
+  Statement& operator=(Statement&&) noexcept = default;
+
+  // Places are counted from 1. Texts and blobs are copied.
+  Statement& bind(int place, std::int64_t value);
+  Statement& bind(int place, double value);
+  Statement& bind(int place, std::string_view text);
+  Statement& bind_blob(int place, std::string_view bytes);
+
+  // Moves to the next row; false at the end. After the end, and after an error, the statement can
+  // be bound and stepped anew.
+  Expected<bool> step();
+
+  // Of the present row, from 0. Texts and blobs are valid until the next step.
+  std::int64_t integer(int column) const;
+  double real(int column) const;
+  std::string_view bytes(int column) const;
+
+ private:
+  friend class Database;
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  explicit Statement(sqlite3_stmt* statement) : statement_(statement) {}
+
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+};
+
+class Database {
+ public:
+  enum class Mode : std::uint8_t { kRead, kWrite };
+
+  // kWrite makes the file if it is not there. kRead also reads where nothing may be written (the
+  // folder of a file in WAL mode), unless another process is writing.
+  static Expected<Database> open(const std::filesystem::path& path, Mode mode);
+
+  Expected<void> run(const std::string& sql);
+  Expected<Statement> prepare(std::string_view sql) const;
+
+  // The one number that `sql` selects.
+  Expected<std::int64_t> number(const std::string& sql) const;
+
+  // Whether an error of this class means that the file itself is broken, or is no database.
+  static bool is_damage(const std::string& error);
+
+ private:
+  struct Close {
+    void operator()(sqlite3* connection) const;
+  };
+  explicit Database(sqlite3* connection) : connection_(connection) {}
+  Error error() const;
+
+  std::unique_ptr<sqlite3, Close> connection_;
+};
+
+}  // namespace culprit::journal

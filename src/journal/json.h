@@ -1,0 +1,43 @@
+// What the rows of the journal hold, as JSON (docs/journal.md): named, so that it can be read
+// without the rule file, and after the rule file has changed.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "knowledge/event.h"
+#include "language/expected.h"
+#include "robot/command.h"
+
+namespace culprit::journal {
+
+using Json = nlohmann::ordered_json;
+
+// One line. Texts that are no UTF-8 are mended.
+std::string to_text(const Json& json);
+
+// Never throws; discarded if `text` is no JSON.
+Json from_text(std::string_view text);
+
+// Members that may be missing, or be of another kind than expected.
+std::string text_of(const Json& json, const char* key);
+double number_of(const Json& json, const char* key, double otherwise = 0);
+std::int64_t integer_of(const Json& json, const char* key, std::int64_t otherwise = 0);
+bool flag_of(const Json& json, const char* key);
+
+Json to_json(const Event& event, const RuleSet& rules);
+
+// What a command asks for: {"set_parameter": {"name": "gain", "value": 0.5}}
+Json to_json(const decltype(Command::what)& request);
+Expected<decltype(Command::what)> request_from_json(const Json& json);
+
+// What was read before a change, or with a reply: a value, {"lifecycle": "active"}, or null.
+Json to_json(const decltype(Reply::value)& value);
+decltype(Reply::value) reading_from_json(const Json& json);
+
+std::string_view to_string(Outcome outcome);
+std::optional<Outcome> outcome_from(std::string_view word);
+
+}  // namespace culprit::journal

@@ -1,0 +1,40 @@
+// What was learned of strategies and failures, by name, so that it outlives the rule file's
+// numbers.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "knowledge/beliefs.h"
+#include "knowledge/couplings.h"
+
+namespace culprit::journal {
+
+struct LearnedBelief {
+  std::string rule;
+  std::string strategy;
+  Belief belief;
+  Belief prior;  // the designer's, that `belief` grew from
+  bool operator==(const LearnedBelief&) const = default;
+};
+
+struct LearnedCoupling {
+  std::string cause;
+  std::string effect;
+  Coupling coupling;
+  bool operator==(const LearnedCoupling&) const = default;
+};
+
+struct Learned {
+  std::vector<LearnedBelief> beliefs;
+  std::vector<LearnedCoupling> couplings;
+};
+
+// `learned` as a belief that grows from `prior`: to the last bit what it was if the prior is the
+// same; otherwise the designer changed the rule file, and what was counted is added to the new one.
+Belief grown_from(const Belief& prior, const LearnedBelief& learned);
+
+// Adds what `other` counted to `learned`: beliefs and couplings of a fleet become one.
+void merge(Learned& learned, const Learned& other);
+
+}  // namespace culprit::journal

@@ -1,0 +1,323 @@
+#include "journal/recorder.h"
+
+#include <algorithm>
+
+#include "journal/requests.h"
+
+namespace culprit::journal {
+namespace {
+
+bool changes_something(const Command& command) { return !is_read(command); }
+
+// What `news` speaks of is now as `news` says.
+void replace(Learned& learned, const Learned& news) {
+  for (const LearnedBelief& each : news.beliefs) {
+    std::erase_if(learned.beliefs, [&](const LearnedBelief& old) {
+      return old.rule == each.rule && old.strategy == each.strategy;
+    });
+    learned.beliefs.push_back(each);
+  }
+  for (const LearnedCoupling& each : news.couplings) {
+    std::erase_if(learned.couplings, [&](const LearnedCoupling& old) {
+      return old.cause == each.cause && old.effect == each.effect;
+    });
+    learned.couplings.push_back(each);
+  }
+}
+
+bool is_nothing(const Learned& learned) {
+  return learned.beliefs.empty() && learned.couplings.empty();
+}
+
+}  // namespace
+
+std::optional<Digest> digest_of(std::span<const Command> commands, std::span<const Event> events,
+                                const RuleSet& rules, Hasher& hasher) {
+  if (commands.empty() && events.empty()) return std::nullopt;
+  std::string all;
+  for (const Command& command : commands)
+    all += std::to_string(command.id.number) + " " + rules[command.component].name + " " +
+           culprit::to_string(command) + "\n";
+  for (const Event& event : events) all += to_text(to_json(event, rules)) + "\n";
+  const Hash hash = hasher.of(all);
+  Digest digest = 0;
+  for (std::size_t i = 0; i < 8; ++i) digest = digest << 8 | hash[i];
+  return digest;
+}
+
+Recorder::Recorder(std::optional<Writer> writer, Options options, const Session& session,
+                   const Knowledge& knowledge)
+    : options_(std::move(options)),
+      knowledge_(knowledge),
+      rules_(knowledge.rules),
+      writer_(std::move(writer)),
+      session_(to_json(session)),
+      known_(session.learned) {
+  for (std::size_t s = 0; s < rules_.strategies.size(); ++s)
+    beliefs_.push_back(knowledge.beliefs[StrategyId(s)]);
+  for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
+    const auto all = knowledge.couplings.of(RuleId(r));
+    couplings_.emplace_back(all.begin(), all.end());
+  }
+  is_failing_ = !writer_;
+  add(kind::kSession, options_.wall_clock(), session_);
+  (void)write(true);
+  thread_ = std::thread([this] { run(); });
+}
+
+Recorder::~Recorder() { finish(); }
+
+Expected<void> Recorder::end() {
+  {
+    const std::lock_guard lock(mutex_);
+    Pending pending;
+    pending.wall = options_.wall_clock();
+    pending.is_end = true;
+    queue_.push_back(std::move(pending));
+  }
+  finish();
+  if (!last_error_) return {};
+  return Error{last_error_->message + "; " + std::to_string(unsaved_.entries.size()) +
+               " rows of this run are lost"};
+}
+
+void Recorder::finish() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  work_.notify_one();
+  thread_.join();
+}
+
+void Recorder::stepped(Time now, std::vector<Observation>& observations,
+                       std::span<const Command> commands, std::span<const Event> events) {
+  const std::int64_t wall = wall_of(now);
+  const Learned learned = events.empty() ? Learned() : changes();
+  const bool wait =
+      !is_nothing(learned) || std::any_of(commands.begin(), commands.end(), changes_something);
+  {
+    const std::lock_guard lock(mutex_);
+    constexpr std::size_t kMaxQueued = 1 << 17;
+    if (queued_observations_ > kMaxQueued && commands.empty() && events.empty()) {
+      ++lost_steps_;
+      return;
+    }
+    // In its place at once: most steps have nothing but observations, which change hands.
+    Pending& pending = queue_.emplace_back();
+    pending.now = now;
+    pending.wall = wall;
+    pending.observations.swap(observations);
+    if (!commands.empty()) pending.commands.assign(commands.begin(), commands.end());
+    if (!events.empty()) {
+      pending.events.assign(events.begin(), events.end());
+      pending.learned = learned;
+    }
+    if (!spare_.empty()) {
+      observations.swap(spare_.back());
+      spare_.pop_back();
+    }
+    queued_observations_ += pending.observations.size();
+    ++handed_over_;
+    is_wanted_now_ |= wait;
+  }
+  if (!wait) return;
+  work_.notify_one();
+  std::unique_lock lock(mutex_);
+  const std::uint64_t mine = handed_over_;
+  done_.wait_for(lock, kPatience, [&] { return written_ >= mine || is_failing_; });
+}
+
+// The clock of the wall is read now and then only: it costs as much as a small step.
+std::int64_t Recorder::wall_of(Time now) {
+  constexpr std::uint32_t kEvery = 64;
+  const std::int64_t robot = now.time_since_epoch().count();
+  if (since_clock_++ % kEvery == 0) wall_offset_ = options_.wall_clock() - robot;
+  return robot + wall_offset_;
+}
+
+Learned Recorder::changes() {
+  Learned learned;
+  for (std::size_t s = 0; s < beliefs_.size(); ++s) {
+    const Belief& belief = knowledge_.beliefs[StrategyId(s)];
+    if (belief == beliefs_[s]) continue;
+    beliefs_[s] = belief;
+    const Strategy& strategy = rules_.strategies[s];
+    learned.beliefs.push_back({rules_[strategy.rule].name, strategy.name, belief,
+                               initial_belief(strategy.success, strategy.confidence)});
+  }
+  for (std::size_t r = 0; r < couplings_.size(); ++r) {
+    const auto all = knowledge_.couplings.of(RuleId(r));
+    for (const Couplings::Learned& each : all) {
+      const auto is_same = [&](const Couplings::Learned& old) {
+        return old.cause == each.cause && old.coupling == each.coupling;
+      };
+      if (std::any_of(couplings_[r].begin(), couplings_[r].end(), is_same)) continue;
+      learned.couplings.push_back({rules_[each.cause].name, rules_.rules[r].name, each.coupling});
+    }
+    couplings_[r].assign(all.begin(), all.end());
+  }
+  return learned;
+}
+
+void Recorder::run() {
+  std::vector<Pending> taken;
+  std::unique_lock lock(mutex_);
+  while (true) {
+    work_.wait_for(lock, is_failing_ ? kRetry : kPeriod,
+                   [&] { return is_ending_ || (is_wanted_now_ && !is_failing_); });
+    taken.swap(queue_);
+    queued_observations_ = 0;
+    const std::uint64_t upto = handed_over_;
+    const bool is_durable = std::exchange(is_wanted_now_, false);
+    gap_steps_ += std::exchange(lost_steps_, 0);
+    const bool is_last = is_ending_;
+    lock.unlock();
+
+    for (const Pending& pending : taken) make_rows(pending);
+    close_steps();
+    const auto written = write(is_durable || is_last);
+    last_error_ = written ? std::nullopt : std::optional(Error{written.error()});
+
+    lock.lock();
+    constexpr std::size_t kSpare = 64;
+    for (Pending& pending : taken) {
+      if (spare_.size() >= kSpare) break;
+      pending.observations.clear();
+      spare_.push_back(std::move(pending.observations));
+    }
+    taken.clear();
+    written_ = upto;
+    done_.notify_all();
+    if (is_last && queue_.empty()) return;
+  }
+}
+
+void Recorder::make_rows(const Pending& pending) {
+  if (pending.is_end) {
+    close_steps();
+    return add(kind::kEnd, pending.wall, {{"text", "culprit was asked to stop"}});
+  }
+  if (steps_.empty()) steps_at_ = pending.wall;
+  ByteWriter bytes(steps_);
+  encode(pending.now, pending.observations,
+         digest_of(pending.commands, pending.events, rules_, hasher_), bytes);
+
+  for (const Observation& observation : pending.observations) {
+    const auto* reply = std::get_if<Reply>(&observation.what);
+    if (reply == nullptr) continue;
+    const auto asked = asked_.find(reply->command.number);
+    if (asked == asked_.end()) continue;
+    const std::string_view outcome = to_string(reply->outcome);
+    add(kind::kOutcome, pending.wall,
+        {{"command", reply->command.number},
+         {"outcome", outcome},
+         {"reason", reply->text},
+         {"text", asked->second + ": " + std::string(outcome) +
+                      (reply->text.empty() ? "" : ", " + reply->text)}});
+    asked_.erase(asked);
+  }
+  for (const Event& event : pending.events) add(kind::kEvent, pending.wall, to_json(event, rules_));
+  for (const Command& command : pending.commands) {
+    if (is_read(command)) continue;
+    const Json body = to_json(command, rules_);
+    asked_[command.id.number] = text_of(body, "text");
+    add(kind::kIntent, pending.wall, body);
+  }
+  replace(unsaved_.learned, pending.learned);
+  replace(known_, pending.learned);
+  constexpr std::size_t kLongRow = 1 << 16;
+  if (steps_.size() > kLongRow) close_steps();
+}
+
+void Recorder::close_steps() {
+  if (steps_.empty()) return;
+  unsaved_bytes_ += steps_.size();
+  unsaved_.entries.push_back({0, steps_at_, std::string(kind::kSteps), std::move(steps_)});
+  steps_.clear();
+}
+
+// What a step led to stands behind the row that the step is in.
+void Recorder::add(std::string_view kind, std::int64_t at, const Json& body) {
+  close_steps();
+  unsaved_.entries.push_back({0, at, std::string(kind), to_text(body)});
+  unsaved_bytes_ += unsaved_.entries.back().body.size();
+}
+
+// In a file that takes the place of one that was removed or damaged, the run goes on.
+Expected<void> Recorder::open_anew() {
+  auto opened = Writer::open(options_.path, options_.writer);
+  if (!opened) return Error{opened.error()};
+  writer_ = std::move(*opened);
+  if (!writer_->remark().empty() && options_.on_trouble) options_.on_trouble(writer_->remark());
+  const auto sessions = writer_->database().number(
+      "SELECT count(*) FROM entry WHERE kind <> 'steps' AND kind = 'session'");
+  if (!is_begun_ || (sessions && *sessions > 0)) return {};
+  session_["continued"] = true;
+  unsaved_.entries.insert(
+      unsaved_.entries.begin(),
+      {0, options_.wall_clock(), std::string(kind::kSession), to_text(session_)});
+  unsaved_.learned = known_;
+  return {};
+}
+
+Expected<void> Recorder::write(bool is_durable) {
+  if (!writer_) {
+    if (const auto opened = open_anew(); !opened) return failed({opened.error()});
+  }
+  const std::int64_t now = options_.wall_clock();
+  if (gap_steps_ + gap_rows_ > 0) {
+    const std::string text =
+        "not recorded, for the journal could not be written: " + std::to_string(gap_steps_) +
+        " steps, " + std::to_string(gap_rows_) + " other rows";
+    unsaved_.entries.insert(
+        unsaved_.entries.begin(),
+        {0, now, std::string(kind::kGap),
+         to_text({{"steps", gap_steps_}, {"rows", gap_rows_}, {"text", text}})});
+    gap_steps_ = gap_rows_ = 0;
+  }
+  if (unsaved_.entries.empty() && is_nothing(unsaved_.learned)) return {};
+  const auto written = writer_->append(
+      unsaved_, now, is_durable ? Durability::kPowerFailure : Durability::kProcessEnd);
+  if (!written) return failed({written.error()});
+  is_begun_ = true;
+  unsaved_ = {};
+  unsaved_bytes_ = 0;
+  bool was_failing = false;
+  {
+    const std::lock_guard lock(mutex_);
+    was_failing = std::exchange(is_failing_, false);
+  }
+  if (was_failing && options_.on_trouble) options_.on_trouble("the journal is written again");
+  return {};
+}
+
+Expected<void> Recorder::failed(Error error) {
+  // A file that cannot be written now may be another one next time: it is opened anew.
+  writer_.reset();
+  bound_unsaved();
+  bool is_new = false;
+  {
+    const std::lock_guard lock(mutex_);
+    is_new = !std::exchange(is_failing_, true);
+  }
+  if (is_new && options_.on_trouble)
+    options_.on_trouble(error.message +
+                        "; what happens is kept and written as soon as that is possible");
+  return error;
+}
+
+void Recorder::bound_unsaved() {
+  for (const bool only_steps : {true, false}) {
+    std::erase_if(unsaved_.entries, [&](const Entry& entry) {
+      const bool is_steps = entry.kind == kind::kSteps;
+      if (unsaved_bytes_ <= kMaxUnsaved || (only_steps && !is_steps)) return false;
+      unsaved_bytes_ -= entry.body.size();
+      ++(is_steps ? gap_steps_ : gap_rows_);
+      return true;
+    });
+  }
+}
+
+}  // namespace culprit::journal

@@ -1,0 +1,129 @@
+// Writes down what the manager is stepped with and what it does, while it runs.
+//
+// The manager's thread hands over each step and goes on; a thread of the recorder's own turns it
+// into rows and writes them several times a second. Only a step that asks for changes on the robot,
+// or that learned something, waits: its rows are on the disk before anything is asked for or said.
+//
+// If the file cannot be written, nothing waits for it: the robot is managed all the same. Rows are
+// kept and written as soon as it is possible again. If they become too many, the oldest `steps` go
+// first, then the oldest others, and a `gap` row says how many.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+#include <unordered_map>
+
+#include "journal/session.h"
+#include "journal/step_codec.h"
+#include "journal/writer.h"
+#include "knowledge/knowledge.h"
+#include "robot/command.h"
+
+namespace culprit::journal {
+
+// What identifies the decisions of a step (StepReader gives it back).
+std::optional<Digest> digest_of(std::span<const Command> commands, std::span<const Event> events,
+                                const RuleSet& rules, Hasher& hasher);
+
+class Recorder {
+ public:
+  static constexpr Duration kPeriod = std::chrono::milliseconds(200);  // between two writes
+  static constexpr Duration kRetry = std::chrono::seconds(1);
+  // How long an action waits for a disk that does not answer.
+  static constexpr Duration kPatience = std::chrono::seconds(2);
+  static constexpr std::size_t kMaxUnsaved = 16u << 20;  // bytes of rows, and of steps not yet rows
+
+  struct Options {
+    std::filesystem::path path;
+    Writer::Options writer;
+    std::function<std::int64_t()> wall_clock;  // nanoseconds since 1970
+    // Called when writing begins to fail, and when it goes on; from the recorder's thread.
+    std::function<void(const std::string&)> on_trouble;
+  };
+
+  // `writer`: nothing if the file cannot be opened now; that is tried again and again. `knowledge`
+  // and its rules must outlive the recorder, which looks at it in stepped() only. `session` becomes
+  // the first row.
+  Recorder(std::optional<Writer> writer, Options options, const Session& session,
+           const Knowledge& knowledge);
+  // As end(), but without a word: as if the process had ended by itself.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+
+  // After each step and before its commands go out, by one thread. Takes the observations.
+  void stepped(Time now, std::vector<Observation>& observations, std::span<const Command> commands,
+               std::span<const Event> events);
+
+  // culprit was asked to stop: writes what is waiting. An error says what is lost. No step after
+  // it.
+  Expected<void> end();
+
+ private:
+  struct Pending {
+    Time now{};
+    std::int64_t wall = 0;
+    std::vector<Observation> observations;
+    std::vector<Command> commands;
+    std::vector<Event> events;
+    Learned learned;
+    bool is_end = false;
+  };
+
+  Learned changes();
+  void run();
+  void make_rows(const Pending& pending);
+  void close_steps();
+  void add(std::string_view kind, std::int64_t at, const Json& body);
+  Expected<void> write(bool is_durable);
+  Expected<void> open_anew();
+  void finish();
+  Expected<void> failed(Error error);
+  void bound_unsaved();
+  std::int64_t wall_of(Time now);
+
+  Options options_;
+  const Knowledge& knowledge_;
+  const RuleSet& rules_;
+
+  // Of the manager's thread.
+  std::vector<Belief> beliefs_;  // as written last
+  std::vector<std::vector<Couplings::Learned>> couplings_;
+  std::int64_t wall_offset_ = 0;
+  std::uint32_t since_clock_ = 0;
+
+  std::mutex mutex_;
+  std::condition_variable work_;
+  std::condition_variable done_;
+  std::vector<Pending> queue_;
+  std::size_t queued_observations_ = 0;
+  std::uint64_t lost_steps_ = 0;
+  std::vector<std::vector<Observation>> spare_;
+  std::uint64_t handed_over_ = 0;
+  std::uint64_t written_ = 0;
+  bool is_wanted_now_ = false;
+  bool is_failing_ = false;
+  bool is_ending_ = false;
+
+  // Of the recorder's thread.
+  std::optional<Writer> writer_;
+  Batch unsaved_;
+  std::size_t unsaved_bytes_ = 0;
+  std::string steps_;  // of the row that is being made
+  std::int64_t steps_at_ = 0;
+  std::uint64_t gap_steps_ = 0;
+  std::uint64_t gap_rows_ = 0;
+  std::unordered_map<std::uint64_t, std::string> asked_;  // changes that wait for their outcome
+  Json session_;
+  Learned known_;          // all, for a file that takes the place of this one
+  bool is_begun_ = false;  // the session is in a file
+  std::optional<Error> last_error_;
+  Hasher hasher_;
+
+  std::thread thread_;
+};
+
+}  // namespace culprit::journal

@@ -1,0 +1,150 @@
+#include "journal/recovery.h"
+
+#include <algorithm>
+#include <array>
+
+#include "journal/requests.h"
+
+namespace culprit::journal {
+namespace {
+
+// Follows the strategies of one run through its rows.
+class Trail {
+ public:
+  Trail(const RuleSet& rules, std::vector<std::string>& given_up)
+      : rules_(rules), given_up_(given_up) {}
+
+  void begin_with(const Json& interrupted) {
+    if (!interrupted.is_array()) return;
+    for (const Json& each : interrupted) {
+      auto known = interrupted_from_json(each, rules_);
+      if (known) {
+        open_.push_back(std::move(*known));
+      } else {
+        give_up(each, known.error());
+      }
+    }
+  }
+
+  void follow(const Entry& entry) {
+    const Json body = from_text(entry.body);
+    if (!body.is_object()) return;
+    if (entry.kind == kind::kEvent) event(body);
+    if (entry.kind == kind::kIntent) intent(body);
+    if (entry.kind == kind::kOutcome) outcome(body);
+  }
+
+  bool is_paused() const { return is_paused_; }
+
+  // Those that had begun to change anything.
+  std::vector<Interrupted> open() && {
+    std::erase_if(open_, [](const Interrupted& each) { return each.requests.empty(); });
+    return std::move(open_);
+  }
+
+ private:
+  void event(const Json& body) {
+    const std::string type = text_of(body, "type");
+    if (type == "order_accepted") order(text_of(body, "order"));
+    const auto rule = find_rule(rules_, text_of(body, "rule"));
+    if (!rule) return;
+    const auto strategy = find_strategy(rules_, text_of(body, "rule"), text_of(body, "strategy"));
+    // A failure is held back only while no strategy of its own is under way.
+    constexpr std::array kEnds = {"failure_resolved", "failure_lost",   "failure_held_back",
+                                  "round_spent",      "rule_exhausted", "strategy_abandoned",
+                                  "order_carried_out"};
+    if (std::find(kEnds.begin(), kEnds.end(), type) != kEnds.end()) return close(*rule);
+    if (!strategy) return;
+    if (type == "strategy_chosen" && !flag_of(body, "dry_run")) {
+      close(*rule);
+      open_.emplace_back();
+      open_.back().strategy = *strategy;
+    }
+    const auto found = std::find_if(open_.begin(), open_.end(), [&](const Interrupted& each) {
+      return each.strategy == *strategy;
+    });
+    if (found == open_.end()) return;
+    if (type == "adaptation_done") ++found->adaptations_done;
+    if (type == "strategy_failed") found->has_failed = true;
+    // Rows may be damaged: no more can be done than there is.
+    found->adaptations_done =
+        std::min(found->adaptations_done, rules_[*strategy].adaptations.size());
+  }
+
+  void order(const std::string& word) {
+    if (word == "pause") is_paused_ = true;
+    if (word == "resume") is_paused_ = false;
+  }
+
+  void intent(const Json& body) {
+    const auto command = command_from_json(body, rules_);
+    if (!command) return give_up(body, command.error());
+    auto found = std::find_if(open_.begin(), open_.end(), [&](const Interrupted& each) {
+      return each.strategy == command->purpose.strategy;
+    });
+    // A person may have ordered it without a failure: then nobody chose it.
+    if (found == open_.end()) {
+      found = open_.emplace(open_.end());
+      found->strategy = command->purpose.strategy;
+    }
+    found->requests.emplace_back();
+    found->requests.back().command = *command;
+  }
+
+  void outcome(const Json& body) {
+    const auto number = static_cast<std::uint64_t>(integer_of(body, "command"));
+    const auto outcome = outcome_from(text_of(body, "outcome"));
+    for (Interrupted& each : open_) {
+      // Numbers begin anew with each run: the latest is meant.
+      const auto request = std::find_if(
+          each.requests.rbegin(), each.requests.rend(),
+          [&](const Interrupted::Request& r) { return r.command.id.number == number; });
+      if (request != each.requests.rend() && !request->outcome) request->outcome = outcome;
+    }
+  }
+
+  void close(RuleId rule) {
+    std::erase_if(open_,
+                  [&](const Interrupted& each) { return rules_[each.strategy].rule == rule; });
+  }
+
+  void give_up(const Json& what, const std::string& why) {
+    const std::string line =
+        text_of(what, "strategy") + " for " + text_of(what, "rule") + ": " + why;
+    if (std::find(given_up_.begin(), given_up_.end(), line) == given_up_.end())
+      given_up_.push_back(line);
+  }
+
+  const RuleSet& rules_;
+  std::vector<std::string>& given_up_;
+  std::vector<Interrupted> open_;
+  bool is_paused_ = false;
+};
+
+}  // namespace
+
+Expected<Recovery> recover(const Reader& journal, const RuleSet& rules) {
+  Recovery recovery;
+  const auto last = journal.newest(kind::kSession);
+  if (!last) return Error{last.error()};
+  if (!*last) return recovery;
+  recovery.had_run = true;
+  const Json begin = from_text((*last)->body);
+  recovery.was_other_boot = text_of(begin, "boot") != boot_id();
+  Trail trail(rules, recovery.given_up);
+  if (begin.is_object()) trail.begin_with(begin.value("interrupted", Json::array()));
+  auto rows = journal.entries(Which::kReadable, (*last)->id + 1);
+  if (!rows) return Error{rows.error()};
+  Entry entry;
+  auto row = rows->next(entry);
+  for (; row && *row; row = rows->next(entry)) {
+    recovery.was_stopped = entry.kind == kind::kEnd;
+    trail.follow(entry);
+  }
+  if (!row) return Error{row.error()};
+  recovery.is_paused = trail.is_paused();
+  recovery.interrupted = std::move(trail).open();
+  return recovery;
+}
+
+}  // namespace culprit::journal

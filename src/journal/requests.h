@@ -1,0 +1,25 @@
+// Requests that change the robot, and strategies that were interrupted in the middle of them, as
+// JSON by name.
+#pragma once
+
+#include "journal/json.h"
+#include "knowledge/interrupted.h"
+
+namespace culprit::journal {
+
+// The body of an intent.
+Json to_json(const Command& command, const RuleSet& rules);
+
+// Errors: it is no intent, or is about what `rules` does not have.
+Expected<Command> command_from_json(const Json& json, const RuleSet& rules);
+
+Json to_json(const Interrupted& interrupted, const RuleSet& rules);
+Expected<Interrupted> interrupted_from_json(const Json& json, const RuleSet& rules);
+
+// By name, as rows name them. Nothing: the rules do not have it.
+std::optional<RuleId> find_rule(const RuleSet& rules, const std::string& name);
+std::optional<StrategyId> find_strategy(const RuleSet& rules, const std::string& rule,
+                                        const std::string& strategy);
+std::optional<ComponentId> find_component(const RuleSet& rules, const std::string& name);
+
+}  // namespace culprit::journal

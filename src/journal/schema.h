@@ -1,0 +1,18 @@
+// The tables of a journal file, and how a file of an older culprit becomes one of this.
+#pragma once
+
+#include "journal/database.h"
+
+namespace culprit::journal {
+
+// Of files that this culprit writes.
+int schema_version();
+
+// Makes the tables in a new file, or brings an older one up to date, in one transaction. Errors:
+// the file is of another program, or of a newer culprit; it is left as it was.
+Expected<void> prepare_schema(Database& database);
+
+// Whether this is a journal that this culprit can read.
+Expected<void> check_schema(const Database& database);
+
+}  // namespace culprit::journal

@@ -1,0 +1,118 @@
+#include "journal/session.h"
+
+#include <fstream>
+
+namespace culprit::journal {
+namespace {
+
+Json pair(double a, double b) { return Json::array({a, b}); }
+
+std::optional<std::pair<double, double>> pair_from(const Json& json, const char* key) {
+  if (!json.is_object()) return std::nullopt;
+  const auto found = json.find(key);
+  const bool fits = found != json.end() && found->is_array() && found->size() == 2 &&
+                    (*found)[0].is_number() && (*found)[1].is_number();
+  if (!fits) return std::nullopt;
+  return std::pair((*found)[0].get<double>(), (*found)[1].get<double>());
+}
+
+// Pseudo-counts are above zero, and no robot lives long enough for the others.
+bool is_belief(const Belief& belief) {
+  return belief.alpha > 0 && belief.beta > 0 && belief.alpha < 1e15 && belief.beta < 1e15;
+}
+bool is_count(double count) { return count >= 0 && count < 1e15; }
+
+}  // namespace
+
+Json to_json(const Learned& learned) {
+  Json json = {{"beliefs", Json::array()}, {"couplings", Json::array()}};
+  for (const LearnedBelief& each : learned.beliefs)
+    json["beliefs"].push_back({{"rule", each.rule},
+                               {"strategy", each.strategy},
+                               {"belief", pair(each.belief.alpha, each.belief.beta)},
+                               {"prior", pair(each.prior.alpha, each.prior.beta)}});
+  for (const LearnedCoupling& each : learned.couplings)
+    json["couplings"].push_back({{"cause", each.cause},
+                                 {"effect", each.effect},
+                                 {"cleared", each.coupling.cleared},
+                                 {"stayed", each.coupling.stayed}});
+  return json;
+}
+
+Expected<Learned> learned_from_json(const Json& json) {
+  const Error damaged{"what was learned cannot be read"};
+  if (!json.is_object()) return damaged;
+  Learned learned;
+  const Json beliefs = json.value("beliefs", Json());
+  const Json couplings = json.value("couplings", Json());
+  if (!beliefs.is_array() || !couplings.is_array()) return damaged;
+  for (const Json& each : beliefs) {
+    const auto belief = pair_from(each, "belief");
+    const auto prior = pair_from(each, "prior");
+    if (!belief || !prior) return damaged;
+    learned.beliefs.push_back({text_of(each, "rule"),
+                               text_of(each, "strategy"),
+                               {belief->first, belief->second},
+                               {prior->first, prior->second}});
+    if (!is_belief(learned.beliefs.back().belief) || !is_belief(learned.beliefs.back().prior))
+      return damaged;
+  }
+  for (const Json& each : couplings) {
+    const Coupling coupling{number_of(each, "cleared", -1), number_of(each, "stayed", -1)};
+    if (!is_count(coupling.cleared) || !is_count(coupling.stayed)) return damaged;
+    learned.couplings.push_back({text_of(each, "cause"), text_of(each, "effect"), coupling});
+  }
+  return learned;
+}
+
+Json to_json(const Session& session) {
+  return {{"version", session.version},
+          {"robot", session.robot},
+          {"boot", session.boot},
+          {"start", session.start.time_since_epoch().count()},
+          {"settling", session.settling.count()},
+          {"forgetting", session.forgetting},
+          {"advises", session.advises},
+          {"planner", session.planner},
+          {"governor", session.governor},
+          {"learned", to_json(session.learned)},
+          {"interrupted", session.interrupted},
+          {"rules_path", session.rules_path},
+          {"rules_text", session.rules_text},
+          {"text", "culprit " + session.version + " began to manage with " + session.rules_path +
+                       (session.advises ? " (only advising)" : "")}};
+}
+
+Expected<Session> session_from_json(const Json& json) {
+  if (!json.is_object()) return Error{"the beginning of a run cannot be read"};
+  const auto learned = learned_from_json(json.value("learned", Json()));
+  if (!learned) return Error{learned.error()};
+  Session session;
+  session.version = text_of(json, "version");
+  session.robot = text_of(json, "robot");
+  session.rules_path = text_of(json, "rules_path");
+  session.rules_text = text_of(json, "rules_text");
+  session.planner = json.value("planner", Json::object());
+  session.governor = json.value("governor", Json::object());
+  session.advises = flag_of(json, "advises");
+  session.continued = flag_of(json, "continued");
+  session.boot = text_of(json, "boot");
+  session.start = Time(Duration(integer_of(json, "start")));
+  session.settling = Duration(integer_of(json, "settling"));
+  session.forgetting = number_of(json, "forgetting", 1);
+  session.learned = *learned;
+  session.interrupted = json.value("interrupted", Json::array());
+  if (!(session.forgetting > 0 && session.forgetting <= 1) || session.settling < Duration::zero() ||
+      session.rules_text.size() > (64u << 20))
+    return Error{"the beginning of a run cannot be read"};
+  return session;
+}
+
+std::string boot_id() {
+  std::ifstream file("/proc/sys/kernel/random/boot_id");
+  std::string id;
+  file >> id;
+  return id;
+}
+
+}  // namespace culprit::journal

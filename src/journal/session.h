@@ -1,0 +1,38 @@
+// One run of culprit: all that the manager was made with, so that a replay can make it anew.
+#pragma once
+
+#include "journal/json.h"
+#include "journal/learned.h"
+#include "language/rule_set.h"
+#include "robot/time.h"
+
+namespace culprit::journal {
+
+struct Session {
+  std::string version;  // of culprit
+  std::string robot;
+  std::string rules_path;
+  std::string rules_text;
+  Json planner;                    // as its options have it
+  Json governor = Json::object();  // likewise
+  bool advises = false;
+  bool continued = false;  // the run began in another file, which is gone: it cannot be replayed
+  std::string boot;        // which start of the machine: the robot's clock counts from there
+  Time start{};
+  Duration settling{};
+  double forgetting = 1;
+  Learned learned;                   // what was known at the start
+  Json interrupted = Json::array();  // what the run before left behind (requests.h)
+};
+
+// Also the form of what `culprit beliefs export` writes.
+Json to_json(const Learned& learned);
+Expected<Learned> learned_from_json(const Json& json);
+
+Json to_json(const Session& session);
+Expected<Session> session_from_json(const Json& json);
+
+// The kernel's name for the time since the machine was started; empty where it has none.
+std::string boot_id();
+
+}  // namespace culprit::journal

@@ -1,0 +1,434 @@
+#include "journal/step_codec.h"
+
+namespace culprit::journal {
+namespace {
+
+// These numbers stand in files: they must not change.
+enum class Tag : std::uint8_t {
+  kNodeAppeared = 1,
+  kNodeVanished = 2,
+  kEndpointAppeared = 3,
+  kEndpointVanished = 4,
+  kSampleArrived = 5,
+  kSignalRead = 6,
+  kDiagnosticRead = 7,
+  kParameterRead = 8,
+  kLifecycleRead = 9,
+  kProcessSeen = 10,
+  kProbed = 11,
+  kReply = 12,
+  kLinkTrouble = 13,
+  kOrder = 14,
+  kNamesakesSeen = 15
+};
+
+enum class OrderTag : std::uint8_t {
+  kPause = 1,
+  kResume = 2,
+  kSetDryRun = 3,
+  kApprove = 4,
+  kRefuse = 5,
+  kSilence = 6,
+  kLiftSilence = 7,
+  kRunStrategy = 8
+};
+
+enum class ValueTag : std::uint8_t {
+  kNone = 0,
+  kFalse = 1,
+  kTrue = 2,
+  kInteger = 3,
+  kReal = 4,
+  kText = 5,
+  kLifecycle = 6
+};
+
+// Robots' clocks count from the start of the machine, or from 1970. What is beyond that by a
+// century is damage, with which nobody should calculate.
+bool is_plausible(Time time) {
+  constexpr Duration kCentury = std::chrono::hours(24 * 365 * 100);
+  return time.time_since_epoch() > -kCentury && time.time_since_epoch() < 2 * kCentury;
+}
+
+class Encoder {
+ public:
+  explicit Encoder(ByteWriter& out) : out_(out) {}
+
+  void operator()(const Observation& observation, Time now) {
+    const Duration age = now - observation.at;
+    std::visit([&](const auto& what) { write(what, age); }, observation.what);
+  }
+
+ private:
+  void head(Tag tag, Duration age) {
+    out_.byte(static_cast<std::uint8_t>(tag));
+    out_.integer(age.count());
+  }
+  void tag(ValueTag t) { out_.byte(static_cast<std::uint8_t>(t)); }
+  template <class Enum>
+  void word(Enum value) {
+    out_.byte(static_cast<std::uint8_t>(value));
+  }
+
+  void write(const NodeAppeared& o, Duration age) {
+    head(Tag::kNodeAppeared, age);
+    out_.text(o.node);
+    out_.integer(o.pid);
+  }
+  void write(const NodeVanished& o, Duration age) {
+    head(Tag::kNodeVanished, age);
+    out_.text(o.node);
+  }
+  void write(const EndpointAppeared& o, Duration age) {
+    head(Tag::kEndpointAppeared, age);
+    endpoint(o);
+  }
+  void write(const EndpointVanished& o, Duration age) {
+    head(Tag::kEndpointVanished, age);
+    endpoint(o);
+  }
+  void write(const SampleArrived& o, Duration age) {
+    head(Tag::kSampleArrived, age);
+    out_.natural(o.topic.index);
+    out_.natural(o.published);
+  }
+  void write(const SignalRead& o, Duration age) {
+    head(Tag::kSignalRead, age);
+    out_.natural(o.signal.index);
+    value(o.value);
+  }
+  void write(const DiagnosticRead& o, Duration age) {
+    head(Tag::kDiagnosticRead, age);
+    out_.natural(o.diagnostic.index);
+    out_.byte(o.level);
+  }
+  void write(const ParameterRead& o, Duration age) {
+    head(Tag::kParameterRead, age);
+    out_.natural(o.parameter.index);
+    value(o.value);
+  }
+  void write(const LifecycleRead& o, Duration age) {
+    head(Tag::kLifecycleRead, age);
+    out_.natural(o.component.index);
+    word(o.state);
+  }
+  void write(const ProcessSeen& o, Duration age) {
+    head(Tag::kProcessSeen, age);
+    out_.natural(o.component.index);
+    word(o.state);
+    out_.integer(o.pid);
+    out_.text(o.remark);
+  }
+  void write(const Probed& o, Duration age) {
+    head(Tag::kProbed, age);
+    out_.natural(o.component.index);
+    out_.byte(o.answered ? 1 : 0);
+  }
+  void write(const Reply& o, Duration age) {
+    head(Tag::kReply, age);
+    out_.natural(o.command.number);
+    word(o.outcome);
+    if (const auto* v = std::get_if<Value>(&o.value)) {
+      value(*v);
+    } else if (const auto* state = std::get_if<Lifecycle>(&o.value)) {
+      tag(ValueTag::kLifecycle);
+      word(*state);
+    } else {
+      tag(ValueTag::kNone);
+    }
+    out_.text(o.text);
+  }
+  void write(const LinkTrouble& o, Duration age) {
+    head(Tag::kLinkTrouble, age);
+    out_.text(o.text);
+  }
+
+  void write(const NamesakesSeen& o, Duration age) {
+    head(Tag::kNamesakesSeen, age);
+    out_.text(o.node);
+    out_.natural(static_cast<std::uint64_t>(o.others));
+  }
+  void write(const Order& o, Duration age) {
+    head(Tag::kOrder, age);
+    out_.natural(o.number);
+    out_.text(o.author);
+    out_.text(o.reason);
+    std::visit([&](const auto& order) { write_order(order); }, o.what);
+  }
+  void write_order(const Pause&) { word(OrderTag::kPause); }
+  void write_order(const Resume&) { word(OrderTag::kResume); }
+  void write_order(const SetDryRun& o) {
+    word(OrderTag::kSetDryRun);
+    out_.byte(o.is_on ? 1 : 0);
+  }
+  void write_order(const Approve& o) {
+    word(OrderTag::kApprove);
+    out_.natural(o.strategy.index);
+  }
+  void write_order(const Refuse& o) {
+    word(OrderTag::kRefuse);
+    out_.natural(o.strategy.index);
+  }
+  void write_order(const Silence& o) {
+    word(OrderTag::kSilence);
+    silenced(o.what);
+    out_.byte(o.lasts ? 1 : 0);
+    if (o.lasts) out_.integer(o.lasts->count());
+  }
+  void write_order(const LiftSilence& o) {
+    word(OrderTag::kLiftSilence);
+    silenced(o.what);
+  }
+  void write_order(const RunStrategy& o) {
+    word(OrderTag::kRunStrategy);
+    out_.natural(o.strategy.index);
+  }
+  void silenced(const Silenceable& what) {
+    const auto* component = std::get_if<ComponentId>(&what);
+    out_.byte(component != nullptr ? 0 : 1);
+    out_.natural(component != nullptr ? component->index : std::get<RuleId>(what).index);
+  }
+
+  template <class Endpoint>
+  void endpoint(const Endpoint& o) {
+    out_.text(o.node);
+    word(o.kind);
+    out_.text(o.name);
+  }
+  void value(const Value& v) {
+    if (const auto* truth = std::get_if<bool>(&v)) {
+      tag(*truth ? ValueTag::kTrue : ValueTag::kFalse);
+    } else if (const auto* whole = std::get_if<std::int64_t>(&v)) {
+      tag(ValueTag::kInteger);
+      out_.integer(*whole);
+    } else if (const auto* number = std::get_if<double>(&v)) {
+      tag(ValueTag::kReal);
+      out_.real(*number);
+    } else {
+      tag(ValueTag::kText);
+      out_.text(std::get<std::string>(v));
+    }
+  }
+
+  ByteWriter& out_;
+};
+
+class Decoder {
+ public:
+  Decoder(ByteReader& in, const RuleSet& rules) : in_(in), rules_(rules) {}
+
+  Observation operator()(Time now) {
+    const auto tag = static_cast<Tag>(in_.byte());
+    const Time at = earlier(now, in_.integer());
+    return {at, what(tag)};
+  }
+
+ private:
+  // Damaged bytes may say anything; time must not overflow over it.
+  Time earlier(Time now, std::int64_t nanoseconds) {
+    std::int64_t at = 0;
+    const bool overflows = __builtin_sub_overflow(now.time_since_epoch().count(), nanoseconds, &at);
+    if (overflows || !is_plausible(Time(Duration(at)))) in_.fail();
+    return in_.is_good() ? Time(Duration(at)) : now;
+  }
+
+  decltype(Observation::what) what(Tag tag) {
+    // One field after the other: the order in which the arguments of a call are evaluated is open.
+    switch (tag) {
+      case Tag::kNodeAppeared: {
+        std::string node = in_.text();
+        return NodeAppeared{std::move(node), pid()};
+      }
+      case Tag::kNodeVanished:
+        return NodeVanished{in_.text()};
+      case Tag::kEndpointAppeared:
+        return endpoint<EndpointAppeared>();
+      case Tag::kEndpointVanished:
+        return endpoint<EndpointVanished>();
+      case Tag::kSampleArrived: {
+        const auto topic = id<TopicId>(rules_.topics.size());
+        return SampleArrived{topic, static_cast<std::uint32_t>(below(1ull << 32))};
+      }
+      case Tag::kSignalRead: {
+        const auto signal = id<SignalId>(rules_.signals.size());
+        return SignalRead{signal, value()};
+      }
+      case Tag::kDiagnosticRead: {
+        const auto diagnostic = id<DiagnosticId>(rules_.diagnostics.size());
+        return DiagnosticRead{diagnostic, in_.byte()};
+      }
+      case Tag::kParameterRead: {
+        const auto parameter = id<ParameterId>(rules_.parameters.size());
+        return ParameterRead{parameter, value()};
+      }
+      case Tag::kLifecycleRead: {
+        const auto component = id<ComponentId>(rules_.components.size());
+        return LifecycleRead{component, word(Lifecycle::kTransition)};
+      }
+      case Tag::kProcessSeen: {
+        ProcessSeen seen;
+        seen.component = id<ComponentId>(rules_.components.size());
+        seen.state = word(ProcessState::kGone);
+        seen.pid = pid();
+        seen.remark = in_.text();
+        return seen;
+      }
+      case Tag::kProbed: {
+        const auto component = id<ComponentId>(rules_.components.size());
+        return Probed{component, in_.byte() != 0};
+      }
+      case Tag::kReply:
+        return reply();
+      case Tag::kLinkTrouble:
+        return LinkTrouble{in_.text()};
+      case Tag::kOrder:
+        return order();
+      case Tag::kNamesakesSeen: {
+        std::string node = in_.text();
+        return NamesakesSeen{std::move(node), static_cast<int>(below(1ull << 31))};
+      }
+    }
+    in_.fail();
+    return LinkTrouble{};
+  }
+
+  Order order() {
+    Order order;
+    order.number = in_.natural();
+    order.author = in_.text();
+    order.reason = in_.text();
+    order.what = what_order(static_cast<OrderTag>(in_.byte()));
+    return order;
+  }
+  decltype(Order::what) what_order(OrderTag tag) {
+    switch (tag) {
+      case OrderTag::kPause:
+        return Pause{};
+      case OrderTag::kResume:
+        return Resume{};
+      case OrderTag::kSetDryRun:
+        return SetDryRun{in_.byte() != 0};
+      case OrderTag::kApprove:
+        return Approve{id<StrategyId>(rules_.strategies.size())};
+      case OrderTag::kRefuse:
+        return Refuse{id<StrategyId>(rules_.strategies.size())};
+      case OrderTag::kSilence: {
+        Silence silence{silenced(), {}};
+        if (in_.byte() != 0) silence.lasts = Duration(in_.integer());
+        return silence;
+      }
+      case OrderTag::kLiftSilence:
+        return LiftSilence{silenced()};
+      case OrderTag::kRunStrategy:
+        return RunStrategy{id<StrategyId>(rules_.strategies.size())};
+    }
+    in_.fail();
+    return Pause{};
+  }
+  Silenceable silenced() {
+    if (in_.byte() == 0) return id<ComponentId>(rules_.components.size());
+    return id<RuleId>(rules_.rules.size());
+  }
+
+  Reply reply() {
+    Reply reply;
+    reply.command.number = in_.natural();
+    reply.outcome = word(Outcome::kTimedOut);
+    const auto tag = static_cast<ValueTag>(in_.byte());
+    if (tag == ValueTag::kLifecycle) {
+      reply.value = word(Lifecycle::kTransition);
+    } else if (tag != ValueTag::kNone) {
+      reply.value = value(tag);
+    }
+    reply.text = in_.text();
+    return reply;
+  }
+
+  template <class Endpoint>
+  Endpoint endpoint() {
+    Endpoint endpoint;
+    endpoint.node = in_.text();
+    endpoint.kind = word(EndpointKind::kClient);
+    endpoint.name = in_.text();
+    return endpoint;
+  }
+
+  Value value() { return value(static_cast<ValueTag>(in_.byte())); }
+  Value value(ValueTag tag) {
+    switch (tag) {
+      case ValueTag::kFalse:
+        return false;
+      case ValueTag::kTrue:
+        return true;
+      case ValueTag::kInteger:
+        return in_.integer();
+      case ValueTag::kReal:
+        return in_.real();
+      case ValueTag::kText:
+        return in_.text();
+      default:
+        in_.fail();
+        return false;
+    }
+  }
+
+  std::uint64_t below(std::uint64_t limit) {
+    const std::uint64_t number = in_.natural();
+    if (number >= limit) in_.fail();
+    return number < limit ? number : 0;
+  }
+  template <class Id>
+  Id id(std::size_t count) {
+    return Id(static_cast<std::size_t>(below(count)));
+  }
+  template <class Enum>
+  Enum word(Enum last) {
+    const std::uint8_t number = in_.byte();
+    if (number > static_cast<std::uint8_t>(last)) {
+      in_.fail();
+      return Enum{};
+    }
+    return static_cast<Enum>(number);
+  }
+  int pid() {
+    const std::int64_t number = in_.integer();
+    if (number < 0 || number > INT32_MAX) in_.fail();
+    return static_cast<int>(number);
+  }
+
+  ByteReader& in_;
+  const RuleSet& rules_;
+};
+
+}  // namespace
+
+void encode(Time now, std::span<const Observation> observations, std::optional<Digest> digest,
+            ByteWriter& out) {
+  out.integer(now.time_since_epoch().count());
+  out.natural(observations.size() << 1 | (digest ? 1 : 0));
+  Encoder encoder(out);
+  for (const Observation& observation : observations) encoder(observation, now);
+  if (!digest) return;
+  for (int shift = 0; shift < 64; shift += 8) out.byte(static_cast<std::uint8_t>(*digest >> shift));
+}
+
+Expected<bool> StepReader::next(Step& step) {
+  step.observations.clear();
+  step.digest.reset();
+  if (in_.is_at_end()) return false;
+  step.now = Time(Duration(in_.integer()));
+  if (!is_plausible(step.now)) in_.fail();
+  const std::uint64_t head = in_.natural();
+  Decoder decode(in_, rules_);
+  for (std::uint64_t i = 0; i < head >> 1 && in_.is_good(); ++i)
+    step.observations.push_back(decode(step.now));
+  if ((head & 1) != 0) {
+    Digest digest = 0;
+    for (int shift = 0; shift < 64; shift += 8) digest |= Digest{in_.byte()} << shift;
+    step.digest = digest;
+  }
+  if (!in_.is_good()) return Error{"its steps are damaged, or of another rule file"};
+  return true;
+}
+
+}  // namespace culprit::journal

@@ -1,0 +1,74 @@
+// The one who writes a journal file. A second one, in any process, is turned away.
+//
+// A batch is in the file as a whole or not at all, and once append() returned it survives the end
+// of the process, however it ends; with Durability::kPowerFailure it survives that of the machine.
+//
+// A file that is damaged is never written on and never thrown away: it is set aside under another
+// name, and what was learned is carried over if it can still be read.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "journal/database.h"
+#include "journal/entry.h"
+#include "journal/file_lock.h"
+#include "journal/learned.h"
+#include "journal/tables.h"
+
+namespace culprit::journal {
+
+enum class Durability : std::uint8_t { kProcessEnd, kPowerFailure };
+
+struct Batch {
+  std::vector<Entry> entries;  // without `id`
+  Learned learned;             // what changed; each change makes a row, too
+};
+
+class Writer {
+ public:
+  struct Options {
+    std::int64_t max_bytes = std::int64_t{256} << 20;   // the oldest rows go beyond that
+    std::int64_t max_age_ns = 30 * 86'400'000'000'000;  // and those that are older
+  };
+
+  // Errors say why, with the path and what to do.
+  static Expected<Writer> open(const std::filesystem::path& path, Options options);
+
+  // What was odd about the file and what was done about it; empty if nothing was.
+  const std::string& remark() const { return remark_; }
+  const std::filesystem::path& path() const { return path_; }
+
+  // `now`: nanoseconds since 1970. After an error nothing of the batch is in the file.
+  Expected<void> append(const Batch& batch, std::int64_t now, Durability durability);
+
+  // Forgets all that was learned: of one rule, or of all if `rule` is empty. Gives how many beliefs
+  // and couplings that were.
+  Expected<int> forget(const std::string& rule, std::int64_t now);
+
+  Expected<Learned> learned() const { return read_learned(database_); }
+  const Database& database() const { return database_; }
+  std::int64_t last_id() const { return newest_.id; }
+
+ private:
+  Writer(std::filesystem::path path, Options options, FileLock lock, Database database);
+
+  Expected<void> begin();
+  Expected<void> write(const Batch& batch, std::int64_t now);
+  Expected<void> insert(Entry entry);
+  Expected<void> keep(const Learned& learned, std::int64_t now);
+  Expected<void> drop_old(std::int64_t now);
+  Expected<void> check_name() const;
+
+  std::filesystem::path path_;
+  Options options_;
+  FileLock lock_;
+  Database database_;
+  std::optional<Statement> insert_;
+  Hasher hasher_;
+  Link newest_;
+  std::string remark_;
+  std::uint64_t inode_ = 0;
+};
+
+}  // namespace culprit::journal

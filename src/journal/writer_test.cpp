@@ -1,0 +1,317 @@
+// What a journal file promises: all of a batch or nothing, a chain that shows every change, one
+// writer, a bounded size; and what becomes of it when the disk, the file or another program is in
+// the way.
+#include "journal/writer.h"
+
+#include <fstream>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "journal/json.h"
+#include "journal/reader.h"
+#include "journal/test_folder.h"
+#include "journal/verify.h"
+
+namespace culprit::journal {
+namespace {
+
+using test::TestFolder;
+using testing::HasSubstr;
+
+constexpr std::int64_t kNow = 1'800'000'000'000'000'000;
+
+template <class T>
+T value_of(Expected<T> expected) {
+  EXPECT_TRUE(expected.has_value()) << expected.error();
+  return std::move(*expected);
+}
+
+Writer open(const std::filesystem::path& path, Writer::Options options = {}) {
+  return value_of(Writer::open(path, options));
+}
+
+Batch batch(int events, std::size_t size = 10) {
+  Batch all;
+  for (int i = 0; i < events; ++i)
+    all.entries.push_back(
+        {0, kNow, std::string(kind::kEvent), to_text({{"text", std::string(size, 'x')}})});
+  return all;
+}
+
+Expected<void> append(Writer& writer, const Batch& all) {
+  return writer.append(all, kNow, Durability::kProcessEnd);
+}
+
+Verification verified(const std::filesystem::path& path, std::optional<Link> noted = {}) {
+  const Reader reader = value_of(Reader::open(path));
+  return value_of(verify(reader, noted));
+}
+
+void run_sql(const std::filesystem::path& path, const std::string& sql) {
+  auto database = value_of(Database::open(path, Database::Mode::kWrite));
+  const auto done = database.run(sql);
+  ASSERT_TRUE(done) << done.error();
+}
+
+const LearnedBelief kBelief{"Rule", "strategy", {6.1, 4.3}, {5, 4}};
+
+TEST(Writer, KeepsRowsAndWhatWasLearnedAcrossRuns) {
+  const TestFolder folder;
+  {
+    Writer writer = open(folder / "a.journal");
+    Batch all = batch(3);
+    all.learned.beliefs = {kBelief};
+    ASSERT_TRUE(append(writer, all));
+  }
+  Writer writer = open(folder / "a.journal");
+  EXPECT_EQ(writer.last_id(), 4) << "three events, and the belief";
+  EXPECT_EQ(value_of(writer.learned()).beliefs, std::vector{kBelief});
+  ASSERT_TRUE(append(writer, batch(2)));
+  const Verification result = verified(folder / "a.journal");
+  EXPECT_EQ(result.rows, 6);
+  EXPECT_TRUE(result.findings.empty());
+}
+
+TEST(Writer, ASecondOneIsTurnedAwayUntilTheFirstIsGone) {
+  const TestFolder folder;
+  {
+    const Writer first = open(folder / "a.journal");
+    const auto second = Writer::open(folder / "a.journal", {});
+    ASSERT_FALSE(second);
+    EXPECT_THAT(second.error(), HasSubstr("another culprit"));
+  }
+  EXPECT_TRUE(Writer::open(folder / "a.journal", {}));
+}
+
+TEST(Chain, ShowsEveryChange) {
+  for (const char* change :
+       {"UPDATE entry SET body = '{}'", "UPDATE entry SET at = at + 1",
+        "UPDATE entry SET kind = 'gap'", "UPDATE entry SET hash = zeroblob(32)",
+        "UPDATE entry SET hash = x'00'", "UPDATE entry SET id = id + 100"}) {
+    for (const char* row : {" WHERE id = 1", " WHERE id = 3", " WHERE id = 5"}) {
+      const TestFolder folder;
+      {
+        Writer writer = open(folder / "a.journal");
+        ASSERT_TRUE(append(writer, batch(5)));
+      }
+      run_sql(folder / "a.journal", std::string(change) + row);
+      EXPECT_FALSE(verified(folder / "a.journal").findings.empty()) << change << row;
+    }
+  }
+}
+
+TEST(Chain, ShowsRowsMissingInTheMiddleAndWithANotedHashAtTheEnd) {
+  const TestFolder folder;
+  {
+    Writer writer = open(folder / "a.journal");
+    ASSERT_TRUE(append(writer, batch(5)));
+  }
+  const Link noted = verified(folder / "a.journal").newest;
+  EXPECT_TRUE(verified(folder / "a.journal", noted).findings.empty());
+  run_sql(folder / "a.journal", "DELETE FROM entry WHERE id = 5");
+  EXPECT_TRUE(verified(folder / "a.journal").findings.empty());
+  EXPECT_THAT(verified(folder / "a.journal", noted).findings,
+              testing::ElementsAre(HasSubstr("row 5")));
+  run_sql(folder / "a.journal", "DELETE FROM entry WHERE id = 2");
+  EXPECT_THAT(verified(folder / "a.journal").findings,
+              testing::ElementsAre(HasSubstr("missing between 1 and 3")));
+}
+
+TEST(Chain, ShowsABeliefThatWasChangedBehindItsBack) {
+  const TestFolder folder;
+  {
+    Writer writer = open(folder / "a.journal");
+    Batch all;
+    all.learned.beliefs = {kBelief};
+    ASSERT_TRUE(append(writer, all));
+  }
+  run_sql(folder / "a.journal", "UPDATE belief SET alpha = 1000");
+  EXPECT_THAT(verified(folder / "a.journal").findings,
+              testing::ElementsAre(HasSubstr("strategy of Rule")));
+}
+
+TEST(Rotation, DropsTheOldestRowsAndTheChainStillHolds) {
+  const TestFolder folder;
+  Writer::Options options;
+  options.max_bytes = 1 << 20;
+  Writer writer = open(folder / "a.journal", options);
+  Batch first = batch(1);
+  first.learned.beliefs = {kBelief};
+  ASSERT_TRUE(append(writer, first));
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(append(writer, batch(100, 300)));
+  const Verification result = verified(folder / "a.journal");
+  EXPECT_TRUE(result.findings.empty()) << result.findings.front();
+  EXPECT_GT(result.first, 1);
+  EXPECT_LT(result.rows, 5000);
+  EXPECT_GT(result.rows, 1000);
+  EXPECT_EQ(value_of(writer.learned()).beliefs, std::vector{kBelief});
+}
+
+TEST(Rotation, DropsWhatIsTooOld) {
+  const TestFolder folder;
+  Writer::Options options;
+  options.max_age_ns = 1000;
+  Writer writer = open(folder / "a.journal", options);
+  ASSERT_TRUE(append(writer, batch(10)));
+  ASSERT_TRUE(
+      writer.append({{{0, kNow + 2000, "gap", "{}"}}, {}}, kNow + 2000, Durability::kProcessEnd));
+  EXPECT_EQ(verified(folder / "a.journal").first, 11);
+}
+
+TEST(Faults, AFullDiskLosesNothingThatWasWrittenAndSaysSo) {
+  const TestFolder folder;
+  Writer writer = open(folder / "a.journal");
+  ASSERT_TRUE(append(writer, batch(3)));
+  // A disk that takes no more: files of this process may not grow.
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, SIG_IGN);
+  rlimit tight = before;
+  tight.rlim_cur = 64 << 10;
+  setrlimit(RLIMIT_FSIZE, &tight);
+  const auto failed = append(writer, batch(1000, 1000));
+  setrlimit(RLIMIT_FSIZE, &before);
+  ASSERT_FALSE(failed);
+  EXPECT_THAT(failed.error(), HasSubstr("a.journal"));
+  ASSERT_TRUE(append(writer, batch(2)));
+  EXPECT_EQ(verified(folder / "a.journal").rows, 5);
+}
+
+TEST(Faults, ALockedFileIsSaidToBeLocked) {
+  const TestFolder folder;
+  Writer writer = open(folder / "a.journal");
+  auto other = value_of(Database::open(folder / "a.journal", Database::Mode::kWrite));
+  ASSERT_TRUE(other.run("BEGIN IMMEDIATE"));
+  const auto failed = append(writer, batch(1));
+  ASSERT_FALSE(failed);
+  EXPECT_THAT(failed.error(), HasSubstr("another program holds it locked"));
+  ASSERT_TRUE(other.run("COMMIT"));
+  EXPECT_TRUE(append(writer, batch(1)));
+}
+
+TEST(Faults, AFileThatIsRemovedMeanwhileIsNotWrittenInSilence) {
+  const TestFolder folder;
+  Writer writer = open(folder / "a.journal");
+  std::filesystem::remove(folder / "a.journal");
+  const auto failed = append(writer, batch(1));
+  ASSERT_FALSE(failed);
+  EXPECT_THAT(failed.error(), HasSubstr("removed"));
+}
+
+TEST(Faults, ADamagedFileIsSetAsideAndWhatWasLearnedIsCarriedOver) {
+  const TestFolder folder;
+  {
+    Writer writer = open(folder / "a.journal");
+    Batch all = batch(400, 300);
+    all.learned.beliefs = {kBelief};
+    ASSERT_TRUE(append(writer, all));
+  }
+  // The page with the newest row is nonsense now.
+  const auto size = std::filesystem::file_size(folder / "a.journal");
+  std::fstream file(folder / "a.journal", std::ios::in | std::ios::out | std::ios::binary);
+  for (std::uintmax_t page = 12; page < size / 4096; ++page) {
+    file.seekp(static_cast<std::streamoff>(page * 4096));
+    file << std::string(4096, '\xff');
+  }
+  file.close();
+  Writer writer = open(folder / "a.journal");
+  EXPECT_THAT(writer.remark(), HasSubstr("a.journal.damaged-1"));
+  EXPECT_EQ(value_of(writer.learned()).beliefs, std::vector{kBelief});
+  EXPECT_EQ(std::filesystem::file_size(folder / "a.journal.damaged-1"), size);
+}
+
+TEST(Faults, ATruncatedFileIsSetAside) {
+  const TestFolder folder;
+  {
+    Writer writer = open(folder / "a.journal");
+    ASSERT_TRUE(append(writer, batch(400, 300)));
+  }
+  std::filesystem::resize_file(folder / "a.journal", 30'000);
+  const Writer writer = open(folder / "a.journal");
+  EXPECT_THAT(writer.remark(), HasSubstr("damaged"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.journal.damaged-1"));
+}
+
+TEST(Faults, AFileThatIsNoJournalIsLeftAlone) {
+  const TestFolder folder;
+  std::ofstream(folder / "notes.txt") << "to do: nothing\n";
+  const auto failed = Writer::open(folder / "notes.txt", {});
+  ASSERT_FALSE(failed);
+  EXPECT_THAT(failed.error(), HasSubstr("no journal"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "notes.txt"));
+  run_sql(folder / "other.journal", "CREATE TABLE t(a)");
+  const auto foreign = Writer::open(folder / "other.journal", {});
+  ASSERT_FALSE(foreign);
+  EXPECT_THAT(foreign.error(), HasSubstr("another program"));
+}
+
+TEST(Faults, AJournalOfANewerCulpritIsLeftAlone) {
+  const TestFolder folder;
+  { const Writer writer = open(folder / "a.journal"); }
+  run_sql(folder / "a.journal", "PRAGMA user_version = 99");
+  const auto failed = Writer::open(folder / "a.journal", {});
+  ASSERT_FALSE(failed);
+  EXPECT_THAT(failed.error(), HasSubstr("newer culprit"));
+  const auto unread = Reader::open(folder / "a.journal");
+  ASSERT_FALSE(unread);
+  EXPECT_THAT(unread.error(), HasSubstr("newer culprit"));
+}
+
+TEST(Faults, AReadOnlyFolderIsReadAndNotWritten) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const TestFolder folder;
+  {
+    Writer writer = open(folder / "a.journal");
+    ASSERT_TRUE(append(writer, batch(3)));
+  }
+  std::filesystem::permissions(
+      folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  EXPECT_EQ(verified(folder / "a.journal").rows, 3);
+  const auto failed = Writer::open(folder / "b.journal", {});
+  ASSERT_FALSE(failed);
+  EXPECT_THAT(failed.error(), HasSubstr("ermission denied"));
+}
+
+TEST(Faults, AFolderThatCannotBeMadeIsNamed) {
+  const auto failed = Writer::open("/proc/culprit/a.journal", {});
+  ASSERT_FALSE(failed);
+  EXPECT_THAT(failed.error(), HasSubstr("/proc/culprit/a.journal"));
+}
+
+TEST(Learned, OfAFleetIsAddedUp) {
+  Learned ours;
+  ours.beliefs = {{"R", "s", {6, 5}, {5, 5}}};  // helped once
+  Learned theirs;
+  theirs.beliefs = {{"R", "s", {10, 7}, {8, 4}}, {"R", "t", {3, 2}, {2, 2}}};  // other priors
+  theirs.couplings = {{"R", "S", {2, 1}}};
+  merge(ours, theirs);
+  merge(ours, theirs);
+  EXPECT_EQ(ours.beliefs[0].belief, (Belief{10, 11})) << "twice two successes, three failures";
+  EXPECT_EQ(ours.beliefs[1].belief, (Belief{4, 2}));
+  EXPECT_EQ(ours.couplings[0].coupling, (Coupling{4, 2}));
+}
+
+TEST(Learned, GrowsFromANewPriorByWhatWasCounted) {
+  EXPECT_EQ(grown_from({9, 1}, {"R", "s", {6, 7}, {5, 5}}), (Belief{10, 3}));
+}
+
+TEST(Writer, ForgetsOneRuleOrAll) {
+  const TestFolder folder;
+  Writer writer = open(folder / "a.journal");
+  Batch all;
+  all.learned.beliefs = {kBelief, {"Other", "s", {2, 1}, {1, 1}}};
+  all.learned.couplings = {{"Rule", "Other", {1, 0}}};
+  ASSERT_TRUE(append(writer, all));
+  EXPECT_EQ(value_of(writer.forget("Rule", kNow)), 1);
+  EXPECT_EQ(value_of(writer.learned()).beliefs.size(), 1u);
+  EXPECT_TRUE(value_of(writer.learned()).couplings.empty());
+  EXPECT_EQ(value_of(writer.forget("", kNow)), 1);
+  EXPECT_TRUE(value_of(writer.learned()).beliefs.empty());
+  EXPECT_TRUE(verified(folder / "a.journal").findings.empty());
+}
+
+}  // namespace
+}  // namespace culprit::journal

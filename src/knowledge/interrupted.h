@@ -1,0 +1,25 @@
+// A strategy that an earlier process of culprit began and did not live to end: what is known of it,
+// and all that is needed to finish it (execute/resumption.h).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "robot/command.h"
+
+namespace culprit {
+
+struct Interrupted {
+  // A request that changes something. It went out, or was about to.
+  struct Request {
+    Command command;
+    std::optional<Outcome> outcome;  // nothing: it is not known how it ended
+  };
+
+  StrategyId strategy;
+  std::size_t adaptations_done = 0;  // proven by reading back
+  bool has_failed = false;           // it did not help; what it had changed was being undone
+  std::vector<Request> requests;     // in order, never empty
+};
+
+}  // namespace culprit

@@ -1,0 +1,211 @@
+// What may be done now (docs/governor.md): limits, storms, interlocks, last resorts.
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+constexpr const char* kCamera = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE CameraDead
+  POLICIES ERROR ATTEMPTS 100
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 2
+)";
+
+TestRobot one_camera(const Governor::Options& governor, const std::string& rules = kCamera) {
+  Manager::Options options;
+  options.governor = governor;
+  TestRobot robot(rules, std::make_unique<BayesPlanner>(), options);
+  robot.add("camera", {}, "/rgb");
+  robot.discover();
+  robot.run_for(2s);
+  return robot;
+}
+
+std::string transcript(const TestRobot& robot) {
+  std::string text = "\n";
+  for (const std::string& line : robot.said) text += line + "\n";
+  return text;
+}
+
+std::vector<Time> times_of_choices(const TestRobot& robot) {
+  std::vector<Time> times;
+  for (const Event& event : robot.events) {
+    if (std::holds_alternative<StrategyChosen>(event.what)) times.push_back(event.at);
+  }
+  return times;
+}
+
+TEST(Intensity, IsNeverExceededAndSaidOnceWhenItHoldsBack) {
+  Governor::Options options;
+  options.limits.per_component = {2, 60s};
+  TestRobot robot = one_camera(options);
+  robot["camera"].fault = "a person";
+  robot.run_for(50s);
+  EXPECT_EQ(times_of_choices(robot).size(), 2u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraDead.redeploy is held back: 2 strategies were begun at camera in "
+                        "1min, and no more are allowed"),
+            1u)
+      << transcript(robot);
+  EXPECT_EQ(robot.count("exhausted"), 0u) << "what is withheld does not spend a round";
+  robot["camera"].fault = "redeploy";
+  robot.run_for(30s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+TEST(Backoff, DoublesBetweenRestartsAndBeginsAnewAfterProvenHealth) {
+  Governor::Options options;
+  options.limits.backoff = {10s, 60s, 30s};
+  TestRobot robot = one_camera(options);
+  robot["camera"].fault = "a person";
+  robot.run_for(60s);
+  const std::vector<Time> times = times_of_choices(robot);
+  ASSERT_GE(times.size(), 3u) << transcript(robot);
+  EXPECT_GE(times[1] - times[0], 10s);
+  EXPECT_GE(times[2] - times[1], 20s);
+  robot["camera"].fault = "redeploy";
+  robot.run_for(120s);
+  ASSERT_TRUE(robot.works("camera")) << transcript(robot);
+  const std::size_t before = times_of_choices(robot).size();
+  robot["camera"].fault = "redeploy";
+  robot.run_for(5s);
+  EXPECT_EQ(times_of_choices(robot).size(), before + 1) << "at once" << transcript(robot);
+}
+
+TEST(QuietPeriod, NothingIsBegunRightAfterTheStart) {
+  Governor::Options options;
+  options.quiet_at_start = 10s;
+  TestRobot robot = one_camera(options);
+  robot["camera"].fault = "redeploy";
+  robot.run_for(7s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(robot.count("is held back: watching began a moment ago"), 1u) << transcript(robot);
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+TEST(Interlock, NothingIsBegunUnlessItIsTrue) {
+  TestRobot robot = one_camera({}, "INTERLOCK speed < 0.1\n" + std::string(kCamera));
+  robot["camera"].fault = "redeploy";
+  robot.run_for(2s);
+  EXPECT_EQ(robot.count("is held back: INTERLOCK speed < 0.1 is unknown"), 1u) << transcript(robot);
+  robot.signal("speed", Value(1.5));
+  robot.run_for(2s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  robot.signal("speed", Value(0.0));
+  robot.run_for(3s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+TEST(Interlock, HoldsForAPersonToo) {
+  TestRobot robot = one_camera({}, "INTERLOCK speed < 0.1\n" + std::string(kCamera));
+  robot.signal("speed", Value(1.5));
+  robot.order({1, "Ann", "", RunStrategy{StrategyId(0)}});
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("Ann is refused: INTERLOCK speed < 0.1 is false"), 1u) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty());
+}
+
+TEST(LastResort, ComesWhenNothingElseHelpedAndOnlyOnce) {
+  TestRobot robot = one_camera({}, R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE CameraDead
+  POLICIES ERROR ATTEMPTS 2
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY redeploy 10 10
+      ADAPTATION camera redeploy 2
+    STRATEGY safe 100 10 LASTRESORT
+      ADAPTATION camera set_parameter safe true 1
+)");
+  robot["camera"].parameters["safe"] = Value(false);
+  robot["camera"].fault = "a person";
+  robot.run_for(60s);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 2u) << transcript(robot);
+  EXPECT_EQ(robot.count("nothing helped, and only the last resort is left"), 1u)
+      << transcript(robot);
+  EXPECT_EQ(robot.count_asked("set safe to true"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraDead is exhausted"), 1u) << transcript(robot);
+  EXPECT_EQ(robot["camera"].parameters["safe"], Value(true)) << "it is not undone";
+}
+
+// Five independent cameras.
+std::string many_rules() {
+  std::string rules;
+  for (const char* c : {"a", "b", "c", "d", "e"}) {
+    const std::string name = c;
+    rules += "COMPONENT " + name + " NODE /" + name + " LAUNCH \"x\"\nRULE Dead_" + name +
+             "\nPOLICIES ERROR\nTRIGGER age(/t" + name +
+             ") > 300ms\nSTRATEGY redeploy 90 10\nADAPTATION " + name + " redeploy 2\n";
+  }
+  return rules;
+}
+
+TestRobot five(bool is_chain) {
+  Manager::Options options;
+  options.governor.storm.share = 0.6;
+  TestRobot robot(many_rules(), std::make_unique<BayesPlanner>(), options);
+  std::string last;
+  for (const char* c : {"a", "b", "c", "d", "e"}) {
+    const std::string name = c;
+    robot.add(name, is_chain && !last.empty() ? std::vector{last} : std::vector<std::string>{},
+              "/t" + name);
+    last = name;
+  }
+  robot.discover();
+  robot.run_for(2s);
+  return robot;
+}
+
+TEST(Storm, WhenMostIsIllAtOnceNothingIsDoneUntilItIsOver) {
+  TestRobot robot = five(false);
+  for (const char* c : {"a", "b", "c", "d"}) robot[c].fault = "redeploy";
+  robot.run_for(20s);
+  EXPECT_EQ(robot.count("a person must look: 4 of 5 components are ill at once"), 1u)
+      << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  robot["a"].fault.clear();
+  robot.run_for(20s);
+  EXPECT_EQ(robot.count("action is allowed again"), 1u) << transcript(robot);
+  for (const char* c : {"b", "c", "d"}) EXPECT_TRUE(robot.works(c)) << c << transcript(robot);
+}
+
+TEST(Storm, OneCauseUpstreamOfAllIsNone) {
+  TestRobot robot = five(true);
+  robot["a"].fault = "redeploy";
+  robot.run_for(20s);
+  EXPECT_EQ(robot.count("a person must look"), 0u) << transcript(robot);
+  EXPECT_TRUE(robot.works("e")) << transcript(robot);
+}
+
+TEST(Intensity, HoldsAmongStrategiesThatAreChosenTogether) {
+  Manager::Options options;
+  options.governor.limits.per_kind = {2, 30s};
+  TestRobot robot(many_rules(), std::make_unique<BayesPlanner>(), options);
+  for (const char* c : {"a", "b", "c", "d", "e"}) robot.add(c, {}, "/t" + std::string(c));
+  robot.discover();
+  robot.run_for(2s);
+  for (const char* c : {"a", "b", "c", "d", "e"}) robot[c].fault = "redeploy";
+  robot.run_for(20s);
+  EXPECT_EQ(times_of_choices(robot).size(), 2u) << transcript(robot);
+  robot.run_for(100s);
+  for (const char* c : {"a", "b", "c", "d", "e"}) EXPECT_TRUE(robot.works(c)) << c;
+}
+
+TEST(Identity, NothingIsDoneToANameThatSeveralNodesHave) {
+  TestRobot robot = one_camera({});
+  robot.tell(NamesakesSeen{"/camera", 1});
+  robot["camera"].fault = "redeploy";
+  robot.run_for(5s);
+  EXPECT_EQ(robot.count("is held back: several nodes have the name /camera"), 1u)
+      << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty());
+  robot.tell(NamesakesSeen{"/camera", 0});
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+}  // namespace
+}  // namespace culprit::test

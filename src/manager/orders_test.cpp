@@ -1,0 +1,192 @@
+// What people tell the manager, and what becomes of it.
+#include <gtest/gtest.h>
+
+#include "manager/runtime.h"
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+constexpr const char* kRules = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT lamp   NODE /lamp
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY restart 90 10
+      ADAPTATION camera restart 2
+    STRATEGY redeploy 50 10
+      ADAPTATION camera redeploy 10
+RULE Dark
+  POLICIES WARNING
+  TRIGGER brightness < 0.5
+    STRATEGY light 90 10
+      ADAPTATION lamp set_parameter on 1 2
+)";
+constexpr RuleId kCameraDead(0);
+constexpr RuleId kDark(1);
+constexpr ComponentId kCamera(0);
+constexpr StrategyId kRestart(0);
+constexpr StrategyId kRedeploy(1);
+constexpr StrategyId kLight(2);
+
+TestRobot robot(Approval approval = Approval::kNone) {
+  Manager::Options options;
+  options.governor.approval = approval;
+  TestRobot robot(kRules, std::make_unique<BayesPlanner>(), options);
+  robot.add("camera", {}, "/rgb");
+  robot.add("lamp").parameters["on"] = Value(std::int64_t{0});
+  robot.discover();
+  robot.signal("brightness", Value(1.0));
+  robot.run_for(1s);
+  return robot;
+}
+
+template <class What>
+Order order(What what, std::string reason = "") {
+  return {7, "Ann", std::move(reason), std::move(what)};
+}
+
+std::string transcript(const TestRobot& robot) {
+  std::string text = "\n";
+  for (const std::string& line : robot.said) text += line + "\n";
+  return text;
+}
+
+void begin_restart(TestRobot& robot) {
+  robot["camera"].fault = "restart";
+  for (int ms = 0; ms < 1000 && !robot.was_asked("camera: deactivate"); ++ms) robot.run_for(1ms);
+  ASSERT_TRUE(robot.was_asked("camera: deactivate")) << transcript(robot);
+}
+
+TEST(Orders, PauseStopsAtOnceWhatIsUnderWayAndResumeGoesOn) {
+  TestRobot r = robot();
+  begin_restart(r);
+  r.order(order(Pause{}, "people on the floor"));
+  const std::size_t asked = r.asked.size();
+  r.run_for(20s);
+  EXPECT_EQ(r.asked.size(), asked) << transcript(r);
+  EXPECT_EQ(r.count("CameraDead.restart is left where it is: paused by Ann"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("is held back: paused by a person"), 1u) << "said once" << transcript(r);
+  r.order(order(Resume{}));
+  r.run_for(10s);
+  EXPECT_TRUE(r.works("camera")) << transcript(r);
+}
+
+TEST(Orders, NothingIsLearnedFromAStrategyThatWasAbandoned) {
+  TestRobot r = robot();
+  const Belief before = r.manager().knowledge().beliefs[kRestart];
+  begin_restart(r);
+  r.order(order(Pause{}));
+  r.run_for(20s);
+  EXPECT_EQ(r.manager().knowledge().beliefs[kRestart], before);
+}
+
+TEST(Orders, DryRunCanBeSwitchedOnAndOff) {
+  TestRobot r = robot();
+  r.order(order(SetDryRun{true}));
+  r["camera"].fault = "restart";
+  r.run_for(5s);
+  EXPECT_EQ(r.count("would restart camera"), 1u) << transcript(r);
+  EXPECT_TRUE(r.asked.empty()) << transcript(r);
+  r.order(order(SetDryRun{false}));
+  r.run_for(5s);
+  EXPECT_TRUE(r.works("camera")) << transcript(r);
+}
+
+TEST(Orders, ASilencedComponentIsWatchedAndLeftAloneUntilTheSilenceEnds) {
+  TestRobot r = robot();
+  r.order(order(Silence{kCamera, 10s}, "recalibration"));
+  r["camera"].fault = "restart";
+  r.run_for(8s);
+  EXPECT_EQ(r.count("CameraDead detected"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("CameraDead.restart is held back: camera is silenced by Ann: recalibration"),
+            1u)
+      << transcript(r);
+  EXPECT_TRUE(r.asked.empty()) << transcript(r);
+  r.run_for(8s);
+  EXPECT_EQ(r.count("camera is no longer silenced"), 1u) << transcript(r);
+  EXPECT_TRUE(r.works("camera")) << transcript(r);
+}
+
+TEST(Orders, ASilencedRuleDoesNotSpendItsRounds) {
+  TestRobot r = robot();
+  r.order(order(Silence{kCameraDead, {}}));
+  r["camera"].fault = "restart";
+  r.run_for(300s);
+  EXPECT_EQ(r.count("exhausted"), 0u) << transcript(r);
+  r.order(order(LiftSilence{kCameraDead}));
+  r.run_for(5s);
+  EXPECT_TRUE(r.works("camera")) << transcript(r);
+}
+
+TEST(Orders, AStrategyWaitsForApproval) {
+  TestRobot r = robot(Approval::kEach);
+  r["camera"].fault = "restart";
+  r.run_for(5s);
+  EXPECT_EQ(r.count("shall CameraDead.restart restart camera?"), 1u) << transcript(r);
+  EXPECT_EQ(r.manager().governor().asked(), std::vector{kRestart});
+  EXPECT_TRUE(r.asked.empty());
+  r.order(order(Approve{kRestart}));
+  r.run_for(5s);
+  EXPECT_TRUE(r.works("camera")) << transcript(r);
+}
+
+TEST(Orders, ARefusedStrategyMakesRoomForTheNextAndIsAskedForAgainWithTheNextFailure) {
+  TestRobot r = robot(Approval::kEach);
+  r["camera"].fault = "redeploy";
+  r.run_for(2s);
+  r.order(order(Refuse{kRestart}));
+  r.run_for(2s);
+  EXPECT_EQ(r.manager().governor().asked(), std::vector{kRedeploy}) << transcript(r);
+  r.order(order(Approve{kRedeploy}));
+  r.run_for(10s);
+  EXPECT_TRUE(r.works("camera")) << transcript(r);
+  r["camera"].fault = "restart";
+  r.run_for(2s);
+  EXPECT_EQ(r.count("shall CameraDead.restart"), 2u) << transcript(r);
+}
+
+TEST(Orders, AQuestionLapsesWithItsFailure) {
+  TestRobot r = robot(Approval::kEach);
+  r.signal("brightness", Value(0.2));
+  r.run_for(1s);
+  r.signal("brightness", Value(0.9));
+  r.run_for(1s);
+  EXPECT_EQ(r.count("Dark.light needs no approval any more"), 1u) << transcript(r);
+  r.order(order(Approve{kLight}));
+  EXPECT_EQ(r.count("Ann is refused: light does not wait for approval"), 1u) << transcript(r);
+}
+
+TEST(Orders, AStrategyRunByHandActsWithoutItsFailureAndTeachesNothing) {
+  TestRobot r = robot();
+  const Belief before = r.manager().knowledge().beliefs[kLight];
+  r.order(order(RunStrategy{kLight}));
+  r.run_for(2s);
+  EXPECT_EQ(r["lamp"].parameters["on"], Value(std::int64_t{1})) << transcript(r);
+  EXPECT_EQ(r.count("Dark.light was carried out"), 1u) << transcript(r);
+  EXPECT_EQ(r.manager().knowledge().states[kDark].phase, RulePhase::kQuiet);
+  EXPECT_EQ(r.manager().knowledge().beliefs[kLight], before);
+  r.signal("brightness", Value(0.2));
+  r.run_for(100ms);
+  EXPECT_EQ(r.count("Dark detected"), 1u) << transcript(r);
+}
+
+TEST(Orders, WhatMakesNoSenseIsRefusedWithItsReason) {
+  TestRobot r = robot();
+  r.order(order(Resume{}));
+  r.order(order(LiftSilence{kDark}));
+  r.order(order(Silence{ComponentId(99), {}}));
+  r.order(order(RunStrategy{StrategyId(99)}));
+  r.order(order(Pause{}));
+  r.order(order(RunStrategy{kLight}));
+  EXPECT_EQ(r.count("Ann is refused: it is not paused"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("Ann is refused: it is not silenced"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("Ann is refused: there is no such component or rule"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("Ann is refused: there is no such strategy"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("Ann is refused: it is paused; resume first"), 1u) << transcript(r);
+  EXPECT_TRUE(r.asked.empty());
+}
+
+}  // namespace
+}  // namespace culprit::test

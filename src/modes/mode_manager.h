@@ -1,0 +1,91 @@
+// The mode manager of a live robot: changes the modes of systems and nodes, and tells in which they
+// are. It offers what the mode_manager of system_modes offers, as the node /__mode_manager:
+//
+// - of each system: change_state, get_state, get_available_states, and transition_event;
+// - of each system and node: change_mode, get_mode, get_available_modes, mode_event, and what was
+//   asked for, on mode_request_info and transition_request_info.
+//
+// What is accepted is not done: parts are told, and nobody waits for their answers; what came of it
+// is inferred (inference.h) from what the nodes announce, and published when it changes. What was
+// accepted and did not come about is told after kOverdue.
+//
+// Other than the original it publishes at once, not once a second; reads the nodes' states and
+// parameters when it starts and when they do; and tells nobody to become active who is. It does not
+// hear the request topics of others, nor modes that nodes publish themselves.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "modes/inference.h"
+#include "modes/messages.h"
+#include "modes/node_link.h"
+#include "ros2/context.h"
+#include "ros2/services.h"
+
+namespace culprit::modes {
+
+class ModeManager {
+ public:
+  static constexpr Duration kOverdue = std::chrono::seconds(10);
+
+  struct Options {
+    ros2::ParticipantOptions participant;
+    std::string model_file;                                   // shown as a parameter
+    std::function<void(const Inference::Change&)> on_change;  // each on the executor's thread
+    std::function<void(const std::string&)> on_trouble;
+  };
+
+  // The executor and the model outlive the manager. Errors: the domain cannot be joined, or a name
+  // of the model cannot be one of ROS 2.
+  static Expected<std::unique_ptr<ModeManager>> create(ros2::Executor& executor, const Model& model,
+                                                       Options options);
+  ~ModeManager();
+
+ private:
+  // What is published of one system or node.
+  struct Voice {
+    std::optional<ros2::Publisher<ros2::msg::TransitionEvent>> transitions;  // of a system
+    ros2::Publisher<msg::ModeEvent> modes;
+    ros2::Publisher<msg::ModeEvent> mode_requests;
+    ros2::Publisher<ros2::msg::TransitionEvent> transition_requests;
+  };
+
+  ModeManager(ros2::Executor& executor, const Model& model, Options options);
+  Expected<void> open(ros2::Executor& executor);
+  Expected<void> open_voice(const Entity& entity);
+  Expected<void> open_services(const Entity& entity);
+  Expected<void> open_link(const Entity& node);
+  Expected<void> watch_parameters();
+  template <class Service, class Handler>
+  Expected<void> serve(const std::string& name, Handler handler);
+
+  void on_graph(const ros2::GraphChange& change);
+  bool change_mode(const Entity& entity, const std::string& mode);
+  bool change_state(const Entity& system, const ros2::msg::Transition& transition);
+  void aim(const Entity& entity, const Target& target);
+  void steer(const Entity& node, const Target& target);
+  void announce(const Entity& entity, const Target& target);
+  void watch_overdue(const Entity& entity, const Target& target);
+  void update();
+  void publish(const Inference::Change& change);
+  void apply_rules(const std::vector<Inference::Change>& changes);
+  void trouble(const std::string& text);
+
+  const Model& model_;
+  const Options options_;
+  Inference inference_;
+  std::unique_ptr<ros2::Context> context_;
+  std::unique_ptr<ros2::Node> node_;
+  std::map<std::string, Voice> voices_;                     // by entity
+  std::map<std::string, std::unique_ptr<NodeLink>> links_;  // by node
+  std::vector<std::unique_ptr<ros2::ServiceServer>> services_;
+  std::unique_ptr<ros2::Subscription> parameter_events_;
+  ros2::TaskGroup tasks_;
+};
+
+}  // namespace culprit::modes

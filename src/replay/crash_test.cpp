@@ -1,0 +1,224 @@
+// Culprit is killed after each of its steps that matters, once each, with its last requests sent or
+// not. Another process takes over with nothing but the journal: the robot must end healthy, nothing
+// may be asked for twice that does harm then, and what was learned must be the sum of the outcomes
+// on record.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "journal/recorder.h"
+#include "journal/recovery.h"
+#include "journal/requests.h"
+#include "journal/test_folder.h"
+#include "manager/test_robot.h"
+#include "replay/replay.h"
+
+namespace culprit::replay {
+namespace {
+
+namespace fs = std::filesystem;
+using culprit::test::TestRobot;
+using journal::test::TestFolder;
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kWall = 1'800'000'000'000'000'000;
+
+template <class T>
+T value_of(Expected<T> expected) {
+  if (!expected) throw std::runtime_error(expected.error());
+  return std::move(*expected);
+}
+
+// As the file system has it at this moment: what is not written yet dies with the process.
+void copy_journal(const fs::path& from, const fs::path& to) {
+  for (const char* part : {"", "-wal"}) {
+    if (fs::exists(from.string() + part)) fs::copy_file(from.string() + part, to.string() + part);
+  }
+}
+
+// A manager on a robot, with its journal.
+class Life {
+ public:
+  Life(const fs::path& path, TestRobot& robot, const std::string& rules_text)
+      : robot_(robot), path_(path) {
+    auto writer = value_of(journal::Writer::open(path, {}));
+    const journal::Reader reader = value_of(journal::Reader::open(path));
+    const auto recovery = value_of(journal::recover(reader, robot.rules()));
+    interrupted = recovery.interrupted.size();
+    journal::Session session;
+    session.rules_path = "test.rules";
+    session.rules_text = rules_text;
+    session.planner = {{"name", "bayes"}};
+    session.boot = journal::boot_id();
+    session.start = robot.now;
+    session.settling = 2s;
+    session.learned = value_of(reader.learned());
+    for (const Interrupted& each : recovery.interrupted)
+      session.interrupted.push_back(journal::to_json(each, robot.rules()));
+    robot.replace_manager(manager_for(session, robot.rules(), std::make_unique<BayesPlanner>(),
+                                      {Autonomy::kAct, {}}));
+    journal::Recorder::Options options;
+    options.path = path;
+    options.wall_clock = [&robot] { return kWall + robot.now.time_since_epoch().count(); };
+    recorder_ = std::make_unique<journal::Recorder>(std::move(writer), options, session,
+                                                    robot.manager().knowledge());
+    robot.before_commands = [this](auto& observations, auto commands) {
+      return step(observations, commands);
+    };
+  }
+
+  // After so many steps that ask or say anything; whether its last requests still go out.
+  void die_after(int steps, bool sends) {
+    steps_left_ = steps;
+    sends_ = sends;
+  }
+  bool is_dead() const { return is_dead_; }
+  fs::path remains() const { return path_.string() + ".remains"; }
+
+  std::size_t interrupted = 0;
+
+ private:
+  bool step(std::vector<Observation>& observations, std::span<const Command> commands) {
+    if (is_dead_) return false;
+    recorder_->stepped(robot_.now, observations, commands, robot_.manager().events());
+    const bool matters = !commands.empty() || !robot_.manager().events().empty();
+    if (steps_left_ < 0 || !matters || --steps_left_ >= 0) return true;
+    is_dead_ = true;
+    copy_journal(path_, remains());
+    return sends_;
+  }
+
+  TestRobot& robot_;
+  fs::path path_;
+  std::unique_ptr<journal::Recorder> recorder_;
+  int steps_left_ = -1;
+  bool sends_ = true;
+  bool is_dead_ = false;
+};
+
+struct Story {
+  const char* name;
+  const char* rules;
+  const char* fault;  // of the camera
+};
+
+// No more processes than one: each start follows a proven end.
+void expect_no_twins(const TestRobot& robot, const std::string& what) {
+  EXPECT_LE(robot.count_asked("start process"), robot.count_asked("stop process") + 1) << what;
+}
+
+void expect_beliefs_as_recorded(const fs::path& path, const std::string& what) {
+  const journal::Reader reader = value_of(journal::Reader::open(path));
+  int helped = 0;
+  auto rows = value_of(reader.entries(journal::Which::kReadable));
+  journal::Entry entry;
+  double alpha = 10 * 0.5;
+  for (auto more = rows.next(entry); more && *more; more = rows.next(entry)) {
+    if (entry.kind != journal::kind::kBelief) continue;
+    const auto body = journal::from_text(entry.body);
+    helped += journal::number_of(body, "alpha") > alpha ? 1 : 0;
+    alpha = std::max(alpha, journal::number_of(body, "alpha"));
+  }
+  const auto learned = value_of(reader.learned());
+  for (const auto& each : learned.beliefs)
+    EXPECT_DOUBLE_EQ(each.belief.alpha - each.prior.alpha, helped) << what;
+  EXPECT_LE(helped, 1) << what << ": one failure can be cured once only";
+}
+
+// Gives false if the story ended before it could die.
+bool live_die_and_go_on(const Story& story, int steps, bool sends) {
+  const std::string what = std::string(story.name) + " killed after " + std::to_string(steps) +
+                           " steps, its requests " + (sends ? "sent" : "not sent");
+  const TestFolder folder;
+  TestRobot robot(story.rules);
+  robot.add("camera", {}, "/rgb").parameters["gain"] = 1.0;
+  Life first(folder / "first.journal", robot, story.rules);
+  robot.discover();
+  robot.run_for(6s);
+  robot["camera"].fault = story.fault;
+  first.die_after(steps, sends);
+  for (int i = 0; i < 3000 && !first.is_dead(); ++i) robot.run_for(10ms);
+  if (!first.is_dead()) return false;
+
+  robot.run_for(1500ms);  // nobody manages it
+  Life second(first.remains(), robot, story.rules);
+  robot.run_for(90s);
+  EXPECT_TRUE(robot.works("camera")) << what;
+  EXPECT_EQ(robot.count("exhausted"), 0u) << what;
+  expect_no_twins(robot, what);
+  expect_beliefs_as_recorded(first.remains(), what);
+  return true;
+}
+
+class Crash : public testing::TestWithParam<Story> {};
+
+TEST_P(Crash, AfterAnyStepLeavesNothingHalfDone) {
+  int deaths = 0;
+  for (int steps = 0; live_die_and_go_on(GetParam(), steps, true) && steps < 60; ++steps) {
+    live_die_and_go_on(GetParam(), steps, false);
+    ++deaths;
+  }
+  EXPECT_GE(deaths, 5) << "chosen, asked for, done, resolved";
+}
+
+INSTANTIATE_TEST_SUITE_P(Stories, Crash,
+                         testing::Values(Story{"redeploy", R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Silent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY redeploy 50 10
+      ADAPTATION camera redeploy 5
+)",
+                                               "redeploy"},
+                                         Story{"restart", R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Silent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY restart 50 10
+      ADAPTATION camera restart 5
+)",
+                                               "restart"},
+                                         Story{"increase", R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Silent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY brighten 50 10
+      ADAPTATION camera increase_parameter gain 0.5 5
+)",
+                                               "gain=1.5"}),
+                         [](const auto& story) { return std::string(story.param.name); });
+
+TEST(Crash, WhatTheLastRunLeftIsKnown) {
+  const TestFolder folder;
+  const char* rules = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Silent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY redeploy 50 10
+      ADAPTATION camera redeploy 5
+)";
+  TestRobot robot(rules);
+  robot.add("camera", {}, "/rgb");
+  Life life(folder / "a.journal", robot, rules);
+  robot.discover();
+  robot.run_for(6s);
+  robot["camera"].fault = "redeploy";
+  while (!robot.was_asked("start process")) robot.run_for(10ms);
+  life.die_after(0, true);
+  while (!life.is_dead()) robot.run_for(10ms);
+  const journal::Reader reader = value_of(journal::Reader::open(life.remains()));
+  const auto recovery = value_of(journal::recover(reader, robot.rules()));
+  ASSERT_EQ(recovery.interrupted.size(), 1u);
+  const Interrupted& interrupted = recovery.interrupted.front();
+  ASSERT_EQ(interrupted.requests.size(), 2u) << "stop, start";
+  EXPECT_EQ(interrupted.requests[0].outcome, Outcome::kDone);
+  EXPECT_TRUE(std::holds_alternative<StartProcess>(interrupted.requests[1].command.what));
+  EXPECT_FALSE(recovery.was_stopped);
+  EXPECT_FALSE(recovery.was_other_boot);
+}
+
+}  // namespace
+}  // namespace culprit::replay

@@ -1,0 +1,55 @@
+// A recorded run once more: through the same manager, which has to decide the same; or with other
+// rules or another planner, to see what they would have decided.
+#pragma once
+
+#include <functional>
+
+#include "manager/manager.h"
+#include "replay/recording.h"
+
+namespace culprit::replay {
+
+// How free the manager is to act.
+struct Freedom {
+  Autonomy autonomy = Autonomy::kAdvise;
+  Governor::Options governor{};
+};
+
+// A manager as it was, or would have been, at the beginning of a recorded run: what was learned
+// before, and what the run before had left in the middle.
+std::unique_ptr<Manager> manager_for(const journal::Session& session, const RuleSet& rules,
+                                     std::unique_ptr<const Planner> planner,
+                                     const Freedom& freedom);
+void restore(Manager& manager, const journal::Learned& learned, const RuleSet& rules);
+
+using EventSink = std::function<void(const Event&, const RuleSet&)>;
+
+struct Repetition {
+  std::uint64_t steps = 0;
+  std::uint64_t observations = 0;
+  std::uint64_t decisions = 0;  // steps that decided anything
+  std::string digest;           // of all decisions
+  struct Difference {
+    std::int64_t row = 0;
+    Time at{};
+    std::vector<std::string> recorded;  // what was said then
+    std::vector<std::string> repeated;
+  };
+  std::optional<Difference> difference;  // the first one; nothing: all is the same
+  bool has_gap = false;
+};
+
+// Repeats the run exactly, under the governor that it had. Stops at the first difference. Errors:
+// the file cannot be read.
+Expected<Repetition> repeat(Recording& recording, const journal::Reader& journal,
+                            std::unique_ptr<const Planner> planner,
+                            const Governor::Options& governor, const EventSink& sink = {});
+
+// What `rules` and `planner` would have said to do about what was observed in the run. Nothing is
+// done in a recording, so they only advise: a failure is as long there as it was then. `rules` must
+// outlive the call; gives what they read and the recording does not have.
+Expected<std::vector<std::string>> advise(Recording& recording, const RuleSet& rules,
+                                          std::unique_ptr<const Planner> planner,
+                                          const EventSink& sink);
+
+}  // namespace culprit::replay

@@ -1,0 +1,33 @@
+// Deterministic simulation testing (FoundationDB's way): whole robots with all that can go wrong,
+// from seeds, in virtual time. The same seed gives the same run, bit for bit, on every machine.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "torture/invariants.h"
+#include "torture/scenario.h"
+
+namespace culprit::torture {
+
+struct Outcome {
+  std::optional<Violation> violation;
+  std::vector<std::string> timeline;  // one line for each thing that happened
+  std::uint64_t steps = 0;
+};
+
+// Runs the scenario to its end, or to the first violation. Afterwards it must hold too that
+// - every part works, or something that was said excuses it: a rule is exhausted, a storm, a
+//   silence, a pause, a question that nobody answers;
+// - the same observations give the same commands and events again.
+Outcome run(const Scenario& scenario);
+
+// A part of `scenario` that is violated as well, with as little in it as can be found by leaving
+// out one thing after the other. @pre it is violated
+Scenario shrink(Scenario scenario);
+
+// "seed 17: the budget overall is exceeded at 12.300 s", and the timeline of the smaller scenario.
+std::string report(const Scenario& smallest);
+
+}  // namespace culprit::torture

@@ -1,0 +1,34 @@
+#include "torture/torture.h"
+
+#include <gtest/gtest.h>
+
+namespace culprit::torture {
+namespace {
+
+TEST(Torture, HundredsOfRobotsAreTreatedAsPromised) {
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    const Scenario scenario = draw(seed);
+    if (run(scenario).violation) ADD_FAILURE() << report(shrink(scenario));
+  }
+}
+
+TEST(Torture, TheSameSeedGivesTheSameRun) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    EXPECT_EQ(run(draw(seed)).timeline, run(draw(seed)).timeline) << seed;
+}
+
+TEST(Torture, MishapsLeaveTheirMark) {
+  std::string all;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    for (const std::string& line : run(draw(seed)).timeline) all += line + "\n";
+  }
+  for (const char* part :
+       {"is killed", "the manager crashes", "resolved by", "did not resolve", "is held back",
+        "is exhausted", "waits for approval", "the last resort is left", "is left where it is",
+        "is silenced", "INTERLOCK moving == false is false", "was restarted a short while ago",
+        "and no more are allowed"})
+    EXPECT_NE(all.find(part), std::string::npos) << part;
+}
+
+}  // namespace
+}  // namespace culprit::torture

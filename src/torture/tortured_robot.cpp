@@ -1,0 +1,215 @@
+#include "torture/tortured_robot.h"
+
+#include <algorithm>
+
+namespace culprit::torture {
+namespace {
+
+using namespace std::chrono_literals;
+using Kind = Mishap::Kind;
+
+simulation::NodeTraits machine_traits() {
+  simulation::NodeTraits traits;
+  traits.start = {200ms, 200ms};
+  traits.configure = 20ms;
+  traits.end = {20ms, 80ms};
+  traits.service = {2ms, 3ms};
+  return traits;
+}
+
+bool is_reading(const Command& command) {
+  return std::holds_alternative<ReadLifecycle>(command.what) ||
+         std::holds_alternative<ReadParameter>(command.what) ||
+         std::holds_alternative<ReadMode>(command.what);
+}
+
+bool take(std::vector<CommandId>& ids, CommandId id) { return std::erase(ids, id) > 0; }
+
+}  // namespace
+
+class Machine : public simulation::Node {
+ public:
+  Machine(simulation::World& world, std::size_t index, simulation::Topic<int>& own,
+          const std::vector<simulation::Topic<int>*>& needs)
+      : Node(world, "/c" + std::to_string(index), machine_traits()),
+        name_("c" + std::to_string(index)),
+        out_(*this, own),
+        heard_(needs.size(), kLongAgo) {
+    declare("drift", 0.0);
+    declare("safe", false);
+    for (std::size_t i = 0; i < needs.size(); ++i) {
+      in_.push_back(std::make_unique<simulation::Subscription<int>>(
+          *this, *needs[i], [this, i](int) { heard_[i] = Node::world().now(); }));
+    }
+  }
+
+  void drift() { assign("drift", 1.0); }
+  void break_down() { is_broken_ = true; }
+  void burn() { is_burnt_ = true; }
+  void ruin() { is_ruined_ = true; }
+
+  bool works() const {
+    const bool hears = std::all_of(heard_.begin(), heard_.end(), [this](Time at) {
+      return at != kLongAgo && Node::world().now() - at <= 3 * kPeriod;
+    });
+    return process() == ProcessState::kRunning && is_active() && is_sound() && hears;
+  }
+
+ private:
+  bool is_sound() const { return !is_broken_ && !is_burnt_ && !is_ruined_; }
+  void on_activate() override { is_broken_ = false; }
+  void on_start() override {
+    is_broken_ = is_burnt_ = false;
+    every(kPeriod, [this] {
+      Node::world().diagnose(name_, "drift", *parameter("drift"));
+      if (works()) out_.publish(1);
+    });
+  }
+
+  std::string name_;
+  simulation::Publisher<int> out_;
+  std::vector<std::unique_ptr<simulation::Subscription<int>>> in_;
+  std::vector<Time> heard_;
+  bool is_broken_ = false;
+  bool is_burnt_ = false;
+  bool is_ruined_ = false;  // no new process helps
+};
+
+TorturedRobot::TorturedRobot(const Scenario& scenario, const RuleSet& rules)
+    : rules_(rules),
+      noise_(scenario.noise),
+      world_(scenario.seed),
+      random_(world_.random("noise")) {
+  for (std::size_t i = 0; i < scenario.parts.size(); ++i) {
+    topics_.push_back(std::make_unique<simulation::Topic<int>>(
+        world_, "/c" + std::to_string(i), simulation::Transport{{1ms, 1ms}, 0}));
+    std::vector<simulation::Topic<int>*> needs;
+    for (const std::size_t other : scenario.parts[i].needs) needs.push_back(topics_[other].get());
+    machines_.push_back(std::make_unique<Machine>(world_, i, *topics_[i], needs));
+  }
+  rediscover();
+  for (const auto& machine : machines_) machine->launch();
+  tell_base();
+}
+
+TorturedRobot::~TorturedRobot() = default;
+
+void TorturedRobot::tell_base() {
+  world_.diagnose("base", "moving", Value(moving_since_ != kNever));
+  world_.after(kPeriod, [this] { tell_base(); });
+}
+
+TorturedRobot::Source TorturedRobot::source_of(const Observation& observation) {
+  if (std::holds_alternative<SampleArrived>(observation.what) ||
+      std::holds_alternative<SignalRead>(observation.what))
+    return Source::kTopics;
+  // What the operating system says, and what its adapter answers, come one after the other.
+  if (std::holds_alternative<ProcessSeen>(observation.what) ||
+      std::holds_alternative<Reply>(observation.what))
+    return Source::kSystem;
+  return Source::kGraph;
+}
+
+void TorturedRobot::receive(Observation observation) {
+  const bool is_sample = std::holds_alternative<SampleArrived>(observation.what);
+  if (is_sample && random_.chance(noise_.loss)) return;
+  if (auto* answer = std::get_if<Reply>(&observation.what)) {
+    if (take(unanswered_, answer->command)) return;
+    if (take(denied_, answer->command)) *answer = {answer->command, Outcome::kRefused, {}, "no"};
+  }
+  const simulation::Span lateness{{}, noise_.lateness};
+  auto& queue = on_the_way_[static_cast<std::size_t>(source_of(observation))];
+  Time due = world_.now() + lateness.draw(random_);
+  if (!queue.empty()) due = std::max(due, queue.back().due);
+  queue.push_back({due, observation});
+  if (random_.chance(noise_.duplication)) queue.push_back({due, std::move(observation)});
+}
+
+void TorturedRobot::observe(Time until, std::vector<Observation>& observations) {
+  const std::size_t before = observations.size();
+  while (observations.size() == before) {
+    const Time end = until == kNever ? kNever : std::max(world_.now(), until - ahead_);
+    Time due = end;
+    for (const auto& queue : on_the_way_) {
+      if (!queue.empty()) due = std::min(due, queue.front().due);
+    }
+    std::vector<Observation> fresh;
+    robots_.back()->observe(due, fresh);
+    for (Observation& observation : fresh) receive(std::move(observation));
+    for (auto& queue : on_the_way_) {
+      while (!queue.empty() && queue.front().due <= world_.now()) {
+        Observation& next = queue.front().observation;
+        next.at = now() - (world_.now() < stale_until_ ? Duration(3s) : Duration());
+        observations.push_back(std::move(next));
+        queue.pop_front();
+      }
+    }
+    if (world_.now() >= end) return;
+  }
+}
+
+void TorturedRobot::execute(const Command& command) {
+  if (random_.chance(noise_.lost_reply)) {
+    unanswered_.push_back(command.id);
+  } else if (!is_reading(command) && random_.chance(noise_.false_success)) {
+    return reply(command, Outcome::kDone);
+  } else if (random_.chance(noise_.false_failure)) {
+    denied_.push_back(command.id);
+  }
+  robots_.back()->execute(command);
+}
+
+void TorturedRobot::reply(const Command& command, Outcome outcome) {
+  world_.after(5ms, [this, manager = robots_.size(), id = command.id, outcome] {
+    if (manager == robots_.size()) receive({now(), Reply{id, outcome, {}, ""}});
+  });
+}
+
+void TorturedRobot::befall(const Mishap& mishap) {
+  Machine& machine = *machines_[mishap.part];
+  switch (mishap.kind) {
+    case Kind::kKill:
+      return machine.kill();
+    case Kind::kStop:
+      return machine.stop();
+    case Kind::kHang:
+      return machine.hang();
+    case Kind::kDrift:
+      if (machine.is_in_graph()) machine.drift();
+      return;
+    case Kind::kBreak:
+      return machine.break_down();
+    case Kind::kBurn:
+      return machine.burn();
+    case Kind::kBeyondRepair:
+      return machine.ruin();
+    case Kind::kJump:
+      ahead_ += mishap.lasts;
+      return;
+    case Kind::kStaleStamp:
+      stale_until_ = world_.now() + mishap.lasts;
+      return;
+    case Kind::kMove:
+      if (moving_since_ == kNever) moving_since_ = world_.now();
+      world_.after(mishap.lasts, [this] { moving_since_ = kNever; });
+      return;
+    default:
+      return;
+  }
+}
+
+void TorturedRobot::rediscover() {
+  for (auto& queue : on_the_way_) queue.clear();
+  unanswered_.clear();
+  denied_.clear();
+  robots_.push_back(std::make_unique<simulation::SimulatedRobot>(rules_, world_));
+}
+
+bool TorturedRobot::works(std::size_t part) const {
+  const Value* drift = machines_[part]->parameter("drift");
+  return machines_[part]->works() && drift != nullptr && *drift == Value(0.0);
+}
+
+ProcessState TorturedRobot::process(std::size_t part) const { return machines_[part]->process(); }
+
+}  // namespace culprit::torture

@@ -1,0 +1,75 @@
+// The robot of a scenario, simulated, behind noise.
+//
+// Its parts publish periodically while they work: the process runs, the node is active, nothing of
+// it is broken, and what it needs is fresh. The noise lies between it and the manager: what comes
+// may be lost, late or twice, and requests may be answered wrongly or not at all.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "simulation/simulated_robot.h"
+#include "simulation/topic.h"
+#include "simulation/world.h"
+#include "torture/scenario.h"
+
+namespace culprit::torture {
+
+class Machine;
+
+class TorturedRobot : public Robot {
+ public:
+  // `rules` must outlive the robot.
+  TorturedRobot(const Scenario& scenario, const RuleSet& rules);
+  ~TorturedRobot() override;
+
+  Time now() const override { return world_.now() + ahead_; }
+  void observe(Time until, std::vector<Observation>& observations) override;
+  void execute(const Command& command) override;
+
+  // What happens to the robot, not to the manager. Those of people do nothing here.
+  void befall(const Mishap& mishap);
+  // A manager that begins anew is told what is there, as by discovery.
+  void rediscover();
+  // From now on nothing is lost, late or wrong.
+  void end_noise() { noise_ = {}; }
+
+  bool works(std::size_t part) const;
+  ProcessState process(std::size_t part) const;
+  bool has_moved_for(Duration time) const {
+    return moving_since_ != kNever && world_.now() - moving_since_ >= time;
+  }
+
+ private:
+  struct Late {
+    Time due;  // in the world's time
+    Observation observation;
+  };
+  enum class Source : std::uint8_t { kTopics, kGraph, kSystem };
+
+  static Source source_of(const Observation& observation);
+  void receive(Observation observation);
+  void reply(const Command& command, Outcome outcome);
+  void tell_base();
+
+  const RuleSet& rules_;
+  Noise noise_;
+  simulation::World world_;
+  simulation::Random random_;
+  std::vector<std::unique_ptr<simulation::Topic<int>>> topics_;
+  std::vector<std::unique_ptr<Machine>> machines_;
+  // One for each manager so far, the last for the present one. What is due in the world knows the
+  // earlier ones still.
+  std::vector<std::unique_ptr<simulation::SimulatedRobot>> robots_;
+  std::array<std::deque<Late>, 3> on_the_way_;  // by source
+  std::vector<CommandId> unanswered_;           // replies that get lost
+  std::vector<CommandId> denied_;               // replies that become refusals
+  Duration ahead_{};                            // the manager's clock, of the world's
+  Time stale_until_ = kLongAgo;
+  Time moving_since_ = kNever;
+};
+
+}  // namespace culprit::torture
