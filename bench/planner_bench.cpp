@@ -59,9 +59,12 @@ void planning_step(benchmark::State& state) {
   Knowledge knowledge(rules);
   connect(knowledge, components, 5);
   knowledge.now = Time(std::chrono::seconds(100));
+  for (std::size_t r = 0; r < components; ++r)
+    knowledge.states.state(RuleId(r)).trigger = Slot::of(false);
   std::vector<RuleId> failures;
   for (std::size_t f = 0; f < failing; ++f) {
     failures.emplace_back(f * components / failing);
+    knowledge.states.state(failures.back()).trigger = Slot::of(true);
     knowledge.states.state(failures.back()).failing_since = Time(std::chrono::seconds(90));
     knowledge.states.enter(failures.back(), RulePhase::kFailing);
   }

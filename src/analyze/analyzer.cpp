@@ -99,6 +99,8 @@ bool Analyzer::is_gone(RuleId id, Time now) const {
 
 void Analyzer::detect(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
+  const bool recurs = state.gone_since != kLongAgo && now < later(state.gone_since, kRecurs);
+  state.recurring_since = recurs ? state.first_detected() : kNever;
   state.failing_since = now;
   state.armed = false;
   state.attempts = 0;
@@ -176,7 +178,7 @@ void Analyzer::succeed(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   const bool caused = can_have_caused(id);
   const Attempt attempt = *std::exchange(state.attempt, std::nullopt);
-  const bool is_proven = caused && !attempt.is_ambiguous;
+  const bool is_proven = caused && !attempt.is_ambiguous && !couplings_.is_echo(attempt);
   if (is_proven) knowledge_.beliefs.helped(attempt.strategy);
   if (caused) couplings_.resolved(attempt, is_proven, now);
   couplings_.ended(attempt, now);
@@ -208,6 +210,7 @@ void Analyzer::fail(RuleId id, Time now) {
 void Analyzer::resolve(RuleId id, FailureResolved how, Time now) {
   RuleState& state = knowledge_.states.state(id);
   how.reaction = now - state.failing_since;
+  state.gone_since = now;
   state.quiet_until = later(now, knowledge_.rules[id].policies.cooldown);
   knowledge_.states.enter(id, RulePhase::kQuiet);
   if (!how.strategy && state.attempts == 0) couplings_.cleared(id, now);

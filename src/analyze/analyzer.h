@@ -20,7 +20,7 @@
 //
 // Success and failure go to the beliefs only where this strategy alone can have caused them: the
 // symptom went away after the first request that changed anything, and no other strategy upstream
-// of it was under way.
+// of it was under way or had only just ended.
 #pragma once
 
 #include <algorithm>
@@ -43,6 +43,8 @@ class Analyzer {
   // A failing rule whose trigger is unknown for longer is no longer called failing: nobody can see
   // whether it is.
   static constexpr Duration kLostAfter = std::chrono::seconds(30);
+  // A failure that is back within so long is the same one.
+  static constexpr Duration kRecurs = std::chrono::seconds(5);
 
   // `knowledge` must outlive the analyzer.
   explicit Analyzer(Knowledge& knowledge);

@@ -15,34 +15,61 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
         is_only_cause(strategy, clearing.rule, attempt.first_change))
       knowledge_.couplings.cleared(cause, clearing.rule);
   }
+  settle(knowledge_.rules[strategy].components, cause, attempt.effective, now);
   for (const RuleId effect : knowledge_.states.active()) {
     const RuleState& state = knowledge_.states[effect];
     if (effect == cause || state.attempt) continue;
-    if (state.failing_since <= attempt.effective) settle(strategy, effect, now);
     if (!is_proven || questions_.size() >= kMostWatched) continue;
-    const Time due =
-        later(now, std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle));
+    const Time due = later(later(now, delay(cause, effect)),
+                           std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle));
     questions_.push_back(
         {strategy, effect, attempt.first_change, state.failing_since, due, later(now, kPatience)});
   }
 }
 
-// What depends on the repaired components is given the time to show that it is well. Not what is no
-// effect of the failure that is gone: it was detected long before it, or only after the repair had
-// taken effect.
-void CouplingWatch::settle(StrategyId strategy, RuleId effect, Time now) {
-  if (!can_resolve(knowledge_, knowledge_.rules[strategy].components, effect)) return;
-  const RuleId cause = knowledge_.rules[strategy].rule;
-  RuleState& state = knowledge_.states.state(effect);
+// How long `effect` may take to go away after `cause`; with HOLD, so many evaluations longer as it
+// looks at.
+Duration CouplingWatch::delay(RuleId cause, RuleId effect) const {
+  const RuleSet& rules = knowledge_.rules;
+  const int window = rules[effect].policies.hold_window;
+  const Duration held = duration_of(Cycles{window > 1 ? window : 0}, rules);
+  const RuleState& of_cause = knowledge_.states[cause];
+  const Duration came = knowledge_.states[effect].first_detected() - of_cause.first_detected();
+  if (came <= kLongestDelay) return held + std::max(Duration::zero(), came + came / 2);
+  const bool recurs = of_cause.first_detected() != of_cause.failing_since;
+  return held + (recurs ? duration_of(kUsualDelay, rules) : Duration::zero());
+}
+
+// What depends on these components is given the time to show that it is well, now that the failure
+// `cause` is gone. Not what is no effect of it: it was detected long before it, or only after
+// things had `changed`.
+void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed,
+                           Time now) {
+  std::vector<bool> is_downstream(knowledge_.rules.components.size(), false);
+  for (const ComponentId c : repaired) {
+    is_downstream[c.index] = true;
+    for (const ComponentId d : knowledge_.graph.downstream(c)) is_downstream[d.index] = true;
+  }
   const Duration slack = std::max(knowledge_.signals.latency(cause), knowledge_.rules.cycle);
-  if (later(state.failing_since, slack) < knowledge_.states[cause].failing_since) return;
-  const Duration latency = std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle);
-  state.settling = {cause, now, later(now, latency)};
+  const Time begun = knowledge_.states[cause].first_detected();
+  for (const RuleId effect : knowledge_.states.active()) {
+    RuleState& state = knowledge_.states.state(effect);
+    if (effect == cause || state.attempt || state.failing_since > changed) continue;
+    const auto& touched = knowledge_.rules[effect].components;
+    const bool depends = std::any_of(touched.begin(), touched.end(),
+                                     [&](ComponentId c) { return is_downstream[c.index]; });
+    if (!depends || later(state.first_detected(), slack) < begun) continue;
+    const Duration latency = std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle);
+    const Time since = later(now, delay(cause, effect));
+    if (!state.settling || state.settling->until < later(since, latency))
+      state.settling = {cause, since, later(since, latency)};
+  }
 }
 
 void CouplingWatch::cleared(RuleId rule, Time now) {
   forget_what_is_settled(now);
   clearings_.push_back({rule, now});
+  settle(knowledge_.rules[rule].components, rule, now, now);
   std::erase_if(questions_, [&](const Question& q) {
     if (q.effect != rule) return false;
     if (is_only_cause(q.strategy, rule, q.since))
@@ -80,21 +107,45 @@ Time CouplingWatch::next_deadline() const {
   return next;
 }
 
+// When `change` has had its effect on the failure of `rule`, if it has one.
+Time CouplingWatch::shown(const Change& change, RuleId rule) const {
+  return later(change.end, delay(knowledge_.rules[change.strategy].rule, rule));
+}
+
 // Can nothing but `strategy` have changed `effect` since then?
 bool CouplingWatch::is_only_cause(StrategyId strategy, RuleId effect, Time since) const {
+  const RuleId cause = knowledge_.rules[strategy].rule;
+  const Sources sources(knowledge_, effect);
   const auto is_rival = [&](StrategyId other) {
-    return other != strategy &&
-           (knowledge_.rules[other].rule == effect ||
-            can_resolve(knowledge_, knowledge_.rules[other].components, effect));
+    return other != strategy && (knowledge_.rules[other].rule == effect ||
+                                 sources.have(knowledge_.rules[other].components));
   };
   for (const Change& change : changes_) {
-    if (change.end >= since && is_rival(change.strategy)) return false;
+    // What was tried before for the same failure did not help.
+    const bool is_own = knowledge_.rules[change.strategy].rule == cause;
+    const bool is_over = change.end < since && (is_own || shown(change, effect) <= since);
+    if (!is_over && is_rival(change.strategy)) return false;
   }
   for (const RuleId id : knowledge_.states.active()) {
     const auto& attempt = knowledge_.states[id].attempt;
     if (attempt && attempt->first_change != kNever && is_rival(attempt->strategy)) return false;
   }
-  return true;
+  const auto& adapted = knowledge_.rules[strategy].components;
+  return std::none_of(clearings_.begin(), clearings_.end(), [&](const Clearing& clearing) {
+    return clearing.at >= since && clearing.rule != effect && clearing.rule != cause &&
+           sources.have(knowledge_.rules[clearing.rule].components) &&
+           !can_resolve(knowledge_, adapted, clearing.rule);
+  });
+}
+
+bool CouplingWatch::is_echo(const Attempt& attempt) const {
+  const RuleId rule = knowledge_.rules[attempt.strategy].rule;
+  const Sources sources(knowledge_, rule);
+  return std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
+    return knowledge_.rules[change.strategy].rule != rule &&
+           shown(change, rule) > attempt.first_change &&
+           sources.have(knowledge_.rules[change.strategy].components);
+  });
 }
 
 // Nobody asks about a time before the last `kPatience`, before the first open question and before

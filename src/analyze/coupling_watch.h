@@ -3,8 +3,13 @@
 // When a strategy has resolved failure j, every other failure i that is there has until its signals
 // would show it to go away too. If it does, i is coupled to j; if it is still there, it is not. An
 // outcome counts only if nothing but j's strategy can have caused it: no other change of the system
-// between that strategy's first request and the outcome could resolve i, and none was made for i
-// itself.
+// between that strategy's first request and the outcome could resolve i, none was made for i
+// itself, none that had just been made can have had its effect only now, and nothing else upstream
+// of i went away by itself.
+//
+// A failure goes as it came: if i was detected some time after j, it may take as long to go after j
+// is gone, and half as long again. So long it is given to settle, and so long nobody asks. What
+// comes and goes (flapping) may have effects that are there from the time before.
 #pragma once
 
 #include <vector>
@@ -19,6 +24,10 @@ class CouplingWatch {
   static constexpr Duration kPatience = std::chrono::seconds(30);
   // More failures at once than this, and what is learned from them is left to quieter times.
   static constexpr std::size_t kMostWatched = 1000;
+  // An effect that comes or goes later than so long after its cause is taken for none.
+  static constexpr Duration kLongestDelay = std::chrono::seconds(5);
+  // For an effect from the time before: how long it may take to go.
+  static constexpr Cycles kUsualDelay{10};
 
   // `knowledge` must outlive the watch.
   explicit CouplingWatch(Knowledge& knowledge) : knowledge_(knowledge) {}
@@ -28,6 +37,8 @@ class CouplingWatch {
   // A failure went away without a strategy of its own.
   void cleared(RuleId rule, Time now);
   void ended(const Attempt& attempt, Time now);
+  // Can a change that was made for another failure just before `attempt` have resolved its own?
+  bool is_echo(const Attempt& attempt) const;
 
   void advance(Time now);
   Time next_deadline() const;
@@ -52,7 +63,9 @@ class CouplingWatch {
     Time at;
   };
 
-  void settle(StrategyId strategy, RuleId effect, Time now);
+  void settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed, Time now);
+  Duration delay(RuleId cause, RuleId effect) const;
+  Time shown(const Change& change, RuleId rule) const;
   bool is_only_cause(StrategyId strategy, RuleId effect, Time since) const;
   void forget_what_is_settled(Time now);
 

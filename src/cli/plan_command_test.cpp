@@ -60,7 +60,8 @@ TEST_F(Plan, SaysWhatTheManualSays) {
 }
 
 TEST_F(Plan, GivesTheSameAsData) {
-  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--format", "json"}), kOk) << err;
+  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--planner", "paper", "--format", "json"}), kOk)
+      << err;
   const auto json = nlohmann::json::parse(out);
   ASSERT_EQ(json["failures"].size(), 4u);
   const auto& dead = json["failures"][0];
@@ -79,8 +80,19 @@ TEST_F(Plan, GivesTheSameAsData) {
             nlohmann::json({"SensorFusionDead", "RGBDead"}));
 }
 
+TEST_F(Plan, IsTheBayesPlannersUnlessSaidOtherwise) {
+  ASSERT_EQ(plan({kSunset, "--state", kSunsetState}), kOk) << err;
+  const std::string usual = out;
+  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--planner", "bayes"}), kOk) << err;
+  EXPECT_EQ(out, usual);
+  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--planner", "paper"}), kOk) << err;
+  EXPECT_NE(out, usual);
+}
+
 TEST_F(Plan, TakesTheSwitchesOfRun) {
-  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--no-impact", "--no-dependencies"}), kOk);
+  ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--planner", "paper", "--no-impact",
+                  "--no-dependencies"}),
+            kOk);
   EXPECT_THAT(out, HasSubstr("would redeploy camera (rgb_redeploy, cost 0.10)"));
   EXPECT_THAT(out, HasSubstr("would redeploy segmentation"));
 }

@@ -14,7 +14,7 @@
 namespace culprit::cli {
 
 struct PlannerOptions {
-  std::string name = "paper";
+  std::string name = "bayes";
   std::string objective = "balanced";
   bool no_dependencies = false;
   bool no_criticality = false;

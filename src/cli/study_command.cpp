@@ -4,11 +4,13 @@
 #include <thread>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/progress.h"
 #include "cli/study_output.h"
+#include "cli/study_rca_command.h"
 #include "cli/study_suave_command.h"
 #include "study/ordered_work.h"
 #include "study/shards/merge.h"
@@ -23,6 +25,7 @@ struct StudyOptions {
   bool robustness = false;
   bool learning = false;
   std::vector<std::string> planners = {"paper"};
+  std::vector<std::string> objectives = {"balanced"};
   std::string profile = "paper";
   std::uint32_t runs = 162;
   std::uint32_t repetitions = 20;
@@ -51,11 +54,25 @@ Expected<PaperSwitches> parse_switches(const std::string& text) {
   return PaperSwitches{text[0] == 'D', text[1] == 'C', text[2] == 'S'};
 }
 
+// As the study calls them: bayes once for each objective.
+std::vector<std::string> planners_of(const StudyOptions& options) {
+  std::vector<std::string> planners;
+  for (const std::string& planner : options.planners) {
+    if (planner != "bayes") {
+      planners.push_back(planner);
+      continue;
+    }
+    for (const std::string& objective : options.objectives)
+      planners.push_back(objective == "balanced" ? planner : planner + ":" + objective);
+  }
+  return planners;
+}
+
 // The rows of the paper's tables, in the paper's order.
 std::vector<study::Configuration> rows_of(const StudyOptions& options) {
   using study::Probabilities;
   std::vector<study::Configuration> rows;
-  for (const std::string& planner : options.planners) {
+  for (const std::string& planner : planners_of(options)) {
     for (const bool d : {false, true}) {
       for (const bool c : {false, true}) {
         for (const bool s : {false, true}) {
@@ -78,6 +95,8 @@ std::string command_of(const StudyOptions& options) {
   if (options.robustness) command += " --robustness";
   if (options.learning) command += fmt::format(" --learning --repetitions {}", options.repetitions);
   for (const std::string& planner : options.planners) command += " --planner " + planner;
+  if (options.objectives != StudyOptions().objectives)
+    command += fmt::format(" --objective {}", fmt::join(options.objectives, ","));
   return command + fmt::format(" --profile {} --runs {} --seed {}", options.profile, options.runs,
                                options.seed);
 }
@@ -182,7 +201,7 @@ int run_campaign(const study::SunsetStudy& study, const study::Campaign& campaig
 int explain(const StudyOptions& options) {
   const auto switches = parse_switches(options.switches);
   if (!switches) return fail(switches.error(), kUsage);
-  const study::Configuration wanted{*switches, options.planners.front(), options.profile,
+  const study::Configuration wanted{*switches, planners_of(options).front(), options.profile,
                                     study::Probabilities::kIdeal};
   // The same row as in the campaign, so that it is the same run.
   std::vector<study::Configuration> rows = rows_of(options);
@@ -233,6 +252,12 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
           "strategy at a time); several, one after the other")
       ->capture_default_str();
   command
+      ->add_option("--objective", options->objectives,
+                   "What bayes spares most; several, one after the other")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
+      ->capture_default_str();
+  command
       ->add_option("--profile", options->profile,
                    "Which SUNSET: paper, head, october (versions of the exemplar) or live (ours)")
       ->capture_default_str();
@@ -279,6 +304,7 @@ void add_study(CLI::App& app, const std::string& version, int& exit_code) {
   command->require_subcommand(1);
   add_sunset(*command, version, exit_code);
   add_study_suave(*command, version, exit_code);
+  add_study_rca(*command, exit_code);
   add_merge(*command, exit_code);
 }
 

@@ -18,7 +18,7 @@
 #include "exemplars/sunset/experiment.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
-#include "plan/paper_planner.h"
+#include "plan/bayes/bayes_planner.h"
 #include "ros2/domain_lock.h"
 #include "web/watched_manager.h"
 
@@ -45,7 +45,7 @@ class SunsetDemo {
   struct Options {
     double speed = 1;  // robot seconds in a second
     std::uint64_t seed = 1;
-    PlannerFactory planner = [] { return std::make_unique<PaperPlanner>(); };
+    PlannerFactory planner = [] { return std::make_unique<BayesPlanner>(); };
     // Called for each event of the manager, on its thread, with its time since the start of the
     // demo.
     std::function<void(const Event&, const RuleSet&, Time start)> on_event;

@@ -4,30 +4,36 @@
 
 namespace culprit {
 
-bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& adapted, RuleId rule) {
-  const auto is_adapted = [&](ComponentId c) {
-    return std::binary_search(adapted.begin(), adapted.end(), c);
-  };
+Sources::Sources(const Knowledge& knowledge, RuleId rule)
+    : components_(knowledge.rules[rule].components) {
   for (const ComponentId touched : knowledge.rules[rule].components) {
-    if (is_adapted(touched)) return true;
     const auto& upstream = knowledge.graph.upstream(touched);
-    if (std::any_of(upstream.begin(), upstream.end(), is_adapted)) return true;
+    components_.insert(components_.end(), upstream.begin(), upstream.end());
   }
-  return false;
+  std::sort(components_.begin(), components_.end());
+}
+
+bool Sources::have(const std::vector<ComponentId>& adapted) const {
+  return std::any_of(adapted.begin(), adapted.end(), [&](ComponentId c) {
+    return std::binary_search(components_.begin(), components_.end(), c);
+  });
+}
+
+bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& adapted, RuleId rule) {
+  return Sources(knowledge, rule).have(adapted);
 }
 
 void mark_ambiguous(Knowledge& knowledge, RuleId changed) {
   Attempt& own = *knowledge.states.state(changed).attempt;
   const auto& own_components = knowledge.rules[own.strategy].components;
+  const Sources sources(knowledge, changed);
   for (const RuleId id : knowledge.states.active()) {
     auto& other = knowledge.states.state(id).attempt;
     if (id == changed || !other) continue;
     if (can_resolve(knowledge, own_components, id)) other->is_ambiguous = true;
     const bool has_changed = other->first_change != kNever;
-    if (has_changed &&
-        can_resolve(knowledge, knowledge.rules[other->strategy].components, changed)) {
+    if (has_changed && sources.have(knowledge.rules[other->strategy].components))
       own.is_ambiguous = true;
-    }
   }
 }
 

@@ -1,12 +1,25 @@
 // Which outcomes can have two causes.
 #pragma once
 
+#include <vector>
+
 #include "knowledge/knowledge.h"
 
 namespace culprit {
 
-// Can adapting these components (ascending) make the failure of `rule` go away? It touches one of
-// them, or depends on one.
+// Where a failure can be made to go away: the components that its rule touches, and all that they
+// depend on. The graph is asked once.
+class Sources {
+ public:
+  Sources(const Knowledge& knowledge, RuleId rule);
+  // Is one of these components among them?
+  bool have(const std::vector<ComponentId>& adapted) const;
+
+ private:
+  std::vector<ComponentId> components_;  // ascending
+};
+
+// Can adapting these components make the failure of `rule` go away?
 bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& adapted, RuleId rule);
 
 // The strategy under way for `changed` begins to change the system. Marks every attempt whose

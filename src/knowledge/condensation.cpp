@@ -98,6 +98,16 @@ class Search {
 
 }  // namespace
 
+void ChannelEdges::add(std::span<const Vertex> producers, std::span<const Vertex> consumers) {
+  // Most channels have one producer, which then stands for the channel.
+  Vertex middle = producers.front();
+  if (producers.size() > 1) {
+    middle = static_cast<Vertex>(vertices_++);
+    for (const Vertex producer : producers) edges_.emplace_back(middle, producer);
+  }
+  for (const Vertex consumer : consumers) edges_.emplace_back(consumer, middle);
+}
+
 Condensation::Condensation(std::size_t vertices, std::span<const Edge> edges) {
   const Neighbours neighbours(vertices, edges);
   Search search(neighbours);

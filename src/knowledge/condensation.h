@@ -14,6 +14,24 @@
 
 namespace culprit {
 
+// The edges of channels with several ends: a channel with p producers and c consumers takes p + c
+// of them, not p * c.
+class ChannelEdges {
+ public:
+  using Vertex = std::uint32_t;
+
+  explicit ChannelEdges(std::size_t vertices) : vertices_(vertices) {}
+  // Neither is empty.
+  void add(std::span<const Vertex> producers, std::span<const Vertex> consumers);
+
+  std::size_t vertices() const { return vertices_; }  // with those that stand for channels
+  std::span<const std::pair<Vertex, Vertex>> edges() const { return edges_; }
+
+ private:
+  std::size_t vertices_;
+  std::vector<std::pair<Vertex, Vertex>> edges_;
+};
+
 class Condensation {
  public:
   using Knot = std::uint32_t;

@@ -196,39 +196,22 @@ const std::vector<ComponentId>& DependencyGraph::reach(ComponentId from,
 
 const Condensation& DependencyGraph::condensation() const {
   if (condensation_) return *condensation_;
-  std::vector<std::pair<Condensation::Vertex, Condensation::Vertex>> edges;
-  std::size_t vertices = nodes_.size();
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    for (const NodeId producer : nodes_[n].declared_producers)
-      edges.emplace_back(n, producer.index);
-  }
-  std::vector<Condensation::Vertex> producers;
-  std::vector<Condensation::Vertex> consumers;
-  for (const Channel& channel : channels_) {
-    producers.clear();
-    consumers.clear();
-    for (const End& end : channel.producers) {
-      if (counts(end, channel, true)) producers.push_back(end.node.index);
-    }
-    for (const End& end : channel.consumers) {
-      if (counts(end, channel, false)) consumers.push_back(end.node.index);
-    }
-    if (producers.empty() || consumers.empty()) continue;
-    // Most channels have one producer, which then stands for the channel.
-    Condensation::Vertex middle = producers.front();
-    if (producers.size() > 1) {
-      middle = static_cast<Condensation::Vertex>(vertices++);
-      for (const auto producer : producers) edges.emplace_back(middle, producer);
-    }
-    for (const auto consumer : consumers) edges.emplace_back(consumer, middle);
-  }
-  return condensation_.emplace(vertices, edges);
+  ChannelEdges edges(nodes_.size());
+  for_each_channel([&](std::span<const Vertex> producers, std::span<const Vertex> consumers) {
+    edges.add(producers, consumers);
+  });
+  return condensation_.emplace(edges.vertices(), edges.edges());
+}
+
+std::optional<DependencyGraph::Vertex> DependencyGraph::vertex_of(ComponentId component) const {
+  const auto node = nodes_of_components_[component.index];
+  return node ? std::optional<Vertex>(node->index) : std::nullopt;
 }
 
 std::optional<Condensation::Knot> DependencyGraph::knot_of(ComponentId component) const {
-  const auto node = nodes_of_components_[component.index];
-  if (!node) return std::nullopt;
-  return condensation().knot_of(node->index);
+  const auto vertex = vertex_of(component);
+  if (!vertex) return std::nullopt;
+  return condensation().knot_of(*vertex);
 }
 
 std::vector<std::string> DependencyGraph::nodes() const {

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -59,6 +60,16 @@ class DependencyGraph {
   const Condensation& condensation() const;
   // Nothing while the component was not seen and is not declared to depend on another.
   std::optional<Condensation::Knot> knot_of(ComponentId component) const;
+
+  using Vertex = Condensation::Vertex;
+  // Nodes as numbers below size(). Nothing as for knot_of().
+  std::size_t size() const { return nodes_.size(); }
+  std::optional<Vertex> vertex_of(ComponentId component) const;
+  std::optional<ComponentId> component_at(Vertex vertex) const { return nodes_[vertex].component; }
+  // Calls visit(producers, consumers) for each channel with both ends, and for each declared
+  // dependency: spans of vertices, of all that counts now.
+  template <class Visit>
+  void for_each_channel(Visit visit) const;
 
   struct Edge {
     std::string consumer;
@@ -117,5 +128,30 @@ class DependencyGraph {
   mutable std::vector<NodeId> frontier_;
   mutable std::vector<ComponentId> found_;
 };
+
+template <class Visit>
+void DependencyGraph::for_each_channel(Visit visit) const {
+  std::vector<Vertex> producers;
+  std::vector<Vertex> consumers;
+  for (Vertex n = 0; n < nodes_.size(); ++n) {
+    consumers.assign(1, n);
+    for (const NodeId producer : nodes_[n].declared_producers) {
+      producers.assign(1, producer.index);
+      visit(std::span<const Vertex>(producers), std::span<const Vertex>(consumers));
+    }
+  }
+  for (const Channel& channel : channels_) {
+    producers.clear();
+    consumers.clear();
+    for (const End& end : channel.producers) {
+      if (counts(end, channel, true)) producers.push_back(end.node.index);
+    }
+    for (const End& end : channel.consumers) {
+      if (counts(end, channel, false)) consumers.push_back(end.node.index);
+    }
+    if (!producers.empty() && !consumers.empty())
+      visit(std::span<const Vertex>(producers), std::span<const Vertex>(consumers));
+  }
+}
 
 }  // namespace culprit

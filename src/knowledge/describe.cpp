@@ -339,6 +339,8 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
     case Condition::kDownstream:
       return "it depends on " + component + ", which is being adapted" + because;
     case Condition::kSuspect:
+      if (candidate.because == rules[candidate.strategy].rule)
+        return "what " + component + " depends on had no time yet to show whether it is ill";
       return "it depends on " + component + ", which looks ill" + because;
     case Condition::kSettling:
       return "it is expected to go away now that " + rules[*candidate.because].name +

@@ -7,6 +7,7 @@
 // it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -27,7 +28,7 @@ enum class RulePhase : std::uint8_t {
 // A failure is expected to go away with another one that was just resolved.
 struct Settling {
   RuleId with;
-  Time since = kNever;  // when that was resolved
+  Time since = kNever;  // from when on a fresh reading says whether it did
   Time until = kNever;  // when what its trigger reads would have shown it
 };
 
@@ -36,6 +37,8 @@ struct RuleState {
   Slot trigger;                   // as last evaluated
   Time trigger_since = kLongAgo;  // since when it has that value
   Time failing_since = kNever;    // when the failure was detected
+  Time recurring_since = kNever;  // if it went away and is back: when it was detected first
+  Time gone_since = kLongAgo;     // when it went away last
   Time quiet_until = kLongAgo;    // COOLDOWN
   bool armed = true;              // ON_CHANGE: the trigger was not true since the rule acted
 
@@ -54,6 +57,9 @@ struct RuleState {
   bool is_at_last_resort = false;  // only the last resorts are left to try
   bool is_advised = false;         // dry run: what would be done was said
   std::optional<Settling> settling;
+
+  // Since when the failure is there, with pauses or without.
+  Time first_detected() const { return std::min(failing_since, recurring_since); }
 };
 
 class RuleStates {

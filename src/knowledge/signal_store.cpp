@@ -22,6 +22,9 @@ SignalStore::SignalStore(const RuleSet& rules, const SignalStore& other)
       slots_(other.slots_),
       texts_(other.texts_),
       latencies_(other.latencies_),
+      read_at_(other.read_at_),
+      is_unusual_(other.is_unusual_),
+      rhythms_(other.rhythms_),
       touched_(other.touched_),
       is_touched_(other.is_touched_) {
   for (std::size_t i = 0; i < slots_.size(); ++i) {

@@ -77,9 +77,10 @@ std::vector<Decision> decide(const Planner& planner, std::vector<RuleId> failure
     Decision decision{verdict, {}, {}};
     if (verdict.chosen) decision.explains = explained_by(*verdict.chosen, knowledge);
     for (const Candidate& candidate : verdict.candidates) {
-      const bool is_chosen = verdict.chosen == candidate.strategy;
-      decision.flips.push_back(is_chosen ? std::vector<Change>()
-                                         : finder.flips(candidate.strategy));
+      const bool is_sought =
+          verdict.chosen != candidate.strategy && decisions.size() < kMostFlipped;
+      decision.flips.push_back(is_sought ? finder.flips(candidate.strategy)
+                                         : std::vector<Change>());
     }
     decisions.push_back(std::move(decision));
   }

@@ -9,10 +9,15 @@
 
 namespace culprit::plan {
 
+// With very many failures, changes are looked for in so many decisions, the first ones: each takes
+// some fifty plans for all failures.
+inline constexpr std::size_t kMostFlipped = 20;
+
 struct Decision {
   Verdict verdict;
-  std::vector<RuleId> explains;            // failures that are expected to go away with it
-  std::vector<std::vector<Change>> flips;  // by candidate; empty: chosen, or no single change found
+  std::vector<RuleId> explains;  // failures that are expected to go away with it
+  std::vector<std::vector<Change>>
+      flips;  // by candidate; empty: chosen, none found, or none sought
 };
 
 // What `planner` decides about `failures`, in the order of the decisions.

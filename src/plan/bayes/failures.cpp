@@ -34,7 +34,7 @@ void search(std::size_t root, const BitRows& rows, std::span<Word> open,
 
 }  // namespace
 
-Failures::Failures(const Knowledge& knowledge, const Reach& reach)
+Failures::Failures(const Knowledge& knowledge, const Reach& reach, const Ways& ways)
     : knowledge_(knowledge),
       rules_(by_name(knowledge)),
       causes_(rules_.size(), rules_.size()),
@@ -53,7 +53,7 @@ Failures::Failures(const Knowledge& knowledge, const Reach& reach)
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     const auto row = causes_[i];
     for (const ComponentId c : rules[rules_[i]].components) {
-      for_each(reach.upstream(reach.place_of(c)),
+      for_each(ways.upstream(reach.place_of(c), rules_[i]),
                [&](std::size_t place) { add(row, touching[place]); });
     }
     const auto level = static_cast<std::size_t>(rules[rules_[i]].policies.criticality);

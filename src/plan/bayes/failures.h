@@ -1,7 +1,8 @@
 // The failures that are there now, and which may be the cause of which.
 //
 // Failure j may be the cause of failure i if a component that j touches is upstream of one that i
-// touches, and j is at least as critical: a lesser failure is never waited for. Failures that may
+// touches, by a way that i can have taken (plan/bayes/ways.h), and j is at least as critical: a
+// lesser failure is never waited for. Failures that may
 // be the causes of each other, directly or round several corners, form a circle; that needs no
 // circle in the graph, because a rule may touch several components.
 //
@@ -11,14 +12,14 @@
 
 #include <vector>
 
-#include "plan/bayes/reach.h"
+#include "plan/bayes/ways.h"
 
 namespace culprit::plan {
 
 class Failures {
  public:
-  // `reach` holds all components that the active rules touch.
-  Failures(const Knowledge& knowledge, const Reach& reach);
+  // `reach` holds all components that the active rules touch; `ways` are made of it.
+  Failures(const Knowledge& knowledge, const Reach& reach, const Ways& ways);
 
   std::size_t size() const { return rules_.size(); }
   RuleId operator[](std::size_t i) const { return rules_[i]; }

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "plan/bayes/bayes_planner.h"
+#include "plan/bayes/suspicion.h"
 
 namespace culprit::plan {
 namespace {
@@ -37,12 +38,16 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
       planned_(failures.begin(), failures.end()),
       suspicious_(suspicious_rules(failures, knowledge)),
       reach_(knowledge, components_of_interest(knowledge, suspicious_)),
-      failures_(knowledge, reach_),
+      ways_(knowledge, reach_),
+      failures_(knowledge, reach_, ways_),
       responsibility_(knowledge, failures_),
       surroundings_(knowledge, reach_, failures, suspicious_),
       has_choice_(failures_.size(), false) {}
 
 std::vector<Verdict> PlanningStep::run() {
+  if (std::any_of(planned_.begin(), planned_.end(),
+                  [&](RuleId rule) { return is_newborn(rule, knowledge_); }))
+    watchers_.emplace(knowledge_);
   find_stakes();
   for (const RuleId rule : planned_) examine(failures_.index_of(rule));
   std::sort(entries_.begin(), entries_.end(),
@@ -154,6 +159,10 @@ void PlanningStep::exclude(Entry& entry, double chance) const {
   if (entry.candidate.excluded) return;
   const RuleId rule = failures_[entry.failure];
   const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
+  const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
+  if (watchers_ && is_newborn(rule, knowledge_) && !needs_no_verdict &&
+      watchers_->are_upstream_of(rule))
+    return exclude(entry, {Condition::kSuspect, likeliest_component(rule), rule});
   for (const ComponentId c : strategy.components) {
     if (const auto obstacle = surroundings_.obstacle(reach_.place_of(c), strategy, chance))
       return exclude(entry, *obstacle);
@@ -176,10 +185,19 @@ void PlanningStep::exclude(Entry& entry, const Surroundings::Obstacle& obstacle)
 
 // A failure that others more likely explain waits for them.
 void PlanningStep::exclude_effect(Entry& entry) const {
-  // In a circle the members take turns, whoever is the likelier: what counts is what is outside.
-  if (responsibility_.against_others(entry.failure) >= 0.5) return;
   double most = 0;
   RuleId cause;
+  // In a circle the members take turns, whoever is the likelier: what counts is what is outside.
+  // But who is in a circle is only known when the failures are old enough.
+  if (responsibility_.against_others(entry.failure) >= 0.5) {
+    if (!is_young(failures_[entry.failure], knowledge_)) return;
+    for (const std::size_t j : failures_.circles()[failures_.circle_of(entry.failure)]) {
+      if (j != entry.failure && responsibility_.of(j) > most)
+        std::tie(most, cause) = std::pair(responsibility_.of(j), failures_[j]);
+    }
+    if (most > 0) exclude(entry, {Condition::kDependency, likeliest_component(cause), cause});
+    return;
+  }
   responsibility_.for_each_share(entry.failure, [&](std::size_t j, double share) {
     if (share > most) std::tie(most, cause) = std::pair(share, failures_[j]);
   });
@@ -258,7 +276,7 @@ ComponentId PlanningStep::likeliest_component(RuleId rule) const {
 std::vector<Suspect> PlanningStep::suspects(std::size_t failure) const {
   std::vector<Suspect> all;
   const RuleId rule = failures_[failure];
-  all.push_back({likeliest_component(rule), rule, responsibility_.of(failure)});
+  all.push_back({{}, rule, responsibility_.of(failure)});
   responsibility_.for_each_share(failure, [&](std::size_t j, double share) {
     all.push_back({{}, failures_[j], share});
   });

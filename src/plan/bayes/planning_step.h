@@ -9,6 +9,7 @@
 #include "plan/bayes/responsibility.h"
 #include "plan/bayes/surroundings.h"
 #include "plan/bayes/value.h"
+#include "plan/bayes/watchers.h"
 #include "plan/planner.h"
 
 namespace culprit::plan {
@@ -47,6 +48,8 @@ class PlanningStep {
   std::vector<RuleId> planned_;
   std::vector<RuleId> suspicious_;
   Reach reach_;
+  Ways ways_;
+  std::optional<Watchers> watchers_;  // while a failure is newborn
   Failures failures_;
   Responsibility responsibility_;
   Surroundings surroundings_;

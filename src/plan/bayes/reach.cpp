@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 namespace culprit::plan {
 namespace {
 
 using Knot = Condensation::Knot;
-
-constexpr Knot kNowhere = std::numeric_limits<Knot>::max();
 
 std::vector<ComponentId> each_once(std::vector<ComponentId> components) {
   std::sort(components.begin(), components.end());
@@ -39,37 +36,38 @@ class BitCounts {
   std::array<Word, 32> digits_{};
 };
 
-// Where the components of the rule set are in the condensed graph.
-struct Places {
-  std::vector<Knot> knot_of;           // by ComponentId
-  std::vector<std::uint32_t> members;  // components, by knot
+Reach::Knots knots_of(const Knowledge& knowledge) {
+  Reach::Knots knots(knowledge.rules.components.size());
+  for (std::size_t c = 0; c < knots.size(); ++c) knots[c] = knowledge.graph.knot_of(ComponentId(c));
+  return knots;
+}
 
-  Places(const Knowledge& knowledge, const Condensation& graph)
-      : knot_of(knowledge.rules.components.size(), kNowhere), members(graph.size(), 0) {
-    for (std::size_t c = 0; c < knot_of.size(); ++c) {
-      if (const auto knot = knowledge.graph.knot_of(ComponentId(c))) {
-        knot_of[c] = *knot;
-        ++members[*knot];
-      }
-    }
+// Components, by knot.
+std::vector<std::uint32_t> members_of(const Condensation& graph, const Reach::Knots& knots) {
+  std::vector<std::uint32_t> members(graph.size(), 0);
+  for (const auto knot : knots) {
+    if (knot) ++members[*knot];
   }
-};
+  return members;
+}
 
 }  // namespace
 
 Reach::Reach(const Knowledge& knowledge, std::vector<ComponentId> components)
+    : Reach(knowledge.graph.condensation(), knots_of(knowledge), std::move(components)) {}
+
+Reach::Reach(const Condensation& graph, const Knots& knots, std::vector<ComponentId> components)
     : components_(each_once(std::move(components))),
       upstream_(components_.size(), components_.size()),
       downstream_(components_.size(), components_.size()),
       dependents_(components_.size(), 0) {
-  const Condensation& graph = knowledge.graph.condensation();
-  const Places places(knowledge, graph);
+  const std::vector<std::uint32_t> members = members_of(graph, knots);
   // By the order of their knots, so that a pass can begin at its first.
   std::vector<std::size_t> order;
   for (std::size_t p = 0; p < components_.size(); ++p) {
-    if (places.knot_of[components_[p].index] != kNowhere) order.push_back(p);
+    if (knots[components_[p].index]) order.push_back(p);
   }
-  const auto knot_at = [&](std::size_t place) { return places.knot_of[components_[place].index]; };
+  const auto knot_at = [&](std::size_t place) { return *knots[components_[place].index]; };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return std::pair(knot_at(a), a) < std::pair(knot_at(b), b);
   });
@@ -86,13 +84,13 @@ Reach::Reach(const Knowledge& knowledge, std::vector<ComponentId> components)
       Word bits = own[knot];
       for (const Knot producer : graph.producers(knot)) bits |= reached[producer];
       reached[knot] = bits;
-      for (std::uint32_t m = 0; m < places.members[knot]; ++m) counts.add(bits);
+      for (std::uint32_t m = 0; m < members[knot]; ++m) counts.add(bits);
     }
     for (std::size_t i = begin; i < end; ++i) dependents_[order[i]] = counts.of(i - begin) - 1;
     for (const std::size_t consumer : order) {
       const Knot knot = knot_at(consumer);
       Word bits = reached[knot];
-      if (places.members[knot] == 1) bits &= ~own[knot];
+      if (members[knot] == 1) bits &= ~own[knot];
       for (; bits != 0; bits &= bits - 1) {
         const std::size_t producer =
             order[begin + static_cast<std::size_t>(std::countr_zero(bits))];

@@ -13,8 +13,11 @@ namespace culprit::plan {
 
 class Reach {
  public:
-  // `components` may hold some more than once.
+  // In the whole graph. `components` may hold some more than once.
   Reach(const Knowledge& knowledge, std::vector<ComponentId> components);
+  // In another: `knots` says for each component of the rule set where it is.
+  using Knots = std::vector<std::optional<Condensation::Knot>>;
+  Reach(const Condensation& graph, const Knots& knots, std::vector<ComponentId> components);
 
   std::size_t size() const { return components_.size(); }
   ComponentId operator[](std::size_t place) const { return components_[place]; }

@@ -49,7 +49,7 @@ double Responsibility::own(std::size_t i) const {
 void Responsibility::divide(const std::vector<std::size_t>& circle) {
   Time first = kNever;
   for (const std::size_t i : circle)
-    first = std::min(first, knowledge_.states[failures_[i]].failing_since);
+    first = std::min(first, knowledge_.states[failures_[i]].first_detected());
   double sum = 0;
   std::vector<double> weights;
   for (const std::size_t i : circle) sum += weights.emplace_back(weight(i, circle, first));
@@ -73,7 +73,7 @@ double Responsibility::weight(std::size_t i, const std::vector<std::size_t>& cir
     all += belief;
     if (!state.tried[s]) untried += belief;
   }
-  const double delay = seconds(state.failing_since - first) / seconds(knowledge_.rules.cycle);
+  const double delay = seconds(state.first_detected() - first) / seconds(knowledge_.rules.cycle);
   double weight = std::max(kLeast, untried / all) * std::ldexp(1, -std::min(state.round, 50)) *
                   (own(i) / kCoincidence) / (1 + delay);
   for (const std::size_t k : circle) {

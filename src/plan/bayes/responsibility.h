@@ -26,7 +26,9 @@
 //   who
 //                       was adapted in vain is less likely the cause
 //   rounds_i            how often all of them were tried
-//   delay_i             how much later than the first of the circle it was detected, in cycles
+//   delay_i             how much later than the first of the circle it was detected (before it came
+//   back,
+//                       if it comes and goes), in cycles
 //   kappa(i -> k)       how well it explains the others
 //   pi, kappa0          kCoincidence and Coupling::kUsual
 //

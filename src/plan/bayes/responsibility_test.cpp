@@ -20,7 +20,7 @@ double responsibility(Scene& scene, const std::string& rule) {
     all.insert(all.end(), touched.begin(), touched.end());
   }
   const Reach reach(*scene, all);
-  const Failures failures(*scene, reach);
+  const Failures failures(*scene, reach, Ways(*scene, reach));
   return Responsibility(*scene, failures).of(failures.index_of(scene.rule(rule)));
 }
 
@@ -110,7 +110,7 @@ TEST(Responsibility, SharesWhatIsExplained) {
   scene.fail("A").fail("B").fail("C");
   std::vector<ComponentId> all{scene.component("a"), scene.component("b"), scene.component("c")};
   const Reach reach(*scene, all);
-  const Failures failures(*scene, reach);
+  const Failures failures(*scene, reach, Ways(*scene, reach));
   const Responsibility r(*scene, failures);
   EXPECT_NEAR(r.share(0, 2) + r.share(1, 2), 1 - r.of(2), 1e-12);
   EXPECT_NEAR(r.share(0, 2) / r.share(1, 2), r.of(0) / r.of(1), 1e-9);

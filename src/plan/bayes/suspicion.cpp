@@ -21,13 +21,29 @@ bool is_silent(const Input& input, const Knowledge& knowledge) {
          knowledge.now > later(*rhythm.last, kSuspiciousIntervals * rhythm.interval);
 }
 
+// With HOLD one reading proves little.
+bool is_coming(const RuleState& state, const Policies& policies) {
+  if (state.history.empty()) return state.trigger.known && state.trigger.b;
+  return 2 * state.true_in_history > policies.hold_needed;
+}
+
+// Is it a bad value, and was it detected less than `time` ago? One with HOLD may be seen earlier or
+// later by as many evaluations as may be missed.
+bool is_within(RuleId failure, Duration time, const Knowledge& knowledge) {
+  const Policies& policies = knowledge.rules[failure].policies;
+  const Cycles missed{policies.hold_window - policies.hold_needed};
+  return symptom_of(failure, knowledge) == Symptom::kValue &&
+         knowledge.now < later(knowledge.states[failure].first_detected(),
+                               time + duration_of(missed, knowledge.rules));
+}
+
 }  // namespace
 
 bool is_suspicious(RuleId rule, const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[rule];
   if (state.phase != RulePhase::kQuiet || knowledge.now < state.quiet_until) return false;
-  if (state.trigger.known && state.trigger.b) return true;
   const Rule& watched = knowledge.rules[rule];
+  if (is_coming(state, watched.policies)) return true;
   const auto is_down = [&](ComponentId c) { return knowledge.components[c].alive == false; };
   return std::any_of(watched.inputs.begin(), watched.inputs.end(),
                      [&](InputId id) {
@@ -35,6 +51,33 @@ bool is_suspicious(RuleId rule, const Knowledge& knowledge) {
                               is_unusual(id, knowledge);
                      }) ||
          std::any_of(watched.components.begin(), watched.components.end(), is_down);
+}
+
+Symptom symptom_of(RuleId rule, const Knowledge& knowledge) {
+  const auto& inputs = knowledge.rules[rule].inputs;
+  const bool reads_values = std::any_of(inputs.begin(), inputs.end(), [&](InputId id) {
+    const Input& input = knowledge.rules[id];
+    return !watches_a_topic(input) && input.kind != Input::Kind::kAlive &&
+           input.kind != Input::Kind::kLifecycle;
+  });
+  return reads_values ? Symptom::kValue : Symptom::kOutage;
+}
+
+bool looks_well(RuleId rule, const Knowledge& knowledge) {
+  const RuleState& state = knowledge.states[rule];
+  if (state.phase != RulePhase::kQuiet) return false;
+  // In its COOLDOWN, or after ON_CHANGE.
+  const bool is_true = state.history.empty() && state.trigger.known && state.trigger.b;
+  return !is_true && !is_suspicious(rule, knowledge);
+}
+
+bool is_young(RuleId failure, const Knowledge& knowledge) {
+  return is_within(failure, duration_of(kLongestWait, knowledge.rules), knowledge);
+}
+
+bool is_newborn(RuleId failure, const Knowledge& knowledge) {
+  return is_young(failure, knowledge) &&
+         is_within(failure, knowledge.signals.latency(failure), knowledge);
 }
 
 }  // namespace culprit::plan

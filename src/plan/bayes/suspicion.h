@@ -21,10 +21,29 @@ inline constexpr int kLongestWaitLatencies = 3;
 inline constexpr double kSure = 0.9;
 
 // The rule is quiet, and one of these holds:
-//   - its trigger is true, and its policy's time (FOR, HOLD) is not over;
+//   - its trigger is true, and its policy's time (FOR) is not over; or it was true in half as many
+//     evaluations as its HOLD needs;
 //   - a topic whose age, phi or rate its trigger reads is silent for longer than it usually is;
 //   - a signal that its trigger reads was never so near to firing it lately (SignalStore);
 //   - a component of it is known to be gone or stopped.
 bool is_suspicious(RuleId rule, const Knowledge& knowledge);
+
+// What a rule sees of a failure. The former has early signs (a topic's silence), the latter has
+// none.
+enum class Symptom : std::uint8_t {
+  kOutage,  // its trigger reads topics' ages, rates, or who is alive
+  kValue    // it reads the value of a signal, a parameter or a diagnostic
+};
+Symptom symptom_of(RuleId rule, const Knowledge& knowledge);
+
+// It is quiet and not suspicious, or nobody knows.
+bool looks_well(RuleId rule, const Knowledge& knowledge);
+
+// A bad value that was detected less than kLongestWait ago: what it is the effect of may only not
+// have been detected yet.
+bool is_young(RuleId failure, const Knowledge& knowledge);
+// The same within the time that its own signals take to show a change: those upstream may need as
+// long.
+bool is_newborn(RuleId failure, const Knowledge& knowledge);
 
 }  // namespace culprit::plan

@@ -63,6 +63,14 @@ std::string component_of(const Event& event, const RuleSet& rules) {
   return "";
 }
 
+// Of "bayes" or "bayes:downtime"; nothing of other planners.
+std::optional<Objective> objective_of(std::string_view planner) {
+  constexpr std::string_view kBayes = "bayes";
+  if (!planner.starts_with(kBayes)) return std::nullopt;
+  planner.remove_prefix(kBayes.size());
+  return planner.empty() ? Objective::kBalanced : *parse_objective(planner.substr(1));
+}
+
 // A component's name in the rules, from its node's.
 std::string component_of(sunset::Member member, const RuleSet& rules) {
   const std::string node = sunset::node_of(member).full();
@@ -74,7 +82,9 @@ std::string component_of(sunset::Member member, const RuleSet& rules) {
 }  // namespace
 
 std::vector<std::string_view> sunset_planners() {
-  return {"paper", "reference", "bayes", "bt", "metacontrol", "rosa"};
+  return {"paper",          "reference",         "bayes",
+          "bayes:downtime", "bayes:adaptations", "bayes:redeployments",
+          "bt",             "metacontrol",       "rosa"};
 }
 
 bool has_switches(std::string_view planner) { return planner == "paper" || planner == "reference"; }
@@ -85,7 +95,8 @@ Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::ui
     const auto planners = sunset_planners();
     if (std::find(planners.begin(), planners.end(), row.planner) == planners.end())
       return Error{"there is no planner '" + row.planner +
-                   "'; there are paper, reference, bayes, bt, metacontrol, rosa"};
+                   "'; there are paper, reference, bayes, bayes with an objective "
+                   "(bayes:downtime), bt, metacontrol, rosa"};
     const auto profile = sunset::model::find_profile(row.profile);
     if (!profile) return Error{profile.error()};
     if (row.planner == "reference" && !(*profile)->has_blackboard)
@@ -128,8 +139,8 @@ std::unique_ptr<ManagingSystem> SunsetStudy::manager(const Setting& setting,
         *pace, options.start, seed);
   }
   std::unique_ptr<const Planner> planner;
-  if (setting.configuration.planner == "bayes") {
-    planner = std::make_unique<BayesPlanner>();
+  if (const auto objective = objective_of(setting.configuration.planner)) {
+    planner = std::make_unique<BayesPlanner>(*objective);
   } else {
     planner = std::make_unique<PaperPlanner>(setting.configuration.switches);
   }

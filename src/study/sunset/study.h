@@ -59,8 +59,8 @@ class SunsetStudy {
   std::uint64_t seed_;
 };
 
-// The planners that there are: "paper", "reference", "bayes", and the managers of others as
-// planners of one failure and one strategy at a time: "bt", "metacontrol", "rosa".
+// The planners that there are: "paper", "reference", "bayes" (balanced), "bayes:downtime" and so on
+// with another objective, and the managers of others, "bt", "metacontrol" and "rosa".
 std::vector<std::string_view> sunset_planners();
 
 // Whether a planner has the paper's D, C and S to switch off.

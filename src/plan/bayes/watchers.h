@@ -1,0 +1,33 @@
+// Upstream of whom are there rules that may have been too slow?
+//
+// Of a bad value nothing is seen beforehand. If a rule about values watches something upstream of a
+// failure, it may be about to fire.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "knowledge/knowledge.h"
+
+namespace culprit::plan {
+
+class Watchers {
+ public:
+  // One pass over the graph. It must outlive this.
+  explicit Watchers(const Knowledge& knowledge);
+
+  // Does another rule about values, at least as critical, touch something upstream?
+  bool are_upstream_of(RuleId failure) const;
+
+ private:
+  struct Place {
+    std::size_t components = 0;          // more than one: a circle
+    std::array<std::size_t, 3> rules{};  // about values that touch it, by level
+    int above = -1;                      // the highest level of those upstream of it
+  };
+
+  const Knowledge& knowledge_;
+  std::vector<Place> places_;  // by knot
+};
+
+}  // namespace culprit::plan

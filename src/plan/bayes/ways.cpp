@@ -1,0 +1,122 @@
+#include "plan/bayes/ways.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "plan/bayes/suspicion.h"
+
+namespace culprit::plan {
+namespace {
+
+using Vertex = DependencyGraph::Vertex;
+
+// What is known of a component.
+struct Signs {
+  std::array<bool, 2> is_watched{};  // by a quiet rule of each kind
+  bool is_ill = false;               // a rule that touches it is not quiet, or suspicious
+
+  bool is_well(Symptom symptom) const {
+    return !is_ill && is_watched[static_cast<std::size_t>(symptom)];
+  }
+};
+
+std::vector<Signs> signs_of(const Knowledge& knowledge) {
+  std::vector<Signs> signs(knowledge.rules.components.size());
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
+    const RuleId rule(r);
+    const bool is_ill = !looks_well(rule, knowledge);
+    const bool is_seen = is_ill || knowledge.states[rule].trigger.known;
+    const auto symptom = static_cast<std::size_t>(symptom_of(rule, knowledge));
+    for (const ComponentId c : knowledge.rules[rule].components) {
+      signs[c.index].is_ill |= is_ill;
+      signs[c.index].is_watched[symptom] = signs[c.index].is_watched[symptom] || is_seen;
+    }
+  }
+  return signs;
+}
+
+// Are so many of the consumers well only by chance, if most of them would be ill?
+bool can_carry(std::size_t well, std::size_t ill) {
+  const auto all = static_cast<double>(well + ill);
+  return static_cast<double>(well) <=
+         kSpared * all + kDeviations * std::sqrt(kSpared * (1 - kSpared) * all);
+}
+
+class Narrowing {
+ public:
+  Narrowing(const Knowledge& knowledge, const std::vector<Signs>& signs, Symptom symptom)
+      : knowledge_(knowledge), place_(knowledge.graph.size(), kOut) {
+    for (Vertex v = 0; v < place_.size(); ++v) {
+      const auto component = knowledge.graph.component_at(v);
+      const Signs* seen = component ? &signs[component->index] : nullptr;
+      is_ill_.push_back(seen != nullptr && seen->is_ill);
+      if (seen == nullptr || !seen->is_well(symptom)) place_[v] = left_++;
+    }
+  }
+
+  Reach reach(const Reach& whole) const {
+    ChannelEdges edges(left_);
+    std::vector<Vertex> producers;
+    std::vector<Vertex> consumers;
+    knowledge_.graph.for_each_channel(
+        [&](std::span<const Vertex> from, std::span<const Vertex> to) {
+          producers.clear();
+          for (const Vertex v : from) {
+            if (place_[v] != kOut) producers.push_back(place_[v]);
+          }
+          if (producers.empty()) return;
+          consumers.clear();
+          std::size_t ill = 0;
+          for (const Vertex v : to) {
+            if (place_[v] != kOut) consumers.push_back(place_[v]);
+            ill += is_ill_[v] ? 1 : 0;
+          }
+          const std::size_t well = to.size() - consumers.size();
+          if (!consumers.empty() && can_carry(well, ill)) edges.add(producers, consumers);
+        });
+    const Condensation graph(edges.vertices(), edges.edges());
+    Reach::Knots knots(knowledge_.rules.components.size());
+    for (std::size_t c = 0; c < knots.size(); ++c) {
+      const auto vertex = knowledge_.graph.vertex_of(ComponentId(c));
+      if (vertex && place_[*vertex] != kOut) knots[c] = graph.knot_of(place_[*vertex]);
+    }
+    std::vector<ComponentId> components;
+    for (std::size_t p = 0; p < whole.size(); ++p) components.push_back(whole[p]);
+    return {graph, knots, std::move(components)};
+  }
+
+ private:
+  static constexpr Vertex kOut = static_cast<Vertex>(-1);
+
+  const Knowledge& knowledge_;
+  std::vector<Vertex> place_;  // among what is left
+  std::vector<bool> is_ill_;
+  Vertex left_ = 0;
+};
+
+}  // namespace
+
+Ways::Ways(const Knowledge& knowledge, const Reach& whole) : knowledge_(knowledge), whole_(whole) {
+  std::array<bool, 2> is_needed{};
+  for (const RuleId rule : knowledge.states.active()) {
+    if (!is_young(rule, knowledge))
+      is_needed[static_cast<std::size_t>(symptom_of(rule, knowledge))] = true;
+  }
+  if (!is_needed[0] && !is_needed[1]) return;
+  const std::vector<Signs> signs = signs_of(knowledge);
+  for (const Symptom symptom : {Symptom::kOutage, Symptom::kValue}) {
+    const bool is_any_well =
+        std::any_of(signs.begin(), signs.end(), [&](const Signs& s) { return s.is_well(symptom); });
+    const auto kind = static_cast<std::size_t>(symptom);
+    if (is_needed[kind] && is_any_well)
+      narrowed_[kind] = Narrowing(knowledge, signs, symptom).reach(whole);
+  }
+}
+
+std::span<const Word> Ways::upstream(std::size_t place, RuleId rule) const {
+  const auto& narrowed = narrowed_[static_cast<std::size_t>(symptom_of(rule, knowledge_))];
+  const bool is_whole = !narrowed || is_young(rule, knowledge_);
+  return (is_whole ? whole_ : *narrowed).upstream(place);
+}
+
+}  // namespace culprit::plan

@@ -1,0 +1,41 @@
+// The ways that a failure can have taken: the graph without what is seen to be well.
+//
+// A chain of effects does not go through a component that shows none. Left out, for failures of one
+// kind of symptom (an outage, or a bad value), are
+//   - components that are well: a rule of that kind touches them and is quiet, and no rule that
+//     touches them fails or is suspicious;
+//   - topics and services that evidently carry no failures: of n consumers that are well or
+//     fail, more are well than kSpared n and kDeviations standard deviations of the binomial
+//     distribution. /tf and its like are read by many.
+// A young failure has the whole graph: what lies between may only not have been detected yet.
+//
+// This is what tells a cause from what is upstream by the graph alone, which on a robot with
+// circles or with topics that everybody reads is everything.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "plan/bayes/reach.h"
+
+namespace culprit::plan {
+
+// The share of consumers that a failure spares, or does not reach at once.
+inline constexpr double kSpared = 0.25;
+inline constexpr double kDeviations = 3;
+
+class Ways {
+ public:
+  // Both must outlive it. `whole` has the components that matter, by the whole graph.
+  Ways(const Knowledge& knowledge, const Reach& whole);
+
+  // The places from which the failure of `rule` at `place` can have come.
+  std::span<const Word> upstream(std::size_t place, RuleId rule) const;
+
+ private:
+  const Knowledge& knowledge_;
+  const Reach& whole_;
+  std::array<std::optional<Reach>, 2> narrowed_;  // by Symptom; nothing: nothing is left out
+};
+
+}  // namespace culprit::plan

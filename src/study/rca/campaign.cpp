@@ -1,0 +1,120 @@
+#include "study/rca/campaign.h"
+
+#include <algorithm>
+
+#include "knowledge/condensation.h"
+#include "plan/bayes/bayes_planner.h"
+#include "plan/paper_planner.h"
+#include "simulation/random.h"
+#include "study/ordered_work.h"
+#include "study/rca/baselines.h"
+
+namespace culprit::study::rca {
+namespace {
+
+void find_regrets(std::vector<RcaRow>& rows) {
+  for (RcaRow& row : rows) {
+    const auto optimum = std::find_if(rows.begin(), rows.end(), [&](const RcaRow& other) {
+      return other.planner == "optimum" && other.setting == row.setting;
+    });
+    if (optimum != rows.end()) row.regret = row.recovery_s.mean() / optimum->recovery_s.mean() - 1;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> planner_names() {
+  return {"naive", "first-failing", "topological", "random-walk", "paper", "bayes"};
+}
+
+Expected<std::unique_ptr<const Planner>> make_planner(const std::string& name, Objective objective,
+                                                      const RcaScenario&) {
+  using Made = std::unique_ptr<const Planner>;
+  if (name == "bayes") return Made(std::make_unique<BayesPlanner>(objective));
+  if (name == "paper") return Made(std::make_unique<PaperPlanner>());
+  if (name == "naive")
+    return Made(std::make_unique<PaperPlanner>(PaperSwitches{false, true, true}));
+  if (name == "first-failing")
+    return Made(std::make_unique<RankingPlanner>(Ranking::kFirstFailing));
+  if (name == "topological") return Made(std::make_unique<RankingPlanner>(Ranking::kTopological));
+  if (name == "random-walk") return Made(std::make_unique<RankingPlanner>(Ranking::kRandomWalk));
+  std::string known;
+  for (const std::string& each : planner_names()) known += (known.empty() ? "" : ", ") + each;
+  return Error{"there is no planner '" + name + "'; there are " + known};
+}
+
+void RcaRow::add(const EpisodeResult& result) {
+  ++episodes;
+  exact.add(result.is_exact ? 1 : 0);
+  first_right.add(result.is_first_right ? 1 : 0);
+  effects += result.effects;
+  grounded += result.grounded;
+  wrong_component.add(result.wrong_component);
+  unnecessary.add(result.unnecessary);
+  if (result.faults > 0)
+    strategies_per_fault.add(static_cast<double>(result.strategies) / result.faults);
+  downtime_s.add(result.downtime_s);
+  recovery_s.add(result.recovery_s);
+  censored += result.is_recovered ? 0 : 1;
+  unresolved.add(result.unresolved);
+  plans += result.plans;
+  planning_us += result.planning_us;
+}
+
+RcaScenario scenario_of(const RcaCampaign& campaign, const RcaSetting& setting,
+                        std::uint32_t episode) {
+  if (!campaign.scenario)
+    return generate(setting, simulation::mix(simulation::mix(campaign.seed) + episode));
+  RcaScenario scenario = *campaign.scenario;
+  if (episode > 0) scenario.seed = simulation::mix(scenario.seed + episode);
+  return scenario;
+}
+
+RcaSetting setting_of(const RcaScenario& scenario) {
+  RcaSetting setting{scenario.components.size(), scenario.faults.size(), 0, false};
+  for (const RcaComponent& c : scenario.components)
+    setting.noise = std::max({setting.noise, c.detector.miss, c.detector.false_alarm});
+  ChannelEdges edges(scenario.components.size());
+  for (const RcaTopic& topic : scenario.topics) {
+    const std::vector<std::uint32_t> publishers(topic.publishers.begin(), topic.publishers.end());
+    std::vector<std::uint32_t> subscribers;
+    for (const Subscription& s : topic.subscribers) {
+      if (s.passes > 0) subscribers.push_back(static_cast<std::uint32_t>(s.component));
+    }
+    if (!publishers.empty() && !subscribers.empty()) edges.add(publishers, subscribers);
+  }
+  setting.is_cyclic = Condensation(edges.vertices(), edges.edges()).size() < edges.vertices();
+  return setting;
+}
+
+std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, unsigned jobs,
+                                                const std::function<bool()>& is_stopped) {
+  std::vector<RcaRow> rows;
+  for (const RcaSetting& setting : campaign.settings) {
+    for (const std::string& planner : campaign.planners) {
+      RcaRow& row = rows.emplace_back();
+      row.planner = planner;
+      row.setting = setting;
+    }
+  }
+  const std::uint64_t size = std::uint64_t{campaign.episodes} * rows.size();
+  std::uint64_t played = 0;
+  work_in_order(
+      0, size, jobs,
+      [&](std::uint64_t i) {
+        const RcaRow& row = rows[i / campaign.episodes];
+        const auto episode = static_cast<std::uint32_t>(i % campaign.episodes);
+        const RcaScenario scenario = scenario_of(campaign, row.setting, episode);
+        return play(scenario, std::move(*make_planner(row.planner, campaign.objective, scenario)));
+      },
+      [&](std::uint64_t i, const EpisodeResult& result) {
+        rows[i / campaign.episodes].add(result);
+        ++played;
+        return !is_stopped || !is_stopped();
+      });
+  if (played < size) return std::nullopt;
+  find_regrets(rows);
+  return rows;
+}
+
+}  // namespace culprit::study::rca

@@ -1,0 +1,74 @@
+// A campaign of the root-cause benchmark: many random scenarios, each played by each planner.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "language/expected.h"
+#include "plan/bayes/objective.h"
+#include "study/rca/episode.h"
+#include "study/rca/generator.h"
+#include "study/statistics/moments.h"
+
+namespace culprit::study::rca {
+
+// "naive", "first-failing", "topological", "random-walk", "paper", "bayes", and "optimum", which
+// knows the hidden truth but not the faults and is for small robots only (optimum.h).
+std::vector<std::string> planner_names();
+
+struct RcaCampaign {
+  std::vector<RcaSetting> settings;
+  std::vector<std::string> planners;
+  Objective objective = Objective::kBalanced;  // of bayes
+  std::uint32_t episodes = 0;                  // of each setting and planner
+  std::uint64_t seed = 0;
+  // Instead of random ones: its settings are what setting_of() says, and each episode has other
+  // luck.
+  std::optional<RcaScenario> scenario;
+};
+
+// Of one planner in one setting: shares and means over the episodes.
+struct RcaRow {
+  std::string planner;
+  RcaSetting setting;
+  std::int64_t episodes = 0;
+  Moments exact;
+  Moments first_right;
+  std::int64_t effects = 0;
+  std::int64_t grounded = 0;
+  Moments wrong_component;
+  Moments unnecessary;
+  Moments strategies_per_fault;
+  Moments downtime_s;
+  Moments recovery_s;         // at least: where a robot did not recover, until the end
+  std::int64_t censored = 0;  // episodes without a recovery
+  Moments unresolved;
+  std::optional<double>
+      regret;  // share of recovery time beyond the optimum's; where that was played
+  std::int64_t plans = 0;
+  double planning_us = 0;
+
+  void add(const EpisodeResult& result);
+};
+
+// The planner of that name. Errors: there is none.
+Expected<std::unique_ptr<const Planner>> make_planner(const std::string& name, Objective objective,
+                                                      const RcaScenario& scenario);
+
+// Row by row, setting by setting. The result depends on nothing but the campaign, apart from the
+// time that planning took. `is_stopped` is asked after each episode (null: never stopped); where it
+// stopped nothing is given.
+// @pre the planners exist
+std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, unsigned jobs,
+                                                const std::function<bool()>& is_stopped);
+
+// The scenario of an episode: the same for every planner.
+RcaScenario scenario_of(const RcaCampaign& campaign, const RcaSetting& setting,
+                        std::uint32_t episode);
+
+// How large a scenario is, how noisy its worst detector, and whether illness can go in circles.
+RcaSetting setting_of(const RcaScenario& scenario);
+
+}  // namespace culprit::study::rca

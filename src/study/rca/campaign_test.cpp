@@ -1,0 +1,77 @@
+#include "study/rca/campaign.h"
+
+#include <gtest/gtest.h>
+
+#include "plan/bayes/bayes_planner.h"
+#include "plan/paper_planner.h"
+#include "study/rca/report.h"
+#include "study/rca/rules.h"
+
+namespace culprit::study::rca {
+namespace {
+
+RcaCampaign small_campaign() {
+  RcaCampaign campaign;
+  campaign.settings = {{12, 2, 0, true}};
+  campaign.planners = planner_names();
+  campaign.episodes = 3;
+  campaign.seed = 5;
+  return campaign;
+}
+
+TEST(RcaCampaign, IsTheSameWithAnyNumberOfThreads) {
+  const auto one = run_campaign(small_campaign(), 1, nullptr);
+  const auto four = run_campaign(small_campaign(), 4, nullptr);
+  ASSERT_TRUE(one && four);
+  EXPECT_EQ(rca_json(*one, Times::kLeftOut), rca_json(*four, Times::kLeftOut));
+}
+
+TEST(RcaCampaign, HasARowForEachPlannerAndSetting) {
+  RcaCampaign campaign = small_campaign();
+  campaign.settings.push_back({5, 1, 0.1, false});
+  campaign.planners = {"naive", "bayes"};
+  const auto rows = run_campaign(campaign, 2, nullptr);
+  ASSERT_TRUE(rows);
+  ASSERT_EQ(rows->size(), 4u);
+  EXPECT_EQ(rows->at(2).planner, "naive");
+  EXPECT_EQ(rows->at(2).setting.components, 5u);
+  EXPECT_EQ(rows->at(3).episodes, 3);
+}
+
+TEST(RcaRules, NumberThingsAsTheScenarioDoes) {
+  const RcaScenario scenario = generate({30, 1, 0.1, true}, 1);
+  const RuleSet rules = rules_of(scenario);
+  ASSERT_EQ(rules.components.size(), 30u);
+  for (std::size_t i = 0; i < 30; ++i) {
+    const std::string name = "c" + std::to_string(i);
+    EXPECT_EQ(rules.components[i].name, name);
+    EXPECT_EQ(rules.rules[i].name, name + "_fails");
+    EXPECT_EQ(rules.signals[i].name, name + "_ill");
+    EXPECT_EQ(rules.signals[i].type, Type::kBool);
+    EXPECT_EQ(rules.rules[i].policies.hold_needed, 10);
+    EXPECT_EQ(rules.rules[i].policies.hold_window, 15);
+  }
+}
+
+// A chain with a fault at its head: whoever looks at the graph repairs the head alone.
+TEST(RcaEpisode, TellsTheCauseFromItsEffects) {
+  RcaScenario scenario = generate({4, 1, 0, false}, 1);
+  scenario.topics.clear();
+  for (std::size_t i = 0; i < 3; ++i)
+    scenario.topics.push_back({"/t" + std::to_string(i), {i}, {{i + 1, 1, 0.5, false}}});
+  scenario.faults = {{0, FaultKind::kHang, 3}};
+  for (RcaComponent& c : scenario.components) c.treatments[2].helps.fill(1);
+  const EpisodeResult bayes = play(scenario, std::make_unique<BayesPlanner>());
+  EXPECT_TRUE(bayes.is_recovered);
+  EXPECT_TRUE(bayes.is_exact);
+  EXPECT_EQ(bayes.wrong_component, 0);
+  EXPECT_EQ(bayes.effects, 3);
+  EXPECT_EQ(bayes.grounded, 3);
+  const EpisodeResult naive =
+      play(scenario, std::make_unique<PaperPlanner>(PaperSwitches{false, true, true}));
+  EXPECT_FALSE(naive.is_exact);
+  EXPECT_GT(naive.wrong_component, 0);
+}
+
+}  // namespace
+}  // namespace culprit::study::rca

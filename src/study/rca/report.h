@@ -1,0 +1,28 @@
+// What a campaign of the root-cause benchmark found, as tables, CSV and JSON (docs/study-rca.md).
+//
+//     {"rows": [{"planner": "bayes", "components": 200, "faults": 3, "noise": 0, "cyclic": true,
+//                "episodes": 100, "exact_set": 0.95, "top1": 0.99, "path": 0.98,
+//                "wrong_component": 0.04, "unnecessary": 0.01, "strategies_per_fault": 1.6,
+//                "downtime_s": 6.1, "recovery_s": 11.2, "unresolved": 0, "regret": null,
+//                "plan_us": null}]}
+//
+// exact_set, top1 and path are shares; the rest are means over the episodes. What does not exist is
+// null: path where no failure waited for another, regret where the optimum was not played, plan_us
+// unless times are asked for, because they are never the same twice.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/rca/campaign.h"
+#include "study/tables/table.h"
+
+namespace culprit::study::rca {
+
+enum class Times : std::uint8_t { kLeftOut, kShown };
+
+Table rca_table(const RcaCampaign& campaign, const std::vector<RcaRow>& rows, Times times);
+std::string rca_csv(const std::vector<RcaRow>& rows, Times times);
+std::string rca_json(const std::vector<RcaRow>& rows, Times times);
+
+}  // namespace culprit::study::rca

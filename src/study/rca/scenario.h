@@ -1,0 +1,89 @@
+// One scenario of the root-cause benchmark: a robot as a graph, what is wrong with it, and how well
+// it can be seen and repaired (docs/study-rca.md; as a file: scenario_json.h).
+//
+// What a manager may know is what the generated rules say (rules.h). The rest is hidden truth:
+// which subscriptions pass failures on, how good the detectors are, and what helps against what.
+//
+// Who is ill? A component with a fault that shows, one that is taken down by an adaptation, and
+// every component that is passed an illness: by one of its subscriptions, or, of those that are
+// redundant, by all of them. An illness that only feeds itself (a circle) is none.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "language/rule_set.h"
+
+namespace culprit::study::rca {
+
+enum class FaultKind : std::uint8_t {
+  kSilent,         // the node lives and sends nothing
+  kSlow,           // it sends, too late: what depends on it notices late
+  kDegraded,       // it sends nonsense
+  kFlapping,       // silent and well in turns
+  kCrash,          // its process is gone
+  kHang,           // its process is there and answers nothing
+  kWrongParameter  // somebody set a parameter wrong
+};
+inline constexpr std::size_t kFaultKinds = 7;
+std::string_view to_string(FaultKind kind);  // "silent", "wrong_parameter"
+
+// What can be done to a component.
+enum class Repair : std::uint8_t { kConfigure, kRestart, kRedeploy };
+inline constexpr std::size_t kRepairs = 3;
+std::string_view to_string(Repair repair);  // "configure", "restart", "redeploy"
+
+struct Treatment {
+  Repair repair = Repair::kRestart;
+  double success = 50;                      // what the rules say, in percent
+  double confidence = 10;                   // likewise
+  int impact = 5;                           // likewise, in cycles
+  double takes_s = 1;                       // from the request until it took effect
+  std::array<double, kFaultKinds> helps{};  // the truth, by kind of fault: a probability
+};
+
+struct Detector {
+  double latency_s = 0;  // from a change until readings show it
+  double miss = 0;       // the probability that a reading of an ill component says that it is well
+  double false_alarm = 0;  // and the other way round
+};
+
+struct RcaComponent {
+  std::string name;
+  Criticality criticality = Criticality::kError;
+  Detector detector;
+  std::vector<Treatment> treatments;  // each repair at most once
+};
+
+struct Subscription {
+  std::size_t component = 0;
+  double passes = 0;   // the probability that this subscription passes failures on, in an episode
+  double delay_s = 0;  // until it does
+  bool is_redundant = false;  // does so only together with all others like it of the component
+};
+
+struct RcaTopic {
+  std::string name;
+  std::vector<std::size_t> publishers;
+  std::vector<Subscription> subscribers;
+};
+
+struct InjectedFault {
+  std::size_t component = 0;
+  FaultKind kind = FaultKind::kSilent;
+  double at_s = 0;
+};
+
+struct RcaScenario {
+  std::uint64_t seed = 0;  // of all that is left to chance while it is played
+  double reading_s = 0.2;  // between two readings of each detector
+  double horizon_s = 120;  // after which it ends, well or not
+  std::vector<RcaComponent> components;
+  std::vector<RcaTopic> topics;
+  std::vector<InjectedFault> faults;
+};
+
+}  // namespace culprit::study::rca
