@@ -4,9 +4,9 @@
 
 #include "cli/commands.h"
 #include "cli/journal_file.h"
-#include "language/text_file.h"
 #include "journal/session.h"
 #include "journal/writer.h"
+#include "language/text_file.h"
 
 namespace culprit::cli {
 namespace {

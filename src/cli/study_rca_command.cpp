@@ -10,7 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "cli/text_file.h"
+#include "language/text_file.h"
 #include "study/rca/report.h"
 #include "study/rca/scenario_json.h"
 #include "study/tables/render.h"

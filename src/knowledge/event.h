@@ -224,9 +224,10 @@ struct Event {
   Time at;
   std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
                AdaptationDone, AdaptationFailed, StrategyFailed, StrategyResumed, Undone,
-               RoundSpent, RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble, OrderAccepted,
-               OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed, StrategyAbandoned,
-               OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached>
+               RoundSpent, RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble,
+               OrderAccepted, OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed,
+               StrategyAbandoned, OrderCarriedOut, SilenceEnded, StormBegan, StormEnded,
+               LastResortReached>
       what;
 };
 

@@ -82,9 +82,9 @@ std::string component_of(sunset::Member member, const RuleSet& rules) {
 }  // namespace
 
 std::vector<std::string_view> sunset_planners() {
-  return {"paper",          "reference",         "bayes",
-          "bayes:downtime", "bayes:adaptations", "bayes:redeployments",
-          "bt",             "metacontrol",       "rosa"};
+  return {
+      "paper", "reference",   "bayes", "bayes:downtime", "bayes:adaptations", "bayes:redeployments",
+      "bt",    "metacontrol", "rosa"};
 }
 
 bool has_switches(std::string_view planner) { return planner == "paper" || planner == "reference"; }
