@@ -40,6 +40,11 @@ struct Journal : testing::Test {
   const std::string journal = (world.folder() / "state" / "one_camera.journal").string();
 };
 
+int process_that_is_there(const std::string& output) {
+  const std::string words = "camera is there (process ";
+  return std::stoi(output.substr(output.find(words) + words.size()));
+}
+
 TEST_F(Journal, SurvivesAKillAndTellsAndReplaysWhatHappened) {
   TestProgram camera(world, {"sunset-node", "camera"});
   {
@@ -63,6 +68,7 @@ TEST_F(Journal, SurvivesAKillAndTellsAndReplaysWhatHappened) {
   EXPECT_THAT(second.output(), HasSubstr("the last run ended"));
   second.signal(SIGINT);
   EXPECT_EQ(second.wait(), 0);
+  kill(process_that_is_there(second.output()), SIGKILL);  // culprit leaves the robot running
 
   EXPECT_THAT(said_by({"log", "--journal", journal}), HasSubstr("CameraGone detected"));
   const std::string why = said_by({"explain", "--last", "--journal", journal});

@@ -76,11 +76,7 @@ void Executor::answered(const Reply& reply, Time now) {
 
 void Executor::advance(Time now, std::vector<Command>& commands) {
   // An attempt that succeeded left its rule; nothing of it is left to do.
-  std::erase_if(runs_, [&](const Run& run) {
-    if (attempt_of(run) != nullptr) return false;
-    forget_routines(run);
-    return true;
-  });
+  std::erase_if(runs_, [&](const Run& run) { return attempt_of(run) == nullptr; });
   for (Run& run : runs_) advance(run, now, commands);
 }
 
@@ -168,7 +164,7 @@ void Executor::finish_goal(Run& run, Time now) {
     const bool switches = type == AdaptationType::kActivate || type == AdaptationType::kDeactivate;
     if (switches) note_lifecycle(pursuit);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
-    note_setting(pursuit, now);
+    note_mode(pursuit, now);
     ++run.goal;
   } else {
     if (pursuit.met_rival()) note_rival(run, now);
@@ -198,10 +194,8 @@ void Executor::finish_undo(Run& run, Time now) {
   const bool reached = pursuit.is_reached();
   if (reached) note_lifecycle(pursuit);
   // A mode that is back by itself was set back, and that is remembered.
-  const bool is_mode = std::holds_alternative<execute::ModeGoal>(pursuit.goal());
-  if (const auto subject = execute::subject_of(pursuit.goal(), pursuit.component());
-      subject && (!is_mode || pursuit.has_changed_anything()))
-    knowledge_.rivals.forget(*subject);
+  if (std::holds_alternative<execute::ModeGoal>(pursuit.goal()) && pursuit.has_changed_anything())
+    knowledge_.rivals.forget(pursuit.component());
   // What came back by itself was not undone.
   if (!reached || pursuit.has_changed_anything()) {
     const std::string what =
@@ -227,35 +221,24 @@ void Executor::note_lifecycle(const Pursuit& pursuit) {
     knowledge_.components[pursuit.component()].intended_lifecycle = lifecycle->target;
 }
 
-// What was set, and from what: something else may set it back.
-void Executor::note_setting(const Pursuit& pursuit, Time now) {
-  const auto setting = execute::setting_of(pursuit.goal(), pursuit.component());
-  const auto* before = pursuit.before() ? std::get_if<Value>(&pursuit.before()->value) : nullptr;
+// Which mode was set, and from which: something else may set it back.
+void Executor::note_mode(const Pursuit& pursuit, Time now) {
+  const auto* mode = std::get_if<execute::ModeGoal>(&pursuit.goal());
+  const auto* value = pursuit.before() ? std::get_if<Value>(&pursuit.before()->value) : nullptr;
+  const auto* before = value == nullptr ? nullptr : std::get_if<std::string>(value);
   // An odd remark says that it does not read back what was set.
-  if (!setting || before == nullptr || !pursuit.has_changed_anything() || !pursuit.remark().empty())
+  if (mode == nullptr || before == nullptr || !pursuit.has_changed_anything() ||
+      !pursuit.remark().empty())
     return;
-  knowledge_.rivals.changed(setting->subject, *before, execute::in_type_of(setting->value, *before),
+  knowledge_.rivals.changed(pursuit.component(), *before, mode->mode,
                             knowledge_.began(pursuit.component()), now);
 }
 
 void Executor::note_rival(const Run& run, Time now) {
-  const auto subject = execute::subject_of(run.pursuit->goal(), run.pursuit->component());
-  knowledge_.rivals.leave_alone(*subject, now);
-  knowledge_.tell(now, RivalSeen{subject->component, subject->parameter});
+  const ComponentId system = run.pursuit->component();
+  knowledge_.rivals.leave_alone(system, now);
+  knowledge_.tell(now, RivalSeen{system});
   attempt_of(run)->is_ambiguous = true;  // that nothing was tried proves nothing
-}
-
-// What resets itself before the failure is over is no rival's work.
-void Executor::forget_routines(const Run& run) {
-  for (const Adaptation& adaptation : knowledge_.rules[run.strategy].adaptations) {
-    const bool is_parameter = adaptation.type == AdaptationType::kSetParameter ||
-                              adaptation.type == AdaptationType::kChangeCommunication;
-    if (!is_parameter) continue;
-    const Subject subject{adaptation.component, adaptation.subject};
-    const Value* ours = knowledge_.rivals.ours(subject);
-    const auto& present = knowledge_.components[adaptation.parameter];
-    if (ours != nullptr && present && *present != *ours) knowledge_.rivals.forget(subject);
-  }
 }
 
 Attempt* Executor::attempt_of(const Run& run) {

@@ -61,9 +61,8 @@ class Executor {
   void finish_goal(Run& run, Time now);
   void finish_undo(Run& run, Time now);
   void note_change(Run& run, Time now);
-  void note_setting(const execute::Pursuit& pursuit, Time now);
+  void note_mode(const execute::Pursuit& pursuit, Time now);
   void note_rival(const Run& run, Time now);
-  void forget_routines(const Run& run);
   void note_lifecycle(const execute::Pursuit& pursuit);
   Attempt* attempt_of(const Run& run);
   void enter(Run& run, Attempt::Stage stage);

@@ -127,21 +127,6 @@ std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& 
   return std::nullopt;
 }
 
-std::optional<Subject> subject_of(const Goal& goal, ComponentId component) {
-  if (std::holds_alternative<ModeGoal>(goal)) return Subject{component, ""};
-  const auto* parameter = std::get_if<ParameterGoal>(&goal);
-  if (parameter == nullptr) return std::nullopt;
-  return Subject{component, parameter->name};
-}
-
-std::optional<Setting> setting_of(const Goal& goal, ComponentId component) {
-  if (const auto* mode = std::get_if<ModeGoal>(&goal))
-    return Setting{{component, ""}, Value(mode->mode)};
-  const auto* parameter = std::get_if<ParameterGoal>(&goal);
-  if (parameter == nullptr || parameter->kind != ParameterGoal::Kind::kSet) return std::nullopt;
-  return Setting{{component, parameter->name}, parameter->value};
-}
-
 std::string describe(const Goal& goal) {
   return std::visit(
       Overload{[](const ParameterGoal& g) {

@@ -65,16 +65,6 @@ std::optional<Look> look_for(const Goal& goal);
 // not undone, or what was read is no state to go back to: an unknown mode, a number that is none.
 std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& before);
 
-// Which parameter or mode a goal is about; nothing if it is about none.
-std::optional<Subject> subject_of(const Goal& goal, ComponentId component);
-
-// What a goal sets that something else might set back (knowledge/rivals.h), and to which value.
-struct Setting {
-  Subject subject;
-  Value value;
-};
-std::optional<Setting> setting_of(const Goal& goal, ComponentId component);
-
 // For people: "exposure = 0.5", "active", "stopped".
 std::string describe(const Goal& goal);
 

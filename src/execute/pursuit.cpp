@@ -154,11 +154,11 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
 }
 
 bool Pursuit::would_fight(const Knowledge& knowledge) const {
-  const auto setting = setting_of(goal_, component_);
-  const auto* present = std::get_if<Value>(&seen_->value);
-  return setting && present != nullptr &&
-         knowledge.rivals.would_fight(setting->subject, *present,
-                                      in_type_of(setting->value, *present),
+  const auto* mode = std::get_if<ModeGoal>(&goal_);
+  const auto* value = std::get_if<Value>(&seen_->value);
+  const auto* present = value == nullptr ? nullptr : std::get_if<std::string>(value);
+  return mode != nullptr && present != nullptr &&
+         knowledge.rivals.would_fight(component_, *present, mode->mode,
                                       knowledge.began(component_));
 }
 

@@ -105,9 +105,7 @@ class EventWriter {
     return {{"type", "component_found"}, {"component", name(e.component)}, {"pid", e.pid}};
   }
   Json operator()(const RivalSeen& e) const {
-    Json json = {{"type", "rival_seen"}, {"component", name(e.component)}};
-    if (!e.parameter.empty()) json["parameter"] = e.parameter;
-    return json;
+    return {{"type", "rival_seen"}, {"component", name(e.component)}};
   }
   Json operator()(const Trouble& e) const { return {{"type", "trouble"}, {"what", e.text}}; }
   Json operator()(const OrderAccepted& e) const { return of_order("order_accepted", e.order); }

@@ -104,8 +104,8 @@ class Describer {
            (e.pid == 0 ? "" : " (process " + std::to_string(e.pid) + ")");
   }
   std::string operator()(const RivalSeen& e) const {
-    return "something else sets " + (e.parameter.empty() ? "the mode" : e.parameter) + " of " +
-           rules_[e.component].name + " back; it is left alone";
+    return "something else sets the mode of " + rules_[e.component].name +
+           " back; it is left alone";
   }
   std::string operator()(const Trouble& e) const { return e.text; }
   std::string operator()(const OrderAccepted& e) const {

@@ -142,10 +142,9 @@ struct ComponentFound {
   int pid = 0;
 };
 
-// Something else sets back what strategies set (rivals.h). It is left alone from now on.
+// Something else sets the mode back that strategies set (rivals.h). It is left alone from now on.
 struct RivalSeen {
   ComponentId component;
-  std::string parameter;  // empty: the mode
 };
 
 struct Trouble {

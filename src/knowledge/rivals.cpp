@@ -2,27 +2,23 @@
 
 namespace culprit {
 
-void Rivals::changed(const Subject& subject, Value before, Value value, Time began, Time now) {
-  const int set_back = times_set_back(subject, before, value, began);
-  changes_[subject] = {std::move(before), std::move(value), now, set_back};
+void Rivals::changed(ComponentId system, std::string before, std::string mode, Time began,
+                     Time now) {
+  const int set_back = times_set_back(system, before, mode, began);
+  changes_[system] = {std::move(before), std::move(mode), now, set_back};
 }
 
-bool Rivals::is_left_alone(const Subject& subject, Time began) const {
-  const auto since = left_alone_.find(subject);
+bool Rivals::is_left_alone(ComponentId system, Time began) const {
+  const auto since = left_alone_.find(system);
   return since != left_alone_.end() && since->second >= began;
 }
 
-const Value* Rivals::ours(const Subject& subject) const {
-  const auto change = changes_.find(subject);
-  return change == changes_.end() ? nullptr : &change->second.value;
-}
-
-int Rivals::times_set_back(const Subject& subject, const Value& present, const Value& value,
+int Rivals::times_set_back(ComponentId system, const std::string& present, const std::string& mode,
                            Time began) const {
-  const auto found = changes_.find(subject);
+  const auto found = changes_.find(system);
   if (found == changes_.end() || found->second.at < began) return 0;
   const Change& last = found->second;
-  const bool is_set_back = last.value == value && present == last.before && present != value;
+  const bool is_set_back = last.mode == mode && present == last.before && present != mode;
   return is_set_back ? last.set_back + 1 : 0;
 }
 

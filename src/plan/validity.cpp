@@ -11,11 +11,8 @@ bool has_lifecycle(Lifecycle state) {
 
 bool is_left_alone(const Adaptation& adaptation, const Knowledge& knowledge) {
   if (!knowledge.rivals.is_anything_left_alone()) return false;
-  const bool is_mode = adaptation.type == AdaptationType::kChangeMode;
-  const bool is_parameter = adaptation.type == AdaptationType::kSetParameter ||
-                            adaptation.type == AdaptationType::kChangeCommunication;
-  if (!is_mode && !is_parameter) return false;
-  return knowledge.rivals.is_left_alone({adaptation.component, is_mode ? "" : adaptation.subject},
+  return adaptation.type == AdaptationType::kChangeMode &&
+         knowledge.rivals.is_left_alone(adaptation.component,
                                         knowledge.began(adaptation.component));
 }
 

@@ -301,30 +301,6 @@ TEST(SimulatedSystem, IsNoRivalsWhenItsPartBeganAnew) {
   EXPECT_EQ(plant.mode(), "fast");
 }
 
-constexpr const char* kSetsRate = R"(
-COMPONENT pump_node NODE /pump_node
-SIGNAL rate PARAMETER pump_node rate
-RULE Slow
-  POLICIES ERROR
-  TRIGGER rate < 9
-    STRATEGY faster 90 10
-      ADAPTATION pump_node set_parameter rate 9 5
-)";
-
-TEST(SimulatedParameter, ThatSomethingElseSetsBackTwiceIsLeftAlone) {
-  Plant plant;
-  std::vector<Later> rival;
-  for (Duration at = 1s; at < 30s; at += 1s)
-    rival.push_back({at, [](Plant& p) { p.pump.set_parameter("rate", std::int64_t{0}); }});
-  const auto lines = said(plant, kSetsRate, 30s, rival);
-  EXPECT_EQ(std::count(lines.begin(), lines.end(),
-                       "something else sets rate of pump_node back; it is left alone"),
-            1);
-  EXPECT_EQ(std::count(lines.begin(), lines.end(), "set rate of pump_node: done"), Rivals::kTimes)
-      << testing::PrintToString(lines);
-  EXPECT_EQ(*plant.pump.parameter("rate"), Value(std::int64_t{0}));
-}
-
 // A routine that resets its parameter when it is done is no rival.
 class Washer : public Node {
  public:
