@@ -16,7 +16,6 @@ std::string node_of(const RcaComponent& component) { return "/" + component.name
 
 RcaRobot::RcaRobot(const RcaScenario& scenario, const RuleSet& rules)
     : scenario_(scenario),
-      rules_(rules),
       plant_(scenario),
       noise_(simulation::mix(scenario.seed + 1)),
       luck_(simulation::mix(scenario.seed + 2)),

@@ -18,7 +18,7 @@ class RcaRobot : public Robot {
   // A robot that is well for so long is left.
   static constexpr Duration kQuiet = std::chrono::seconds(5);
 
-  // Both must outlive it; `rules` are those of the scenario.
+  // `scenario` must outlive it; `rules` are those of the scenario.
   RcaRobot(const RcaScenario& scenario, const RuleSet& rules);
 
   Time now() const override { return plant_.now(); }
@@ -55,7 +55,6 @@ class RcaRobot : public Robot {
   }
 
   const RcaScenario& scenario_;
-  const RuleSet& rules_;
   Plant plant_;
   simulation::Random noise_;
   simulation::Random luck_;
