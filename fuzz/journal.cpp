@@ -76,7 +76,7 @@ void read_file(const std::string& bytes) {
     (void)journal::verify(*journal);
     (void)journal::recover(*journal, rules());
     if (auto recording = replay::Recording::open(*journal))
-      (void)replay::repeat(*recording, *journal, std::make_unique<BayesPlanner>());
+      (void)replay::repeat(*recording, *journal, std::make_unique<BayesPlanner>(), {});
   }
   close(file);
 }
