@@ -34,8 +34,13 @@ Duration CouplingWatch::delay(RuleId cause, RuleId effect) const {
   const int window = rules[effect].policies.hold_window;
   const Duration held = duration_of(Cycles{window > 1 ? window : 0}, rules);
   const RuleState& of_cause = knowledge_.states[cause];
-  const Duration came = knowledge_.states[effect].first_detected() - of_cause.first_detected();
-  if (came <= kLongestDelay) return held + std::max(Duration::zero(), came + came / 2);
+  const Time cause_came = of_cause.first_detected();
+  const Time effect_came = knowledge_.states[effect].first_detected();
+  if (effect_came <= cause_came) return held;  // also if the cause never came by itself
+  if (effect_came <= later(cause_came, kLongestDelay)) {
+    const Duration came = effect_came - cause_came;
+    return held + came + came / 2;
+  }
   const bool recurs = of_cause.first_detected() != of_cause.failing_since;
   return held + (recurs ? duration_of(kUsualDelay, rules) : Duration::zero());
 }
