@@ -4,7 +4,7 @@ import cytoscape from 'cytoscape'
 import { computed, effect, signal } from '@preact/signals'
 import { useEffect, useRef } from 'preact/hooks'
 import { layered, type Point } from './layout'
-import { culprits, graph, health, isLive, robot, selected, situation, stateOfComponent, stateOfTopic } from './store'
+import { culprits, graph, health, isLive, robot, selected, situation, state, stateOfComponent, stateOfTopic } from './store'
 import { colour, isDark } from './theme'
 import type { Health } from './types'
 
@@ -310,11 +310,26 @@ class Drawing {
   }
 }
 
+// A large graph takes a while to paint; nobody sees more than so many changes.
+const kPeriod = 66 // ms
+
+// What a drawing depends on.
+const readAll = () =>
+  [shown, cascade, health, culprits, situation, robot, state, selected, isLive].map((each) => each.value)
+
 export function GraphView() {
   const place = useRef<HTMLDivElement>(null)
   useEffect(() => {
     const drawing = new Drawing(place.current!)
-    const stop = effect(() => drawing.draw())
+    let timer = 0
+    const stop = effect(() => {
+      readAll()
+      if (timer !== 0) return
+      timer = window.setTimeout(() => {
+        timer = 0
+        drawing.draw()
+      }, kPeriod)
+    })
     const stopStyling = effect(() => {
       isDark.value // colours are those of the scheme
       drawing.restyle()
@@ -323,6 +338,7 @@ export function GraphView() {
     observer.observe(place.current!)
     return () => {
       observer.disconnect()
+      clearTimeout(timer)
       stopStyling()
       stop()
       drawing.destroy()

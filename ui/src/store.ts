@@ -39,6 +39,7 @@ export async function start(): Promise<void> {
   // What comes in bursts is drawn once for all of one frame. Of all but events only the newest counts.
   const newest: Partial<Record<string, unknown>> = {}
   let waiting: ManagerEvent[] = []
+  let count = 0
   let frame = 0
   const show = () => {
     frame = 0
@@ -64,7 +65,7 @@ export async function start(): Promise<void> {
         events.value = []
         waiting = []
       } else if (event === 'event') {
-        waiting.push(document)
+        waiting.push({ ...document, number: ++count })
         if (waiting.length > kMostEvents) waiting.shift() // nobody looks: browsers draw no frames then
       } else {
         if (event === 'robot') delete newest.state

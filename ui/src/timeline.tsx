@@ -157,7 +157,7 @@ export function EventLog() {
       {list.length === 0 && <p class="muted">Nothing yet.</p>}
       <ol>
         {list.map((event) => (
-          <li>
+          <li key={event.number}>
             <button type="button" onClick={() => (moment.value = event.t)} title="Look at this moment">
               {event.t.toFixed(2)}
             </button>

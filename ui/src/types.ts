@@ -84,6 +84,7 @@ export interface Suspect {
   probability: number
 }
 export interface ManagerEvent {
+  number: number // of this page's counting
   t: number
   kind: string
   text: string
