@@ -50,7 +50,7 @@ class Run {
       : scenario_(scenario),
         rules_(*check(Source("torture.rules", rules_of(scenario))).rules),
         robot_(scenario_, rules_),
-        invariants_(rules_, scenario.governor) {
+        invariants_(rules_, scenario) {
     begin_manager();
   }
 
