@@ -135,8 +135,6 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
   return session;
 }
 
-LiveSession::~LiveSession() = default;
-
 void LiveSession::begin(const std::atomic<bool>& stop) {
   RunBeginning beginning;
   if (frame_.records) beginning = begin_journal(frame_.options.journal_path(rules_), rules_);
@@ -149,7 +147,7 @@ void LiveSession::begin(const std::atomic<bool>& stop) {
   if (beginning.is_paused)
     seen.push_back(
         {robot_->now(), Order{0, "the last run", "it was paused when it ended", Pause{}}});
-  manage(std::move(beginning), std::move(seen));
+  manage(std::move(beginning), std::move(seen), "");
 }
 
 void LiveSession::begin(Handover before) {
@@ -157,12 +155,13 @@ void LiveSession::begin(Handover before) {
   if (frame_.records) beginning = begin_journal(frame_.options.journal_path(rules_), rules_);
   // What the manager knew is known, whether or not the journal could be written.
   beginning.learned = std::move(before.learned);
-  manage(std::move(beginning), std::move(before.orders));
+  manage(std::move(beginning), std::move(before.orders), std::move(before.occasion));
 }
 
-void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen) {
-  const journal::Session session =
-      session_of(frame_, rules_text_, rules_, robot_->now(), beginning);
+void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
+                         std::string occasion) {
+  journal::Session session = session_of(frame_, rules_text_, rules_, robot_->now(), beginning);
+  session.occasion = std::move(occasion);
   const Autonomy autonomy = frame_.advises ? Autonomy::kAdvise : Autonomy::kAct;
   manager_ = replay::manager_for(session, rules_, frame_.options.planner.planner(),
                                  {autonomy, frame_.governor});
@@ -230,10 +229,10 @@ bool LiveSession::is_adapting() const {
   return false;
 }
 
-LiveSession::Handover LiveSession::hand_over(const RuleSet& next) {
+LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string occasion) {
   end();
   return {learned_by(manager_->knowledge()),
-          standing_orders(*manager_, frame_.advises, next, robot_->now())};
+          standing_orders(*manager_, frame_.advises, next, robot_->now()), std::move(occasion)};
 }
 
 void LiveSession::end() {
