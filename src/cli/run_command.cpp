@@ -11,6 +11,7 @@
 #include "cli/live_robot.h"
 #include "cli/paths.h"
 #include "cli/planner_options.h"
+#include "cli/role.h"
 #include "cli/rule_file.h"
 #include "cli/run_journal.h"
 #include "cli/service_manager.h"
@@ -20,7 +21,6 @@
 #include "manager/manager.h"
 #include "manager/runtime.h"
 #include "replay/replay.h"
-#include "ros2/named_lock.h"
 #include "web/live_routes.h"
 #include "web/order_routes.h"
 #include "web/rule_routes.h"
@@ -73,7 +73,7 @@ std::filesystem::path journal_file(const RunOptions& options, const RuleSet& rul
                                  : std::filesystem::path(options.journal);
 }
 
-Expected<LiveRobot::Options> robot_options(const RunOptions& options) {
+Expected<LiveRobot::Options> robot_options(const RunOptions& options, const RuleSet& rules) {
   auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
   LiveRobot::Options out;
@@ -83,7 +83,9 @@ Expected<LiveRobot::Options> robot_options(const RunOptions& options) {
   out.link.parameters = {{"rules", Value(options.rules)},
                          {"planner", Value(options.planner.name)},
                          {"dry_run", Value(options.dry_run)}};
-  out.supervisor = {state_folder(options) / "log", {own_folder()}};
+  out.supervisor = {state_folder(options) / "log",
+                    {own_folder()},
+                    fmt::format("{}/{}", participant->domain, rules.robot)};
   return out;
 }
 
@@ -120,12 +122,6 @@ std::vector<web::Route> web_routes(web::Hub& hub, web::RuleDesk& desk, const Rul
   return routes;
 }
 
-// Two managers on one robot would undo each other's work: the second one only looks on. It neither
-// acts nor writes the journal.
-Expected<std::optional<ros2::NamedLock>> claim_robot(const RuleSet& rules, std::uint32_t domain) {
-  return ros2::NamedLock::take("culprit-manages-" + std::to_string(domain) + "-" + rules.robot);
-}
-
 // The manager and its journal begin from the same record, so that a replay begins from it too.
 journal::Session session_of(const RunOptions& options, const RuleSet& rules, bool advises,
                             Time start, const RunBeginning& beginning) {
@@ -143,14 +139,26 @@ journal::Session session_of(const RunOptions& options, const RuleSet& rules, boo
   session.forgetting = options.forgetting;
   session.learned = beginning.learned;
   session.interrupted = beginning.interrupted;
+  session.past = journal::to_json(beginning.past, rules);
+  session.is_paused = beginning.is_paused;
+  session.is_dry_run = beginning.is_dry_run;
   return session;
 }
 
 RunBeginning begin_run(const RunOptions& options, const RuleSet& rules, bool is_only_manager) {
   if (options.no_journal || !is_only_manager) return {};
-  RunBeginning beginning = begin_journal(journal_file(options, rules), rules);
+  RunBeginning beginning =
+      begin_journal(journal_file(options, rules), rules, {live_now(), wall_now()});
   for (const std::string& finding : beginning.findings) fmt::print("culprit: {}\n", finding);
   return beginning;
+}
+
+// Also those that left the graph while nobody looked on, because they were stopped, say.
+void adopt_again(LiveRobot& robot, const Past& past) {
+  for (const Event& event : past) {
+    if (const auto* found = std::get_if<ComponentFound>(&event.what))
+      robot.supervisor().adopt_again(found->component, found->pid, event.at);
+  }
 }
 
 std::unique_ptr<journal::Recorder> record(const RunOptions& options, RunBeginning beginning,
@@ -164,50 +172,38 @@ std::unique_ptr<journal::Recorder> record(const RunOptions& options, RunBeginnin
                                              session, manager.knowledge());
 }
 
-int run(const RunOptions& options) {
-  const auto rules = load_rules(options.rules);
-  if (rules == nullptr) return kFailed;
-  const auto governor = options.governor.options();
-  if (!governor) {
-    fmt::print(stderr, "culprit: {}\n", governor.error());
-    return kUsage;
-  }
-  auto robot_setup = robot_options(options);
-  if (!robot_setup) {
-    fmt::print(stderr, "culprit: {}\n", robot_setup.error());
-    return kUsage;
-  }
-  const auto claim = claim_robot(*rules, robot_setup->link.participant.domain);
-  if (!claim) return complain(claim.error());
-  const bool advises = options.dry_run || !*claim;
-  if (!*claim)
-    fmt::print(
-        "culprit: another culprit manages this robot; this one only says what it would do\n");
-  StopSignals signals;
-  auto robot = LiveRobot::open(*rules, std::move(*robot_setup));
+// Until it is asked to stop, or the role is another one. Gives the exit code; nothing in the second
+// case. Whoever only advises neither acts nor writes the journal.
+std::optional<int> run_in_role(const RunOptions& options, const RuleSet& rules,
+                               const Governor::Options& governor, LiveRobot::Options robot_setup,
+                               RoleOfCulprit& role, StopSignals& signals) {
+  const bool is_manager = role.role() == Role::kManage;
+  const bool advises = options.dry_run || !is_manager;
+  if (!role.reason().empty()) fmt::print("culprit: {}\n", role.reason());
+  auto robot = LiveRobot::open(rules, std::move(robot_setup));
   if (!robot) {
     fmt::print(stderr, "culprit: {}\n", robot.error());
     return kFailed;
   }
   signals.on_stop([&] { (*robot)->interrupt(); });
-  RunBeginning beginning = begin_run(options, *rules, claim->has_value());
+  RunBeginning beginning = begin_run(options, rules, is_manager);
+  adopt_again(**robot, beginning.past);
   fmt::print("culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot as it is\n",
-             rules->robot.empty() ? "the robot" : rules->robot, rules->rules.size(),
+             rules.robot.empty() ? "the robot" : rules.robot, rules.rules.size(),
              options.dry_run ? " (dry run)" : "");
   std::fflush(stdout);
 
   std::vector<Observation> seen;
-  if (options.launch && !advises) {
+  if (options.launch && !advises && role.reason().empty()) {
     seen = discover(**robot, signals.stopped());
-    launch_missing(**robot, *rules, seen);
+    launch_missing(**robot, rules, seen);
   }
-  const bool is_paused = beginning.is_paused;
-  const journal::Session session = session_of(options, *rules, advises, (*robot)->now(), beginning);
+  const journal::Session session = session_of(options, rules, advises, (*robot)->now(), beginning);
   const auto manager =
-      replay::manager_for(session, *rules, options.planner.planner(),
-                          {advises ? Autonomy::kAdvise : Autonomy::kAct, *governor});
+      replay::manager_for(session, rules, options.planner.planner(),
+                          {advises ? Autonomy::kAdvise : Autonomy::kAct, governor});
   std::unique_ptr<journal::Recorder> recorder;
-  if (!options.no_journal && claim->has_value())
+  if (!options.no_journal && is_manager)
     recorder = record(options, std::move(beginning), session, *manager, **robot);
 
   web::Hub hub([&] { (*robot)->interrupt(); });
@@ -217,7 +213,7 @@ int run(const RunOptions& options) {
   Expected<std::unique_ptr<web::Server>> server(nullptr);
   if (options.is_on_web) {
     server =
-        serve(options.web, web_routes(hub, desk, *rules, runtime, options.planner.factory()), &hub);
+        serve(options.web, web_routes(hub, desk, rules, runtime, options.planner.factory()), &hub);
     if (!server) {
       fmt::print(stderr, "culprit: {}\n", server.error());
       return kUsage;
@@ -232,33 +228,64 @@ int run(const RunOptions& options) {
   }
   runtime.on_events = [&](std::span<const Event> events) {
     for (const Event& event : events) {
-      const std::string text = line(event, *rules, session.start, colour);
+      const std::string text = line(event, rules, session.start, colour);
       if (text.empty()) continue;
       fmt::print("{}\n", text);
-      (*robot)->link().log(severity_of(event), describe(event, *rules));
+      (*robot)->link().log(severity_of(event), describe(event, rules));
     }
     std::fflush(stdout);
     (*robot)->link().publish(health(manager->knowledge()));
   };
   (*robot)->link().publish(health(manager->knowledge()));
-  if (is_paused)
-    seen.push_back(
-        {session.start, Order{0, "the last run", "it was paused when it ended", Pause{}}});
+  const auto go_on_with = [&](const char* reason, auto order) {
+    seen.push_back({session.start, Order{0, "the last run", reason, order}});
+  };
+  if (session.is_paused) go_on_with("it was paused when it ended", Pause{});
+  if (session.is_dry_run && !advises)
+    go_on_with("a dry run was ordered when it ended", SetDryRun{true});
   runtime.step(seen);
   ServiceManager systemd;
-  systemd.ready(fmt::format("watching {}", rules->robot.empty() ? "the robot" : rules->robot));
-  while (!signals.stopped()) {
+  systemd.ready(fmt::format("watching {}", rules.robot.empty() ? "the robot" : rules.robot));
+  constexpr Duration kLookAtRole = std::chrono::milliseconds(500);
+  bool has_other_role = false;
+  while (!signals.stopped() && !has_other_role) {
     systemd.feed((*robot)->now());
-    runtime.run(signals.stopped(), systemd.next_feeding());
+    const Time look = later((*robot)->now(), kLookAtRole);
+    runtime.run(signals.stopped(), std::min(systemd.next_feeding(), look));
+    has_other_role = role.has_changed((*robot)->link(), (*robot)->now(), session.start);
   }
-  systemd.stopping();
   signals.on_stop({});
   if (recorder != nullptr) {
     if (const auto written = recorder->end(); !written)
       fmt::print(stderr, "culprit: {}\n", written.error());
   }
+  if (has_other_role) return std::nullopt;
+  systemd.stopping();
   fmt::print("culprit: stopped; the robot goes on as it is\n");
   return kOk;
+}
+
+int run(const RunOptions& options) {
+  const auto rules = load_rules(options.rules);
+  if (rules == nullptr) return kFailed;
+  const auto governor = options.governor.options();
+  if (!governor) {
+    fmt::print(stderr, "culprit: {}\n", governor.error());
+    return kUsage;
+  }
+  auto robot_setup = robot_options(options, *rules);
+  if (!robot_setup) {
+    fmt::print(stderr, "culprit: {}\n", robot_setup.error());
+    return kUsage;
+  }
+  auto role = RoleOfCulprit::claim(*rules, robot_setup->link.participant.domain);
+  if (!role) return complain(role.error());
+  if (!options.dry_run) robot_setup->link.claim = role->lease();
+  StopSignals signals;
+  while (true) {
+    const auto code = run_in_role(options, *rules, *governor, *robot_setup, *role, signals);
+    if (code) return *code;
+  }
 }
 
 }  // namespace
