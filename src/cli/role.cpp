@@ -1,16 +1,26 @@
 #include "cli/role.h"
 
+#include <random>
+
 #include "cli/journal_file.h"
 #include "cli/paths.h"
 #include "manager/manager.h"
 
 namespace culprit::cli {
+namespace {
+
+std::int64_t random_id() {
+  std::random_device random;
+  return std::int64_t{random()} << 31 ^ random();
+}
+
+}  // namespace
 
 Expected<RoleOfCulprit> RoleOfCulprit::claim(const RuleSet& rules, std::uint32_t domain) {
   // The variable makes one machine look like two.
   RoleOfCulprit role(
       "culprit-manages-" + std::to_string(domain) + "-" + rules.robot + environment("CULPRIT_LOCK"),
-      {rules.robot, wall_now()});
+      {rules.robot, wall_now(), random_id()});
   if (const auto taken = role.take_lock(); !taken) return Error{taken.error()};
   if (role.lock_) return role;
   role.role_ = Role::kAdvise;

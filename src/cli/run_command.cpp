@@ -1,291 +1,234 @@
-#include <filesystem>
+#include <mutex>
 #include <unistd.h>
 
 #include <fmt/core.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "cli/governor_options.h"
-#include "cli/health.h"
 #include "cli/journal_file.h"
-#include "cli/live_robot.h"
-#include "cli/paths.h"
-#include "cli/planner_options.h"
+#include "cli/live_session.h"
+#include "cli/robot_names.h"
 #include "cli/role.h"
-#include "cli/rule_file.h"
-#include "cli/run_journal.h"
+#include "cli/run_options.h"
 #include "cli/service_manager.h"
-#include "cli/web_service.h"
 #include "cli/what_if_route.h"
-#include "knowledge/describe.h"
-#include "manager/manager.h"
-#include "manager/runtime.h"
-#include "replay/replay.h"
 #include "web/live_routes.h"
+#include "web/name_routes.h"
 #include "web/order_routes.h"
+#include "web/reload_routes.h"
 #include "web/rule_routes.h"
-#include "web/watched_manager.h"
+#include "web/status_routes.h"
 
 namespace culprit::cli {
 namespace {
 
-struct RunOptions {
-  std::string version;  // of culprit
-  std::string rules;
-  bool dry_run = false;
-  bool launch = false;
-  PlannerOptions planner;
-  GovernorOptions governor;
-  double forgetting = 1;
-  double settle_seconds = seconds(Manager::kDiscovery);
-  std::string state_folder;
-  std::string journal;
-  bool no_journal = false;
-  std::vector<std::filesystem::path> message_path;
-  bool is_on_web = false;
-  WebOptions web;
+Expected<RoleOfCulprit> claim_robot(const RuleSet& rules) {
+  const auto participant = ros2::options_from_environment();
+  if (!participant) return Error{participant.error()};
+  return RoleOfCulprit::claim(rules, participant->domain);
+}
+
+// Whoever only advises neither acts nor writes the journal.
+void take_role(LiveSession::Frame& frame, Role role) {
+  frame.advises = frame.options.dry_run || role == Role::kAdvise;
+  frame.records = !frame.options.no_journal && role == Role::kManage;
+}
+
+std::string name_of(const RuleSet& rules) {
+  return rules.robot.empty() ? "the robot" : rules.robot;
+}
+
+// The session that is on, for other threads, and the rules that are to be next.
+class Stage {
+ public:
+  struct Next {
+    LoadedRules rules;
+    std::string author;
+  };
+
+  explicit Stage(std::string path) : path_(std::move(path)) {}
+
+  // Null: none is on now.
+  void enter(LiveSession* session) {
+    const std::lock_guard lock(mutex_);
+    session_ = session;
+  }
+  void interrupt() {
+    const std::lock_guard lock(mutex_);
+    if (session_ != nullptr) session_->interrupt();
+  }
+  void leave() {
+    const std::lock_guard lock(mutex_);
+    if (session_ != nullptr) session_->leave();
+  }
+  // web::Reload
+  Expected<std::size_t> reload(const std::string& author) {
+    auto loaded = read_rules(path_);
+    if (!loaded) return Error{loaded.error()};
+    const std::size_t count = loaded->rules.rules.size();
+    const std::lock_guard lock(mutex_);
+    if (session_ == nullptr) return Error{"the rules are just being reloaded; ask again"};
+    if (loaded->rules.robot != session_->rules().robot)
+      return Error{fmt::format("{} is now about the robot '{}' instead of '{}'; start culprit anew",
+                               path_, loaded->rules.robot, session_->rules().robot)};
+    next_ = Next{std::move(*loaded), author};
+    session_->leave();
+    return count;
+  }
+  std::optional<Next> take_next() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(next_, std::nullopt);
+  }
+
+ private:
+  const std::string path_;
+  std::mutex mutex_;  // guards what follows
+  LiveSession* session_ = nullptr;
+  std::optional<Next> next_;
 };
 
-ros2::Severity severity_of(const Event& event) {
-  if (std::holds_alternative<RuleExhausted>(event.what) ||
-      std::holds_alternative<LastResortReached>(event.what) ||
-      std::holds_alternative<StormBegan>(event.what))
-    return ros2::Severity::kError;
-  const bool is_bad = std::holds_alternative<FailureDetected>(event.what) ||
-                      std::holds_alternative<StrategyFailed>(event.what) ||
-                      std::holds_alternative<ComponentLost>(event.what) ||
-                      std::holds_alternative<AdaptationFailed>(event.what) ||
-                      std::holds_alternative<ActionHeldBack>(event.what) ||
-                      std::holds_alternative<ApprovalAsked>(event.what) ||
-                      std::holds_alternative<StrategyAbandoned>(event.what) ||
-                      std::holds_alternative<RivalSeen>(event.what) ||
-                      std::holds_alternative<Trouble>(event.what);
-  return is_bad ? ros2::Severity::kWarn : ros2::Severity::kInfo;
-}
-
-std::filesystem::path state_folder(const RunOptions& options) {
-  return options.state_folder.empty() ? default_state_folder()
-                                      : std::filesystem::path(options.state_folder);
-}
-
-std::filesystem::path journal_file(const RunOptions& options, const RuleSet& rules) {
-  return options.journal.empty() ? default_journal(state_folder(options), rules.robot)
-                                 : std::filesystem::path(options.journal);
-}
-
-Expected<LiveRobot::Options> robot_options(const RunOptions& options, const RuleSet& rules) {
-  auto participant = ros2::options_from_environment();
-  if (!participant) return Error{participant.error()};
-  LiveRobot::Options out;
-  out.link.participant = *participant;
-  out.link.message_path =
-      ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH"));
-  out.link.parameters = {{"rules", Value(options.rules)},
-                         {"planner", Value(options.planner.name)},
-                         {"dry_run", Value(options.dry_run)}};
-  out.supervisor = {state_folder(options) / "log",
-                    {own_folder()},
-                    fmt::format("{}/{}", participant->domain, rules.robot)};
-  return out;
-}
-
-// Looks at what is there, so that what runs already is not started again.
-std::vector<Observation> discover(LiveRobot& robot, const std::atomic<bool>& stop) {
-  constexpr Duration kLook = std::chrono::seconds(3);
-  std::vector<Observation> seen;
-  for (const Time end = robot.now() + kLook; robot.now() < end && !stop;) robot.observe(end, seen);
-  return seen;
-}
-
-void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Observation>& seen) {
-  ComponentBinding binding(rules);
-  std::vector<bool> is_there(rules.components.size());
-  for (const Observation& o : seen) {
-    if (const auto* node = std::get_if<NodeAppeared>(&o.what)) {
-      if (const auto component = binding.bind(node->node)) is_there[component->index] = true;
-    }
+// Gives the session of the new rules, or the old one if the robot cannot be joined anew.
+std::unique_ptr<LiveSession> reloaded(std::unique_ptr<LiveSession> old, Stage::Next next,
+                                      const LiveSession::Frame& frame, Stage& stage,
+                                      web::OrderDesk& orders) {
+  const std::string& path = frame.options.rules;
+  auto opened = LiveSession::open(frame, std::move(next.rules));
+  if (!opened) {
+    old->announce("trouble", "the rules are not reloaded: " + opened.error());
+    return old;
   }
-  for (std::size_t c = 0; c < rules.components.size(); ++c) {
-    if (is_there[c] || rules.components[c].launch.empty()) continue;
-    fmt::print("starting {}\n", rules.components[c].name);
-    robot.supervisor().start({}, ComponentId(c));
-  }
-}
-
-std::vector<web::Route> web_routes(web::Hub& hub, web::RuleDesk& desk, const RuleSet& rules,
-                                   Runtime& runtime, PlannerFactory planner) {
-  std::vector<web::Route> routes = web::live_routes(hub);
-  const auto submit = [&runtime](Order order) { runtime.submit(std::move(order)); };
-  for (web::Route& route : web::order_routes(rules, submit)) routes.push_back(std::move(route));
-  for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
-  routes.push_back(what_if_route(std::move(planner)));
-  return routes;
-}
-
-// The manager and its journal begin from the same record, so that a replay begins from it too.
-journal::Session session_of(const RunOptions& options, const RuleSet& rules, bool advises,
-                            Time start, const RunBeginning& beginning) {
-  journal::Session session;
-  session.version = options.version;
-  session.robot = rules.robot;
-  session.rules_path = options.rules;
-  if (const auto source = Source::read(options.rules)) session.rules_text = source->text();
-  session.planner = options.planner.to_json();
-  session.governor = options.governor.to_json();
-  session.advises = advises;
-  session.boot = journal::boot_id();
-  session.start = start;
-  session.settling = from_seconds(options.settle_seconds);
-  session.forgetting = options.forgetting;
-  session.learned = beginning.learned;
-  session.interrupted = beginning.interrupted;
-  session.past = journal::to_json(beginning.past, rules);
-  session.is_paused = beginning.is_paused;
-  session.is_dry_run = beginning.is_dry_run;
+  std::unique_ptr<LiveSession> session = std::move(*opened);
+  orders.close();
+  stage.enter(nullptr);
+  LiveSession::Handover handover = old->hand_over(session->rules());
+  old.reset();
+  session->begin(std::move(handover));
+  session->announce("reloaded", fmt::format("{}: {} is reloaded, with {} rules", next.author, path,
+                                            session->rules().rules.size()));
+  stage.enter(session.get());
+  orders.open(session->rules(),
+              [&session = *session](Order order) { session.submit(std::move(order)); });
   return session;
 }
 
-RunBeginning begin_run(const RunOptions& options, const RuleSet& rules, bool is_only_manager) {
-  if (options.no_journal || !is_only_manager) return {};
-  RunBeginning beginning =
-      begin_journal(journal_file(options, rules), rules, {live_now(), wall_now()});
-  for (const std::string& finding : beginning.findings) fmt::print("culprit: {}\n", finding);
-  return beginning;
+std::vector<web::Route> web_routes(web::Hub& hub, const web::Metrics& metrics, web::RuleDesk& desk,
+                                   web::OrderDesk& orders, Stage& stage, RobotNames& names,
+                                   PlannerFactory planner) {
+  std::vector<web::Route> all;
+  const auto reload = [&stage](const std::string& author) { return stage.reload(author); };
+  for (auto routes :
+       {web::live_routes(hub), web::order_routes(orders), web::status_routes(hub, metrics),
+        web::rule_routes(desk), web::reload_routes(reload),
+        web::name_routes(
+            [&names](const LiveInterest& interest) { return names.look(interest); })}) {
+    for (web::Route& route : routes) all.push_back(std::move(route));
+  }
+  all.push_back(what_if_route(std::move(planner)));
+  return all;
 }
 
-// Also those that left the graph while nobody looked on, because they were stopped, say.
-void adopt_again(LiveRobot& robot, const Past& past) {
-  for (const Event& event : past) {
-    if (const auto* found = std::get_if<ComponentFound>(&event.what))
-      robot.supervisor().adopt_again(found->component, found->pid, event.at);
-  }
+// Begins anew in another role, with the same rules. Gives null, and says why, if the robot cannot
+// be joined.
+std::unique_ptr<LiveSession> in_role(const RoleOfCulprit& role, std::unique_ptr<LiveSession> old,
+                                     LiveSession::Frame& frame, Stage& stage,
+                                     web::OrderDesk& orders, const std::atomic<bool>& stopped) {
+  orders.close();
+  stage.enter(nullptr);
+  LoadedRules rules = old->loaded_rules();
+  old->end();
+  old.reset();
+  take_role(frame, role.role());
+  auto session = LiveSession::open(frame, std::move(rules));
+  if (!session) return complain(session.error()), nullptr;
+  (*session)->begin(stopped);
+  (*session)->announce("role", role.reason());
+  stage.enter(session->get());
+  orders.open((*session)->rules(),
+              [&session = **session](Order order) { session.submit(std::move(order)); });
+  return std::move(*session);
 }
 
-std::unique_ptr<journal::Recorder> record(const RunOptions& options, RunBeginning beginning,
-                                          const journal::Session& session, const Manager& manager,
-                                          LiveRobot& robot) {
-  journal::Recorder::Options recorder;
-  recorder.path = journal_file(options, manager.knowledge().rules);
-  recorder.wall_clock = wall_now;
-  recorder.on_trouble = [&robot](const std::string& what) { robot.report(what); };
-  return std::make_unique<journal::Recorder>(std::move(beginning.writer), std::move(recorder),
-                                             session, manager.knowledge());
-}
-
-// Until it is asked to stop, or the role is another one. Gives the exit code; nothing in the second
-// case. Whoever only advises neither acts nor writes the journal.
-std::optional<int> run_in_role(const RunOptions& options, const RuleSet& rules,
-                               const Governor::Options& governor, LiveRobot::Options robot_setup,
-                               RoleOfCulprit& role, StopSignals& signals) {
-  const bool is_manager = role.role() == Role::kManage;
-  const bool advises = options.dry_run || !is_manager;
-  if (!role.reason().empty()) fmt::print("culprit: {}\n", role.reason());
-  auto robot = LiveRobot::open(rules, std::move(robot_setup));
-  if (!robot) {
-    fmt::print(stderr, "culprit: {}\n", robot.error());
-    return kFailed;
-  }
-  signals.on_stop([&] { (*robot)->interrupt(); });
-  RunBeginning beginning = begin_run(options, rules, is_manager);
-  adopt_again(**robot, beginning.past);
-  fmt::print("culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot as it is\n",
-             rules.robot.empty() ? "the robot" : rules.robot, rules.rules.size(),
-             options.dry_run ? " (dry run)" : "");
-  std::fflush(stdout);
-
-  std::vector<Observation> seen;
-  if (options.launch && !advises && role.reason().empty()) {
-    seen = discover(**robot, signals.stopped());
-    launch_missing(**robot, rules, seen);
-  }
-  const journal::Session session = session_of(options, rules, advises, (*robot)->now(), beginning);
-  const auto manager =
-      replay::manager_for(session, rules, options.planner.planner(),
-                          {advises ? Autonomy::kAdvise : Autonomy::kAct, governor});
-  std::unique_ptr<journal::Recorder> recorder;
-  if (!options.no_journal && is_manager)
-    recorder = record(options, std::move(beginning), session, *manager, **robot);
-
-  web::Hub hub([&] { (*robot)->interrupt(); });
-  web::WatchedManager watched(*manager, hub, session.start);
-  Runtime runtime(watched, **robot);
-  web::RuleDesk desk(options.rules);
-  Expected<std::unique_ptr<web::Server>> server(nullptr);
-  if (options.is_on_web) {
-    server =
-        serve(options.web, web_routes(hub, desk, rules, runtime, options.planner.factory()), &hub);
-    if (!server) {
-      fmt::print(stderr, "culprit: {}\n", server.error());
-      return kUsage;
-    }
-  }
-
-  const Colour colour = colour_of(STDOUT_FILENO);
-  if (recorder != nullptr) {
-    runtime.on_step = [&](const Runtime::Step& step) {
-      recorder->stepped(step.now, step.observations, step.commands, step.events);
-    };
-  }
-  runtime.on_events = [&](std::span<const Event> events) {
-    for (const Event& event : events) {
-      const std::string text = line(event, rules, session.start, colour);
-      if (text.empty()) continue;
-      fmt::print("{}\n", text);
-      (*robot)->link().log(severity_of(event), describe(event, rules));
-    }
-    std::fflush(stdout);
-    (*robot)->link().publish(health(manager->knowledge()));
-  };
-  (*robot)->link().publish(health(manager->knowledge()));
-  const auto go_on_with = [&](const char* reason, auto order) {
-    seen.push_back({session.start, Order{0, "the last run", reason, order}});
-  };
-  if (session.is_paused) go_on_with("it was paused when it ended", Pause{});
-  if (session.is_dry_run && !advises)
-    go_on_with("a dry run was ordered when it ended", SetDryRun{true});
-  runtime.step(seen);
+// One session after the other, as often as the rules are reloaded or the role is another one.
+int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, RoleOfCulprit& role,
+           Stage& stage, web::OrderDesk& orders, const std::atomic<bool>& stopped) {
   ServiceManager systemd;
-  systemd.ready(fmt::format("watching {}", rules.robot.empty() ? "the robot" : rules.robot));
-  constexpr Duration kLookAtRole = std::chrono::milliseconds(500);
-  bool has_other_role = false;
-  while (!signals.stopped() && !has_other_role) {
-    systemd.feed((*robot)->now());
-    const Time look = later((*robot)->now(), kLookAtRole);
-    runtime.run(signals.stopped(), std::min(systemd.next_feeding(), look));
-    has_other_role = role.has_changed((*robot)->link(), (*robot)->now(), session.start);
+  systemd.ready("watching " + name_of(session->rules()));
+  std::optional<Stage::Next> next;
+  Time joined = session->now();
+  while (!stopped) {
+    if (role.has_changed(session->link(), session->now(), joined)) {
+      session = in_role(role, std::move(session), frame, stage, orders, stopped);
+      if (session == nullptr) return kFailed;
+      joined = session->now();
+    }
+    systemd.feed(session->now());
+    // Without a journal nobody would know what is under way: then the new rules wait for its end.
+    const bool has_to_wait = next && !frame.records && session->is_adapting();
+    if (next && !has_to_wait) {
+      session = reloaded(std::move(session), std::move(*next), frame, stage, orders);
+      next.reset();
+    }
+    constexpr Duration kLook = std::chrono::milliseconds(100);
+    constexpr Duration kLookAtRole = std::chrono::milliseconds(500);
+    const Time until = later(session->now(), has_to_wait ? kLook : kLookAtRole);
+    session->run(std::min(until, systemd.next_feeding()));
+    if (auto newest = stage.take_next()) next = std::move(newest);
   }
-  signals.on_stop({});
-  if (recorder != nullptr) {
-    if (const auto written = recorder->end(); !written)
-      fmt::print(stderr, "culprit: {}\n", written.error());
-  }
-  if (has_other_role) return std::nullopt;
   systemd.stopping();
-  fmt::print("culprit: stopped; the robot goes on as it is\n");
+  orders.close();
+  stage.enter(nullptr);
+  session->end();
   return kOk;
 }
 
 int run(const RunOptions& options) {
-  const auto rules = load_rules(options.rules);
-  if (rules == nullptr) return kFailed;
+  auto rules = read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
+  if (!rules) return complain(rules.error());
+  fmt::print(stderr, "{}", rules->remarks);
   const auto governor = options.governor.options();
-  if (!governor) {
-    fmt::print(stderr, "culprit: {}\n", governor.error());
-    return kUsage;
+  if (!governor) return complain(governor.error()), kUsage;
+  auto role = claim_robot(rules->rules);
+  if (!role) return complain(role.error()), kUsage;
+  if (!role->reason().empty()) fmt::print("culprit: {}\n", role->reason());
+  StopSignals signals(Hangup::kReloads);
+  Stage stage(options.rules);
+  web::Hub hub([&] { stage.interrupt(); });
+  web::Metrics metrics;
+  LiveSession::Frame frame{options, *governor, false, true, {}, hub, metrics, live_now()};
+  take_role(frame, role->role());
+  if (!options.dry_run) frame.lease = role->lease();
+  const std::string robot = name_of(rules->rules);
+  auto session = LiveSession::open(frame, std::move(*rules));
+  if (!session) return complain(session.error());
+  signals.on_stop([&] { stage.leave(); });
+  fmt::print("culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot as it is\n",
+             robot, (*session)->rules().rules.size(), options.dry_run ? " (dry run)" : "");
+  std::fflush(stdout);
+  (*session)->begin(signals.stopped());
+
+  web::OrderDesk orders;
+  orders.open((*session)->rules(),
+              [&session = **session](Order order) { session.submit(std::move(order)); });
+  stage.enter(session->get());
+  web::RuleDesk desk(options.rules);
+  RobotNames names(options.message_path);
+  Expected<std::unique_ptr<web::Server>> server(nullptr);
+  if (options.is_on_web) {
+    server = serve(options.web,
+                   web_routes(hub, metrics, desk, orders, stage, names, options.planner.factory()),
+                   &hub);
+    if (!server) return complain(server.error()), kUsage;
   }
-  auto robot_setup = robot_options(options, *rules);
-  if (!robot_setup) {
-    fmt::print(stderr, "culprit: {}\n", robot_setup.error());
-    return kUsage;
-  }
-  auto role = RoleOfCulprit::claim(*rules, robot_setup->link.participant.domain);
-  if (!role) return complain(role.error());
-  if (!options.dry_run) robot_setup->link.claim = role->lease();
-  StopSignals signals;
-  while (true) {
-    const auto code = run_in_role(options, *rules, *governor, *robot_setup, *role, signals);
-    if (code) return *code;
-  }
+  signals.on_reload([&] {
+    if (const auto count = stage.reload("SIGHUP"); !count)
+      fmt::print(stderr, "culprit: the rules are not reloaded: {}\n", count.error());
+  });
+  const int code = manage(std::move(*session), frame, *role, stage, orders, signals.stopped());
+  signals.on_stop({});
+  signals.on_reload({});
+  if (code != kOk) return code;
+  fmt::print("culprit: stopped; the robot goes on as it is\n");
+  return kOk;
 }
 
 }  // namespace
@@ -296,36 +239,8 @@ void add_run(CLI::App& app, const std::string& version, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("run",
                          "Watch a live robot and heal it until Ctrl-C.\nJoins the DDS domain that "
-                         "ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY name.");
-  command->add_option("RULES", options->rules, "The rule file")->required();
-  command->add_flag("--dry-run", options->dry_run, "Say what would be done, and do nothing");
-  command->add_flag("--launch", options->launch,
-                    "Start components that are missing, by their LAUNCH commands");
-  command
-      ->add_option("--settle", options->settle_seconds,
-                   "For so many seconds, nothing is called missing because it was not seen")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
-  command->add_option("--state-dir", options->state_folder, "Where logs of started components go")
-      ->default_str("~/.local/state/culprit");
-  auto* journal = command->add_option(
-      "--journal", options->journal,
-      "Where everything is written down (default: <robot>.journal in the state folder)");
-  command->add_flag("--no-journal", options->no_journal, "Write nothing down, and know nothing")
-      ->excludes(journal);
-  command->add_option("--message-path", options->message_path,
-                      "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
-  command
-      ->add_option("--forgetting", options->forgetting,
-                   "What was learned n outcomes ago weighs this to the n-th power; 1: nothing is "
-                   "forgotten")
-      ->check(CLI::Range(0.5, 1.0))
-      ->capture_default_str();
-  options->planner.add_to(*command);
-  command->add_flag("--web", options->is_on_web,
-                    "Show in a browser what is seen, decided and done");
-  options->web.add_to(*command);
-  options->governor.add_to(*command);
+                         "ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY name. SIGHUP reloads the rules.");
+  options->add_to(*command);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

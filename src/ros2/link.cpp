@@ -112,7 +112,6 @@ Expected<void> Link::claim_lease() {
                                                        .on_match = {}});
   if (!writer) return Error{writer.error()};
   lease_writer_ = std::move(*writer);
-  lease_->set_guid(lease_writer_->guid());
   context_->on_discovery([this](const DiscoveryEvent& event) { on_lease(event); });
   return {};
 }

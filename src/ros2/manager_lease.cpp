@@ -19,15 +19,17 @@ std::optional<std::int64_t> number_in(std::string_view text) {
 }  // namespace
 
 std::string ManagerLease::user_data() const {
-  return "robot=" + own_.robot + ";since=" + std::to_string(own_.since) + ";";
+  return "robot=" + own_.robot + ";since=" + std::to_string(own_.since) +
+         ";id=" + std::to_string(own_.id) + ";";
 }
 
 void ManagerLease::apply(const DiscoveryEvent& event) {
   if (const auto* endpoint = std::get_if<EndpointInfo>(&event)) {
     if (endpoint->topic != kTopic || endpoint->guid.is_reader()) return;
     const auto since = number_in(user_data_value(endpoint->user_data, "since"));
-    if (!since || user_data_value(endpoint->user_data, "robot") != own_.robot) return;
-    if (others_.size() < kMost) others_[endpoint->guid] = *since;
+    const auto id = number_in(user_data_value(endpoint->user_data, "id"));
+    if (!since || !id || user_data_value(endpoint->user_data, "robot") != own_.robot) return;
+    if (others_.size() < kMost) others_[endpoint->guid] = {*since, *id};
   } else if (const auto* gone = std::get_if<EndpointGone>(&event)) {
     others_.erase(gone->guid);
   } else if (const auto* left = std::get_if<ParticipantGone>(&event)) {
@@ -36,10 +38,13 @@ void ManagerLease::apply(const DiscoveryEvent& event) {
   }
 }
 
+// A claim of the same rank is of this process, which joins the domain anew at times.
 std::optional<GuidPrefix> ManagerLease::elder() const {
-  std::pair first{own_.since, guid_};
-  for (const auto& [guid, since] : others_) first = std::min(first, {since, guid});
-  return first.second == guid_ ? std::nullopt : std::optional(first.second.prefix());
+  const auto first =
+      std::min_element(others_.begin(), others_.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (first == others_.end() || first->second >= Rank(own_.since, own_.id)) return std::nullopt;
+  return first->first.prefix();
 }
 
 }  // namespace culprit::ros2

@@ -12,6 +12,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "ros2/participant.h"
 
@@ -20,6 +21,7 @@ namespace culprit::ros2 {
 struct LeaseClaim {
   std::string robot;
   std::int64_t since = 0;  // nanoseconds since 1970
+  std::int64_t id = 0;     // of the process: random
 };
 
 class ManagerLease {
@@ -31,9 +33,6 @@ class ManagerLease {
 
   // What the own writer says in its user data.
   std::string user_data() const;
-  // Of the own writer.
-  void set_guid(const Guid& guid) { guid_ = guid; }
-
   void apply(const DiscoveryEvent& event);
 
   // The participant of the culprit that goes before this one; nothing if this one manages.
@@ -42,9 +41,10 @@ class ManagerLease {
  private:
   static constexpr std::size_t kMost = 1000;  // that are kept track of
 
+  using Rank = std::pair<std::int64_t, std::int64_t>;  // since when, id
+
   LeaseClaim own_;
-  Guid guid_;
-  std::map<Guid, std::int64_t> others_;  // of this robot: since when
+  std::map<Guid, Rank> others_;  // of this robot
 };
 
 }  // namespace culprit::ros2
