@@ -117,8 +117,15 @@ void Analyzer::evaluate_trigger(RuleId id, Time now) {
     state.trigger_since = now;
   }
   if (!is_true(value)) state.armed = true;
-  if (is_false(value)) state.left_off.reset();
+  if (is_false(value) && state.left_off) forget_left_off(id, now);
   if (!state.history.empty()) sample_history(id, now);
+}
+
+// What an earlier process left off at went away while nobody looked on.
+void Analyzer::forget_left_off(RuleId id, Time now) {
+  const auto left_off = std::exchange(knowledge_.states.state(id).left_off, std::nullopt);
+  knowledge_.tell(
+      now, FailureResolved{id, FailureResolved::How::kWithoutStrategy, {}, now - left_off->since});
 }
 
 void Analyzer::sample_history(RuleId id, Time now) {

@@ -72,6 +72,7 @@ class Analyzer {
  private:
   void look_at(RuleId id, Time now);
   void evaluate_trigger(RuleId id, Time now);
+  void forget_left_off(RuleId id, Time now);
   void sample_history(RuleId id, Time now);
   bool detects(RuleId id, Time now) const;
   bool is_gone(RuleId id, Time now) const;

@@ -99,6 +99,14 @@ std::vector<std::size_t> open_since(const Past& past, const RuleSet& rules) {
   return since;
 }
 
+// What each process says anew of a failure that is still there. @pre its failure is there
+bool is_said_again(const Event& event, const Past& kept, const RuleSet& rules) {
+  if (!is_any_of<FailureDetected, LastResortReached, RuleExhausted>(event)) return false;
+  return std::any_of(kept.rbegin(), kept.rend(), [&](const Event& old) {
+    return old.what.index() == event.what.index() && searched(old, rules) == searched(event, rules);
+  });
+}
+
 }  // namespace
 
 std::optional<Event> past_event(const Json& body, const RuleSet& rules) {
@@ -139,6 +147,7 @@ Past still_counting(const Past& past, Time now, const RuleSet& rules) {
       continue;
     }
     const auto rule = searched(event, rules);
+    if (rule && i > open[rule->index] && is_said_again(event, kept, rules)) continue;
     const bool is_open = rule && i >= open[rule->index];
     const bool is_only_of_search =
         is_any_of<StrategyFailed, RoundSpent, LastResortReached, RuleExhausted>(event);

@@ -103,6 +103,10 @@ TEST_F(Memory, OfAFailureThatIsGoneIsNone) {
   robot["camera"].fault = "";
   crash();
   robot.run_for(5s);
+  EXPECT_EQ(robot.count("Silent went away"), 1u) << "and that is said" << transcript();
+  robot["camera"].fault = "a person";
+  run_until_said("Silent detected");
+  crash();
   robot["camera"].fault = "restart";
   robot.run_for(20s);
   EXPECT_TRUE(robot.works("camera")) << transcript();
