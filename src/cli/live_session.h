@@ -21,8 +21,9 @@ class LiveSession {
   struct Frame {
     const RunOptions& options;
     Governor::Options governor;
-    bool advises = false;  // a dry run, or another culprit manages the robot
-    bool records = true;   // into the journal
+    bool advises = false;                   // a dry run, or another culprit manages the robot
+    bool records = true;                    // into the journal
+    std::optional<ros2::LeaseClaim> lease;  // to be announced; nothing: it would never manage
     web::Hub& hub;
     web::Metrics& metrics;
     Time start;  // of the run: what people read counts from here
@@ -59,6 +60,9 @@ class LiveSession {
   void announce(const std::string& kind, const std::string& text);
 
   const RuleSet& rules() const { return rules_; }
+  // For a session with the same.
+  LoadedRules loaded_rules() const { return {rules_, rules_text_, ""}; }
+  const ros2::Link& link() const { return robot_->link(); }
   Time now() const { return robot_->now(); }
   // Whether a strategy is under way.
   bool is_adapting() const;
@@ -67,6 +71,7 @@ class LiveSession {
   LiveSession(const Frame& frame, LoadedRules rules)
       : frame_(frame), rules_(std::move(rules.rules)), rules_text_(std::move(rules.text)) {}
 
+  RunBeginning look_back();
   void manage(RunBeginning beginning, std::vector<Observation> seen, std::string occasion);
   void tell(std::span<const Event> events);
 

@@ -50,6 +50,17 @@ Governor::Governor(Knowledge& knowledge, Options options, Time start)
       refused_(knowledge.rules.strategies.size(), kNever),
       told_(knowledge.rules.strategies.size()) {}
 
+void Governor::remember(const Past& past) {
+  limits_.remember(past);
+  for (const Event& event : past) {
+    const auto* accepted = std::get_if<OrderAccepted>(&event.what);
+    const bool is_silence =
+        accepted != nullptr && (std::holds_alternative<Silence>(accepted->order.what) ||
+                                std::holds_alternative<LiftSilence>(accepted->order.what));
+    if (is_silence) obey(accepted->order, event.at);
+  }
+}
+
 // ---- orders
 
 std::optional<std::string> Governor::objection(const Order& order, Autonomy autonomy) const {

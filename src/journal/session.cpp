@@ -77,6 +77,9 @@ Json to_json(const Session& session) {
           {"governor", session.governor},
           {"learned", to_json(session.learned)},
           {"interrupted", session.interrupted},
+          {"past", session.past},
+          {"paused", session.is_paused},
+          {"dry_run", session.is_dry_run},
           {"rules_path", session.rules_path},
           {"rules_text", session.rules_text},
           {"occasion", session.occasion},
@@ -105,6 +108,9 @@ Expected<Session> session_from_json(const Json& json) {
   session.forgetting = number_of(json, "forgetting", 1);
   session.learned = *learned;
   session.interrupted = json.value("interrupted", Json::array());
+  session.past = json.value("past", Json::array());
+  session.is_paused = flag_of(json, "paused");
+  session.is_dry_run = flag_of(json, "dry_run");
   if (!(session.forgetting > 0 && session.forgetting <= 1) || session.settling < Duration::zero() ||
       session.rules_text.size() > (64u << 20))
     return Error{"the beginning of a run cannot be read"};

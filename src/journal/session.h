@@ -24,6 +24,10 @@ struct Session {
   double forgetting = 1;
   Learned learned;                   // what was known at the start
   Json interrupted = Json::array();  // what the run before left behind (requests.h)
+  Json past = Json::array();         // what earlier runs did that still counts (past.h)
+  // By a person's order in the run before, which goes on: said anew with the first step.
+  bool is_paused = false;
+  bool is_dry_run = false;
 };
 
 // Also the form of what `culprit beliefs export` writes.

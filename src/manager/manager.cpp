@@ -39,6 +39,11 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
   knowledge_.couplings.set_forgetting(options.forgetting);
 }
 
+void Manager::remember(const Past& past) {
+  governor_.remember(past);
+  analyzer_.remember(past);
+}
+
 void Manager::resume(Interrupted interrupted) {
   if (autonomy_ == Autonomy::kAdvise) return;
   const StrategyId strategy = interrupted.strategy;
