@@ -22,13 +22,13 @@ add_library(culprit_test_options INTERFACE)
 target_link_libraries(culprit_test_options INTERFACE culprit_options)
 target_compile_options(culprit_test_options INTERFACE -O0)
 
-# What nearly every test includes, parsed once: a third of the time of a build.
+# The main function of all tests, and what nearly every test includes, parsed once: a third of the time of a build.
 if(CULPRIT_TESTS)
-  add_library(culprit_test_headers OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
-  target_precompile_headers(culprit_test_headers PRIVATE <algorithm> <chrono> <filesystem> <fstream> <functional> <map>
+  add_library(culprit_test_main OBJECT ${CMAKE_CURRENT_LIST_DIR}/test_main.cpp)
+  target_precompile_headers(culprit_test_main PRIVATE <algorithm> <chrono> <filesystem> <fstream> <functional> <map>
                                                          <memory> <optional> <set> <span> <string> <variant> <vector>
                                                          <gmock/gmock.h> <gtest/gtest.h> <rapidcheck/gtest.h>)
-  target_link_libraries(culprit_test_headers PRIVATE GTest::gtest GTest::gmock rapidcheck culprit_test_options)
+  target_link_libraries(culprit_test_main PRIVATE GTest::gtest GTest::gmock rapidcheck culprit_test_options)
 endif()
 
 # culprit_library(<folder> [USES <folder>...] [PACKAGES <target>...]
@@ -41,7 +41,7 @@ endif()
 # *_live_test.cpp make a program of their own, <folder>_live_test: they start the processes of a robot, so they run alone
 # and carry the label "live". The label "threads" is for tests that the thread sanitizer repeats.
 function(culprit_library folder)
-  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES" ${ARGN})
   set(dir ${CMAKE_SOURCE_DIR}/src/${folder})
   set(headers ${CMAKE_BINARY_DIR}/include/${folder})
   file(MAKE_DIRECTORY ${headers})
@@ -71,7 +71,7 @@ function(culprit_library folder)
       set(serial SERIAL)
     endif()
     culprit_test(${folder}_test SOURCES ${tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES}
-                 LABELS ${ARG_TEST_LABELS} ${serial})
+                 LABELS ${ARG_TEST_LABELS} CASES ${ARG_TEST_CASES} ${serial})
   endif()
   if(CULPRIT_TESTS AND live_tests MATCHES "_live_test\\.cpp")
     culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES}
@@ -101,20 +101,24 @@ function(culprit_program name source)
   install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
 
-# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LABELS ...]): one CTest test for each TEST.
-# SERIAL tests run alone: they start processes or measure how a live robot behaves.
+# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LABELS ...] [CASES n]): one CTest test for each TEST.
+# SERIAL tests run alone: they start processes or measure how a live robot behaves. Properties are tried on n random
+# cases each instead of 100.
 function(culprit_test name)
-  cmake_parse_arguments(ARG "SERIAL" "" "SOURCES;USES;PACKAGES;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL" "" "SOURCES;USES;PACKAGES;LABELS;CASES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  target_precompile_headers(${name} REUSE_FROM culprit_test_headers)
-  target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PACKAGES} GTest::gtest_main GTest::gmock rapidcheck
-                                        culprit_test_options)
+  target_precompile_headers(${name} REUSE_FROM culprit_test_main)
+  target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PACKAGES} culprit_test_main GTest::gtest GTest::gmock
+                                        rapidcheck culprit_test_options)
   set(properties TIMEOUT 300)
   if(ARG_SERIAL)
     list(APPEND properties RUN_SERIAL TRUE)
   endif()
   if(ARG_LABELS)
     list(APPEND properties LABELS "${ARG_LABELS}")
+  endif()
+  if(ARG_CASES)
+    list(APPEND properties ENVIRONMENT "RC_PARAMS=max_success=${ARG_CASES}")
   endif()
   gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60
                        PROPERTIES ${properties})

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "language/text_file.h"
+#include "study/rca/repair_process.h"
 #include "study/rca/report.h"
 #include "study/rca/scenario_json.h"
 #include "study/tables/render.h"
@@ -20,6 +21,7 @@ namespace {
 
 using study::rca::RcaCampaign;
 using study::rca::RcaRow;
+using study::rca::RepairProcess;
 using study::rca::Times;
 
 struct RcaOptions {
@@ -68,13 +70,22 @@ Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
         campaign.settings.push_back({components, faults, noise, options.cyclic});
     }
   }
-  const auto all = study::rca::planner_names();
+  auto all = study::rca::planner_names();
   for (const std::string& planner : options.planners) {
     if (std::find(all.begin(), all.end(), planner) == all.end())
       return Error{
           fmt::format("there is no planner '{}'; there are {}", planner, fmt::join(all, ", "))};
   }
-  campaign.planners = options.planners.empty() ? all : options.planners;
+  const bool has_optimum = study::rca::has_optimum(campaign);
+  const auto& asked = options.planners;
+  if (!has_optimum && std::find(asked.begin(), asked.end(), "optimum") != asked.end())
+    return Error{fmt::format(
+        "the optimum is only worked out for robots of at most {} components with at most {} faults "
+        "and {} subscriptions; see --components and --faults",
+        RepairProcess::kMostComponents, RepairProcess::kMostFaults,
+        RepairProcess::kMostSubscriptions)};
+  if (!has_optimum) std::erase(all, "optimum");
+  campaign.planners = asked.empty() ? all : asked;
   campaign.objective = *parse_objective(options.objective);
   campaign.episodes = options.episodes;
   campaign.seed = options.seed;

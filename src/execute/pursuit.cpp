@@ -92,11 +92,13 @@ Time Pursuit::next_deadline() const {
 }
 
 void Pursuit::answered(const Reply& reply, Time) {
+  // An answer after its time-out finds a pause under way, whose end must stay as it is.
+  if (step_ != Step::kLooking && step_ != Step::kChanging) return;
   wake_ = kNever;
   if (step_ == Step::kLooking) {
     seen_ = reply;
     step_ = Step::kDecide;
-  } else if (step_ == Step::kChanging) {
+  } else {
     answer_ = reply;
     step_ = Step::kLook;
   }

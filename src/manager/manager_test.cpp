@@ -327,6 +327,15 @@ TEST(Manager, SettlesALostReplyByReadingBack) {
   EXPECT_EQ(robot.count("Dark resolved by brighten"), 1u) << transcript(robot);
 }
 
+TEST(Manager, IsNotHeldUpByAnAnswerThatComesWhenNobodyWaitsForItAnyMore) {
+  TestRobot robot = dark_camera();
+  robot["camera"].lateness = 1050ms;  // after the manager's own time-out, before its next look
+  robot.after_step = [&] { robot["camera"].answers = !robot.was_asked("set gain"); };
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(20s);
+  EXPECT_EQ(robot.count("Dark is exhausted"), 1u) << transcript(robot);
+}
+
 TEST(Manager, NoticesAParameterThatIsAcceptedAndIgnored) {
   TestRobot robot = dark_camera();
   robot["camera"].ignores_parameters = true;

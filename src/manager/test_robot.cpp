@@ -154,7 +154,8 @@ void TestRobot::serve(const Command& command) {
   if (std::holds_alternative<StartProcess>(command.what)) return start(c, command);
   const bool hears = c.process == ProcessState::kRunning && c.answers;
   if (!hears) {
-    return later(command.timeout, [this, command] { reply(command, Outcome::kTimedOut); });
+    return later(command.timeout + c.lateness,
+                 [this, command] { reply(command, Outcome::kTimedOut); });
   }
   if (const auto* change = std::get_if<ChangeLifecycle>(&command.what)) {
     return change_lifecycle(c, command, change->transition);

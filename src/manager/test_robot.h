@@ -46,6 +46,7 @@ class TestRobot {
     bool refuses = false;
     bool ignores_parameters = false;  // says yes and does nothing
     bool loses_replies = false;       // does it, and the answer is lost
+    Duration lateness{};              // with which it is reported that no answer came
     bool dies_at_start = false;
     Duration start_time = 300ms;
     Lifecycle state_at_start = Lifecycle::kActive;

@@ -17,12 +17,14 @@ bool changes_something(const Command& command) {
 
 }  // namespace
 
-Invariants::Invariants(const RuleSet& rules, const Governor::Options& governor)
+Invariants::Invariants(const RuleSet& rules, const Scenario& scenario)
     : rules_(rules),
-      overall_{governor.limits.overall, {}},
-      kinds_{Budget{governor.limits.per_kind, {}}, Budget{governor.limits.per_kind, {}},
-             Budget{governor.limits.per_kind, {}}},
-      components_(rules.components.size(), Budget{governor.limits.per_component, {}}) {}
+      is_bayes_(!scenario.uses_paper_planner),
+      overall_{scenario.governor.limits.overall, {}},
+      kinds_{Budget{scenario.governor.limits.per_kind, {}},
+             Budget{scenario.governor.limits.per_kind, {}},
+             Budget{scenario.governor.limits.per_kind, {}}},
+      components_(rules.components.size(), Budget{scenario.governor.limits.per_component, {}}) {}
 
 void Invariants::begin(const Manager& manager) {
   // A manager that begins anew counts anew.
@@ -42,6 +44,7 @@ void Invariants::fail(Time at, std::string what) {
 
 void Invariants::check(const Manager& manager, Time now, std::span<const Command> commands,
                        const Truth& truth) {
+  begun_now_.clear();
   for (const Event& event : manager.events()) {
     if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
       if (!chosen->dry_run) on(manager, *chosen, truth, event.at);
@@ -49,6 +52,7 @@ void Invariants::check(const Manager& manager, Time now, std::span<const Command
       const auto& what = accepted->order.what;
       if (std::holds_alternative<Pause>(what)) is_paused_ = true;
       if (std::holds_alternative<Resume>(what)) is_paused_ = false;
+      if (const auto* run = std::get_if<RunStrategy>(&what)) ordered_.insert(run->strategy);
       if (const auto* silence = std::get_if<Silence>(&what)) silenced_.insert(silence->what);
       if (const auto* lift = std::get_if<LiftSilence>(&what)) silenced_.erase(lift->what);
     } else if (const auto* ended = std::get_if<SilenceEnded>(&event.what)) {
@@ -81,9 +85,32 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
     }
     if (busy > 1) fail(at, where + " is adapted by several strategies at once");
   }
+  if (is_downstream_of_an_attempt(manager.knowledge(), strategy, at))
+    fail(at, name + " is begun downstream of what is being adapted");
+  begun_now_.insert(chosen.strategy);
   if (silenced_.contains(strategy.rule)) fail(at, name + " is begun though its rule is silenced");
   if (is_paused_) fail(at, name + " is begun while paused");
   if (truth.is_moving) fail(at, name + " is begun though the robot moves");
+}
+
+bool Invariants::is_downstream_of_an_attempt(const Knowledge& knowledge, const Strategy& strategy,
+                                             Time at) const {
+  for (const RuleId id : knowledge.states.active()) {
+    const auto& attempt = knowledge.states[id].attempt;
+    if (!attempt || id == strategy.rule || ordered_.contains(attempt->strategy)) continue;
+    const bool is_later = attempt->chosen == at && !begun_now_.contains(attempt->strategy);
+    const bool is_lesser =
+        rules_[id].policies.criticality < rules_[strategy.rule].policies.criticality;
+    if (is_later) continue;
+    if (is_lesser && (!is_bayes_ || attempt->effective != kNever)) continue;
+    const auto& adapted = rules_[attempt->strategy].components;
+    for (const ComponentId component : strategy.components) {
+      for (const ComponentId upstream : knowledge.graph.upstream(component)) {
+        if (std::binary_search(adapted.begin(), adapted.end(), upstream)) return true;
+      }
+    }
+  }
+  return false;
 }
 
 void Invariants::spend(Budget& budget, const std::string& what, Time at) {

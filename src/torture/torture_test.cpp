@@ -12,6 +12,11 @@ TEST(Torture, HundredsOfRobotsAreTreatedAsPromised) {
   }
 }
 
+TEST(Torture, WhatWasOnceFoundStaysMended) {
+  for (const std::uint64_t seed : {2266u, 5056u, 6515u, 7086u, 22244u})
+    EXPECT_FALSE(run(draw(seed)).violation) << report(shrink(draw(seed)));
+}
+
 TEST(Torture, TheSameSeedGivesTheSameRun) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed)
     EXPECT_EQ(run(draw(seed)).timeline, run(draw(seed)).timeline) << seed;

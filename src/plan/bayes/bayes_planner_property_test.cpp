@@ -1,7 +1,7 @@
 // What holds for every plan, on random robots: components that depend on each other in any way,
 // circles included, rules that touch one or two of them, and failures of any level.
 //
-// RC_PARAMS="max_success=1000000" runs a million of them.
+// scripts/check-invariants runs a million of them.
 #include <algorithm>
 #include <set>
 

@@ -1,6 +1,7 @@
 #include "study/rca/campaign.h"
 
 #include <algorithm>
+#include <span>
 
 #include "knowledge/condensation.h"
 #include "plan/bayes/bayes_planner.h"
@@ -8,27 +9,67 @@
 #include "simulation/random.h"
 #include "study/ordered_work.h"
 #include "study/rca/baselines.h"
+#include "study/rca/optimum.h"
+#include "study/rca/rules.h"
 
 namespace culprit::study::rca {
 namespace {
 
-void find_regrets(std::vector<RcaRow>& rows) {
-  for (RcaRow& row : rows) {
-    const auto optimum = std::find_if(rows.begin(), rows.end(), [&](const RcaRow& other) {
-      return other.planner == "optimum" && other.setting == row.setting;
-    });
-    if (optimum != rows.end()) row.regret = row.recovery_s.mean() / optimum->recovery_s.mean() - 1;
+// Expected costs in the decision process of one robot: of the optimum, and of each planner.
+struct Costs {
+  double optimum = 0;
+  std::vector<double> of;
+};
+
+Costs costs_of(const RcaCampaign& campaign, const RcaScenario& scenario) {
+  const RuleSet rules = rules_of(scenario);
+  const RepairProcess process(scenario, rules, campaign.objective);
+  Costs costs;
+  costs.optimum = Optimum(process).cost();
+  for (const std::string& name : campaign.planners) {
+    const auto planner = make_planner(name, campaign.objective, scenario);
+    costs.of.push_back(name == "optimum" ? costs.optimum
+                                         : expected_cost(process, rules, **planner));
   }
+  return costs;
+}
+
+// Of the rows of one setting, which begin at `first`. Where a robot is too large there is none.
+bool find_regrets(const RcaCampaign& campaign, unsigned jobs,
+                  const std::function<bool()>& is_stopped, std::span<RcaRow> rows) {
+  const RcaSetting& setting = rows.front().setting;
+  // A scenario from a file has one robot, whatever the episode's luck is.
+  const std::uint64_t robots = campaign.scenario ? 1 : campaign.episodes;
+  Costs sum{0, std::vector<double>(rows.size(), 0)};
+  std::uint64_t done = 0;
+  work_in_order(
+      0, robots, jobs,
+      [&](std::uint64_t i) -> std::optional<Costs> {
+        const auto scenario = scenario_of(campaign, setting, static_cast<std::uint32_t>(i));
+        if (setting.noise > 0 || !RepairProcess::is_small(scenario)) return std::nullopt;
+        return costs_of(campaign, scenario);
+      },
+      [&](std::uint64_t, const std::optional<Costs>& costs) {
+        if (is_stopped && is_stopped()) return false;
+        ++done;
+        if (!costs) return true;
+        sum.optimum += costs->optimum;
+        for (std::size_t p = 0; p < rows.size(); ++p) sum.of[p] += costs->of[p];
+        return true;
+      });
+  for (std::size_t p = 0; p < rows.size() && sum.optimum > 0; ++p)
+    rows[p].regret = sum.of[p] / sum.optimum - 1;
+  return done == robots;
 }
 
 }  // namespace
 
 std::vector<std::string> planner_names() {
-  return {"naive", "first-failing", "topological", "random-walk", "paper", "bayes"};
+  return {"naive", "first-failing", "topological", "random-walk", "paper", "bayes", "optimum"};
 }
 
 Expected<std::unique_ptr<const Planner>> make_planner(const std::string& name, Objective objective,
-                                                      const RcaScenario&) {
+                                                      const RcaScenario& scenario) {
   using Made = std::unique_ptr<const Planner>;
   if (name == "bayes") return Made(std::make_unique<BayesPlanner>(objective));
   if (name == "paper") return Made(std::make_unique<PaperPlanner>());
@@ -38,6 +79,13 @@ Expected<std::unique_ptr<const Planner>> make_planner(const std::string& name, O
     return Made(std::make_unique<RankingPlanner>(Ranking::kFirstFailing));
   if (name == "topological") return Made(std::make_unique<RankingPlanner>(Ranking::kTopological));
   if (name == "random-walk") return Made(std::make_unique<RankingPlanner>(Ranking::kRandomWalk));
+  if (name == "optimum") {
+    if (RepairProcess::is_small(scenario)) return Made(optimum_planner(scenario, objective));
+    return Error{"the optimum is only known of small robots: at most " +
+                 std::to_string(RepairProcess::kMostComponents) + " components, " +
+                 std::to_string(RepairProcess::kMostSubscriptions) + " subscriptions and " +
+                 std::to_string(RepairProcess::kMostFaults) + " faults"};
+  }
   std::string known;
   for (const std::string& each : planner_names()) known += (known.empty() ? "" : ", ") + each;
   return Error{"there is no planner '" + name + "'; there are " + known};
@@ -68,6 +116,13 @@ RcaScenario scenario_of(const RcaCampaign& campaign, const RcaSetting& setting,
   RcaScenario scenario = *campaign.scenario;
   if (episode > 0) scenario.seed = simulation::mix(scenario.seed + episode);
   return scenario;
+}
+
+bool has_optimum(const RcaCampaign& campaign) {
+  if (campaign.scenario) return RepairProcess::is_small(*campaign.scenario);
+  return std::all_of(campaign.settings.begin(), campaign.settings.end(), [](const RcaSetting& s) {
+    return s.components <= RepairProcess::kMostComponents && s.faults <= RepairProcess::kMostFaults;
+  });
 }
 
 RcaSetting setting_of(const RcaScenario& scenario) {
@@ -113,7 +168,10 @@ std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, uns
         return !is_stopped || !is_stopped();
       });
   if (played < size) return std::nullopt;
-  find_regrets(rows);
+  for (std::size_t first = 0; first < rows.size(); first += campaign.planners.size()) {
+    const auto of_setting = std::span(rows).subspan(first, campaign.planners.size());
+    if (!find_regrets(campaign, jobs, is_stopped, of_setting)) return std::nullopt;
+  }
   return rows;
 }
 

@@ -14,8 +14,8 @@
 
 namespace culprit::study::rca {
 
-// "naive", "first-failing", "topological", "random-walk", "paper", "bayes", and "optimum", which
-// knows the hidden truth but not the faults and is for small robots only (optimum.h).
+// "naive", "first-failing", "topological", "random-walk", "paper", "bayes", and "optimum", which is
+// for small robots only (optimum.h).
 std::vector<std::string> planner_names();
 
 struct RcaCampaign {
@@ -45,15 +45,14 @@ struct RcaRow {
   Moments recovery_s;         // at least: where a robot did not recover, until the end
   std::int64_t censored = 0;  // episodes without a recovery
   Moments unresolved;
-  std::optional<double>
-      regret;  // share of recovery time beyond the optimum's; where that was played
+  std::optional<double> regret;  // expected cost beyond the optimum's, as a share (optimum.h)
   std::int64_t plans = 0;
   double planning_us = 0;
 
   void add(const EpisodeResult& result);
 };
 
-// The planner of that name. Errors: there is none.
+// The planner of that name. Errors: there is none, or the robot is too large for the optimum.
 Expected<std::unique_ptr<const Planner>> make_planner(const std::string& name, Objective objective,
                                                       const RcaScenario& scenario);
 
@@ -67,6 +66,9 @@ std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, uns
 // The scenario of an episode: the same for every planner.
 RcaScenario scenario_of(const RcaCampaign& campaign, const RcaSetting& setting,
                         std::uint32_t episode);
+
+// Are all its robots small enough for the optimum?
+bool has_optimum(const RcaCampaign& campaign);
 
 // How large a scenario is, how noisy its worst detector, and whether illness can go in circles.
 RcaSetting setting_of(const RcaScenario& scenario);
