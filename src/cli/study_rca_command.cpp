@@ -198,9 +198,10 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
                       "Tell what happened in this episode, from 0, with each planner");
   auto* learn =
       command
-          ->add_option("--learn", options->learned,
-                       "Let bayes learn from so many faults on one robot, and measure on four "
-                       "times as many how true that is")
+          ->add_option(
+              "--learn", options->learned,
+              "Let bayes learn from so many faults on one robot, and measure on as many or "
+              "more how true that is")
           ->check(CLI::Range(1U, 1'000'000U))
           ->excludes(scenario);
   command->add_option("--forgetting", options->forgetting, "As of culprit run")
@@ -208,7 +209,8 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->capture_default_str()
       ->needs(learn);
   command
-      ->add_flag("--drift", options->drift, "What helps changes after half of what is learned from")
+      ->add_flag("--drift", options->drift,
+                 "What helps changes for the last quarter of what is learned from")
       ->needs(learn);
   command->add_option("--html", options->html, "Also a page with calibration plots")->needs(learn);
   command->add_option("--objective", options->objective, "What the bayes planner spares most")

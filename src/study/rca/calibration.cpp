@@ -6,10 +6,13 @@
 namespace culprit::study::rca {
 
 void Calibration::add(double forecast, bool came_true) {
-  const auto place = static_cast<std::size_t>(forecast * static_cast<double>(kBins));
-  Bin& bin = bins_[std::min(place, kBins - 1)];
-  bin.forecast.add(forecast);
-  bin.outcome.add(came_true ? 1 : 0);
+  const auto place = static_cast<std::size_t>(forecast * static_cast<double>(bins_.size()));
+  add(std::min(place, bins_.size() - 1), forecast, came_true);
+}
+
+void Calibration::add(std::size_t bin, double forecast, bool came_true) {
+  bins_[bin].forecast.add(forecast);
+  bins_[bin].outcome.add(came_true ? 1 : 0);
 }
 
 std::int64_t Calibration::count() const {

@@ -2,11 +2,12 @@
 //
 //     ECE = sum_b n_b / n | mean forecast in b - share in b that came true |
 //
-// over ten bins b of equal width: the expected calibration error. Source: Naeini, Cooper,
+// over ten bins b of equal width: the expected calibration error. Bins may be anything else that
+// forecasts have in common, as the strategy that they are about. Source: Naeini, Cooper,
 // Hauskrecht, "Obtaining well calibrated probabilities using Bayesian binning", AAAI 2015.
 #pragma once
 
-#include <array>
+#include <vector>
 
 #include "study/statistics/moments.h"
 
@@ -14,21 +15,24 @@ namespace culprit::study::rca {
 
 class Calibration {
  public:
-  static constexpr std::size_t kBins = 10;
   struct Bin {
     Moments forecast;
     Moments outcome;  // 0 or 1
   };
 
-  // `forecast` is a probability.
-  void add(double forecast, bool came_true);
+  explicit Calibration(std::size_t bins = 10) : bins_(bins) {}
 
-  const std::array<Bin, kBins>& bins() const { return bins_; }
+  // `forecast` is a probability; its bin is where it lies between 0 and 1.
+  void add(double forecast, bool came_true);
+  // To another bin. @pre bin < bins().size()
+  void add(std::size_t bin, double forecast, bool came_true);
+
+  const std::vector<Bin>& bins() const { return bins_; }
   std::int64_t count() const;
   double error() const;  // ECE; 0 of nothing
 
  private:
-  std::array<Bin, kBins> bins_;
+  std::vector<Bin> bins_;
 };
 
 }  // namespace culprit::study::rca

@@ -36,6 +36,8 @@ class Learner {
     }
   }
 
+  std::size_t strategies() const { return beliefs_.size(); }
+
   // `result` may be null: nothing is measured.
   void play(std::uint64_t seed, LearningResult* result) {
     scenario_.seed = seed;
@@ -68,7 +70,9 @@ class Learner {
       const Belief now = knowledge.beliefs[StrategyId(s)];
       const Belief before = std::exchange(beliefs_[s], now);
       if (now == before || result == nullptr) continue;
-      result->success.add(before.mean().value, is_raised(now.alpha, before.alpha));
+      const bool has_helped = is_raised(now.alpha, before.alpha);
+      result->success.add(before.mean().value, has_helped);
+      result->rates.add(s, before.mean().value, has_helped);
     }
   }
 
@@ -98,14 +102,14 @@ class Learner {
 
 std::optional<LearningResult> learn(const LearningCampaign& campaign,
                                     const std::function<bool()>& is_stopped) {
-  LearningResult result;
   Learner learner(campaign);
+  LearningResult result;
+  result.rates = Calibration(learner.strategies());
   const auto each = static_cast<std::uint32_t>(std::max<std::size_t>(1, campaign.setting.faults));
   bool has_drifted = !campaign.has_drift;
-  for (std::uint64_t episode = 0; result.measured < LearningCampaign::kMeasured * campaign.faults;
-       ++episode) {
+  for (std::uint64_t episode = 0; result.measured < campaign.measured(); ++episode) {
     if (is_stopped && is_stopped()) return std::nullopt;
-    if (!has_drifted && 2 * result.learned >= campaign.faults) {
+    if (!has_drifted && 4 * result.learned >= 3 * campaign.faults) {
       learner.drift();
       has_drifted = true;
     }

@@ -17,22 +17,24 @@
 namespace culprit::study::rca {
 
 struct LearningCampaign {
-  static constexpr int kMeasured = 4;  // times as many faults as were learned from
-
   RcaSetting setting{10, 1, 0, false};
   Objective objective = Objective::kBalanced;
   std::uint32_t faults = 500;  // to learn from before anything is measured
   double forgetting = 1;
-  // From the middle of the learning on, a restart helps as little as a configuration did, and the
-  // other way round.
+  // For the last quarter of these, and from then on, a restart helps as little as a configuration
+  // did, and the other way round.
   bool has_drift = false;
   std::uint64_t seed = 1;
+
+  // On how many faults it is measured: on few after a drift, because in the long run all learn.
+  std::uint32_t measured() const { return has_drift ? faults : 4 * faults; }
 };
 
 struct LearningResult {
   std::uint32_t learned = 0;   // faults
   std::uint32_t measured = 0;  // faults
   Calibration success;
+  Calibration rates;  // the same by strategy: is each believed in as often as it helps?
   Calibration kappa;
 };
 

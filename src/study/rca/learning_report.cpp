@@ -70,10 +70,12 @@ std::string learning_text(const LearningCampaign& campaign, const LearningResult
   return fmt::format(
       "Learned from {} faults on a robot of {} components, measured on {} more{}\n"
       "  success of strategies: expected calibration error {:.3f} of {} outcomes\n"
+      "  of each strategy:      {:.3f} from how often it helped, in the mean\n"
       "  kappa:                 expected calibration error {:.3f} of {} outcomes\n",
       result.learned, campaign.setting.components, result.measured,
-      campaign.has_drift ? "; what helps changed in between" : "", result.success.error(),
-      result.success.count(), result.kappa.error(), result.kappa.count());
+      campaign.has_drift ? "; what helps changed for the last quarter of the former" : "",
+      result.success.error(), result.success.count(), result.rates.error(), result.kappa.error(),
+      result.kappa.count());
 }
 
 std::string learning_json(const LearningCampaign& campaign, const LearningResult& result) {
@@ -84,7 +86,8 @@ std::string learning_json(const LearningCampaign& campaign, const LearningResult
                            {"forgetting", campaign.forgetting},
                            {"drift", campaign.has_drift},
                            {"success", json_of(result.success)},
-                           {"kappa", json_of(result.kappa)}}}};
+                           {"kappa", json_of(result.kappa)},
+                           {"rate_error", result.rates.error()}}}};
   return document.dump(2) + "\n";
 }
 
@@ -102,8 +105,10 @@ std::string learning_html(const LearningCampaign& campaign, const LearningResult
          page_fact(
              "Learned from",
              fmt::format("{} faults{}", result.learned,
-                         campaign.has_drift ? "; what helps changed after half of them" : "")) +
+                         campaign.has_drift ? "; what helps changed for the last quarter" : "")) +
          page_fact("Measured on", fmt::format("{} faults after these", result.measured)) +
+         page_fact("Each strategy", fmt::format("{:.3f} from how often it helped, in the mean",
+                                                result.rates.error())) +
          page_fact("Forgetting", fmt::format("{:g}", campaign.forgetting)) +
          "</dl>\n</header>\n<main>\n<section>\n" +
          figure("success", "Success of strategies", result.success) +

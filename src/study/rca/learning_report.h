@@ -4,8 +4,9 @@
 //                   "forgetting": 1, "drift": false,
 //                   "success": {"expected_calibration_error": 0.02, "outcomes": 2600,
 //                               "bins": [{"forecast": 0.05, "came_true": 0.06, "count": 120}]},
-//                   "kappa": ...}}
+//                   "kappa": ..., "rate_error": 0.02}}
 //
+// rate_error is the mean distance of what was believed of a strategy from how often it helped.
 // Bins without a forecast are left out.
 #pragma once
 

@@ -36,8 +36,8 @@ TEST(Learning, ComesNearTheTruth) {
 
 TEST(Learning, FollowsADriftWithForgettingOnly) {
   const LearningResult stubborn = learned(true, 1);
-  const LearningResult forgetful = learned(true, 0.9);
-  EXPECT_LT(forgetful.success.error(), stubborn.success.error());
+  const LearningResult forgetful = learned(true, 0.97);
+  EXPECT_LT(forgetful.rates.error(), stubborn.rates.error());
 }
 
 TEST(LearningReport, HasThePlotsAndTheNumbers) {
