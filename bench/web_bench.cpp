@@ -62,7 +62,8 @@ void step_with_pages(benchmark::State& state) {
   const RuleSet rules = large_robot();
   Manager manager(rules, std::make_unique<PaperPlanner>(), {});
   web::Hub hub;
-  web::WatchedManager watched(manager, hub, Time{});
+  web::Metrics metrics;
+  web::WatchedManager watched(manager, hub, metrics, Time{});
   web::Server::Options options;
   options.access.token = web::make_token();
   const auto server = web::Server::start(options, {}, &hub);

@@ -25,28 +25,34 @@ std::string sealed(const std::string& text) {
   return out;
 }
 
-void read(const std::string& text) {
+template <class C>
+void read_as(const std::string& text) {
   std::istringstream in(text);
-  auto reader = ShardReader::open(in, "fuzz");
+  auto reader = ShardReader<C>::open(in, "fuzz");
   if (!reader) return;
   std::string again = header_line(reader->header());
   std::uint64_t runs = 0;
   while (true) {
     const auto run = reader->next();
     if (!run || !run->has_value()) break;
-    const ShardHeader& header = reader->header();
+    const ShardHeader<C>& header = reader->header();
     again += run_line(header.campaign[campaign_index(header.shard, runs++)], **run);
   }
   if (runs != reader->runs()) __builtin_trap();
   std::istringstream second(again);
-  auto repeated = ShardReader::open(second, "again");
+  auto repeated = ShardReader<C>::open(second, "again");
   if (!repeated) __builtin_trap();
   for (std::uint64_t i = 0; i < runs; ++i) {
     const auto run = repeated->next();
     if (!run || !run->has_value()) __builtin_trap();
   }
-  std::istringstream third(text);
-  const ShardSource source{"fuzz", &third};
+}
+
+void read(const std::string& text) {
+  read_as<Campaign>(text);
+  read_as<SuaveCampaign>(text);
+  std::istringstream in(text);
+  const ShardSource source{"fuzz", &in};
   (void)merge(std::span(&source, 1));
 }
 

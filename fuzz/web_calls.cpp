@@ -21,8 +21,9 @@ std::vector<web::Route> all_routes() {
   static const RuleSet rules = *check(Source("fuzz.rules", kRules)).rules;
   static web::RuleDesk desk("fuzz.rules", kRules);
   std::vector<web::Route> routes = web::rule_routes(desk);
-  for (web::Route& route : web::order_routes(rules, [](const Order&) {}))
-    routes.push_back(std::move(route));
+  static web::OrderDesk orders;
+  orders.open(rules, [](const Order&) {});
+  for (web::Route& route : web::order_routes(orders)) routes.push_back(std::move(route));
   return routes;
 }
 

@@ -48,6 +48,14 @@ struct Labels {
   Label operator()(const StormEnded&) const { return {"calm", "\033[32m"}; }
 };
 
+sigset_t awaited(Hangup hangup) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&signals, signal);
+  if (hangup == Hangup::kReloads) sigaddset(&signals, SIGHUP);
+  return signals;
+}
+
 }  // namespace
 
 Colour colour_of(int descriptor) {
@@ -65,10 +73,9 @@ std::string line(const Event& event, const RuleSet& rules, Time start, Colour co
                      text);
 }
 
-StopSignals::StopSignals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&signals, signal);
+StopSignals::StopSignals(Hangup hangup)
+    : hangup_(hangup), has_terminal_(isatty(STDOUT_FILENO) != 0) {
+  const sigset_t signals = awaited(hangup_);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   thread_ = std::thread([this] { wait(); });
 }
@@ -84,18 +91,31 @@ void StopSignals::on_stop(std::function<void()> stop) {
   if (stopped_ && stop_) stop_();
 }
 
+void StopSignals::on_reload(std::function<void()> reload) {
+  const std::lock_guard lock(mutex_);
+  reload_ = std::move(reload);
+}
+
+void StopSignals::stop() {
+  const std::lock_guard lock(mutex_);
+  stopped_ = true;
+  stopped_.notify_all();
+  if (stop_) stop_();
+}
+
 void StopSignals::wait() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&signals, signal);
+  const sigset_t signals = awaited(hangup_);
   while (true) {
     int signal = 0;
     sigwait(&signals, &signal);
     if (signal == SIGUSR1) return;
+    const bool is_terminal_gone = has_terminal_ && isatty(STDOUT_FILENO) == 0;
+    if (signal != SIGHUP || is_terminal_gone) {
+      stop();
+      continue;
+    }
     const std::lock_guard lock(mutex_);
-    stopped_ = true;
-    stopped_.notify_all();
-    if (stop_) stop_();
+    if (reload_) reload_();
   }
 }
 

@@ -19,26 +19,37 @@ Colour colour_of(int descriptor);
 // for events that are not worth one.
 std::string line(const Event& event, const RuleSet& rules, Time start, Colour colour);
 
-// Waits for SIGINT and SIGTERM on a thread of its own and then calls `stop`, once. Blocks both
+// What SIGHUP means: that the terminal is gone, which ends the program, or that it is to read its
+// files anew.
+enum class Hangup : std::uint8_t { kEnds, kReloads };
+
+// Waits for SIGINT and SIGTERM on a thread of its own and then calls `stop`, once. Blocks these
 // signals in this thread and in all that it creates from now on: make one first of all.
 class StopSignals {
  public:
-  StopSignals();
+  explicit StopSignals(Hangup hangup = Hangup::kEnds);
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;
 
   // What to do when a signal comes; called on another thread. Called at once if one came already.
   void on_stop(std::function<void()> stop);
+  // What to do on SIGHUP, if that means to reload; called on another thread. A SIGHUP because the
+  // terminal is gone still stops.
+  void on_reload(std::function<void()> reload);
   const std::atomic<bool>& stopped() const { return stopped_; }
   // For commands that have nothing else to wait for.
   void wait_until_stopped() const { stopped_.wait(false); }
 
  private:
   void wait();
+  void stop();
 
+  const Hangup hangup_;
+  const bool has_terminal_;
   std::atomic<bool> stopped_ = false;
   std::mutex mutex_;
   std::function<void()> stop_;
+  std::function<void()> reload_;
   std::thread thread_;
 };
 

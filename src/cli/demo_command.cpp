@@ -10,15 +10,20 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/embedded_rules.h"
+#include "cli/paths.h"
 #include "cli/planner_options.h"
+#include "cli/robot_names.h"
+#include "cli/study_runner.h"
 #include "cli/suave_demo_command.h"
 #include "cli/sunset_demo.h"
 #include "cli/web_service.h"
 #include "cli/what_if_route.h"
 #include "web/fault_routes.h"
 #include "web/live_routes.h"
+#include "web/name_routes.h"
 #include "web/order_routes.h"
 #include "web/rule_routes.h"
+#include "web/status_routes.h"
 
 namespace culprit::cli {
 namespace {
@@ -126,13 +131,19 @@ web::Faults faults_of(SunsetDemo& demo) {
   return faults;
 }
 
-std::vector<web::Route> web_routes(SunsetDemo& demo, web::RuleDesk& desk, PlannerFactory planner) {
+std::vector<web::Route> web_routes(SunsetDemo& demo, web::OrderDesk& orders, web::RuleDesk& desk,
+                                   StudyRunner& studies, RobotNames& names,
+                                   PlannerFactory planner) {
   std::vector<web::Route> routes = web::live_routes(demo.hub());
-  const auto submit = [&demo](Order order) { demo.submit(std::move(order)); };
-  for (web::Route& route : web::order_routes(demo.rules(), submit))
+  for (web::Route& route : web::order_routes(orders)) routes.push_back(std::move(route));
+  for (web::Route& route : web::status_routes(demo.hub(), demo.metrics()))
     routes.push_back(std::move(route));
   for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
+  for (web::Route& route :
+       web::name_routes([&names](const LiveInterest& interest) { return names.look(interest); }))
+    routes.push_back(std::move(route));
   routes.push_back(what_if_route(std::move(planner)));
+  for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
   for (web::Route& route : web::fault_routes(faults_of(demo))) routes.push_back(std::move(route));
   return routes;
 }
@@ -162,8 +173,13 @@ int demo_sunset(const DemoOptions& options) {
     return kFailed;
   }
   web::RuleDesk desk("sunset.rules", kSunsetRules);
-  const auto server =
-      serve(options.web, web_routes(**demo, desk, options.planner.factory()), &(*demo)->hub());
+  web::OrderDesk orders;
+  RobotNames names;
+  StudyRunner studies(default_state_folder() / "studies");
+  orders.open((*demo)->rules(), [&](Order order) { (*demo)->submit(std::move(order)); });
+  const auto server = serve(
+      options.web, web_routes(**demo, orders, desk, studies, names, options.planner.factory()),
+      &(*demo)->hub());
   if (!server) {
     fmt::print(stderr, "culprit: {}\n", server.error());
     return kUsage;

@@ -80,6 +80,37 @@ TEST_F(Journal, SurvivesAKillAndTellsAndReplaysWhatHappened) {
   EXPECT_THAT(said_by({"replay", journal, "--planner", "bayes"}), HasSubstr("lines differ"));
 }
 
+// In the middle of a repair, which goes on.
+TEST_F(Journal, GoesOnWithRulesThatAreReloaded) {
+  TestProgram camera(world, {"sunset-node", "camera"});
+  TestProgram run = culprit({"run", rules, "--settle", "2", "--state-dir", state});
+  ASSERT_TRUE(run.prints("camera is there")) << run.output();
+  world.write("one.rules", "RUEL Nothing\n");
+  run.signal(SIGHUP);
+  ASSERT_TRUE(run.prints("the rules are not reloaded")) << run.output();
+  EXPECT_THAT(run.output(), HasSubstr("did you mean RULE?"));
+
+  world.write("one.rules", std::string(kRules) + R"(
+RULE CameraStopped
+  POLICIES WARNING
+  TRIGGER age(/managed_subsystem/rgb_camera) > 1h
+    STRATEGY camera_restart 90 10
+      ADAPTATION camera restart 5
+)");
+  camera.signal(SIGKILL);
+  camera.wait();
+  ASSERT_TRUE(run.prints("CameraGone detected")) << run.output();
+  run.signal(SIGHUP);
+  ASSERT_TRUE(run.prints("is reloaded, with 2 rules")) << run.output();
+  ASSERT_TRUE(run.prints("camera_redeploy for CameraGone was under way")) << run.output();
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(), 0);
+  EXPECT_THAT(said_by({"replay", journal}), HasSubstr("all decided as recorded"));
+  EXPECT_THAT(said_by({"replay", journal, "--session", "1"}), HasSubstr("all decided as recorded"));
+  EXPECT_THAT(said_by({"audit", "verify", "--journal", journal}),
+              HasSubstr("all as they were written"));
+}
+
 TEST_F(Journal, ThatCannotBeWrittenKeepsNobodyFromManaging) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   TestProgram run = culprit({"run", rules, "--journal", "/proc/nowhere/a.journal"});

@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "cli/paths.h"
+
 namespace culprit::cli {
 namespace {
 
@@ -36,17 +38,21 @@ std::string progress_line(std::uint64_t done, std::uint64_t total, std::uint64_t
 }
 
 Progress::Progress(std::uint64_t done, std::uint64_t total)
-    : done_before_(done), total_(total), is_shown_(total > 0 && isatty(STDERR_FILENO) != 0) {}
+    : done_before_(done),
+      total_(total),
+      is_terminal_(isatty(STDERR_FILENO) != 0),
+      is_shown_(total > 0 && (is_terminal_ || environment(kProgressVariable) == "lines")) {}
 
 Progress::~Progress() {
-  if (is_shown_) fmt::print(stderr, "\r\033[K");
+  if (is_shown_ && is_terminal_) fmt::print(stderr, "\r\033[K");
 }
 
 void Progress::show(std::uint64_t done) {
   const auto now = Clock::now();
   if (!is_shown_ || now < next_) return;
   next_ = now + kPause;
-  fmt::print(stderr, "\r\033[K{}", progress_line(done, total_, done_before_, now - begin_));
+  const std::string line = progress_line(done, total_, done_before_, now - begin_);
+  fmt::print(stderr, "{}{}{}", is_terminal_ ? "\r\033[K" : "", line, is_terminal_ ? "" : "\n");
 }
 
 }  // namespace culprit::cli

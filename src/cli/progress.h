@@ -12,7 +12,11 @@ namespace culprit::cli {
 std::string progress_line(std::uint64_t done, std::uint64_t total, std::uint64_t done_before,
                           std::chrono::duration<double> elapsed);
 
-// Draws the line on the standard error stream if that is a terminal, a few times a second.
+// "lines" in this variable of the environment: progress is told where there is no terminal, too.
+inline constexpr const char* kProgressVariable = "CULPRIT_PROGRESS";
+
+// Draws the line on the standard error stream a few times a second: over and over on a terminal,
+// line by line for programs that ask for it.
 class Progress {
  public:
   // `done` of `total` were done before.
@@ -28,6 +32,7 @@ class Progress {
 
   const std::uint64_t done_before_;
   const std::uint64_t total_;
+  const bool is_terminal_;
   const bool is_shown_;
   const Clock::time_point begin_ = Clock::now();
   Clock::time_point next_ = begin_;

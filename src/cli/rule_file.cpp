@@ -8,20 +8,24 @@
 
 namespace culprit::cli {
 
-std::unique_ptr<const RuleSet> load_rules(const std::string& path, Strictness strictness) {
+Expected<LoadedRules> read_rules(const std::string& path, Strictness strictness, Colour colour) {
   const auto source = Source::read(path);
-  if (!source) {
-    fmt::print(stderr, "culprit: {}\n", source.error());
-    return nullptr;
-  }
+  if (!source) return Error{source.error()};
   Checked checked = check(*source, strictness);
-  for (const Diagnostic& d : checked.diagnostics)
-    fmt::print(stderr, "{}", render(d, *source, colour_of(STDERR_FILENO)));
-  if (!checked.rules) {
-    fmt::print(stderr, "culprit: {} has errors\n", path);
+  std::string remarks;
+  for (const Diagnostic& d : checked.diagnostics) remarks += render(d, *source, colour);
+  if (!checked.rules) return Error{fmt::format("{} has errors\n{}", path, remarks)};
+  return LoadedRules{std::move(*checked.rules), std::string(source->text()), std::move(remarks)};
+}
+
+std::unique_ptr<const RuleSet> load_rules(const std::string& path, Strictness strictness) {
+  auto loaded = read_rules(path, strictness, colour_of(STDERR_FILENO));
+  if (!loaded) {
+    fmt::print(stderr, "culprit: {}\n", loaded.error());
     return nullptr;
   }
-  return std::make_unique<const RuleSet>(std::move(*checked.rules));
+  fmt::print(stderr, "{}", loaded->remarks);
+  return std::make_unique<const RuleSet>(std::move(loaded->rules));
 }
 
 }  // namespace culprit::cli

@@ -1,4 +1,4 @@
-// Reading a rule file for a command: what is wrong with it is said on stderr.
+// A rule file as commands read it.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,18 @@
 
 namespace culprit::cli {
 
-// Null if the file cannot be read or has errors. Warnings are said and do not matter.
+struct LoadedRules {
+  RuleSet rules;
+  std::string text;     // of the file
+  std::string remarks;  // warnings, as a person reads them
+};
+
+// Errors: the file cannot be read, or has errors, which are shown.
+Expected<LoadedRules> read_rules(const std::string& path,
+                                 Strictness strictness = Strictness::kLenient,
+                                 Colour colour = Colour::kOff);
+
+// Reads and checks a rule file. Prints what is wrong with it to stderr; null if that are errors.
 std::unique_ptr<const RuleSet> load_rules(const std::string& path,
                                           Strictness strictness = Strictness::kLenient);
 

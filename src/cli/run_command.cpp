@@ -1,262 +1,205 @@
-#include <filesystem>
+#include <mutex>
 #include <unistd.h>
 
 #include <fmt/core.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "cli/governor_options.h"
-#include "cli/health.h"
 #include "cli/journal_file.h"
-#include "cli/live_robot.h"
-#include "cli/paths.h"
-#include "cli/planner_options.h"
-#include "cli/rule_file.h"
-#include "cli/run_journal.h"
+#include "cli/live_session.h"
+#include "cli/robot_names.h"
+#include "cli/run_options.h"
 #include "cli/service_manager.h"
-#include "cli/web_service.h"
 #include "cli/what_if_route.h"
-#include "knowledge/describe.h"
-#include "manager/manager.h"
-#include "manager/runtime.h"
-#include "replay/replay.h"
 #include "ros2/named_lock.h"
 #include "web/live_routes.h"
+#include "web/name_routes.h"
 #include "web/order_routes.h"
+#include "web/reload_routes.h"
 #include "web/rule_routes.h"
-#include "web/watched_manager.h"
+#include "web/status_routes.h"
 
 namespace culprit::cli {
 namespace {
 
-struct RunOptions {
-  std::string version;  // of culprit
-  std::string rules;
-  bool dry_run = false;
-  bool launch = false;
-  PlannerOptions planner;
-  GovernorOptions governor;
-  double forgetting = 1;
-  double settle_seconds = seconds(Manager::kDiscovery);
-  std::string state_folder;
-  std::string journal;
-  bool no_journal = false;
-  std::vector<std::filesystem::path> message_path;
-  bool is_on_web = false;
-  WebOptions web;
-};
-
-ros2::Severity severity_of(const Event& event) {
-  if (std::holds_alternative<RuleExhausted>(event.what) ||
-      std::holds_alternative<LastResortReached>(event.what) ||
-      std::holds_alternative<StormBegan>(event.what))
-    return ros2::Severity::kError;
-  const bool is_bad = std::holds_alternative<FailureDetected>(event.what) ||
-                      std::holds_alternative<StrategyFailed>(event.what) ||
-                      std::holds_alternative<ComponentLost>(event.what) ||
-                      std::holds_alternative<AdaptationFailed>(event.what) ||
-                      std::holds_alternative<ActionHeldBack>(event.what) ||
-                      std::holds_alternative<ApprovalAsked>(event.what) ||
-                      std::holds_alternative<StrategyAbandoned>(event.what) ||
-                      std::holds_alternative<RivalSeen>(event.what) ||
-                      std::holds_alternative<Trouble>(event.what);
-  return is_bad ? ros2::Severity::kWarn : ros2::Severity::kInfo;
-}
-
-std::filesystem::path state_folder(const RunOptions& options) {
-  return options.state_folder.empty() ? default_state_folder()
-                                      : std::filesystem::path(options.state_folder);
-}
-
-std::filesystem::path journal_file(const RunOptions& options, const RuleSet& rules) {
-  return options.journal.empty() ? default_journal(state_folder(options), rules.robot)
-                                 : std::filesystem::path(options.journal);
-}
-
-Expected<LiveRobot::Options> robot_options(const RunOptions& options) {
-  auto participant = ros2::options_from_environment();
-  if (!participant) return Error{participant.error()};
-  LiveRobot::Options out;
-  out.link.participant = *participant;
-  out.link.message_path =
-      ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH"));
-  out.link.parameters = {{"rules", Value(options.rules)},
-                         {"planner", Value(options.planner.name)},
-                         {"dry_run", Value(options.dry_run)}};
-  out.supervisor = {state_folder(options) / "log", {own_folder()}};
-  return out;
-}
-
-// Looks at what is there, so that what runs already is not started again.
-std::vector<Observation> discover(LiveRobot& robot, const std::atomic<bool>& stop) {
-  constexpr Duration kLook = std::chrono::seconds(3);
-  std::vector<Observation> seen;
-  for (const Time end = robot.now() + kLook; robot.now() < end && !stop;) robot.observe(end, seen);
-  return seen;
-}
-
-void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Observation>& seen) {
-  ComponentBinding binding(rules);
-  std::vector<bool> is_there(rules.components.size());
-  for (const Observation& o : seen) {
-    if (const auto* node = std::get_if<NodeAppeared>(&o.what)) {
-      if (const auto component = binding.bind(node->node)) is_there[component->index] = true;
-    }
-  }
-  for (std::size_t c = 0; c < rules.components.size(); ++c) {
-    if (is_there[c] || rules.components[c].launch.empty()) continue;
-    fmt::print("starting {}\n", rules.components[c].name);
-    robot.supervisor().start({}, ComponentId(c));
-  }
-}
-
-std::vector<web::Route> web_routes(web::Hub& hub, web::RuleDesk& desk, const RuleSet& rules,
-                                   Runtime& runtime, PlannerFactory planner) {
-  std::vector<web::Route> routes = web::live_routes(hub);
-  const auto submit = [&runtime](Order order) { runtime.submit(std::move(order)); };
-  for (web::Route& route : web::order_routes(rules, submit)) routes.push_back(std::move(route));
-  for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
-  routes.push_back(what_if_route(std::move(planner)));
-  return routes;
-}
-
 // Two managers on one robot would undo each other's work: the second one only looks on. It neither
 // acts nor writes the journal.
-Expected<std::optional<ros2::NamedLock>> claim_robot(const RuleSet& rules, std::uint32_t domain) {
-  return ros2::NamedLock::take("culprit-manages-" + std::to_string(domain) + "-" + rules.robot);
+Expected<std::optional<ros2::NamedLock>> claim_robot(const RuleSet& rules) {
+  const auto participant = ros2::options_from_environment();
+  if (!participant) return Error{participant.error()};
+  return ros2::NamedLock::take("culprit-manages-" + std::to_string(participant->domain) + "-" +
+                               rules.robot);
 }
 
-// The manager and its journal begin from the same record, so that a replay begins from it too.
-journal::Session session_of(const RunOptions& options, const RuleSet& rules, bool advises,
-                            Time start, const RunBeginning& beginning) {
-  journal::Session session;
-  session.version = options.version;
-  session.robot = rules.robot;
-  session.rules_path = options.rules;
-  if (const auto source = Source::read(options.rules)) session.rules_text = source->text();
-  session.planner = options.planner.to_json();
-  session.governor = options.governor.to_json();
-  session.advises = advises;
-  session.boot = journal::boot_id();
-  session.start = start;
-  session.settling = from_seconds(options.settle_seconds);
-  session.forgetting = options.forgetting;
-  session.learned = beginning.learned;
-  session.interrupted = beginning.interrupted;
+std::string name_of(const RuleSet& rules) {
+  return rules.robot.empty() ? "the robot" : rules.robot;
+}
+
+// The session that is on, for other threads, and the rules that are to be next.
+class Stage {
+ public:
+  struct Next {
+    LoadedRules rules;
+    std::string author;
+  };
+
+  explicit Stage(std::string path) : path_(std::move(path)) {}
+
+  // Null: none is on now.
+  void enter(LiveSession* session) {
+    const std::lock_guard lock(mutex_);
+    session_ = session;
+  }
+  void interrupt() {
+    const std::lock_guard lock(mutex_);
+    if (session_ != nullptr) session_->interrupt();
+  }
+  void leave() {
+    const std::lock_guard lock(mutex_);
+    if (session_ != nullptr) session_->leave();
+  }
+  // web::Reload
+  Expected<std::size_t> reload(const std::string& author) {
+    auto loaded = read_rules(path_);
+    if (!loaded) return Error{loaded.error()};
+    const std::size_t count = loaded->rules.rules.size();
+    const std::lock_guard lock(mutex_);
+    if (session_ == nullptr) return Error{"the rules are just being reloaded; ask again"};
+    if (loaded->rules.robot != session_->rules().robot)
+      return Error{fmt::format("{} is now about the robot '{}' instead of '{}'; start culprit anew",
+                               path_, loaded->rules.robot, session_->rules().robot)};
+    next_ = Next{std::move(*loaded), author};
+    session_->leave();
+    return count;
+  }
+  std::optional<Next> take_next() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(next_, std::nullopt);
+  }
+
+ private:
+  const std::string path_;
+  std::mutex mutex_;  // guards what follows
+  LiveSession* session_ = nullptr;
+  std::optional<Next> next_;
+};
+
+// Gives the session of the new rules, or the old one if the robot cannot be joined anew.
+std::unique_ptr<LiveSession> reloaded(std::unique_ptr<LiveSession> old, Stage::Next next,
+                                      const LiveSession::Frame& frame, Stage& stage,
+                                      web::OrderDesk& orders) {
+  const std::string& path = frame.options.rules;
+  auto opened = LiveSession::open(frame, std::move(next.rules));
+  if (!opened) {
+    old->announce("trouble", "the rules are not reloaded: " + opened.error());
+    return old;
+  }
+  std::unique_ptr<LiveSession> session = std::move(*opened);
+  orders.close();
+  stage.enter(nullptr);
+  LiveSession::Handover handover = old->hand_over(session->rules());
+  old.reset();
+  session->begin(std::move(handover));
+  session->announce("reloaded", fmt::format("{}: {} is reloaded, with {} rules", next.author, path,
+                                            session->rules().rules.size()));
+  stage.enter(session.get());
+  orders.open(session->rules(),
+              [&session = *session](Order order) { session.submit(std::move(order)); });
   return session;
 }
 
-RunBeginning begin_run(const RunOptions& options, const RuleSet& rules, bool is_only_manager) {
-  if (options.no_journal || !is_only_manager) return {};
-  RunBeginning beginning = begin_journal(journal_file(options, rules), rules);
-  for (const std::string& finding : beginning.findings) fmt::print("culprit: {}\n", finding);
-  return beginning;
+std::vector<web::Route> web_routes(web::Hub& hub, const web::Metrics& metrics, web::RuleDesk& desk,
+                                   web::OrderDesk& orders, Stage& stage, RobotNames& names,
+                                   PlannerFactory planner) {
+  std::vector<web::Route> all;
+  const auto reload = [&stage](const std::string& author) { return stage.reload(author); };
+  for (auto routes :
+       {web::live_routes(hub), web::order_routes(orders), web::status_routes(hub, metrics),
+        web::rule_routes(desk), web::reload_routes(reload),
+        web::name_routes(
+            [&names](const LiveInterest& interest) { return names.look(interest); })}) {
+    for (web::Route& route : routes) all.push_back(std::move(route));
+  }
+  all.push_back(what_if_route(std::move(planner)));
+  return all;
 }
 
-std::unique_ptr<journal::Recorder> record(const RunOptions& options, RunBeginning beginning,
-                                          const journal::Session& session, const Manager& manager,
-                                          LiveRobot& robot) {
-  journal::Recorder::Options recorder;
-  recorder.path = journal_file(options, manager.knowledge().rules);
-  recorder.wall_clock = wall_now;
-  recorder.on_trouble = [&robot](const std::string& what) { robot.report(what); };
-  return std::make_unique<journal::Recorder>(std::move(beginning.writer), std::move(recorder),
-                                             session, manager.knowledge());
+// One session after the other, as often as the rules are reloaded.
+void manage(std::unique_ptr<LiveSession> session, const LiveSession::Frame& frame, Stage& stage,
+            web::OrderDesk& orders, const std::atomic<bool>& stopped) {
+  ServiceManager systemd;
+  systemd.ready("watching " + name_of(session->rules()));
+  std::optional<Stage::Next> next;
+  while (!stopped) {
+    systemd.feed(session->now());
+    // Without a journal nobody would know what is under way: then the new rules wait for its end.
+    const bool has_to_wait = next && !frame.records && session->is_adapting();
+    if (next && !has_to_wait) {
+      session = reloaded(std::move(session), std::move(*next), frame, stage, orders);
+      next.reset();
+    }
+    constexpr Duration kLook = std::chrono::milliseconds(100);
+    const Time until = has_to_wait ? later(session->now(), kLook) : kNever;
+    session->run(std::min(until, systemd.next_feeding()));
+    if (auto newest = stage.take_next()) next = std::move(newest);
+  }
+  systemd.stopping();
+  orders.close();
+  stage.enter(nullptr);
+  session->end();
 }
 
 int run(const RunOptions& options) {
-  const auto rules = load_rules(options.rules);
-  if (rules == nullptr) return kFailed;
+  auto rules = read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
+  if (!rules) return complain(rules.error());
+  fmt::print(stderr, "{}", rules->remarks);
   const auto governor = options.governor.options();
-  if (!governor) {
-    fmt::print(stderr, "culprit: {}\n", governor.error());
-    return kUsage;
-  }
-  auto robot_setup = robot_options(options);
-  if (!robot_setup) {
-    fmt::print(stderr, "culprit: {}\n", robot_setup.error());
-    return kUsage;
-  }
-  const auto claim = claim_robot(*rules, robot_setup->link.participant.domain);
-  if (!claim) return complain(claim.error());
-  const bool advises = options.dry_run || !*claim;
+  if (!governor) return complain(governor.error()), kUsage;
+  const auto claim = claim_robot(rules->rules);
+  if (!claim) return complain(claim.error()), kUsage;
   if (!*claim)
     fmt::print(
         "culprit: another culprit manages this robot; this one only says what it would do\n");
-  StopSignals signals;
-  auto robot = LiveRobot::open(*rules, std::move(*robot_setup));
-  if (!robot) {
-    fmt::print(stderr, "culprit: {}\n", robot.error());
-    return kFailed;
-  }
-  signals.on_stop([&] { (*robot)->interrupt(); });
-  RunBeginning beginning = begin_run(options, *rules, claim->has_value());
+  StopSignals signals(Hangup::kReloads);
+  Stage stage(options.rules);
+  web::Hub hub([&] { stage.interrupt(); });
+  web::Metrics metrics;
+  const LiveSession::Frame frame{options,
+                                 *governor,
+                                 options.dry_run || !*claim,
+                                 !options.no_journal && claim->has_value(),
+                                 hub,
+                                 metrics,
+                                 live_now()};
+  const std::string robot = name_of(rules->rules);
+  auto session = LiveSession::open(frame, std::move(*rules));
+  if (!session) return complain(session.error());
+  signals.on_stop([&] { stage.leave(); });
   fmt::print("culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot as it is\n",
-             rules->robot.empty() ? "the robot" : rules->robot, rules->rules.size(),
-             options.dry_run ? " (dry run)" : "");
+             robot, (*session)->rules().rules.size(), options.dry_run ? " (dry run)" : "");
   std::fflush(stdout);
+  (*session)->begin(signals.stopped());
 
-  std::vector<Observation> seen;
-  if (options.launch && !advises) {
-    seen = discover(**robot, signals.stopped());
-    launch_missing(**robot, *rules, seen);
-  }
-  const bool is_paused = beginning.is_paused;
-  const journal::Session session = session_of(options, *rules, advises, (*robot)->now(), beginning);
-  const auto manager =
-      replay::manager_for(session, *rules, options.planner.planner(),
-                          {advises ? Autonomy::kAdvise : Autonomy::kAct, *governor});
-  std::unique_ptr<journal::Recorder> recorder;
-  if (!options.no_journal && claim->has_value())
-    recorder = record(options, std::move(beginning), session, *manager, **robot);
-
-  web::Hub hub([&] { (*robot)->interrupt(); });
-  web::WatchedManager watched(*manager, hub, session.start);
-  Runtime runtime(watched, **robot);
+  web::OrderDesk orders;
+  orders.open((*session)->rules(),
+              [&session = **session](Order order) { session.submit(std::move(order)); });
+  stage.enter(session->get());
   web::RuleDesk desk(options.rules);
+  RobotNames names(options.message_path);
   Expected<std::unique_ptr<web::Server>> server(nullptr);
   if (options.is_on_web) {
-    server =
-        serve(options.web, web_routes(hub, desk, *rules, runtime, options.planner.factory()), &hub);
-    if (!server) {
-      fmt::print(stderr, "culprit: {}\n", server.error());
-      return kUsage;
-    }
+    server = serve(options.web,
+                   web_routes(hub, metrics, desk, orders, stage, names, options.planner.factory()),
+                   &hub);
+    if (!server) return complain(server.error()), kUsage;
   }
-
-  const Colour colour = colour_of(STDOUT_FILENO);
-  if (recorder != nullptr) {
-    runtime.on_step = [&](const Runtime::Step& step) {
-      recorder->stepped(step.now, step.observations, step.commands, step.events);
-    };
-  }
-  runtime.on_events = [&](std::span<const Event> events) {
-    for (const Event& event : events) {
-      const std::string text = line(event, *rules, session.start, colour);
-      if (text.empty()) continue;
-      fmt::print("{}\n", text);
-      (*robot)->link().log(severity_of(event), describe(event, *rules));
-    }
-    std::fflush(stdout);
-    (*robot)->link().publish(health(manager->knowledge()));
-  };
-  (*robot)->link().publish(health(manager->knowledge()));
-  if (is_paused)
-    seen.push_back(
-        {session.start, Order{0, "the last run", "it was paused when it ended", Pause{}}});
-  runtime.step(seen);
-  ServiceManager systemd;
-  systemd.ready(fmt::format("watching {}", rules->robot.empty() ? "the robot" : rules->robot));
-  while (!signals.stopped()) {
-    systemd.feed((*robot)->now());
-    runtime.run(signals.stopped(), systemd.next_feeding());
-  }
-  systemd.stopping();
+  signals.on_reload([&] {
+    if (const auto count = stage.reload("SIGHUP"); !count)
+      fmt::print(stderr, "culprit: the rules are not reloaded: {}\n", count.error());
+  });
+  manage(std::move(*session), frame, stage, orders, signals.stopped());
   signals.on_stop({});
-  if (recorder != nullptr) {
-    if (const auto written = recorder->end(); !written)
-      fmt::print(stderr, "culprit: {}\n", written.error());
-  }
+  signals.on_reload({});
   fmt::print("culprit: stopped; the robot goes on as it is\n");
   return kOk;
 }
@@ -269,36 +212,8 @@ void add_run(CLI::App& app, const std::string& version, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("run",
                          "Watch a live robot and heal it until Ctrl-C.\nJoins the DDS domain that "
-                         "ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY name.");
-  command->add_option("RULES", options->rules, "The rule file")->required();
-  command->add_flag("--dry-run", options->dry_run, "Say what would be done, and do nothing");
-  command->add_flag("--launch", options->launch,
-                    "Start components that are missing, by their LAUNCH commands");
-  command
-      ->add_option("--settle", options->settle_seconds,
-                   "For so many seconds, nothing is called missing because it was not seen")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
-  command->add_option("--state-dir", options->state_folder, "Where logs of started components go")
-      ->default_str("~/.local/state/culprit");
-  auto* journal = command->add_option(
-      "--journal", options->journal,
-      "Where everything is written down (default: <robot>.journal in the state folder)");
-  command->add_flag("--no-journal", options->no_journal, "Write nothing down, and know nothing")
-      ->excludes(journal);
-  command->add_option("--message-path", options->message_path,
-                      "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
-  command
-      ->add_option("--forgetting", options->forgetting,
-                   "What was learned n outcomes ago weighs this to the n-th power; 1: nothing is "
-                   "forgotten")
-      ->check(CLI::Range(0.5, 1.0))
-      ->capture_default_str();
-  options->planner.add_to(*command);
-  command->add_flag("--web", options->is_on_web,
-                    "Show in a browser what is seen, decided and done");
-  options->web.add_to(*command);
-  options->governor.add_to(*command);
+                         "ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY name. SIGHUP reloads the rules.");
+  options->add_to(*command);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

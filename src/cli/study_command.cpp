@@ -7,14 +7,11 @@
 #include <fmt/ranges.h>
 
 #include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/progress.h"
 #include "cli/study_output.h"
 #include "cli/study_rca_command.h"
+#include "cli/study_runs.h"
 #include "cli/study_suave_command.h"
-#include "study/ordered_work.h"
 #include "study/shards/merge.h"
-#include "study/shards/shard_writer.h"
 #include "study/sunset/study.h"
 
 namespace culprit::cli {
@@ -31,8 +28,7 @@ struct StudyOptions {
   std::uint32_t repetitions = 20;
   std::uint64_t seed = 1;
   unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
-  std::string shard = "1/1";
-  std::string shard_file;
+  ShardOptions shard;
   std::optional<std::uint32_t> explained_run;
   std::string switches = "DCS";
   std::string version;
@@ -101,55 +97,6 @@ std::string command_of(const StudyOptions& options) {
                                options.seed);
 }
 
-int fail(const std::string& what, int code) {
-  fmt::print(stderr, "culprit: {}\n", what);
-  return code;
-}
-
-// Works off what is left of `total` runs, in order; `take` gets each and says whether it was kept.
-template <class Id, class Take>
-void work_off(const study::SunsetStudy& study, const StudyOptions& options, std::uint64_t done,
-              std::uint64_t total, const StopSignals& signals, Id id, Take take) {
-  Progress progress(done, total);
-  study::work_in_order(
-      done, total, options.jobs, [&](std::uint64_t i) { return study.run(id(i)); },
-      [&](std::uint64_t i, const study::RunMetrics& run) {
-        progress.show(i + 1);
-        return take(run) && !signals.stopped();
-      });
-}
-
-int fill_shard(const study::SunsetStudy& study, const study::Campaign& campaign,
-               const StudyOptions& options) {
-  const auto shard = study::parse_shard(options.shard);
-  if (!shard) return fail(shard.error(), kUsage);
-  if (options.shard_file.empty())
-    return fail("--shard needs --shard-file, where its runs are kept for `culprit study merge`",
-                kUsage);
-  const StopSignals signals;
-  auto writer = study::ShardWriter::open(options.shard_file, {campaign, *shard});
-  if (!writer) return fail(writer.error(), kFailed);
-  if (writer->done() > 0)
-    fmt::print(stderr, "culprit: {} of {} runs are there already\n", writer->done(),
-               writer->size());
-  std::string trouble;
-  work_off(
-      study, options, writer->done(), writer->size(), signals,
-      [&](std::uint64_t i) { return campaign[study::campaign_index(*shard, i)]; },
-      [&](const study::RunMetrics& run) {
-        const auto appended = writer->append(run);
-        if (!appended) trouble = appended.error();
-        return appended.has_value();
-      });
-  if (!trouble.empty()) return fail(trouble, kFailed);
-  if (!writer->is_complete())
-    return fail(fmt::format("interrupted after {} of {} runs; the same command goes on from there",
-                            writer->done(), writer->size()),
-                kFailed);
-  fmt::print(stderr, "culprit: {} has its {} runs\n", options.shard_file, writer->size());
-  return kOk;
-}
-
 Expected<std::vector<study::LearningCurve>> learn(const StudyOptions& options) {
   auto study = study::SunsetStudy::make(
       {{{}, "paper", options.profile, study::Probabilities::kMisspecified}}, options.seed);
@@ -178,17 +125,9 @@ std::vector<study::Timeline> timelines(const study::SunsetStudy& study,
 
 int run_campaign(const study::SunsetStudy& study, const study::Campaign& campaign,
                  const StudyOptions& options) {
-  const StopSignals signals;
-  study::CampaignFold fold(campaign);
-  work_off(
-      study, options, 0, campaign.size(), signals, [&](std::uint64_t i) { return campaign[i]; },
-      [&](const study::RunMetrics& run) {
-        fold.add(run);
-        return true;
-      });
-  if (!fold.is_complete())
-    return fail("interrupted; with --shard-file the same command could go on", kFailed);
-  study::Findings findings{std::move(fold).result(), {}, timelines(study, campaign, options)};
+  auto result = run_whole(campaign, options.jobs, [&](study::RunId id) { return study.run(id); });
+  if (!result) return kFailed;
+  study::Findings findings{std::move(*result), {}, timelines(study, campaign, options)};
   if (options.has_learning()) {
     auto curves = learn(options);
     if (!curves) return fail(curves.error(), kUsage);
@@ -216,21 +155,24 @@ int explain(const StudyOptions& options) {
 
 int study_sunset(const StudyOptions& options) {
   if (options.explained_run) return explain(options);
-  const bool is_sharded = options.shard != "1/1" || !options.shard_file.empty();
-  if (is_sharded && options.learning)
+  if (options.shard.is_sharded() && options.learning)
     return fail("learning goes from run to run and cannot be spread over shards", kUsage);
   study::Campaign campaign{rows_of(options), options.runs, options.seed, options.version,
                            command_of(options)};
   const auto study = study::SunsetStudy::make(campaign.rows, campaign.seed);
   if (!study) return fail(study.error(), kUsage);
-  return is_sharded ? fill_shard(*study, campaign, options)
-                    : run_campaign(*study, campaign, options);
+  if (!options.shard.is_sharded()) return run_campaign(*study, campaign, options);
+  return fill_shard(campaign, options.shard, options.jobs,
+                    [&](study::RunId id) { return study->run(id); });
 }
 
 int merge(const std::vector<std::string>& files, const StudyOutput& output) {
-  auto result = study::merge_files(files);
-  if (!result) return fail(result.error(), kFailed);
-  const auto written = write({std::move(*result), {}, {}}, output);
+  auto merged = study::merge_files(files);
+  if (!merged) return fail(merged.error(), kFailed);
+  auto* sunset = std::get_if<study::CampaignResult>(&*merged);
+  const auto written = sunset != nullptr
+                           ? write(study::Findings{std::move(*sunset), {}, {}}, output)
+                           : write(std::get<study::SuaveResult>(*merged), output);
   return written ? kOk : fail(written.error(), kFailed);
 }
 
@@ -271,10 +213,7 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
       ->capture_default_str();
   command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
       ->check(CLI::Range(1U, 1024U));
-  command->add_option("--shard", options->shard, "Only the i-th of n parts, as 2/4")
-      ->capture_default_str();
-  command->add_option("--shard-file", options->shard_file,
-                      "Keep each run there as it ends, and go on from there if interrupted");
+  options->shard.add_to(*command);
   command->add_option("--run", options->explained_run,
                       "With --explain: one run, from 0, and what happened in it");
   command->add_flag("--explain")->needs("--run");
@@ -290,7 +229,8 @@ void add_merge(CLI::App& study, int& exit_code) {
     StudyOutput output;
   };
   auto options = std::make_shared<MergeOptions>();
-  CLI::App* command = study.add_subcommand("merge", "Put the shards of a campaign together");
+  CLI::App* command = study.add_subcommand(
+      "merge", "Put the shards of a campaign together, of whichever study they are");
   command->add_option("FILES", options->files, "All shard files")->required();
   options->output.add_to(*command);
   command->callback([options, &exit_code] { exit_code = merge(options->files, options->output); });

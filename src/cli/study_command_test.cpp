@@ -91,6 +91,38 @@ TEST_F(StudyCommand, ShardsMergeToTheSameBytes) {
   EXPECT_EQ(said, whole);
 }
 
+TEST_F(StudyCommand, ShardsOfSuaveMergeToTheSameBytes) {
+  const std::vector<std::string> campaign = {"suave", "--stress",   "--runs",
+                                             "3",     "--managers", "random,rosa,culprit"};
+  const auto run_with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), campaign.begin(), campaign.end());
+    return run(more);
+  };
+  ASSERT_EQ(run_with({"--json", "--html", path("whole.html")}), kOk) << complaint;
+  const std::string whole = said;
+  for (const std::string number : {"1", "2"})
+    ASSERT_EQ(run_with({"--shard", number + "/2", "--shard-file", path(number)}), kOk) << complaint;
+  const std::string second = text(path("2"));
+  write(path("2"), second.substr(0, second.size() / 2));
+  EXPECT_EQ(run({"merge", path("1"), path("2")}), kFailed);
+  ASSERT_EQ(run_with({"--shard", "2/2", "--shard-file", path("2")}), kOk);
+  EXPECT_THAT(complaint, HasSubstr("runs are there already"));
+
+  ASSERT_EQ(run({"merge", path("2"), path("1"), "--json", "--html", path("merged.html")}), kOk)
+      << complaint;
+  EXPECT_EQ(said, whole);
+  EXPECT_EQ(text(path("merged.html")), text(path("whole.html")));
+  EXPECT_EQ(run({"merge", path("2"), path("1"), "--format", "csv"}), kFailed);
+  EXPECT_THAT(complaint, HasSubstr("neither plots nor CSV"));
+}
+
+TEST_F(StudyCommand, SaysWhichManagersOfSuaveThereAre) {
+  EXPECT_EQ(run({"suave", "--managers", "me"}), kUsage);
+  EXPECT_THAT(complaint, HasSubstr("there are none, random, bt, metacontrol, rosa, culprit"));
+  EXPECT_EQ(run({"suave", "--managers", "bt,culprit,bt"}), kUsage);
+  EXPECT_THAT(complaint, HasSubstr("manager 'bt' is there twice"));
+}
+
 TEST_F(StudyCommand, GoesOnWhereItWasInterrupted) {
   make_shards();
   const std::string whole = text(path("1"));

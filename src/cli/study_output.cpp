@@ -7,16 +7,22 @@
 #include "study/json.h"
 #include "study/plot/plots.h"
 #include "study/report/html_report.h"
+#include "study/suave/html_report.h"
+#include "study/suave/report.h"
 #include "study/tables/render.h"
 #include "study/tables/study_tables.h"
 
 namespace culprit::cli {
 namespace {
 
-std::string tables_as(const study::Findings& findings, std::string (*render)(const study::Table&)) {
+std::string tables_as(const std::vector<study::Table>& tables, const std::string& format) {
   std::string out;
-  for (const study::Table& table : study::tables(findings))
-    out += (out.empty() ? "" : "\n") + render(table);
+  for (const study::Table& table : tables) {
+    out += out.empty() ? "" : "\n";
+    out += format == "markdown" ? study::markdown(table)
+           : format == "latex"  ? study::latex(table)
+                                : study::text(table);
+  }
   return out;
 }
 
@@ -24,25 +30,36 @@ std::string in_format(const study::Findings& findings, const std::string& format
   if (format == "json") return study::json(findings) + "\n";
   if (format == "csv") return study::metrics_csv(findings.campaign);
   if (format == "effects-csv") return study::effects_csv(findings.campaign);
-  if (format == "markdown") return tables_as(findings, study::markdown);
-  if (format == "latex") return tables_as(findings, study::latex);
-  return tables_as(findings, study::text);
+  return tables_as(study::tables(findings), format);
 }
 
 }  // namespace
 
-void StudyOutput::add_to(CLI::App& command) {
-  command
-      .add_option("--format", format,
-                  "text (tables, ours beside the paper's), markdown, latex, csv (each mean), "
-                  "effects-csv (each pairwise effect) or json")
-      ->check(CLI::IsMember({"text", "markdown", "latex", "csv", "effects-csv", "json"}))
+void StudyOutput::add_to(CLI::App& command, const std::string& formats_summary,
+                         const std::vector<std::string>& formats) {
+  command.add_option("--format", format, formats_summary)
+      ->check(CLI::IsMember(formats))
       ->capture_default_str();
   command.add_flag_callback(
       "--json", [this] { format = "json"; }, "The same as --format json");
   command.add_option("-o,--output", output, "Write there (default: the terminal)");
+}
+
+void StudyOutput::add_to(CLI::App& command) {
+  add_to(command,
+         "text (tables, ours beside the paper's), markdown, latex, csv (each mean), "
+         "effects-csv (each pairwise effect) or json",
+         {"text", "markdown", "latex", "csv", "effects-csv", "json"});
   command.add_option("--html", html, "Also write a report: one page that needs nothing else");
   command.add_option("--svg", plot_folder, "Also write each plot into this folder, for papers");
+}
+
+void StudyOutput::add_suave_to(CLI::App& command) {
+  add_to(command, "text (tables, ours beside the paper's), markdown, latex or json",
+         {"text", "markdown", "latex", "json"});
+  command.add_option(
+      "--html", html,
+      "Also write a report there: tables, and the first run of each manager, moving");
 }
 
 Expected<void> write(const study::Findings& findings, const StudyOutput& output) {
@@ -54,8 +71,22 @@ Expected<void> write(const study::Findings& findings, const StudyOutput& output)
     auto written = study::write_plots(findings, output.plot_folder);
     if (!written) return written;
   }
-  const std::string text = in_format(findings, output.format);
-  return write_text(output.output, text);
+  return write_text(output.output, in_format(findings, output.format));
+}
+
+Expected<void> write(const study::SuaveResult& result, const StudyOutput& output) {
+  if (!output.plot_folder.empty() || output.format.ends_with("csv"))
+    return Error{
+        "of SUAVE there are neither plots nor CSV; there are text, markdown, latex, json "
+        "and --html"};
+  if (!output.html.empty()) {
+    auto written =
+        write_text(output.html, study::suave_html(result, study::first_tracks(result.campaign)));
+    if (!written) return written;
+  }
+  return write_text(output.output, output.format == "json"
+                                       ? study::suave_json(result)
+                                       : tables_as(study::suave_tables(result), output.format));
 }
 
 std::string timeline_text(const study::Timeline& timeline) {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "language/expected.h"
 #include "study/findings.h"
+#include "study/suave/campaign.h"
 
 namespace culprit::cli {
 
@@ -18,10 +20,17 @@ struct StudyOutput {
 
   // --format, --json, --output, --html, --svg
   void add_to(CLI::App& command);
+  // The same without what SUAVE has not: CSV and plots.
+  void add_suave_to(CLI::App& command);
+
+ private:
+  void add_to(CLI::App& command, const std::string& formats_summary,
+              const std::vector<std::string>& formats);
 };
 
-// An error: a file cannot be written.
+// An error: a file cannot be written, or there is no such format of this study.
 Expected<void> write(const study::Findings& findings, const StudyOutput& output);
+Expected<void> write(const study::SuaveResult& result, const StudyOutput& output);
 
 // One run, a line for each happening.
 std::string timeline_text(const study::Timeline& timeline);

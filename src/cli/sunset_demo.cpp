@@ -87,7 +87,7 @@ Expected<void> SunsetDemo::open() {
   manager.start = live_now();
   manager.settling = 20s;  // the nodes are only just being started
   manager_ = std::make_unique<Manager>(rules_, options_.planner(), manager);
-  watched_ = std::make_unique<web::WatchedManager>(*manager_, hub_, start_);
+  watched_ = std::make_unique<web::WatchedManager>(*manager_, hub_, metrics_, start_);
   runtime_ = std::make_unique<Runtime>(*watched_, *robot_);
   runtime_->on_events = [this](std::span<const Event> events) { on_events(events); };
   thread_ = std::thread([this] { runtime_->run(is_ending_); });

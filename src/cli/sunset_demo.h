@@ -73,6 +73,7 @@ class SunsetDemo {
   const std::filesystem::path& keep_state();
   const RuleSet& rules() const { return rules_; }
   web::Hub& hub() { return hub_; }
+  const web::Metrics& metrics() const { return metrics_; }
   // Gives the manager an order. From any thread.
   void submit(Order order) { runtime_->submit(std::move(order)); }
 
@@ -105,6 +106,7 @@ class SunsetDemo {
   std::unique_ptr<sunset::Experiment> experiment_;
   std::unique_ptr<Manager> manager_;
   web::Hub hub_{[this] { robot_->interrupt(); }};
+  web::Metrics metrics_;
   std::unique_ptr<web::WatchedManager> watched_;
   std::unique_ptr<Runtime> runtime_;
   Time start_;

@@ -86,8 +86,8 @@ std::string TestProgram::output() const {
   return text.str();
 }
 
-bool TestProgram::prints(const std::string& text) const {
-  return eventually([&] { return output().find(text) != std::string::npos; });
+bool TestProgram::prints(const std::string& text, Duration patience) const {
+  return eventually([&] { return output().find(text) != std::string::npos; }, patience);
 }
 
 }  // namespace culprit::cli

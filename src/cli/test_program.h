@@ -46,7 +46,7 @@ class TestProgram {
   // All that it has printed so far.
   std::string output() const;
   // Waits until it has printed `text`. False if it does not.
-  bool prints(const std::string& text) const;
+  bool prints(const std::string& text, Duration patience = kPatience) const;
 
  private:
   std::filesystem::path log_;

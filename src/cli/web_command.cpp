@@ -2,7 +2,11 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/paths.h"
+#include "cli/robot_names.h"
+#include "cli/study_runner.h"
 #include "cli/web_service.h"
+#include "web/name_routes.h"
 #include "web/rule_routes.h"
 
 namespace culprit::cli {
@@ -10,6 +14,7 @@ namespace {
 
 struct WebCommandOptions {
   std::string rules;
+  bool robot = false;
   WebOptions web;
 };
 
@@ -20,7 +25,16 @@ int edit(const WebCommandOptions& options) {
     return kFailed;
   }
   StopSignals signals;
-  const auto server = serve(options.web, web::rule_routes(desk), nullptr);
+  StudyRunner studies(default_state_folder() / "studies");
+  std::vector<web::Route> routes = web::rule_routes(desk);
+  for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
+  RobotNames names;
+  if (options.robot) {
+    for (web::Route& route :
+         web::name_routes([&names](const LiveInterest& interest) { return names.look(interest); }))
+      routes.push_back(std::move(route));
+  }
+  const auto server = serve(options.web, std::move(routes), nullptr);
   if (!server) {
     fmt::print(stderr, "culprit: {}\n", server.error());
     return kFailed;
@@ -34,8 +48,11 @@ int edit(const WebCommandOptions& options) {
 void add_web(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<WebCommandOptions>();
   CLI::App* command = app.add_subcommand(
-      "web", "Write rules in a browser: as text or in a form, checked as you type");
+      "web",
+      "Write rules in a browser, as text or in a form, checked as you type; and run studies");
   command->add_option("RULES", options->rules, "The rule file, which may be new")->required();
+  command->add_flag("--robot", options->robot,
+                    "Offer what the live robot has: its nodes, topics, parameters and services");
   options->web.add_to(*command);
   command->callback([options, &exit_code] { exit_code = edit(*options); });
 }

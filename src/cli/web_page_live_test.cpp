@@ -32,5 +32,12 @@ TEST_F(WebPage, BuildsThePapersRuleFromNothing) { passes("builder.mjs"); }
 
 TEST_F(WebPage, MendsABrokenFile) { passes("repair.mjs"); }
 
+TEST_F(WebPage, RunsStudiesAndDrawsRulesThatAreInOneAnothersWay) { passes("studies.mjs"); }
+
+TEST_F(WebPage, ObeysWhoIsInChargeOfARobot) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  passes("operator.mjs");
+}
+
 }  // namespace
 }  // namespace culprit::cli

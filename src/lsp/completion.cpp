@@ -23,7 +23,7 @@ std::vector<Proposal> keywords(std::initializer_list<const char*> words) {
 void add_named(const Document& document, Occurrence::Kind kind, Kind as,
                std::vector<Proposal>& out) {
   std::set<std::string> seen;
-  for (const Occurrence& o : document.names) {
+  for (const Occurrence& o : document.names()) {
     if (o.kind == kind && seen.insert(o.name).second) out.push_back({as, o.name, ""});
   }
 }

@@ -9,7 +9,6 @@ Document::Document(std::string text) : source("", std::move(text)) {
   std::vector<Diagnostic> said;
   file = parse(source, said);
   checked = check(file, std::move(said));
-  names = occurrences(file);
   diagnostics = checked.diagnostics;
 }
 
@@ -18,6 +17,11 @@ Component Document::component_called(const std::string& name) const {
     if (c.name.text == name) return {name, c.node ? c.node->text : "", {}, true};
   }
   return {name, name.starts_with('/') ? name : "", {}, false};
+}
+
+const std::vector<Occurrence>& Document::names() const {
+  if (!names_) names_ = occurrences(file);
+  return *names_;
 }
 
 bool Document::compare_with(const LiveInventory& robot) {

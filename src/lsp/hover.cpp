@@ -14,7 +14,7 @@ std::string code(std::string_view text) { return "```\n" + std::string(text) + "
 
 // The line on which `thing` is declared; empty if none does.
 std::string declaration(const Document& document, const Occurrence& thing) {
-  for (const Occurrence& o : document.names) {
+  for (const Occurrence& o : document.names()) {
     if (!o.declares || !o.same_as(thing)) continue;
     const std::uint32_t line = document.source.position(o.span.begin).line;
     return code(document.source.text(document.source.line(line)));

@@ -279,7 +279,7 @@ Json Server::capabilities() const {
 }
 
 const Occurrence* Server::pointed_at(const Document& document, const Json& params) const {
-  return occurrence_at(document.names, place_in(document, params));
+  return occurrence_at(document.names(), place_in(document, params));
 }
 
 Json Server::completion(const Document& document, const Json& params) const {
@@ -308,7 +308,7 @@ Json Server::definition(const std::string& uri, const Document& document,
                         const Json& params) const {
   const Occurrence* thing = pointed_at(document, params);
   if (thing == nullptr) return nullptr;
-  for (const Occurrence& o : document.names) {
+  for (const Occurrence& o : document.names()) {
     if (o.declares && o.same_as(*thing))
       return {{"uri", uri}, {"range", to_json(document.source, o.span)}};
   }
@@ -322,7 +322,7 @@ Json Server::references(const std::string& uri, const Document& document,
   const Json* wanted = at(params, {"context", "includeDeclaration"});
   const bool with_declaration = wanted == nullptr || !wanted->is_boolean() || wanted->get<bool>();
   Json places = Json::array();
-  for (const Occurrence& o : document.names) {
+  for (const Occurrence& o : document.names()) {
     if (o.same_as(*thing) && (with_declaration || !o.declares))
       places.push_back({{"uri", uri}, {"range", to_json(document.source, o.span)}});
   }
@@ -333,19 +333,19 @@ Expected<Json> Server::rename(const std::string& uri, const Document& document,
                               const Json& params) const {
   const Occurrence* thing = pointed_at(document, params);
   if (thing == nullptr) return Error{"there is no name here"};
-  const bool is_ours = std::any_of(document.names.begin(), document.names.end(),
+  const bool is_ours = std::any_of(document.names().begin(), document.names().end(),
                                    [&](const auto& o) { return o.declares && o.same_as(*thing); });
   if (!is_ours) return Error{"'" + thing->name + "' is not declared in this file"};
   const std::string name = text_at(params, {"newName"});
   if (!is_name(name))
     return Error{"a name begins with a letter and has letters, digits and underscores"};
   const bool is_taken =
-      std::any_of(document.names.begin(), document.names.end(), [&](const Occurrence& o) {
+      std::any_of(document.names().begin(), document.names().end(), [&](const Occurrence& o) {
         return o.declares && o.name == name && o.scope == thing->scope && !o.same_as(*thing);
       });
   if (is_taken) return Error{"'" + name + "' is declared already"};
   Json edits = Json::array();
-  for (const Occurrence& o : document.names) {
+  for (const Occurrence& o : document.names()) {
     if (o.same_as(*thing))
       edits.push_back({{"range", to_json(document.source, o.span)}, {"newText", name}});
   }
@@ -384,7 +384,7 @@ Json Server::code_actions(const std::string& uri, const Document& document,
 // Rules hold their strategies; everything else that is declared stands beside them.
 Json Server::symbols(const Document& document) const {
   Json all = Json::array();
-  for (const Occurrence& o : document.names) {
+  for (const Occurrence& o : document.names()) {
     if (!o.declares) continue;
     Json entry = symbol(document, o);
     if (o.kind == Kind::kStrategy && !all.empty() && all.back().contains("children")) {
@@ -402,7 +402,7 @@ Json Server::symbols(const Document& document) const {
 Json Server::semantic_tokens(const Document& document) const {
   Json data = Json::array();
   TextPosition last;
-  for (const Occurrence& o : document.names) {
+  for (const Occurrence& o : document.names()) {
     const TextPosition begin = text_position(document.source, o.span.begin);
     const TextPosition end = text_position(document.source, o.span.end);
     const bool same_line = begin.line == last.line;

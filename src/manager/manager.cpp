@@ -32,7 +32,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
       executor_(knowledge_),
       governor_(knowledge_, options.governor, options.start),
       autonomy_(options.autonomy),
-      settling_(options.settling),
+      settled_(later(options.start, options.settling)),
       now_(options.start),
       held_back_(rules.rules.size()) {
   knowledge_.beliefs.set_forgetting(options.forgetting);
@@ -42,7 +42,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
 void Manager::resume(Interrupted interrupted) {
   if (autonomy_ == Autonomy::kAdvise) return;
   const StrategyId strategy = interrupted.strategy;
-  executor_.resume(std::move(interrupted), now_, later(now_, settling_));
+  executor_.resume(std::move(interrupted), now_, settled_);
   governor_.began(strategy, now_);
 }
 

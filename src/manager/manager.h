@@ -45,6 +45,8 @@ class Manager : public ManagingSystem {
   const Knowledge& knowledge() const { return knowledge_; }
   const Governor& governor() const { return governor_; }
   Autonomy autonomy() const { return autonomy_; }
+  // When the robot has had its time to show itself (Options::settling).
+  Time settled() const { return settled_; }
 
   // The failures that wait for a decision now, ascending.
   std::vector<RuleId> plannable() const { return analyzer_.plannable(now_); }
@@ -78,7 +80,7 @@ class Manager : public ManagingSystem {
   Executor executor_;
   Governor governor_;
   Autonomy autonomy_;
-  Duration settling_;
+  Time settled_;  // until then nothing is called absent
   Time now_;
   bool news_ = false;        // something a plan depends on changed since the last plan
   Time next_plan_ = kNever;  // while failures are held back

@@ -6,10 +6,19 @@
 #include <poll.h>
 #include <set>
 #include <sys/eventfd.h>
+#include <sys/wait.h>
 
 #include "process/spawn.h"
 
 namespace culprit::process {
+namespace {
+
+bool is_child(int pid) {
+  siginfo_t info{};
+  return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0;
+}
+
+}  // namespace
 
 Supervisor::Supervisor(const RuleSet& rules, Options options, Inbox& inbox)
     : rules_(rules),
@@ -54,12 +63,14 @@ void Supervisor::adopt(ComponentId component, int pid) {
     return m.process.pid() == pid && m.component == component;
   });
   if (known) return;
-  auto process = WatchedProcess::watch(pid, Relation::kAdopted);
+  // A supervisor before this one may have started it.
+  const Relation relation = is_child(pid) ? Relation::kChild : Relation::kAdopted;
+  auto process = WatchedProcess::watch(pid, relation);
   if (!process) {
     inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, process.error()});
     return;
   }
-  members_.push_back({component, std::move(*process), Relation::kAdopted, ProcessState::kRunning});
+  members_.push_back({component, std::move(*process), relation, ProcessState::kRunning});
   inbox_.put(ProcessSeen{component, ProcessState::kRunning, pid, ""});
   wake();
 }

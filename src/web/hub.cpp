@@ -15,7 +15,7 @@ Hub::Hub(std::function<void()> wake)
     : name_(std::to_string(std::random_device()())), wake_(std::move(wake)) {}
 
 Hub::Reader::Reader(Hub& hub) : hub_(hub) {
-  if (hub_.readers_++ == 0 && hub_.wake_) hub_.wake_();
+  if (hub_.readers_++ == 0) hub_.wake();
 }
 
 void Hub::publish(Kind kind, std::string data) {

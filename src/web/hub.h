@@ -47,6 +47,10 @@ class Hub {
   explicit Hub(std::function<void()> wake = {});
 
   void publish(Kind kind, std::string data);
+  // Asks whoever publishes to come round, as if a reader had come.
+  void wake() const {
+    if (wake_) wake_();
+  }
 
   struct Batch {
     bool is_gap = false;  // events between `after` and the first of these are forgotten

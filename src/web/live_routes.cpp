@@ -35,6 +35,42 @@ Answer events(Hub& hub) {
   }
 }
 
+// As culprit beliefs export writes it (docs/journal.md): what differs from what the rules say.
+Answer beliefs(Hub& hub) {
+  const Answer robot = newest(hub, Kind::kRobot);
+  const Answer state = newest(hub, Kind::kState);
+  if (robot.status != 200 || state.status != 200) return robot.status != 200 ? robot : state;
+  const Json& rules = robot.body["rules"];
+  const Json& now = state.body["beliefs"];
+  Json document{{"format", "culprit-beliefs"},
+                {"format_version", 1},
+                {"beliefs", Json::array()},
+                {"couplings", Json::array()}};
+  std::size_t place = 0;
+  for (const Json& rule : rules) {
+    for (const Json& strategy : rule["strategies"]) {
+      // A reload may have come between the two.
+      if (place >= now.size()) return refuse(503, "the rules are being reloaded; ask again");
+      const Json& belief = now[place++];
+      if (belief == strategy["prior"]) continue;
+      document["beliefs"].push_back({{"rule", rule["name"]},
+                                     {"strategy", strategy["name"]},
+                                     {"belief", belief},
+                                     {"prior", strategy["prior"]}});
+    }
+  }
+  for (const Json& each : state.body["couplings"]) {
+    const auto cause = each[0].get<std::size_t>();
+    const auto effect = each[1].get<std::size_t>();
+    if (cause >= rules.size() || effect >= rules.size()) continue;
+    document["couplings"].push_back({{"cause", rules[cause]["name"]},
+                                     {"effect", rules[effect]["name"]},
+                                     {"cleared", each[2]},
+                                     {"stayed", each[3]}});
+  }
+  return {200, document};
+}
+
 }  // namespace
 
 std::vector<Route> live_routes(Hub& hub) {
@@ -43,6 +79,7 @@ std::vector<Route> live_routes(Hub& hub) {
       {Method::kGet, "/api/graph", [&hub](const Json&) { return newest(hub, Kind::kGraph); }},
       {Method::kGet, "/api/state", [&hub](const Json&) { return newest(hub, Kind::kState); }},
       {Method::kGet, "/api/control", [&hub](const Json&) { return newest(hub, Kind::kControl); }},
+      {Method::kGet, "/api/beliefs", [&hub](const Json&) { return beliefs(hub); }},
       {Method::kGet, "/api/events", [&hub](const Json&) { return events(hub); }}};
 }
 

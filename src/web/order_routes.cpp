@@ -1,7 +1,5 @@
 #include "web/order_routes.h"
 
-#include <atomic>
-
 namespace culprit::web {
 namespace {
 
@@ -75,21 +73,36 @@ Expected<What> read(const Json& body, const RuleSet& rules) {
 
 }  // namespace
 
-std::vector<Route> order_routes(const RuleSet& rules, std::function<void(Order)> submit) {
-  const auto last = std::make_shared<std::atomic<std::uint64_t>>(0);
-  return {{Method::kPost, "/api/orders", [&rules, submit, last](const Json& body) {
-             const auto what = read(body, rules);
-             if (!what) return refuse(400, what.error());
-             Order order{++*last, text_of(body, "author").value_or(""),
-                         text_of(body, "reason").value_or(""), *what};
-             if (order.author.empty()) return refuse(400, "say who you are: 'author'");
-             if (order.author.size() > kLongestText || order.reason.size() > kLongestText)
-               return refuse(400, "keep 'author' and 'reason' short");
-             const std::uint64_t number = order.number;
-             submit(std::move(order));
-             // The manager decides; an event of this number says how.
-             return Answer{202, {{"number", number}}};
-           }}};
+void OrderDesk::open(const RuleSet& rules, std::function<void(Order)> submit) {
+  const std::lock_guard lock(mutex_);
+  rules_ = &rules;
+  submit_ = std::move(submit);
+}
+
+void OrderDesk::close() {
+  const std::lock_guard lock(mutex_);
+  rules_ = nullptr;
+  submit_ = nullptr;
+}
+
+Answer OrderDesk::take(const Json& body) {
+  // The rules that an order was read with must still be those of the manager that gets it.
+  const std::lock_guard lock(mutex_);
+  if (rules_ == nullptr) return refuse(503, "the rules are being reloaded; ask again");
+  const auto what = read(body, *rules_);
+  if (!what) return refuse(400, what.error());
+  Order order{last_ + 1, text_of(body, "author").value_or(""), text_of(body, "reason").value_or(""),
+              *what};
+  if (order.author.empty()) return refuse(400, "say who you are: 'author'");
+  if (order.author.size() > kLongestText || order.reason.size() > kLongestText)
+    return refuse(400, "keep 'author' and 'reason' short");
+  submit_(std::move(order));
+  // The manager decides; an event of this number says how.
+  return {202, {{"number", ++last_}}};
+}
+
+std::vector<Route> order_routes(OrderDesk& desk) {
+  return {{Method::kPost, "/api/orders", [&desk](const Json& body) { return desk.take(body); }}};
 }
 
 }  // namespace culprit::web

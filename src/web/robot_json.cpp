@@ -5,6 +5,7 @@
 #include <map>
 
 #include "knowledge/describe.h"
+#include "web/component_health.h"
 
 namespace culprit::web {
 namespace {
@@ -76,36 +77,13 @@ Json rule_to_json(RuleId id, const Knowledge& knowledge, Time start) {
   return json;
 }
 
-// Health is a set: a component is as sick as the most critical failing rule that touches it.
-std::vector<Json> health_of_components(const Knowledge& knowledge) {
-  const RuleSet& rules = knowledge.rules;
-  std::vector<int> worst(rules.components.size(), -1);
-  std::vector<bool> is_exhausted(rules.components.size());
-  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
-    const RulePhase phase = knowledge.states[RuleId(r)].phase;
-    if (phase == RulePhase::kQuiet) continue;
-    const int level = static_cast<int>(rules.rules[r].policies.criticality);
-    for (const ComponentId c : rules.rules[r].components) {
-      worst[c.index] = std::max(worst[c.index], level);
-      if (phase == RulePhase::kExhausted) is_exhausted[c.index] = true;
-    }
-  }
-  std::vector<Json> health;
-  for (std::size_t c = 0; c < worst.size(); ++c) {
-    Json json = is_exhausted[c] ? Json("EXHAUSTED") : Json("OK");
-    if (!is_exhausted[c] && worst[c] >= 0) json = to_string(static_cast<Criticality>(worst[c]));
-    health.push_back(std::move(json));
-  }
-  return health;
-}
-
 Json components_to_json(const Knowledge& knowledge) {
-  const std::vector<Json> health = health_of_components(knowledge);
+  const std::vector<std::size_t> health = health_of_components(knowledge);
   Json list = Json::array();
   for (std::size_t c = 0; c < health.size(); ++c) {
     const ComponentId id(c);
     const ComponentState& state = knowledge.components[id];
-    Json json{{"health", health[c]}, {"present", knowledge.graph.is_present(id)}};
+    Json json{{"health", kHealthWords[health[c]]}, {"present", knowledge.graph.is_present(id)}};
     json["alive"] = state.alive ? Json(*state.alive) : Json(nullptr);
     if (state.lifecycle != Lifecycle::kUnknown) json["lifecycle"] = to_string(state.lifecycle);
     if (!state.process_remark.empty()) json["remark"] = state.process_remark;
@@ -126,6 +104,19 @@ Json topics_to_json(const Knowledge& knowledge) {
       json["rate"] = std::round(10 / seconds(rhythm.interval)) / 10;
     if (rhythm.last) json["age"] = time_to_json(knowledge.now, *rhythm.last);
     list.push_back(std::move(json));
+  }
+  return list;
+}
+
+// What was learned of which failure goes away with which.
+Json couplings_to_json(const Knowledge& knowledge) {
+  Json list = Json::array();
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
+    for (const Couplings::Learned& each : knowledge.couplings.of(RuleId(r))) {
+      if (each.coupling == Coupling()) continue;
+      list.push_back(
+          Json::array({each.cause.index, r, each.coupling.cleared, each.coupling.stayed}));
+    }
   }
   return list;
 }
@@ -163,11 +154,20 @@ Json graph_to_json(const Knowledge& knowledge) {
   for (const auto& edge : edges) nodes[edge.consumer] = nodes[edge.producer] = false;
   for (const std::string& node : graph.nodes()) nodes[node] = true;
 
+  // So does a component, whether it is there or not.
+  std::map<std::string, ComponentId> components;
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
+    const std::string& name = graph.node_name(ComponentId(c));
+    if (name.empty()) continue;
+    nodes.try_emplace(name, false);
+    components.emplace(name, ComponentId(c));
+  }
+
   Json json{{"nodes", Json::array()}, {"edges", Json::array()}};
   for (const auto& [name, is_present] : nodes) {
     Json node{{"node", name}, {"present", is_present}};
-    if (const auto component = graph.component_of(name))
-      node["component"] = knowledge.rules[*component].name;
+    if (const auto component = components.find(name); component != components.end())
+      node["component"] = knowledge.rules[component->second].name;
     json["nodes"].push_back(std::move(node));
   }
   for (const auto& edge : edges)
@@ -214,6 +214,7 @@ Json state_to_json(const Knowledge& knowledge, Time start) {
     const Belief& belief = knowledge.beliefs[StrategyId(s)];
     json["beliefs"].push_back(Json::array({belief.alpha, belief.beta}));
   }
+  json["couplings"] = couplings_to_json(knowledge);
   return json;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,14 @@
 namespace culprit::web {
 
 struct Answer {
+  struct Text {
+    std::string type;  // of the content, as HTTP names it
+    std::string content;
+    std::string policy{};  // what the content may do (CSP); empty: as the app
+  };
   int status = 200;
   Json body = Json::object();
+  std::optional<Text> text{};  // instead of the body
 };
 
 // {"error": "..."}: what is wrong and what to do about it.

@@ -11,8 +11,12 @@
 #include "language/checker.h"
 #include "web/fault_routes.h"
 #include "web/live_routes.h"
+#include "web/name_routes.h"
 #include "web/order_routes.h"
+#include "web/reload_routes.h"
 #include "web/rule_routes.h"
+#include "web/status_routes.h"
+#include "web/study_routes.h"
 
 namespace culprit::web {
 namespace {
@@ -35,9 +39,33 @@ struct Routes : testing::Test {
     faults.all = {{"kill:camera", "camera"}};
     faults.inject = [this](const std::string& name) { return injected = name, Expected<void>(); };
     faults.clear = [] { return Expected<void>(); };
-    const auto submit = [this](Order order) { orders.push_back(std::move(order)); };
+    order_desk.open(rules, [this](Order order) { orders.push_back(std::move(order)); });
+    const auto look = [this](const LiveInterest& interest) -> Expected<LiveInventory> {
+      looked_at = interest;
+      LiveInventory inventory;
+      inventory.nodes["/camera"].parameters = {{"gain", Value(0.5)}, {"matrix", std::nullopt}};
+      inventory.topics["/rgb"] = {};
+      return inventory;
+    };
+    Studies studies;
+    studies.start = [this](const Studies::Campaign& campaign) -> Expected<void> {
+      if (started) return Error{"a campaign is running already"};
+      return started = campaign, Expected<void>();
+    };
+    studies.stop = [this] { started.reset(); };
+    studies.progress = [this]() -> std::optional<Studies::Progress> {
+      if (!started) return std::nullopt;
+      return Studies::Progress{*started, "running", 1, {}, "", false};
+    };
+    studies.result = studies.report = [] { return std::string("<h1>sunset</h1>"); };
+    const auto reload = [this](const std::string& author) -> Expected<std::size_t> {
+      if (is_file_wrong) return Error{"line 3: no such rule"};
+      reloaded_by = author;
+      return 1;
+    };
     for (auto routes : {live_routes(hub), rule_routes(desk), fault_routes(std::move(faults)),
-                        order_routes(rules, submit)}) {
+                        order_routes(order_desk), status_routes(hub, metrics),
+                        reload_routes(reload), study_routes(studies), name_routes(look)}) {
       for (Route& route : routes) all.push_back(std::move(route));
     }
   }
@@ -54,8 +82,14 @@ struct Routes : testing::Test {
 
   const std::string path;
   Hub hub;
+  Metrics metrics;
   RuleDesk desk{path};
   const RuleSet rules = *check(Source("test", kRules)).rules;
+  OrderDesk order_desk;
+  bool is_file_wrong = false;
+  std::string reloaded_by;
+  std::optional<Studies::Campaign> started;
+  LiveInterest looked_at;
   std::string injected;
   std::vector<Order> orders;
   std::vector<Route> all;
@@ -153,6 +187,56 @@ TEST_F(Routes, GiveOrdersToTheManager) {
   EXPECT_TRUE(std::holds_alternative<RunStrategy>(orders[0].what));
   EXPECT_EQ(orders[0].author, "ada");
   EXPECT_EQ(answer.body["number"], orders[0].number);
+}
+
+TEST_F(Routes, TakeNoOrdersWhileTheRulesAreReplaced) {
+  order_desk.close();
+  EXPECT_EQ(ask("post /api/orders", {{"order", "pause"}, {"author", "ada"}}).status, 503);
+  EXPECT_TRUE(orders.empty());
+}
+
+TEST_F(Routes, ExportWhatWasLearned) {
+  hub.publish(Kind::kRobot, R"({"rules": [{"name": "R", "strategies": [
+      {"name": "s", "prior": [9, 1]}, {"name": "t", "prior": [5, 5]}]}]})");
+  hub.publish(Kind::kState, R"({"beliefs": [[10, 1], [5, 5]], "couplings": [[0, 0, 2, 1]]})");
+  const Json learned = ask("get /api/beliefs").body;
+  EXPECT_EQ(learned["beliefs"].dump(),
+            R"([{"rule":"R","strategy":"s","belief":[10,1],"prior":[9,1]}])");
+  EXPECT_EQ(learned["couplings"].dump(), R"([{"cause":"R","effect":"R","cleared":2,"stayed":1}])");
+}
+
+TEST_F(Routes, ReloadOnlyRulesWithoutErrors) {
+  EXPECT_EQ(ask("post /api/rules/reload", {{"author", "ada"}}).status, 202);
+  EXPECT_EQ(reloaded_by, "ada");
+  is_file_wrong = true;
+  const Answer refused = ask("post /api/rules/reload", {{"author", "ada"}});
+  EXPECT_EQ(refused.status, 422);
+  EXPECT_THAT(refused.body["error"].get<std::string>(), HasSubstr("line 3"));
+}
+
+TEST_F(Routes, OfferWhatTheRobotHasAndDisturbItNoMoreThanNeeded) {
+  const Json names = ask("post /api/rules/names", {{"text", kRules}}).body;
+  EXPECT_EQ(names["nodes"].dump(), R"({"/camera":{"parameters":{"gain":0.5,"matrix":null}}})");
+  EXPECT_EQ(names["topics"].dump(), R"(["/rgb"])");
+  EXPECT_THAT(looked_at.nodes, testing::ElementsAre("/camera"));
+  EXPECT_TRUE(looked_at.fields_of_topics.empty());
+}
+
+TEST_F(Routes, RunOneStudyAtATime) {
+  EXPECT_EQ(ask("get /api/studies").body["study"], nullptr);
+  for (const Json& wrong :
+       {Json{{"study", "rm"}, {"runs", 1}}, Json{{"study", "rca"}},
+        Json{{"study", "rca"}, {"runs", -1}}, Json{{"study", "rca"}, {"runs", 1e12}},
+        Json{{"study", "rca"}, {"runs", 1}, {"seed", "x"}}})
+    EXPECT_EQ(ask("post /api/studies", wrong).status, 400) << wrong;
+  const Json right{{"study", "rca"}, {"runs", 3}, {"seed", 7}};
+  EXPECT_EQ(ask("post /api/studies", right).status, 202);
+  EXPECT_EQ(started->runs, 3u);
+  EXPECT_EQ(ask("post /api/studies", right).status, 409);
+  EXPECT_EQ(ask("get /api/studies").body["state"], "running");
+  EXPECT_EQ(ask("delete /api/studies").body["study"], nullptr);
+  // A report is a page, which must not speak for the app.
+  EXPECT_THAT(ask("get /api/studies/report").text->policy, HasSubstr("sandbox"));
 }
 
 TEST_F(Routes, InjectOnlyFaultsThatExist) {

@@ -30,6 +30,11 @@ const httplib::Headers kHeaders = {{"Content-Security-Policy",
 
 void give(httplib::Response& response, const Answer& answer) {
   response.status = answer.status;
+  if (answer.text) {
+    if (!answer.text->policy.empty())
+      response.set_header("Content-Security-Policy", answer.text->policy);
+    return response.set_content(answer.text->content, answer.text->type);
+  }
   response.set_content(to_line(answer.body), kJson);
 }
 
@@ -37,7 +42,10 @@ bool has_body(const httplib::Request& request) {
   return request.has_header("Content-Length") && request.get_header_value("Content-Length") != "0";
 }
 
-bool is_api(const httplib::Request& request) { return request.path.rfind("/api/", 0) == 0; }
+// What tells of the robot; the app itself and whether culprit lives are no secrets.
+bool is_api(const httplib::Request& request) {
+  return request.path.rfind("/api/", 0) == 0 || request.path == "/metrics";
+}
 
 bool changes(const httplib::Request& request) {
   return request.method != "GET" && request.method != "HEAD";

@@ -17,13 +17,16 @@ bool may_change_graph(const Observation& observation) {
 
 }  // namespace
 
-WatchedManager::WatchedManager(Manager& manager, Hub& hub, Time start)
-    : manager_(manager), hub_(hub), start_(start) {
+WatchedManager::WatchedManager(Manager& manager, Hub& hub, Metrics& metrics, Time start)
+    : manager_(manager), hub_(hub), metrics_(metrics), start_(start) {
+  metrics_.watch(manager_);
   hub_.publish(Kind::kRobot, to_line(rules_to_json(manager_.knowledge().rules)));
 }
 
 std::vector<Command> WatchedManager::step(Time now, std::span<const Observation> observations) {
+  const auto begin = std::chrono::steady_clock::now();
   std::vector<Command> commands = manager_.step(now, observations);
+  metrics_.stepped(std::chrono::steady_clock::now() - begin, observations.size(), manager_);
   tell_events();
   is_graph_new_ |= std::any_of(observations.begin(), observations.end(), may_change_graph);
   if (hub_.has_readers() && now >= next_tell_) tell_state(now);

@@ -1,4 +1,5 @@
-// A manager whose work browsers can follow: does what it does, and tells a hub.
+// A manager whose work browsers can follow: does what it does, and tells a hub. What it does is
+// counted, too.
 //
 // Events are told as they happen. The graph and the present state are told when they have changed,
 // but not more often than kPeriod, and only while somebody reads: a robot that nobody looks at pays
@@ -7,6 +8,7 @@
 
 #include "manager/manager.h"
 #include "web/hub.h"
+#include "web/metrics.h"
 
 namespace culprit::web {
 
@@ -16,8 +18,8 @@ class WatchedManager : public ManagingSystem {
   // After an event the state is told sooner, at most so often.
   static constexpr Duration kSoon = std::chrono::milliseconds(33);
 
-  // Both must outlive this. Events count their time from `start`.
-  WatchedManager(Manager& manager, Hub& hub, Time start);
+  // All must outlive this. Events count their time from `start`.
+  WatchedManager(Manager& manager, Hub& hub, Metrics& metrics, Time start);
 
   std::vector<Command> step(Time now, std::span<const Observation> observations) override;
   Time next_deadline() const override;
@@ -29,6 +31,7 @@ class WatchedManager : public ManagingSystem {
 
   Manager& manager_;
   Hub& hub_;
+  Metrics& metrics_;
   const Time start_;
   Time told_ = kLongAgo;       // when the state was told last
   Time next_tell_ = kLongAgo;  // when it may be told again

@@ -7,6 +7,7 @@ import { notice } from './faults'
 import { RobotPage } from './robot_page'
 import { RulesPage } from './rules_page'
 import { SimulatorPage } from './simulator_page'
+import { StudiesPage } from './studies_page'
 import { calls, can, isConnected, robot, start } from './store'
 
 const kPages = [
@@ -14,6 +15,7 @@ const kPages = [
   { name: 'rules', title: 'Rules', needs: 'get /api/rules', Page: RulesPage },
   { name: 'beliefs', title: 'Beliefs', needs: 'get /api/stream', Page: BeliefsPage },
   { name: 'simulator', title: 'Simulator', needs: 'post /api/what-if', Page: SimulatorPage },
+  { name: 'studies', title: 'Studies', needs: 'get /api/studies', Page: StudiesPage },
 ]
 
 const page = signal(location.hash.slice(1))

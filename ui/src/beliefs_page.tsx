@@ -2,7 +2,9 @@
 import { useEffect, useRef, useState } from 'preact/hooks'
 import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
+import { call } from './api'
 import { beta, density } from './beta'
+import { act } from './faults'
 import { robot, state } from './store'
 import { colour, isDark } from './theme'
 import type { Strategy } from './types'
@@ -63,12 +65,31 @@ function Density({ entry }: { entry: Entry }) {
   )
 }
 
+const kFile = 'beliefs.json'
+
+// What was learned, as a file that `culprit beliefs import` takes on another robot.
+const exportAll = () =>
+  act('Exporting what was learned', async () => {
+    const learned = await call<unknown>('GET', '/api/beliefs')
+    const blob = new Blob([JSON.stringify(learned, null, 2) + '\n'], { type: 'application/json' })
+    const link = document.createElement('a')
+    link.href = URL.createObjectURL(blob)
+    link.download = kFile
+    link.click()
+    URL.revokeObjectURL(link.href)
+  })
+
 export function BeliefsPage() {
   const [chosen, choose] = useState(0)
   const list = entries()
   return (
     <main class="beliefs">
-      <h2>How likely each strategy is to help</h2>
+      <div class="bar">
+        <h2>How likely each strategy is to help</h2>
+        <button type="button" onClick={() => void exportAll()}>
+          Export …
+        </button>
+      </div>
       <div class="columns">
         <table>
           <thead>

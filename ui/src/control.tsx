@@ -1,34 +1,9 @@
 // What people can tell the manager: wait, go on, leave this alone, do that. Each is one call
 // (POST /api/orders); what becomes of it is an event.
-import { signal } from '@preact/signals'
 import { useState } from 'preact/hooks'
-import { call, hasToken } from './api'
-import { act } from './faults'
+import { hasToken } from './api'
+import { Author, order } from './order'
 import { can, control, now, robot } from './store'
-
-const kAuthorKey = 'culprit-author'
-const author = signal(localStorage.getItem(kAuthorKey) ?? '')
-
-const order = (what: string, body: Record<string, unknown>) =>
-  act(what, () =>
-    call('POST', '/api/orders', { author: author.value || 'somebody at the page', ...body })
-  )
-
-function Author() {
-  return (
-    <label class="field">
-      <span>your name, for the record</span>
-      <input
-        value={author.value}
-        maxLength={100}
-        onChange={(e) => {
-          author.value = e.currentTarget.value.trim()
-          localStorage.setItem(kAuthorKey, author.value)
-        }}
-      />
-    </label>
-  )
-}
 
 // Strategies that wait for a person's word: in front of all else.
 export function Approvals() {

@@ -1,6 +1,6 @@
 // Why: for each failure who is suspected, what was weighed and why not the others, and what happens
 // next.
-import { culprits, isLive, moment, now, robot, selected, situation, state } from './store'
+import { culprits, isLive, moment, now, robot, rulesByComponent, selected, situation, state, stateOfComponent } from './store'
 import type { Failure } from './store'
 import type { Candidate, ComponentState, Criticality } from './types'
 
@@ -163,15 +163,14 @@ function describeComponent(live: ComponentState | undefined): string {
 
 // The same as the graph in words, for whoever cannot see or point at it.
 export function Components() {
-  const sick = situation.value.failures
+  const sick = new Set(situation.value.failures.map((f) => f.rule))
   return (
     <section class="components" aria-label="Components">
       <h2>Components</h2>
       <ul>
-        {(robot.value?.components ?? []).map((c, i) => {
-          const live = state.value?.components[i]
-          const rules = (robot.value?.rules ?? []).filter((r) => r.components.includes(c.name))
-          const failing = rules.filter((r) => sick.some((f) => f.rule === r.name))
+        {(robot.value?.components ?? []).map((c) => {
+          const rules = rulesByComponent.value.get(c.name) ?? []
+          const failing = rules.filter((r) => sick.has(r.name))
           const sign = culprits.value.has(c.name) ? '★' : failing.length > 0 ? '◆' : '✓'
           return (
             <li>
@@ -184,7 +183,7 @@ export function Components() {
               </button>
               {selected.value === c.name && (
                 <div class="details">
-                  <p>{isLive.value ? describeComponent(live) : 'its state is shown live only'}</p>
+                  <p>{isLive.value ? describeComponent(stateOfComponent(c.name)) : 'its state is shown live only'}</p>
                   <p>
                     Rules about it: {listed(rules.map((r) => r.name)) || 'none'}
                     {failing.length > 0 && `; failing: ${listed(failing.map((r) => r.name))}`}.

@@ -4,7 +4,7 @@ import cytoscape from 'cytoscape'
 import { computed, effect, signal } from '@preact/signals'
 import { useEffect, useRef } from 'preact/hooks'
 import { layered, type Point } from './layout'
-import { culprits, graph, health, isLive, robot, selected, situation, state } from './store'
+import { culprits, graph, health, isLive, robot, selected, situation, state, stateOfComponent, stateOfTopic } from './store'
 import { colour, isDark } from './theme'
 import type { Health } from './types'
 
@@ -109,8 +109,7 @@ const kMarks: Record<Health, string> = {
 
 function lineBelow(component: string | undefined): string {
   if (!component) return ''
-  const place = robot.value?.components.findIndex((c) => c.name === component) ?? -1
-  const live = isLive.value ? state.value?.components[place] : undefined
+  const live = isLive.value ? stateOfComponent(component) : undefined
   const decided = culprits.value.get(component)
   if (decided?.phase === 'attempting') return `\n${decided.decision!.strategy}`
   if (situation.value.gone.has(component)) return '\ngone'
@@ -120,16 +119,14 @@ function lineBelow(component: string | undefined): string {
 }
 
 function rateOf(channel: string): string {
-  const place = robot.value?.topics.indexOf(channel) ?? -1
-  const topic = isLive.value ? state.value?.topics[place] : undefined
+  const topic = isLive.value ? stateOfTopic(channel) : undefined
   if (!topic || topic.rate === null) return ''
   if (isSilent(channel)) return ` silent ${topic.age!.toFixed(1)} s`
   return ` ${topic.rate.toFixed(1)} Hz`
 }
 
 function isSilent(channel: string): boolean {
-  const place = robot.value?.topics.indexOf(channel) ?? -1
-  const topic = isLive.value ? state.value?.topics[place] : undefined
+  const topic = isLive.value ? stateOfTopic(channel) : undefined
   return !!topic && topic.rate !== null && topic.age !== null && topic.age > 3 / topic.rate
 }
 
@@ -244,7 +241,7 @@ class Drawing {
       if (structure !== this.structure) this.rebuild()
       for (const node of nodes) this.show(node)
       for (const [id, edge] of edges) {
-        this.cy.getElementById(id).data({
+        this.tell(id, {
           label: edgeLabel(edge.channels),
           isSilent: edge.channels.some(isSilent),
           isCascade: cascade.value.has(id),
@@ -255,11 +252,18 @@ class Drawing {
     this.structure = structure
   }
 
+  // Cytoscape styles an element anew whenever its data are set, be they as they were or not.
+  private tell(id: string, data: Record<string, unknown>): cytoscape.CollectionReturnValue {
+    const element = this.cy.getElementById(id)
+    const told = element.data()
+    if (Object.entries(data).some(([key, value]) => told[key] !== value)) element.data(data)
+    return element
+  }
+
   private show(node: Graph['nodes'][number]): void {
     const sick = (node.component && health.value.get(node.component)) || 'OK'
     const isCulprit = !!node.component && culprits.value.has(node.component)
-    const element = this.cy.getElementById(node.node)
-    element.data({
+    const element = this.tell(node.node, {
       label: (isCulprit ? '★ ' : kMarks[sick]) + labelOf(node) + lineBelow(node.component),
       health: sick,
       component: node.component,
@@ -306,11 +310,26 @@ class Drawing {
   }
 }
 
+// A large graph takes a while to paint; nobody sees more than so many changes.
+const kPeriod = 66 // ms
+
+// What a drawing depends on.
+const readAll = () =>
+  [shown, cascade, health, culprits, situation, robot, state, selected, isLive].map((each) => each.value)
+
 export function GraphView() {
   const place = useRef<HTMLDivElement>(null)
   useEffect(() => {
     const drawing = new Drawing(place.current!)
-    const stop = effect(() => drawing.draw())
+    let timer = 0
+    const stop = effect(() => {
+      readAll()
+      if (timer !== 0) return
+      timer = window.setTimeout(() => {
+        timer = 0
+        drawing.draw()
+      }, kPeriod)
+    })
     const stopStyling = effect(() => {
       isDark.value // colours are those of the scheme
       drawing.restyle()
@@ -319,6 +338,7 @@ export function GraphView() {
     observer.observe(place.current!)
     return () => {
       observer.disconnect()
+      clearTimeout(timer)
       stopStyling()
       stop()
       drawing.destroy()

@@ -13,6 +13,7 @@ import {
   type Statement,
   withMember,
 } from './rule_document'
+import { names, ownName, parametersOf } from './live_names'
 import { graph, robot } from './store'
 
 interface Props {
@@ -22,6 +23,10 @@ interface Props {
 
 const shown = (value: unknown): string =>
   value === undefined ? '' : Array.isArray(value) ? value.join('/') : String(value)
+
+// The names to offer for a member of an adaptation of `component`.
+const listOf = (member: string, component: string) =>
+  ({ topic: 'topics', service: 'services', parameter: `parameters of ${component}` })[member]
 
 // One member of a statement. Changes count when the field is left or Enter is pressed: while one is
 // typed, the file would be wrong most of the time.
@@ -95,7 +100,7 @@ function AdaptationForm({ document, change, place }: Props & { place: number }) 
   const statement = document.statements[place]
   const type = String(statement.type)
   const field = (member: string) => (
-    <Field {...{ document, change, place, member }} label={member} list={member === 'topic' ? 'topics' : undefined} />
+    <Field {...{ document, change, place, member }} label={member} list={listOf(member, String(statement.component))} />
   )
   return (
     <div class="adaptation" role="group" aria-label="Adaptation">
@@ -189,8 +194,11 @@ function RuleCard({ document, change, place }: Props & { place: number }) {
 
 function Suggestions({ document }: { document: RuleDocument }) {
   const declared = document.statements.filter((s) => s.statement === 'COMPONENT').map((s) => String(s.name))
-  const live = graph.value.nodes.map((n) => n.component ?? n.node.slice(n.node.lastIndexOf('/') + 1))
-  const topics = [...graph.value.edges.map(([, , channel]) => channel), ...(robot.value?.topics ?? [])]
+  const live = [
+    ...graph.value.nodes.map((n) => n.component ?? ownName(n.node)),
+    ...Object.keys(names.value.nodes).map(ownName),
+  ]
+  const topics = [...names.value.topics, ...graph.value.edges.map(([, , channel]) => channel), ...(robot.value?.topics ?? [])]
   const list = (id: string, names: string[]): ComponentChildren => (
     <datalist id={id}>
       {[...new Set(names)].filter(Boolean).sort().map((n) => (
@@ -202,6 +210,10 @@ function Suggestions({ document }: { document: RuleDocument }) {
     <>
       {list('components', [...declared, ...live])}
       {list('topics', topics)}
+      {list('services', names.value.services)}
+      {[...new Set([...declared, ...live])].map((component) =>
+        list(`parameters of ${component}`, parametersOf(component, document))
+      )}
     </>
   )
 }

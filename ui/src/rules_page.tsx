@@ -5,6 +5,9 @@ import { call, hasToken, Refusal } from './api'
 import { diff } from './diff'
 import { type Editor, type Found, makeEditor } from './editor'
 import { act } from './faults'
+import { follow } from './live_names'
+import { authorName } from './order'
+import { relations, RuleConflicts } from './rule_conflicts'
 import { RuleForm } from './rule_form'
 import type { RuleDocument } from './rule_document'
 import { can } from './store'
@@ -36,6 +39,10 @@ async function readForm(): Promise<void> {
   }
 }
 
+const canReload = () => can('post', '/api/rules/reload')
+const reload = () =>
+  act('Reloading the rules', () => call('POST', '/api/rules/reload', { author: authorName() }))
+
 function Save({ onClose }: { onClose: () => void }) {
   const dialog = useRef<HTMLDialogElement>(null)
   useEffect(() => dialog.current!.showModal(), [])
@@ -50,6 +57,7 @@ function Save({ onClose }: { onClose: () => void }) {
       file.value = { ...file.value!, text: sent, version }
     })
     if (saved) onClose()
+    return saved
   }
   return (
     <dialog ref={dialog} onClose={onClose} aria-label="Save the rules">
@@ -66,13 +74,21 @@ function Save({ onClose }: { onClose: () => void }) {
           </div>
         ))}
       </pre>
-      {can('get', '/api/stream') && (
-        <p class="muted">The manager that runs goes on with the rules it was started with.</p>
+      {canReload() && (
+        <p class="muted">
+          The manager that runs goes on with the rules it has until they are reloaded: what it has learned and
+          what is under way stay.
+        </p>
       )}
       <div class="bar">
         <button type="button" class="primary" onClick={() => void save()}>
           Save
         </button>
+        {canReload() && (
+          <button type="button" disabled={errors > 0} onClick={() => void save().then((saved) => saved && reload())}>
+            Save and reload
+          </button>
+        )}
         <button type="button" onClick={() => dialog.current!.close()}>
           Cancel
         </button>
@@ -106,7 +122,9 @@ export function RulesPage() {
       await readForm()
     }
     void act('Opening the rules', open)
+    const stopLooking = follow(() => text.value)
     return () => {
+      stopLooking()
       isGone = true
       editor.current?.view.destroy()
     }
@@ -156,6 +174,16 @@ export function RulesPage() {
         >
           Save …
         </button>
+        {canReload() && (
+          <button
+            type="button"
+            disabled={!hasToken || isChanged || errors > 0}
+            title={isChanged ? 'save first: what is reloaded is the file' : ''}
+            onClick={() => void reload()}
+          >
+            Reload
+          </button>
+        )}
       </div>
       <section class="form" aria-label="Form">
         {unreadable.value && (
@@ -163,6 +191,7 @@ export function RulesPage() {
             {unreadable.value}
           </pre>
         )}
+        {form.value && <RuleConflicts list={relations(form.value, text.value, found.value)} />}
         {form.value && <RuleForm document={form.value} change={(d) => void change(d)} />}
       </section>
       <section class="text" aria-label="Text">

@@ -1,8 +1,19 @@
 // What the page knows: the documents of the stream as signals, and the situation at the moment that
 // is looked at, which may be in the past.
-import { computed, signal } from '@preact/signals'
+import { batch, computed, signal } from '@preact/signals'
 import { call, follow } from './api'
-import type { ControlState, Criticality, Graph, Health, ManagerEvent, Robot, State } from './types'
+import type {
+  ComponentState,
+  ControlState,
+  Criticality,
+  Graph,
+  Health,
+  ManagerEvent,
+  Robot,
+  Rule,
+  State,
+  TopicState,
+} from './types'
 
 export const calls = signal<Set<string>>(new Set())
 export const can = (method: string, path: string) => calls.value.has(`${method} ${path}`)
@@ -25,29 +36,66 @@ export async function start(): Promise<void> {
   const about = await call<{ calls: string[] }>('GET', '/api/about')
   calls.value = new Set(about.calls)
   if (!can('get', '/api/stream')) return
+  // What comes in bursts is drawn once for all of one frame. Of all but events only the newest counts.
+  const newest: Partial<Record<string, unknown>> = {}
   let waiting: ManagerEvent[] = []
-  // Events come in bursts: the page is drawn once for all of one frame.
+  let count = 0
+  let frame = 0
   const show = () => {
-    if (waiting.length === 0) return
-    events.value = [...events.value, ...waiting].slice(-kMostEvents)
+    frame = 0
+    batch(() => {
+      if (newest.robot) {
+        // The lists of a state are in the order of the rule set that it was told for.
+        robot.value = newest.robot as Robot
+        state.value = null
+      }
+      if (newest.graph) graph.value = newest.graph as Graph
+      if (newest.state) state.value = newest.state as State
+      if (newest.control) control.value = newest.control as ControlState
+      if (waiting.length > 0) events.value = [...events.value, ...waiting].slice(-kMostEvents)
+    })
+    for (const kind of Object.keys(newest)) delete newest[kind]
     waiting = []
   }
   void follow(
     ({ event, data }) => {
       const document = JSON.parse(data)
-      if (event === 'hello' && !document.resumed) events.value = []
-      if (event === 'robot') robot.value = document
-      if (event === 'graph') graph.value = document
-      if (event === 'state') state.value = document
-      if (event === 'control') control.value = document
-      if (event === 'event') {
-        if (waiting.length === 0) requestAnimationFrame(show)
-        waiting.push(document)
+      if (event === 'hello') {
+        if (document.resumed) return
+        events.value = []
+        waiting = []
+      } else if (event === 'event') {
+        waiting.push({ ...document, number: ++count })
+        if (waiting.length > kMostEvents) waiting.shift() // nobody looks: browsers draw no frames then
+      } else {
+        if (event === 'robot') delete newest.state
+        newest[event] = document
       }
+      if (frame === 0) frame = requestAnimationFrame(show)
     },
     (connected) => (isConnected.value = connected)
   )
 }
+
+// Where things stand in the lists of a state, and who is about whom: for robots of many parts.
+const byPlace = (names: string[]) => new Map(names.map((name, place) => [name, place]))
+const placesOfComponents = computed(() => byPlace(robot.value?.components.map((c) => c.name) ?? []))
+const placesOfTopics = computed(() => byPlace(robot.value?.topics ?? []))
+export const stateOfComponent = (name: string): ComponentState | undefined =>
+  state.value?.components[placesOfComponents.value.get(name) ?? -1]
+export const stateOfTopic = (name: string): TopicState | undefined =>
+  state.value?.topics[placesOfTopics.value.get(name) ?? -1]
+export const rulesByComponent = computed(() => {
+  const result = new Map<string, Rule[]>()
+  for (const rule of robot.value?.rules ?? []) {
+    for (const component of rule.components) {
+      const list = result.get(component)
+      if (list) list.push(rule)
+      else result.set(component, [rule])
+    }
+  }
+  return result
+})
 
 export interface Failure {
   rule: string
@@ -114,6 +162,10 @@ export function situationAt(history: ManagerEvent[], t: number): Situation {
         break
       case 'exhausted':
         if (failure) failure.phase = 'exhausted'
+        break
+      case 'reloaded': // what is still there is detected anew
+        failures.clear()
+        gone.clear()
         break
       case 'lost':
         gone.add(event.component!)

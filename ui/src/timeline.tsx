@@ -29,6 +29,12 @@ const kMarks: Record<string, string> = { decided: '▼', no_help: '✕', pause: 
 const lanes = computed((): Lane[] => {
   const byRule = new Map<string, Lane>()
   for (const event of events.value) {
+    if (event.kind === 'reloaded') {
+      for (const { bars } of byRule.values()) {
+        const last = bars[bars.length - 1]
+        last.to ??= event.t
+      }
+    }
     if (!event.rule) continue
     if (event.kind === 'detected') {
       const lane = byRule.get(event.rule) ?? { rule: event.rule, bars: [], marks: [] }
@@ -151,7 +157,7 @@ export function EventLog() {
       {list.length === 0 && <p class="muted">Nothing yet.</p>}
       <ol>
         {list.map((event) => (
-          <li>
+          <li key={event.number}>
             <button type="button" onClick={() => (moment.value = event.t)} title="Look at this moment">
               {event.t.toFixed(2)}
             </button>

@@ -49,13 +49,18 @@ export interface ComponentState {
   remark?: string
   adapting?: string
 }
+export interface TopicState {
+  rate: number | null // Hz
+  age: number | null // s
+}
 export interface State {
   t: number
   rules: RuleState[]
   components: ComponentState[]
-  topics: { rate: number | null; age: number | null }[]
+  topics: TopicState[]
   inputs: (number | string | boolean | null)[]
   beliefs: [number, number][]
+  couplings: [cause: number, effect: number, cleared: number, stayed: number][]
 }
 
 export interface ControlState {
@@ -79,6 +84,7 @@ export interface Suspect {
   probability: number
 }
 export interface ManagerEvent {
+  number: number // of this page's counting
   t: number
   kind: string
   text: string

@@ -23,7 +23,12 @@ await session(['demo', '--stay', '--speed', '2'], async (page) => {
   const failure = explanation.locator('article', { hasText: 'RGBDead' })
   await failure.getByRole('row', { name: /rgb_redeploy.*chosen|rgb_restart.*chosen/ }).waitFor()
   expect((await page.locator('output.moment').innerText()).startsWith('at '), 'no moment is shown')
-  await page.getByRole('slider').press('ArrowLeft')
+  const slider = page.getByRole('slider')
+  await slider.press('ArrowLeft')
+  await slider.press('Home')
+  await explanation.getByText('All is well').waitFor() // as it was before it was broken
+  await look('camera is held responsible')
+  await explanation.getByText('camera is held responsible').first().waitFor()
   const live = page.getByRole('button', { name: 'Live' })
   await live.click()
   await well.waitFor()

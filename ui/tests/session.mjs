@@ -35,14 +35,14 @@ function serve(args) {
       program.on('exit', resolve)
       program.kill('SIGINT')
     })
-  return { address, end }
+  return { address, end, said: () => said }
 }
 
 export function expect(condition, message) {
   if (!condition) throw new Error(message)
 }
 
-// Runs `steps` with a page of `culprit <args>`. Whatever the page complains of is a failure.
+// Runs `steps` with a page of `culprit <args>`, and what it prints. Whatever the page complains of is a failure.
 export async function session(args, steps) {
   const server = serve([...args, '--port', '0'])
   const profile = mkdtempSync(join(folder, 'browser-'))
@@ -67,7 +67,7 @@ export async function session(args, steps) {
       if (message.type() === 'error' && !isRefusal) complaints.push(message.text())
     })
     await page.goto(address)
-    await steps(page)
+    await steps(page, server)
     expect(complaints.length === 0, `the page complains: ${complaints.join('\n')}`)
     console.log('the session passed')
   } catch (error) {

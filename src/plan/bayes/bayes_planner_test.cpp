@@ -106,6 +106,24 @@ TEST(BayesPlanner, WaitsWhileAnUpstreamComponentIsSuspect) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "nobody waits for ever";
 }
 
+TEST(BayesPlanner, WaitsForWhatIsUpstreamOnlyIfItIsReadInTime) {
+  std::string text = failure_of("a", "A") + failure_of("b", "B");
+  text.replace(text.rfind("x > 1"), 5, "y > 1");
+  Scene scene(text);
+  scene.link("a", "b").fail("B", 9900ms);  // 100 ms ago
+  const auto reads = [&](const char* rule, Duration interval) {
+    const InputId input = scene.rules()[scene.rule(rule)].inputs.front();
+    scene->signals.set_read_at(input, scene->now - 100ms);
+    scene->signals.set_latency(input, 2 * interval);
+  };
+  reads("B", 200ms);
+  reads("A", 200ms);
+  EXPECT_EQ(scene.plan(kFewRedeployments), "");
+  EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kSuspect);
+  reads("A", 700ms);
+  EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "its next reading comes too late";
+}
+
 TEST(BayesPlanner, GivesAFailureTimeToSettleAfterItsCauseIsGone) {
   Scene scene = robot();
   scene.fail("B");

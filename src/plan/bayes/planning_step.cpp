@@ -45,9 +45,11 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
       has_choice_(failures_.size(), false) {}
 
 std::vector<Verdict> PlanningStep::run() {
-  if (std::any_of(planned_.begin(), planned_.end(),
-                  [&](RuleId rule) { return is_newborn(rule, knowledge_); }))
-    watchers_.emplace(knowledge_);
+  Time until = kLongAgo;
+  for (const RuleId rule : planned_) {
+    if (is_newborn(rule, knowledge_)) until = std::max(until, newborn_until(rule, knowledge_));
+  }
+  if (until > kLongAgo) watchers_.emplace(knowledge_, until);
   find_stakes();
   for (const RuleId rule : planned_) examine(failures_.index_of(rule));
   std::sort(entries_.begin(), entries_.end(),

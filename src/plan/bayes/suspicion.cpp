@@ -27,14 +27,16 @@ bool is_coming(const RuleState& state, const Policies& policies) {
   return 2 * state.true_in_history > policies.hold_needed;
 }
 
-// Is it a bad value, and was it detected less than `time` ago? One with HOLD may be seen earlier or
-// later by as many evaluations as may be missed.
-bool is_within(RuleId failure, Duration time, const Knowledge& knowledge) {
+// With HOLD a failure may be seen earlier or later by as many evaluations as may be missed.
+Time end_of(RuleId failure, Duration time, const Knowledge& knowledge) {
   const Policies& policies = knowledge.rules[failure].policies;
   const Cycles missed{policies.hold_window - policies.hold_needed};
-  return symptom_of(failure, knowledge) == Symptom::kValue &&
-         knowledge.now < later(knowledge.states[failure].first_detected(),
-                               time + duration_of(missed, knowledge.rules));
+  return later(knowledge.states[failure].first_detected(),
+               time + duration_of(missed, knowledge.rules));
+}
+
+bool is_value_before(Time end, RuleId failure, const Knowledge& knowledge) {
+  return symptom_of(failure, knowledge) == Symptom::kValue && knowledge.now < end;
 }
 
 }  // namespace
@@ -72,12 +74,28 @@ bool looks_well(RuleId rule, const Knowledge& knowledge) {
 }
 
 bool is_young(RuleId failure, const Knowledge& knowledge) {
-  return is_within(failure, duration_of(kLongestWait, knowledge.rules), knowledge);
+  const Duration time = duration_of(kLongestWait, knowledge.rules);
+  return is_value_before(end_of(failure, time, knowledge), failure, knowledge);
 }
 
 bool is_newborn(RuleId failure, const Knowledge& knowledge) {
-  return is_young(failure, knowledge) &&
-         is_within(failure, knowledge.signals.latency(failure), knowledge);
+  return is_value_before(newborn_until(failure, knowledge), failure, knowledge);
+}
+
+Time newborn_until(RuleId failure, const Knowledge& knowledge) {
+  const Duration time = std::min<Duration>(duration_of(kLongestWait, knowledge.rules),
+                                           knowledge.signals.latency(failure));
+  return end_of(failure, time, knowledge);
+}
+
+bool is_heard_by(Time until, RuleId rule, const Knowledge& knowledge) {
+  const SignalStore& signals = knowledge.signals;
+  const auto& inputs = knowledge.rules[rule].inputs;
+  return std::any_of(inputs.begin(), inputs.end(), [&](InputId id) {
+    const Time read = signals.read_at(id);
+    // A latency is two of the intervals that a signal is read in.
+    return read == kLongAgo || later(read, signals.latency(id) / 2) <= until;
+  });
 }
 
 }  // namespace culprit::plan

@@ -45,5 +45,11 @@ bool is_young(RuleId failure, const Knowledge& knowledge);
 // The same within the time that its own signals take to show a change: those upstream may need as
 // long.
 bool is_newborn(RuleId failure, const Knowledge& knowledge);
+// Until when it is.
+Time newborn_until(RuleId failure, const Knowledge& knowledge);
+
+// Can the rule have something new to tell by then? What is read in a rhythm has only with its next
+// reading: who waits for less, waits in vain.
+bool is_heard_by(Time until, RuleId rule, const Knowledge& knowledge);
 
 }  // namespace culprit::plan

@@ -6,7 +6,7 @@
 
 namespace culprit::plan {
 
-Watchers::Watchers(const Knowledge& knowledge)
+Watchers::Watchers(const Knowledge& knowledge, Time until)
     : knowledge_(knowledge), places_(knowledge.graph.condensation().size()) {
   const Condensation& graph = knowledge.graph.condensation();
   const RuleSet& rules = knowledge.rules;
@@ -14,7 +14,9 @@ Watchers::Watchers(const Knowledge& knowledge)
     if (const auto knot = knowledge.graph.knot_of(ComponentId(c))) ++places_[*knot].components;
   }
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
-    if (symptom_of(RuleId(r), knowledge) != Symptom::kValue) continue;
+    if (symptom_of(RuleId(r), knowledge) != Symptom::kValue ||
+        !is_heard_by(until, RuleId(r), knowledge))
+      continue;
     const auto level = static_cast<std::size_t>(rules.rules[r].policies.criticality);
     for (const ComponentId c : rules.rules[r].components) {
       if (const auto knot = knowledge.graph.knot_of(c)) ++places_[*knot].rules[level];

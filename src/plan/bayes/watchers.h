@@ -1,7 +1,8 @@
 // Upstream of whom are there rules that may have been too slow?
 //
 // Of a bad value nothing is seen beforehand. If a rule about values watches something upstream of a
-// failure, it may be about to fire.
+// failure, it may be about to fire; not if nothing new will be heard of it in the time that anybody
+// would wait.
 #pragma once
 
 #include <array>
@@ -13,8 +14,8 @@ namespace culprit::plan {
 
 class Watchers {
  public:
-  // One pass over the graph. It must outlive this.
-  explicit Watchers(const Knowledge& knowledge);
+  // One pass over the graph. It must outlive this. Nobody waits longer than `until`.
+  Watchers(const Knowledge& knowledge, Time until);
 
   // Does another rule about values, at least as critical, touch something upstream?
   bool are_upstream_of(RuleId failure) const;
@@ -22,7 +23,7 @@ class Watchers {
  private:
   struct Place {
     std::size_t components = 0;          // more than one: a circle
-    std::array<std::size_t, 3> rules{};  // about values that touch it, by level
+    std::array<std::size_t, 3> rules{};  // that touch it and may be about to fire, by level
     int above = -1;                      // the highest level of those upstream of it
   };
 

@@ -8,10 +8,12 @@
 #include <istream>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "language/expected.h"
 #include "study/campaign_result.h"
+#include "study/suave/campaign.h"
 
 namespace culprit::study {
 
@@ -20,9 +22,12 @@ struct ShardSource {
   std::istream* in = nullptr;
 };
 
-Expected<CampaignResult> merge(std::span<const ShardSource> shards);
+// Of the kind that the first shard is of.
+using Merged = std::variant<CampaignResult, SuaveResult>;
+
+Expected<Merged> merge(std::span<const ShardSource> shards);
 
 // The same of files.
-Expected<CampaignResult> merge_files(const std::vector<std::string>& paths);
+Expected<Merged> merge_files(const std::vector<std::string>& paths);
 
 }  // namespace culprit::study

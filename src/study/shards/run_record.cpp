@@ -10,7 +10,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kMostRuns = 1'000'000'000;
 constexpr std::size_t kMostRows = 256;
 
 Json to_json(const HonestMetrics& honest) {
@@ -115,6 +114,7 @@ Expected<Json> to_json(const RunMetrics& run) {
               {"honest", to_json(run.honest)}};
 }
 
+template <>
 Expected<RunMetrics> run_from_json(const Json& json) {
   JsonFields fields(json);
   RunMetrics run;
@@ -141,12 +141,13 @@ Json to_json(const Campaign& campaign) {
           {"version", campaign.version}};
 }
 
+template <>
 Expected<Campaign> campaign_from_json(const Json& json) {
   JsonFields fields(json);
   Campaign campaign;
   campaign.command = fields.text("command");
   campaign.seed = fields.natural("seed", std::numeric_limits<std::uint64_t>::max());
-  campaign.runs = static_cast<std::uint32_t>(fields.natural("runs", kMostRuns));
+  campaign.runs = static_cast<std::uint32_t>(fields.natural("runs", kMostShardedRuns));
   if (campaign.runs == 0) fields.complain("runs", "is 0");
   campaign.version = fields.text("version");
   std::string inside;

@@ -31,8 +31,4 @@ std::string label(const Shard& shard) {
   return std::to_string(shard.number) + "/" + std::to_string(shard.count);
 }
 
-std::uint64_t size(const Shard& shard, const Campaign& campaign) {
-  return (campaign.size() + shard.count - shard.number) / shard.count;
-}
-
 }  // namespace culprit::study

@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "language/expected.h"
-#include "study/campaign.h"
 
 namespace culprit::study {
 
@@ -28,7 +27,10 @@ Expected<Shard> parse_shard(std::string_view text);
 std::string label(const Shard& shard);  // "2/4"
 
 // How many of the campaign's runs the shard has.
-std::uint64_t size(const Shard& shard, const Campaign& campaign);
+template <class Campaign>
+std::uint64_t size(const Shard& shard, const Campaign& campaign) {
+  return (campaign.size() + shard.count - shard.number) / shard.count;
+}
 
 // The place in the campaign of the shard's i-th run, from 0. @pre i < size(shard, campaign)
 inline std::uint64_t campaign_index(const Shard& shard, std::uint64_t i) {

@@ -6,70 +6,77 @@
 // dropped, and the shard goes on from there. Anything else that is wrong is an error: nobody
 // guesses what a damaged file meant.
 //
-//     {"format":"culprit-shard","format_version":1,"shard":"2/4","campaign":{...},"check":"..."}
+//     {"format":"culprit-shard","format_version":2,"study":"sunset","shard":"2/4",
+//      "campaign":{...},"check":"..."}                                      (in one line)
 //     {"row":0,"run":1,"metrics":{...},"check":"..."}
 //     {"runs":324,"check":"..."}
+//
+// C is a kind of campaign (shard_kind.h).
 #pragma once
 
 #include <cstdint>
 #include <istream>
 #include <optional>
 #include <string>
-
-#include <nlohmann/json.hpp>
+#include <variant>
 
 #include "language/expected.h"
-#include "study/campaign.h"
-#include "study/run_metrics.h"
-#include "study/shards/shard.h"
+#include "study/shards/shard_kind.h"
+#include "study/shards/shard_lines.h"
 
 namespace culprit::study {
 
+template <class C>
 struct ShardHeader {
-  Campaign campaign;
+  C campaign;
   Shard shard;
 };
 
-std::string header_line(const ShardHeader& header);
-std::string run_line(RunId id, const RunMetrics& run);  // @pre all numbers of `run` are finite
+template <class C>
+std::string header_line(const ShardHeader<C>& header);
+template <class Run>
+std::string run_line(RunId id, const Run& run);  // @pre all numbers of `run` are finite
 std::string end_line(std::uint64_t runs);
 
 // Reads a shard file to its end, in memory for one line.
+template <class C>
 class ShardReader {
  public:
+  using Run = typename ShardKind<C>::Run;
+
   // Reads the header. `name` is for messages; `in` lives longer than the reader.
   static Expected<ShardReader> open(std::istream& in, std::string name);
+  // The same of a file whose first line was read already.
+  static Expected<ShardReader> open(ShardLines lines, const ShardBeginning& beginning);
 
-  const std::string& name() const { return name_; }
-  const ShardHeader& header() const { return header_; }
+  const std::string& name() const { return lines_.name(); }
+  const ShardHeader<C>& header() const { return header_; }
 
   // The next run; nothing at the end, be it complete or not. After an error, nothing more can be
   // read.
-  Expected<std::optional<RunMetrics>> next();
+  Expected<std::optional<Run>> next();
 
   // After next() gave nothing:
   bool is_complete() const { return is_complete_; }  // all runs are there, and the last line
   std::uint64_t runs() const { return runs_; }
-  std::uint64_t good_bytes() const { return good_bytes_; }  // up to half a line at the end
+  std::uint64_t good_bytes() const { return lines_.good_bytes(); }  // up to half a line at the end
 
  private:
-  enum class Line { kWhole, kTorn, kNone, kTooLong };
+  ShardReader(ShardLines lines, ShardHeader<C> header)
+      : lines_(std::move(lines)), header_(std::move(header)) {}
 
-  ShardReader(std::istream& in, std::string name) : in_(&in), name_(std::move(name)) {}
+  Expected<std::optional<Run>> run(const nlohmann::ordered_json& json);
+  Expected<std::optional<Run>> end(const nlohmann::ordered_json& json);
 
-  Line read_line();
-  Error error(const std::string& what) const;
-  Expected<std::optional<RunMetrics>> run(const nlohmann::ordered_json& json);
-  Expected<std::optional<RunMetrics>> end(const nlohmann::ordered_json& json);
-
-  std::istream* in_;
-  std::string name_;
-  ShardHeader header_;
-  std::string line_;
-  std::uint64_t line_number_ = 0;
+  ShardLines lines_;
+  ShardHeader<C> header_;
   std::uint64_t runs_ = 0;
-  std::uint64_t good_bytes_ = 0;
   bool is_complete_ = false;
 };
+
+using AnyShardReader = std::variant<ShardReader<Campaign>, ShardReader<SuaveCampaign>>;
+
+// Reads the header of a file of whatever kind.
+Expected<AnyShardReader> open_shard(std::istream& in, std::string name);
 
 }  // namespace culprit::study

@@ -10,6 +10,7 @@
 #include "study/shards/merge.h"
 #include "study/shards/sealed_line.h"
 #include "study/shards/shard_writer.h"
+#include "study/shards/suave_record.h"
 #include "study/test_findings.h"
 
 namespace culprit::study {
@@ -33,11 +34,11 @@ void overwrite(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-ShardHeader header(Shard shard) { return {synthetic_campaign(kRuns), shard}; }
+ShardHeader<Campaign> header(Shard shard) { return {synthetic_campaign(kRuns), shard}; }
 
 // Works off at most `most` runs.
 void work(const std::string& path, Shard shard, std::uint64_t most = 1000) {
-  Expected<ShardWriter> writer = ShardWriter::open(path, header(shard));
+  Expected<ShardWriter<Campaign>> writer = ShardWriter<Campaign>::open(path, header(shard));
   ASSERT_TRUE(writer) << writer.error();
   for (std::uint64_t i = 0; i < most && !writer->is_complete(); ++i) {
     const RunId id = writer->next();
@@ -95,9 +96,10 @@ TEST(Merge, GivesWhatOneProcessFinds) {
     std::reverse(paths.begin(), paths.end());
     const auto merged = merge_files(paths);
     ASSERT_TRUE(merged) << merged.error();
-    EXPECT_EQ(json({*merged, {}, {}}), expected) << count;
-    EXPECT_EQ(merged->campaign, synthetic_campaign(kRuns));
-    EXPECT_EQ(metrics_csv(*merged), metrics_csv(synthetic_result(kRuns)));
+    const auto& result = std::get<CampaignResult>(*merged);
+    EXPECT_EQ(json({result, {}, {}}), expected) << count;
+    EXPECT_EQ(result.campaign, synthetic_campaign(kRuns));
+    EXPECT_EQ(metrics_csv(result), metrics_csv(synthetic_result(kRuns)));
   }
 }
 
@@ -119,7 +121,7 @@ TEST(Merge, WantsEachShardOnce) {
 
 TEST(Merge, TakesShardsOfOneCampaignOnly) {
   const auto other = [](auto change) {
-    ShardHeader changed = header({1, 1});
+    ShardHeader<Campaign> changed = header({1, 1});
     change(changed.campaign);
     std::istringstream ours(header_line(header({1, 1})));
     std::istringstream theirs(header_line(changed));
@@ -139,6 +141,24 @@ TEST(Merge, TakesShardsOfOneCampaignOnly) {
             "theirs: was made by 'x', but the first file by 'SYNTHETIC DATA OF A TEST, NOT "
             "MEASURED'" +
                 end);
+}
+
+SuaveCampaign suave_campaign() {
+  SuaveCampaign campaign;
+  campaign.plan = *suave::model::find_mission_plan("stress");
+  campaign.generation = *suave::model::find_generation("new");
+  campaign.managers = {"bt", "culprit"};
+  campaign.runs = 1;
+  return campaign;
+}
+
+TEST(Merge, TakesShardsOfOneStudyOnly) {
+  std::istringstream ours(header_line(header({1, 1})));
+  std::istringstream theirs(header_line(ShardHeader<SuaveCampaign>{suave_campaign(), {1, 1}}));
+  const std::array sources = {ShardSource{"ours", &ours}, ShardSource{"theirs", &theirs}};
+  EXPECT_EQ(merge(sources).error(),
+            "theirs: is of the study 'suave', not of 'sunset'; shards of one campaign belong "
+            "together");
 }
 
 TEST(Merge, RefusesAnUnfinishedShard) {
@@ -182,8 +202,8 @@ TEST(ShardFile, TellsTheRunsThatAreThereAlready) {
   const std::string path = fresh_file("found");
   work(path, {2, 3}, 4);
   std::vector<RunMetrics> found;
-  const auto writer =
-      ShardWriter::open(path, header({2, 3}), [&](const RunMetrics& run) { found.push_back(run); });
+  const auto writer = ShardWriter<Campaign>::open(
+      path, header({2, 3}), [&](const RunMetrics& run) { found.push_back(run); });
   ASSERT_TRUE(writer);
   EXPECT_EQ(writer->done(), 4u);
   EXPECT_EQ(writer->next(), (RunId{1, 6}));
@@ -202,7 +222,7 @@ TEST(ShardFile, NoticesEveryChangedByte) {
     std::string changed = whole;
     changed[at] = static_cast<char>(changed[at] ^ 1);
     std::istringstream in(changed);
-    auto reader = ShardReader::open(in, "x");
+    auto reader = ShardReader<Campaign>::open(in, "x");
     bool is_good = reader.has_value();
     while (is_good) {
       const auto run = reader->next();
@@ -222,7 +242,7 @@ TEST(ShardFile, LeavesADamagedFileAsItIs) {
   std::string damaged = content(path);
   damaged[damaged.find("\"ratio\":") + 8] ^= 1;
   overwrite(path, damaged);
-  const auto writer = ShardWriter::open(path, header({1, 1}));
+  const auto writer = ShardWriter<Campaign>::open(path, header({1, 1}));
   ASSERT_FALSE(writer);
   EXPECT_EQ(writer.error(), path +
                                 ":2: the line is damaged: its checksum does not fit; remove the "
@@ -234,37 +254,37 @@ TEST(ShardFile, IsNotWrittenOverAnotherCampaign) {
   const std::string path = fresh_file("other");
   work(path, {1, 1}, 1);
   const std::string before = content(path);
-  ShardHeader other = header({1, 1});
+  ShardHeader<Campaign> other = header({1, 1});
   other.campaign.seed = 43;
-  const auto writer = ShardWriter::open(path, other);
+  const auto writer = ShardWriter<Campaign>::open(path, other);
   ASSERT_FALSE(writer);
   EXPECT_EQ(writer.error(),
             path +
                 ": belongs to another campaign or shard (SYNTHETIC DATA OF A TEST, NOT MEASURED, "
                 "shard 1/1, culprit 0.0-test); choose another file");
   overwrite(path, "my thesis");
-  EXPECT_FALSE(ShardWriter::open(path, other));
+  EXPECT_FALSE(ShardWriter<Campaign>::open(path, other));
   EXPECT_EQ(content(path), "my thesis");
   EXPECT_NE(before, "");
 }
 
 TEST(ShardFile, IsWrittenByOneProcessAtATime) {
   const std::string path = fresh_file("locked");
-  const auto first = ShardWriter::open(path, header({1, 1}));
+  const auto first = ShardWriter<Campaign>::open(path, header({1, 1}));
   ASSERT_TRUE(first);
-  const auto second = ShardWriter::open(path, header({1, 1}));
+  const auto second = ShardWriter<Campaign>::open(path, header({1, 1}));
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error(),
             path + ": another process writes it; wait for that, or choose another file");
 }
 
 TEST(ShardFile, RefusesWhatWouldNotComeBack) {
-  auto writer = ShardWriter::open(fresh_file("infinite"), header({1, 1}));
+  auto writer = ShardWriter<Campaign>::open(fresh_file("infinite"), header({1, 1}));
   RunMetrics run;
   run.reactions_s = {1, std::numeric_limits<double>::infinity()};
   EXPECT_FALSE(writer->append(run));
   EXPECT_EQ(writer->done(), 0u);
-  EXPECT_FALSE(ShardWriter::open("no/such/folder/file", header({1, 1})));
+  EXPECT_FALSE(ShardWriter<Campaign>::open("no/such/folder/file", header({1, 1})));
 }
 
 RC_GTEST_PROP(ShardFile, BringsNumbersBackToTheLastBit, (double value)) {
@@ -276,30 +296,81 @@ RC_GTEST_PROP(ShardFile, BringsNumbersBackToTheLastBit, (double value)) {
   run.ratio = value;
   run.reactions_s = {value, value / 3};
   run.honest.recovery_s = value * 0x1p-1040;
-  std::istringstream in(header_line({campaign, {1, 1}}) + run_line({0, 0}, run) + end_line(1));
-  auto reader = ShardReader::open(in, "x");
+  std::istringstream in(header_line(ShardHeader<Campaign>{campaign, {1, 1}}) +
+                        run_line({0, 0}, run) + end_line(1));
+  auto reader = ShardReader<Campaign>::open(in, "x");
   RC_ASSERT(**reader->next() == run);
   RC_ASSERT(!reader->next()->has_value());
   RC_ASSERT(reader->is_complete());
+}
+
+RC_GTEST_PROP(ShardFile, BringsRunsOfSuaveBackToTheLastBit, (double value)) {
+  RC_PRE(std::isfinite(value));
+  SuaveRun run;
+  run.search_s = value;
+  run.distance_m = value / 3;
+  run.visibility.answered_s = {value, value / 7};
+  run.thruster.unanswered_s = {-value};
+  run.battery.answered_s = {value * 0x1p-1040};
+  run.is_found = run.is_success = value > 0;
+  run.found_s = value / 9;
+  run.whole_distance_m = value / 11;
+  std::istringstream in(header_line(ShardHeader<SuaveCampaign>{suave_campaign(), {1, 1}}) +
+                        run_line({0, 0}, run) + run_line({1, 0}, SuaveRun()) + end_line(2));
+  auto reader = ShardReader<SuaveCampaign>::open(in, "x");
+  RC_ASSERT(reader->header().campaign == suave_campaign());
+  RC_ASSERT(**reader->next() == run);
+  RC_ASSERT(**reader->next() == SuaveRun());
+  RC_ASSERT(!reader->next()->has_value());
+  RC_ASSERT(reader->is_complete());
+}
+
+TEST(ShardFile, SaysWhatIsWrongWithACampaignOfSuave) {
+  const auto complaint = [](const char* field, const nlohmann::ordered_json& value) {
+    std::string line = header_line(ShardHeader<SuaveCampaign>{suave_campaign(), {1, 1}});
+    line.pop_back();
+    nlohmann::ordered_json json = *unsealed(line);
+    json["campaign"][field] = value;
+    return read_error(sealed_line(json));
+  };
+  const std::string begin = "x: has a wrong header: campaign is wrong: ";
+  EXPECT_EQ(complaint("managers", nlohmann::ordered_json::array()),
+            begin + "managers is wrong: there is no manager");
+  EXPECT_EQ(complaint("managers", {"bt", 3}), begin + "managers holds something that is no text");
+  EXPECT_EQ(complaint("managers", {"bt", "bt"}),
+            begin + "managers is wrong: manager 'bt' is there twice");
+  EXPECT_EQ(complaint("managers", {"me"}),
+            begin +
+                "managers is wrong: there is no manager 'me'; there are none, random, bt, "
+                "metacontrol, rosa, culprit");
+  EXPECT_EQ(complaint("mission", "moon").find(begin + "mission is wrong: "), 0u);
+  EXPECT_EQ(complaint("generation", "next").find(begin + "generation is wrong: "), 0u);
+  EXPECT_EQ(complaint("runs", 0), begin + "runs is 0");
+  EXPECT_EQ(complaint("more", 1), begin + "there are more fields than known");
 }
 
 TEST(ShardFile, SaysWhatIsWrongWithItsLines) {
   Campaign campaign;
   campaign.rows.resize(1);
   campaign.runs = 2;
-  const std::string head = header_line({campaign, {1, 1}});
-  const std::string run = run_line({0, 0}, {});
+  const std::string head = header_line(ShardHeader<Campaign>{campaign, {1, 1}});
+  const std::string run = run_line({0, 0}, RunMetrics());
   const std::string end = "; remove the file and run its shard again";
   EXPECT_EQ(read_error(""), "x: is no shard file of culprit, or its first line is damaged" + end);
   EXPECT_EQ(read_error(sealed_line({{"format", "other"}})), "x: is no shard file of culprit");
-  EXPECT_EQ(read_error(sealed_line({{"format", "culprit-shard"}, {"format_version", 2}})),
-            "x: has format version 2, but this culprit reads 1; use the culprit that wrote it");
+  EXPECT_EQ(read_error(sealed_line({{"format", "culprit-shard"}, {"format_version", 1}})),
+            "x: has format version 1, but this culprit reads 2; use the culprit that wrote it");
+  EXPECT_EQ(read_error(beginning_line({"moon", {1, 1}, {}})),
+            "x: has a wrong header: campaign is no JSON object");
+  EXPECT_EQ(read_error(beginning_line({"moon", {1, 1}, nlohmann::ordered_json::object()})),
+            "x: is of a study 'moon' that this culprit does not know; use the culprit that wrote "
+            "it");
   EXPECT_EQ(read_error(head + run + run), "x:3: here should be run 1 of row 0" + end);
   EXPECT_EQ(read_error(head + run + end_line(2)),
             "x:3: the last line tells of 2 runs, but there are 1 before it" + end);
   EXPECT_EQ(read_error(head + run + end_line(1)),
             "x:3: the last line tells of 1 runs, but there are 1 before it" + end);
-  EXPECT_EQ(read_error(head + run + run_line({0, 1}, {}) + end_line(2) + "\n"),
+  EXPECT_EQ(read_error(head + run + run_line({0, 1}, RunMetrics()) + end_line(2) + "\n"),
             "x:5: there is something after the last line" + end);
   EXPECT_EQ(read_error(head + std::string(2 << 20, 'x')), "x:2: the line is too long" + end);
   EXPECT_EQ(read_error(head + sealed_line({{"row", 0}, {"run", 0}, {"metrics", 3}})),
@@ -311,11 +382,12 @@ TEST(ShardFile, SaysWhichFieldIsWrong) {
     Campaign campaign;
     campaign.rows.resize(1);
     campaign.runs = 1;
-    std::string line = run_line({0, 0}, {});
+    std::string line = run_line({0, 0}, RunMetrics());
     line.pop_back();
     nlohmann::ordered_json json = *unsealed(line);
     json["metrics"].at(nlohmann::ordered_json::json_pointer(field)) = value;
-    const std::string error = read_error(header_line({campaign, {1, 1}}) + sealed_line(json));
+    const std::string error =
+        read_error(header_line(ShardHeader<Campaign>{campaign, {1, 1}}) + sealed_line(json));
     return error.substr(0, error.find(';'));
   };
   EXPECT_EQ(complaint("/ratio", "x"), "x:2: metrics is wrong: ratio is no finite number");

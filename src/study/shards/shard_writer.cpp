@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "study/shards/run_record.h"
+#include "study/shards/suave_record.h"
 
 namespace culprit::study {
 namespace {
@@ -24,24 +25,31 @@ bool is_unbegun(const std::filesystem::path& path, const std::string& header) {
 
 }  // namespace
 
-ShardWriter::ShardWriter(int file, std::filesystem::path path, ShardHeader header)
+template <class C>
+ShardWriter<C>::ShardWriter(int file, std::filesystem::path path, ShardHeader<C> header)
     : file_(file), path_(std::move(path)), header_(std::move(header)) {}
 
-ShardWriter::ShardWriter(ShardWriter&& other) noexcept
+template <class C>
+ShardWriter<C>::ShardWriter(ShardWriter&& other) noexcept
     : file_(std::exchange(other.file_, -1)),
       path_(std::move(other.path_)),
       header_(std::move(other.header_)),
       done_(other.done_),
       bytes_(other.bytes_) {}
 
-ShardWriter::~ShardWriter() {
+template <class C>
+ShardWriter<C>::~ShardWriter() {
   if (file_ >= 0) ::close(file_);  // which ends the lock, too
 }
 
-Error ShardWriter::error(const std::string& what) const { return {path_.string() + ": " + what}; }
+template <class C>
+Error ShardWriter<C>::error(const std::string& what) const {
+  return {path_.string() + ": " + what};
+}
 
-Expected<ShardWriter> ShardWriter::open(const std::filesystem::path& path,
-                                        const ShardHeader& header, const Found& found) {
+template <class C>
+Expected<ShardWriter<C>> ShardWriter<C>::open(const std::filesystem::path& path,
+                                              const ShardHeader<C>& header, const Found& found) {
   const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   ShardWriter writer(file, path, header);
   if (file < 0) return writer.error(std::string("cannot be opened: ") + std::strerror(errno));
@@ -51,7 +59,8 @@ Expected<ShardWriter> ShardWriter::open(const std::filesystem::path& path,
   return writer;
 }
 
-Expected<void> ShardWriter::resume(const Found& found) {
+template <class C>
+Expected<void> ShardWriter<C>::resume(const Found& found) {
   const std::string header = header_line(header_);
   if (is_unbegun(path_, header)) {
     // A campaign may have fewer runs than shards.
@@ -59,16 +68,16 @@ Expected<void> ShardWriter::resume(const Found& found) {
   }
 
   std::ifstream in(path_, std::ios::binary);
-  Expected<ShardReader> reader = ShardReader::open(in, path_.string());
+  Expected<ShardReader<C>> reader = ShardReader<C>::open(in, path_.string());
   if (!reader) return Error{reader.error()};
-  const ShardHeader& theirs = reader->header();
+  const ShardHeader<C>& theirs = reader->header();
   if (theirs.campaign != header_.campaign || theirs.shard != header_.shard) {
     return error("belongs to another campaign or shard (" + theirs.campaign.command + ", shard " +
                  label(theirs.shard) + ", culprit " + theirs.campaign.version +
                  "); choose another file");
   }
   while (true) {
-    const Expected<std::optional<RunMetrics>> run = reader->next();
+    const Expected<std::optional<Run>> run = reader->next();
     if (!run) return Error{run.error()};
     if (!run->has_value()) break;
     if (found) found(**run);
@@ -81,7 +90,8 @@ Expected<void> ShardWriter::resume(const Found& found) {
   return write(is_complete() ? end_line(done_) : "");
 }
 
-Expected<void> ShardWriter::append(const RunMetrics& run) {
+template <class C>
+Expected<void> ShardWriter<C>::append(const Run& run) {
   if (const auto json = to_json(run); !json) return error(json.error());
   std::string lines = run_line(next(), run);
   if (done_ + 1 == size()) lines += end_line(done_ + 1);
@@ -90,7 +100,8 @@ Expected<void> ShardWriter::append(const RunMetrics& run) {
   return written;
 }
 
-Expected<void> ShardWriter::write(const std::string& lines) {
+template <class C>
+Expected<void> ShardWriter<C>::write(const std::string& lines) {
   for (std::size_t at = 0; at < lines.size();) {
     const ssize_t count =
         ::pwrite(file_, lines.data() + at, lines.size() - at, static_cast<off_t>(bytes_ + at));
@@ -106,9 +117,13 @@ Expected<void> ShardWriter::write(const std::string& lines) {
   return {};
 }
 
-Expected<void> ShardWriter::drop_rest() {
+template <class C>
+Expected<void> ShardWriter<C>::drop_rest() {
   if (::ftruncate(file_, static_cast<off_t>(bytes_)) == 0) return {};
   return error(std::string("cannot be written: ") + std::strerror(errno));
 }
+
+template class ShardWriter<Campaign>;
+template class ShardWriter<SuaveCampaign>;
 
 }  // namespace culprit::study

@@ -11,13 +11,16 @@
 
 namespace culprit::study {
 
+template <class C>
 class ShardWriter {
  public:
+  using Run = typename ShardKind<C>::Run;
+
   // Makes the file, or checks that it belongs to the same campaign and shard, drops half a line at
   // its end, and goes on behind its last run. Calls `found`, if any, for each run that is there
   // already, in order. An error leaves the file as it was.
-  using Found = std::function<void(const RunMetrics&)>;
-  static Expected<ShardWriter> open(const std::filesystem::path& path, const ShardHeader& header,
+  using Found = std::function<void(const Run&)>;
+  static Expected<ShardWriter> open(const std::filesystem::path& path, const ShardHeader<C>& header,
                                     const Found& found = {});
 
   ShardWriter(ShardWriter&& other) noexcept;
@@ -35,10 +38,10 @@ class ShardWriter {
   // What next() yielded; behind the last one goes the line that ends the file. An error: a number
   // is not finite, or the file cannot be written; then the run counts as not done.
   // @pre !is_complete()
-  Expected<void> append(const RunMetrics& run);
+  Expected<void> append(const Run& run);
 
  private:
-  ShardWriter(int file, std::filesystem::path path, ShardHeader header);
+  ShardWriter(int file, std::filesystem::path path, ShardHeader<C> header);
 
   Expected<void> resume(const Found& found);
   Expected<void> write(const std::string& lines);
@@ -47,7 +50,7 @@ class ShardWriter {
 
   int file_ = -1;
   std::filesystem::path path_;
-  ShardHeader header_;
+  ShardHeader<C> header_;
   std::uint64_t done_ = 0;
   std::uint64_t bytes_ = 0;  // written and whole
 };

@@ -44,40 +44,58 @@ SuaveRow fold(const std::string& manager, const suave::model::MissionPlan& plan,
   return row;
 }
 
-SuaveRun play(const SuaveCampaign& campaign, const std::string& manager, std::uint64_t run,
-              Track* track = nullptr) {
-  return play_suave(manager, *campaign.generation, *campaign.plan, campaign.vehicle,
-                    simulation::mix(campaign.seed) + run, track);
+SuaveRun play(const SuaveCampaign& campaign, RunId id, Track* track) {
+  return play_suave(campaign.managers[id.row], *campaign.generation, *campaign.plan,
+                    campaign.vehicle, simulation::mix(campaign.seed) + id.run, track);
 }
 
 }  // namespace
 
-std::optional<std::vector<SuaveRow>> run_campaign(const SuaveCampaign& campaign, unsigned jobs,
-                                                  const std::function<bool()>& is_stopped) {
-  const std::uint64_t size = std::uint64_t{campaign.runs} * campaign.managers.size();
-  std::vector<SuaveRow> rows;
-  std::vector<SuaveRun> runs;  // of the manager under way
+Expected<void> check_managers(const std::vector<std::string>& managers) {
+  if (managers.empty()) return Error{"there is no manager"};
+  std::string known;
+  std::vector<std::string> left;
+  for (const SuaveContender& each : suave_contenders()) {
+    known += (known.empty() ? "" : ", ") + each.name;
+    left.push_back(each.name);
+  }
+  for (const std::string& manager : managers) {
+    if (std::erase(left, manager) == 1) continue;
+    if (std::count(managers.begin(), managers.end(), manager) > 1)
+      return Error{"manager '" + manager + "' is there twice"};
+    return Error{"there is no manager '" + manager + "'; there are " + known};
+  }
+  return {};
+}
+
+SuaveFold::SuaveFold(SuaveCampaign campaign) { result_.campaign = std::move(campaign); }
+
+void SuaveFold::add(SuaveRun run) {
+  const SuaveCampaign& campaign = result_.campaign;
+  runs_.push_back(std::move(run));
+  const RunId id = campaign[next_++];
+  if (runs_.size() < campaign.runs) return;
+  result_.rows.push_back(fold(campaign.managers[id.row], *campaign.plan, runs_));
+  runs_.clear();
+}
+
+SuaveRun play(const SuaveCampaign& campaign, RunId id) { return play(campaign, id, nullptr); }
+
+SuaveResult run_campaign(const SuaveCampaign& campaign, unsigned jobs) {
+  SuaveFold fold(campaign);
   work_in_order(
-      0, size, jobs,
-      [&](std::uint64_t i) {
-        return play(campaign, campaign.managers[i / campaign.runs], i % campaign.runs);
-      },
-      [&](std::uint64_t i, SuaveRun run) {
-        runs.push_back(std::move(run));
-        if (runs.size() == campaign.runs) {
-          rows.push_back(fold(campaign.managers[i / campaign.runs], *campaign.plan, runs));
-          runs.clear();
-        }
-        return !is_stopped || !is_stopped();
+      0, campaign.size(), jobs, [&](std::uint64_t i) { return play(campaign, campaign[i]); },
+      [&](std::uint64_t, SuaveRun run) {
+        fold.add(std::move(run));
+        return true;
       });
-  if (rows.size() < campaign.managers.size()) return std::nullopt;
-  return rows;
+  return std::move(fold).result();
 }
 
 std::vector<Track> first_tracks(const SuaveCampaign& campaign) {
   std::vector<Track> tracks(campaign.managers.size());
-  for (std::size_t m = 0; m < tracks.size(); ++m)
-    (void)play(campaign, campaign.managers[m], 0, &tracks[m]);
+  for (std::uint32_t row = 0; row < tracks.size(); ++row)
+    (void)play(campaign, RunId{row, 0}, &tracks[row]);
   return tracks;
 }
 

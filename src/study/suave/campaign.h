@@ -4,10 +4,10 @@
 // phases of all timers, the same drift as long as nothing is done differently.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "study/campaign.h"
 #include "study/statistics/moments.h"
 #include "study/suave/run.h"
 
@@ -20,7 +20,21 @@ struct SuaveCampaign {
   std::uint32_t runs = 0;  // of each
   std::uint64_t seed = 0;
   suave::model::VehicleTraits vehicle;
+  std::string version;  // of culprit
+  std::string command;  // that makes the whole campaign
+
+  // Of all managers.
+  std::uint64_t size() const { return std::uint64_t{runs} * managers.size(); }
+  // The runs in their order, by manager; a RunId's row is the manager. @pre index < size()
+  RunId operator[](std::uint64_t index) const {
+    return {static_cast<std::uint32_t>(index / runs), static_cast<std::uint32_t>(index % runs)};
+  }
+
+  bool operator==(const SuaveCampaign&) const = default;
 };
+
+// There is at least one, each exists, and none is there twice.
+Expected<void> check_managers(const std::vector<std::string>& managers);
 
 struct SuaveReactions {
   Moments answered_s;
@@ -48,10 +62,35 @@ struct SuaveRow {
   Moments whole_distance_m;
 };
 
-// Plays all runs on `jobs` threads; the result does not depend on how many. `is_stopped` is asked
-// after each run (null: never stopped); where it stopped the rest is missing and nothing is given.
-std::optional<std::vector<SuaveRow>> run_campaign(const SuaveCampaign& campaign, unsigned jobs,
-                                                  const std::function<bool()>& is_stopped);
+struct SuaveResult {
+  SuaveCampaign campaign;
+  std::vector<SuaveRow> rows;  // as its managers
+};
+
+// Folds runs into a result.
+class SuaveFold {
+ public:
+  explicit SuaveFold(SuaveCampaign campaign);
+
+  // The next run in the campaign's order. @pre !is_complete()
+  void add(SuaveRun run);
+
+  std::uint64_t size() const { return next_; }
+  bool is_complete() const { return next_ == result_.campaign.size(); }
+
+  // @pre is_complete()
+  SuaveResult result() && { return std::move(result_); }
+
+ private:
+  SuaveResult result_;
+  std::vector<SuaveRun> runs_;  // of the manager under way
+  std::uint64_t next_ = 0;
+};
+
+SuaveRun play(const SuaveCampaign& campaign, RunId id);
+
+// Plays all runs on `jobs` threads; the result does not depend on how many.
+SuaveResult run_campaign(const SuaveCampaign& campaign, unsigned jobs);
 
 // The first run of each manager again, with its track.
 std::vector<Track> first_tracks(const SuaveCampaign& campaign);

@@ -65,8 +65,9 @@ double misfit(const VehicleTraits& vehicle, std::uint32_t runs, bool is_told) {
     campaign.runs = runs;
     campaign.seed = kSeed;
     campaign.vehicle = vehicle;
-    const auto rows = run_campaign(campaign, std::max(1U, std::thread::hardware_concurrency()), {});
-    for (const SuaveRow& row : *rows) {
+    const SuaveResult result =
+        run_campaign(campaign, std::max(1U, std::thread::hardware_concurrency()));
+    for (const SuaveRow& row : result.rows) {
       const auto& paper = *published::find_suave(mission, row.manager);
       sum += misfit(row.search_s, paper.search_s) + misfit(row.distance_m, paper.distance_m);
       if (is_told)

@@ -36,18 +36,17 @@ std::string track_section(const std::vector<Track>& tracks) {
 
 }  // namespace
 
-std::string suave_html(const SuaveCampaign& campaign, const std::vector<SuaveRow>& rows,
-                       const std::vector<Track>& tracks, const std::string& command,
-                       const std::string& version) {
+std::string suave_html(const SuaveResult& result, const std::vector<Track>& tracks) {
+  const SuaveCampaign& campaign = result.campaign;
   const std::string title = fmt::format("SUAVE, {} mission", campaign.plan->name);
   std::string out = page_head(title) + "<body>\n<header>\n<h1>" + title + "</h1>\n<p>" +
                     markup_escaped(campaign.plan->summary) + "</p>\n<dl class=\"facts\">\n" +
-                    page_fact("Command", "<code>" + markup_escaped(command) + "</code>") +
+                    page_fact("Command", "<code>" + markup_escaped(campaign.command) + "</code>") +
                     page_fact("Seed", fmt::format("<code>{}</code>", campaign.seed)) +
-                    page_fact("Version", "culprit " + markup_escaped(version)) +
+                    page_fact("Version", "culprit " + markup_escaped(campaign.version)) +
                     page_fact("Runs", fmt::format("{} of each manager", campaign.runs)) +
                     "</dl>\n</header>\n<main>\n<section id=\"tables\">\n<h2>Tables</h2>\n";
-  for (const Table& table : suave_tables(campaign, rows)) out += html(table);
+  for (const Table& table : suave_tables(result)) out += html(table);
   return out + "</section>\n" + track_section(tracks) + "</main>\n</body>\n</html>\n";
 }
 

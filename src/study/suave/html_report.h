@@ -10,9 +10,7 @@
 
 namespace culprit::study {
 
-// `command` and `version` are those that made it. `tracks` are of the campaign's first run.
-std::string suave_html(const SuaveCampaign& campaign, const std::vector<SuaveRow>& rows,
-                       const std::vector<Track>& tracks, const std::string& command,
-                       const std::string& version);
+// `tracks` are of the campaign's first run.
+std::string suave_html(const SuaveResult& result, const std::vector<Track>& tracks);
 
 }  // namespace culprit::study

@@ -208,17 +208,18 @@ Json json(const SuaveRow& row, const SuaveCampaign& campaign) {
 
 }  // namespace
 
-std::vector<Table> suave_tables(const SuaveCampaign& campaign, const std::vector<SuaveRow>& rows) {
-  std::vector<Table> tables = {results_table(campaign, rows), honest_table(campaign, rows)};
-  const auto compared = tests(rows);
+std::vector<Table> suave_tables(const SuaveResult& result) {
+  std::vector<Table> tables = {results_table(result.campaign, result.rows),
+                               honest_table(result.campaign, result.rows)};
+  const auto compared = tests(result.rows);
   if (!compared.empty()) tables.push_back(tests_table(compared));
   return tables;
 }
 
-std::string suave_json(const SuaveCampaign& campaign, const std::vector<SuaveRow>& rows) {
+std::string suave_json(const SuaveResult& result) {
   Json document = {{"rows", Json::array()}, {"tests", Json::array()}};
-  for (const SuaveRow& row : rows) document["rows"].push_back(json(row, campaign));
-  for (const Test& test : tests(rows)) {
+  for (const SuaveRow& row : result.rows) document["rows"].push_back(json(row, result.campaign));
+  for (const Test& test : tests(result.rows)) {
     document["tests"].push_back({{"first", test.baseline},
                                  {"second", kCulprit},
                                  {"metric", test.metric},

@@ -24,8 +24,8 @@
 
 namespace culprit::study {
 
-std::vector<Table> suave_tables(const SuaveCampaign& campaign, const std::vector<SuaveRow>& rows);
+std::vector<Table> suave_tables(const SuaveResult& result);
 
-std::string suave_json(const SuaveCampaign& campaign, const std::vector<SuaveRow>& rows);
+std::string suave_json(const SuaveResult& result);
 
 }  // namespace culprit::study

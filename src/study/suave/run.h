@@ -24,6 +24,8 @@ struct SuaveRun {
   double found_s = 0;           // not cut to seconds; if it was not found, the time searched
   double whole_distance_m = 0;  // also what was inspected before an interruption
   bool is_success = false;      // found, inspected for 10 m at least, and never out of power
+
+  bool operator==(const SuaveRun&) const = default;
 };
 
 inline constexpr const char* kCulprit = "culprit";

@@ -20,6 +20,8 @@ struct Reactions {
   // What nobody answered: how long it had been there when it was over, or when the mission was.
   // Lower bounds. A mismatch is over when nobody searches any more.
   std::vector<double> unanswered_s;
+
+  bool operator==(const Reactions&) const = default;
 };
 
 class Metrics : private simulation::Watcher {

@@ -33,6 +33,8 @@ struct VehicleTraits {
   double centre_y = 2.35;
   double centre_y_sd = 0.25;
   double first_pose_s = 6.625;  // of the autopilot, after the mission's begin
+
+  bool operator==(const VehicleTraits&) const = default;
 };
 
 class Vehicle {

@@ -1,0 +1,308 @@
+// Culprit is killed at random instants while it heals the live SUNSET, and started again with the
+// same journal, over and over. At the end the robot is well, the journal is whole, no outcome is
+// lost or counted twice, and nothing has leaked.
+//
+// CULPRIT_CHAOS_KILLS says how often (4 unless set; scripts/chaos), CULPRIT_CHAOS_SEED what is
+// random.
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <map>
+#include <random>
+#include <set>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/paths.h"
+#include "cli/play.h"
+#include "cli/test_program.h"
+#include "exemplars/sunset/experiment.h"
+#include "exemplars/sunset/node_process.h"
+#include "journal/json.h"
+#include "journal/reader.h"
+#include "journal/session.h"
+#include "language/checker.h"
+#include "plan/bayes/bayes_planner.h"
+#include "process/supervisor.h"
+#include "replay/replay.h"
+
+namespace culprit::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+int setting(const char* name, int otherwise) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? otherwise : std::atoi(value);
+}
+
+std::set<std::string> names_in(const fs::path& folder, const std::string& beginning) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(beginning)) names.insert(name);
+  }
+  return names;
+}
+
+// What a process holds.
+struct Holdings {
+  std::size_t descriptors = 0;
+  std::size_t kilobytes = 0;  // resident
+};
+
+Holdings holdings_of(int pid) {
+  const fs::path folder = "/proc/" + std::to_string(pid);
+  Holdings holdings;
+  std::error_code gone;
+  for ([[maybe_unused]] const auto& each : fs::directory_iterator(folder / "fd", gone))
+    ++holdings.descriptors;
+  std::ifstream status(folder / "status");
+  for (std::string word; status >> word;) {
+    if (word == "VmRSS:") status >> holdings.kilobytes;
+  }
+  return holdings;
+}
+
+// The seven processes of SUNSET. They outlive whoever manages them.
+class LiveSunset {
+ public:
+  explicit LiveSunset(const TestWorld& world)
+      : domain_(ros2::options_from_environment()->domain), members_(*check(members()).rules) {
+    const process::Supervisor::Options options{world.folder() / "log", {own_folder()}};
+    processes_ = std::make_unique<process::Supervisor>(members_, options, inbox_);
+    for (std::size_t c = 0; c < members_.components.size(); ++c)
+      processes_->start({}, ComponentId(c));
+    auto experiment =
+        sunset::Experiment::start({kSpeed, world.folder(), *ros2::options_from_environment()});
+    if (!experiment) throw std::runtime_error(experiment.error());
+    experiment_ = std::move(*experiment);
+  }
+  // Also those that some culprit started, which is long gone.
+  ~LiveSunset() {
+    experiment_.reset();
+    processes_->stop_all();
+    for (const sunset::Member member : sunset::kMembers) {
+      for (const int pid : processes(member)) kill(pid, SIGKILL);
+    }
+  }
+
+  std::vector<int> processes(sunset::Member member) const {
+    return sunset::processes_of(member, domain_);
+  }
+  std::string complaint() const { return experiment_->measure().complaint; }
+
+  // False if that is not so in time.
+  bool is_well_within(Duration patience) const {
+    int calm = 0;  // a robot that is only just ill does not know it yet
+    for (const Time end = live_now() + patience; live_now() < end && calm < 20;) {
+      std::this_thread::sleep_for(50ms);
+      calm = complaint().empty() ? calm + 1 : 0;
+    }
+    return calm == 20;
+  }
+
+  // A node that is just being replaced cannot be broken: then nothing is.
+  void break_something(std::mt19937& random) {
+    std::vector<std::string> faults;
+    for (const sunset::Fault& fault : sunset::faults()) {
+      if (!fault.resolved_by.empty()) faults.emplace_back(fault.name);
+    }
+    for (const sunset::Member member : sunset::kManagedMembers) {
+      for (const char* what : {"kill:", "stop:", "crash:"})
+        faults.push_back(what + std::string(name_of(member)));
+    }
+    const std::string& fault = faults[random() % faults.size()];
+    if (const sunset::Fault* known = sunset::find_fault(fault)) {
+      (void)experiment_->inject(*known);
+      return;
+    }
+    const auto play = find_play(fault);
+    for (const auto& [what, member] : play->process_faults) (void)experiment_->inject(what, member);
+  }
+
+ private:
+  static constexpr double kSpeed = 1;
+
+  static Source members() {
+    std::string text;
+    for (const sunset::Member member : sunset::kMembers) {
+      const std::string name(name_of(member));
+      text += "COMPONENT " + name + " LAUNCH \"sunset-node " + name + "\"\n";
+    }
+    return Source("members.rules", text);
+  }
+
+  std::uint32_t domain_;
+  RuleSet members_;
+  Inbox inbox_;
+  std::unique_ptr<process::Supervisor> processes_;
+  std::unique_ptr<sunset::Experiment> experiment_;
+};
+
+// Each belief of the journal grows by one outcome at a time, each of which was said; what one run
+// knew at its end the next knew at its beginning; and what is believed now is the sum of it all.
+class OutcomesCount {
+ public:
+  void follow(const journal::Entry& entry) {
+    const journal::Json body = journal::from_text(entry.body);
+    if (entry.kind == journal::kind::kSession) begin(body, entry.id);
+    if (entry.kind == journal::kind::kEvent) said(body);
+    if (entry.kind == journal::kind::kBelief) learned(body, entry.id);
+  }
+  void compare(const journal::Learned& now) const {
+    EXPECT_EQ(by_name(now), beliefs_) << "the table is not the sum of its rows";
+  }
+  int outcomes() const { return outcomes_; }
+
+ private:
+  using Name = std::pair<std::string, std::string>;
+  using Beliefs = std::map<Name, std::pair<double, double>>;
+
+  static Beliefs by_name(const journal::Learned& learned) {
+    Beliefs beliefs;
+    for (const journal::LearnedBelief& each : learned.beliefs)
+      beliefs[{each.rule, each.strategy}] = {each.belief.alpha, each.belief.beta};
+    return beliefs;
+  }
+  void begin(const journal::Json& body, std::int64_t row) {
+    said_.clear();
+    const auto session = journal::session_from_json(body);
+    ASSERT_TRUE(session) << session.error();
+    EXPECT_EQ(by_name(session->learned), beliefs_)
+        << "the run of row " << row << " begins with other beliefs";
+  }
+  void said(const journal::Json& body) {
+    const std::string type = journal::text_of(body, "type");
+    const Name name{journal::text_of(body, "rule"), journal::text_of(body, "strategy")};
+    if (type == "strategy_failed") ++said_[name].second;
+    if (type == "failure_resolved" && !name.second.empty()) ++said_[name].first;
+  }
+  void learned(const journal::Json& body, std::int64_t row) {
+    const Name name{journal::text_of(body, "rule"), journal::text_of(body, "strategy")};
+    const std::pair now{journal::number_of(body, "alpha"), journal::number_of(body, "beta")};
+    const journal::Json prior = body.value("prior", journal::Json::array({0, 0}));
+    const auto before = beliefs_.try_emplace(name, prior[0], prior[1]).first->second;
+    const bool helped = now == std::pair{before.first + 1, before.second};
+    const bool did_not = now == std::pair{before.first, before.second + 1};
+    EXPECT_TRUE(helped || did_not) << "row " << row << " is not one outcome more";
+    int& outcomes = helped ? said_[name].first : said_[name].second;
+    EXPECT_GT(outcomes--, 0) << "row " << row << " counts an outcome that nobody saw";
+    beliefs_[name] = now;
+    ++outcomes_;
+  }
+
+  Beliefs beliefs_;
+  std::map<Name, std::pair<int, int>> said_;  // in this run and not counted yet: helped, did not
+  int outcomes_ = 0;
+};
+
+struct Chaos : testing::Test {
+  TestProgram run() {
+    return TestProgram(world, {"culprit", "run", rules, "--journal", journal_path, "--state-dir",
+                               (world.folder() / "state").string(), "--settle", "2"});
+  }
+  // Some die while they start, some while they watch, most while they repair.
+  void let_live(const TestProgram& culprit) {
+    std::uniform_int_distribution<int> any(0, 2500);
+    std::uniform_int_distribution<int> repairing(0, 1200);
+    if (random() % 3 != 0) culprit.prints("decided", 6s);
+    std::this_thread::sleep_for(std::chrono::milliseconds(
+        culprit.output().find("decided") != std::string::npos ? repairing(random) : any(random)));
+  }
+  journal::Reader journal() const {
+    auto reader = journal::Reader::open(journal_path);
+    if (!reader) throw std::runtime_error(reader.error());
+    return std::move(*reader);
+  }
+
+  std::mt19937 random{static_cast<std::mt19937::result_type>(setting("CULPRIT_CHAOS_SEED", 1))};
+  TestWorld world;
+  const std::string rules = fs::absolute("rules/sunset.rules").string();
+  const std::string journal_path = (world.folder() / "sunset.journal").string();
+};
+
+// Gives how many runs there were.
+int expect_runs_to_replay(const journal::Reader& journal) {
+  int runs = 0;
+  std::int64_t before = 0;
+  while (true) {
+    const auto session = journal.newest(journal::kind::kSession, before);
+    if (!session || !*session) return runs;
+    before = (*session)->id;
+    ++runs;
+    auto recording = replay::Recording::open(journal, before);
+    EXPECT_TRUE(recording) << recording.error();
+    if (!recording) continue;
+    const auto repetition = replay::repeat(*recording, journal, std::make_unique<BayesPlanner>(),
+                                           Governor::Options::recommended());
+    EXPECT_TRUE(repetition) << repetition.error();
+    if (repetition && repetition->difference)
+      ADD_FAILURE() << "the run of row " << before << " decides otherwise, first in row "
+                    << repetition->difference->row;
+  }
+}
+
+TEST_F(Chaos, CulpritMayBeKilledAtAnyInstant) {
+  const int kills = setting("CULPRIT_CHAOS_KILLS", 4);
+  const std::set<std::string> memory_before = names_in("/dev/shm", "");
+  const std::set<std::string> temporary_before = names_in(fs::temp_directory_path(), "culprit");
+  LiveSunset robot(world);
+  ASSERT_TRUE(robot.is_well_within(30s)) << robot.complaint();
+  const int witness = robot.processes(sunset::Member::kWorld).at(0);
+  const Holdings witness_before = holdings_of(witness);
+  Holdings first;
+  for (int i = 0; i < kills; ++i) {
+    TestProgram culprit = run();
+    if (robot.complaint().empty()) robot.break_something(random);
+    let_live(culprit);
+    if (i == 0) first = holdings_of(culprit.pid());
+    culprit.signal(SIGKILL);
+    ASSERT_EQ(culprit.wait(), -SIGKILL) << culprit.output();
+    std::cout << "." << std::flush;
+  }
+
+  TestProgram last = run();
+  EXPECT_TRUE(robot.is_well_within(180s)) << robot.complaint() << "\n" << last.output();
+  const Holdings at_last = holdings_of(last.pid());
+  last.signal(SIGINT);
+  EXPECT_EQ(last.wait(), 0) << last.output();
+
+  TestProgram audit(world, {"culprit", "audit", "verify", "--journal", journal_path});
+  EXPECT_EQ(audit.wait(), 0) << audit.output();
+  EXPECT_THAT(audit.output(), HasSubstr("all as they were written"));
+  const journal::Reader reader = journal();
+  OutcomesCount count;
+  auto rows = reader.entries(journal::Which::kReadable);
+  ASSERT_TRUE(rows) << rows.error();
+  journal::Entry entry;
+  for (auto more = rows->next(entry); more && *more; more = rows->next(entry)) count.follow(entry);
+  count.compare(*reader.learned());
+  const int runs = expect_runs_to_replay(reader);
+
+  for (const sunset::Member member : sunset::kMembers)
+    EXPECT_EQ(robot.processes(member).size(), 1u) << name_of(member);
+  EXPECT_EQ(names_in("/dev/shm", ""), memory_before);
+  std::set<std::string> temporary = names_in(fs::temp_directory_path(), "culprit");
+  temporary.erase(world.folder().filename().string());
+  for (const std::string& each : temporary_before) temporary.erase(each);
+  EXPECT_THAT(temporary, testing::IsEmpty());
+  const Holdings witness_after = holdings_of(witness);
+  EXPECT_LE(witness_after.descriptors, witness_before.descriptors);
+  EXPECT_LE(at_last.descriptors, first.descriptors + 20);
+
+  std::cout << "\n"
+            << kills << " kills, " << runs << " runs on record, " << count.outcomes()
+            << " outcomes counted; first culprit: " << first.descriptors << " descriptors, "
+            << first.kilobytes << " KiB; last: " << at_last.descriptors << ", " << at_last.kilobytes
+            << " KiB; a node that lived through it: " << witness_before.descriptors << ", "
+            << witness_before.kilobytes << " KiB before, " << witness_after.descriptors << ", "
+            << witness_after.kilobytes << " KiB after\n";
+}
+
+}  // namespace
+}  // namespace culprit::cli

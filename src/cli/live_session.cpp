@@ -1,0 +1,246 @@
+#include "cli/live_session.h"
+
+#include <unistd.h>
+
+#include <fmt/core.h>
+
+#include "cli/console.h"
+#include "cli/health.h"
+#include "cli/journal_file.h"
+#include "journal/requests.h"
+#include "knowledge/describe.h"
+#include "replay/replay.h"
+#include "web/event_json.h"
+
+namespace culprit::cli {
+namespace {
+
+ros2::Severity severity_of(const Event& event) {
+  if (std::holds_alternative<RuleExhausted>(event.what) ||
+      std::holds_alternative<LastResortReached>(event.what) ||
+      std::holds_alternative<StormBegan>(event.what))
+    return ros2::Severity::kError;
+  const bool is_bad = std::holds_alternative<FailureDetected>(event.what) ||
+                      std::holds_alternative<StrategyFailed>(event.what) ||
+                      std::holds_alternative<ComponentLost>(event.what) ||
+                      std::holds_alternative<AdaptationFailed>(event.what) ||
+                      std::holds_alternative<ActionHeldBack>(event.what) ||
+                      std::holds_alternative<ApprovalAsked>(event.what) ||
+                      std::holds_alternative<StrategyAbandoned>(event.what) ||
+                      std::holds_alternative<RivalSeen>(event.what) ||
+                      std::holds_alternative<Trouble>(event.what);
+  return is_bad ? ros2::Severity::kWarn : ros2::Severity::kInfo;
+}
+
+// Looks at what is there, so that what runs already is not started again.
+std::vector<Observation> discover(LiveRobot& robot, const std::atomic<bool>& stop) {
+  constexpr Duration kLook = std::chrono::seconds(3);
+  std::vector<Observation> seen;
+  for (const Time end = robot.now() + kLook; robot.now() < end && !stop;) robot.observe(end, seen);
+  return seen;
+}
+
+void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Observation>& seen) {
+  ComponentBinding binding(rules);
+  std::vector<bool> is_there(rules.components.size());
+  for (const Observation& o : seen) {
+    if (const auto* node = std::get_if<NodeAppeared>(&o.what)) {
+      if (const auto component = binding.bind(node->node)) is_there[component->index] = true;
+    }
+  }
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    if (is_there[c] || rules.components[c].launch.empty()) continue;
+    fmt::print("starting {}\n", rules.components[c].name);
+    robot.supervisor().start({}, ComponentId(c));
+  }
+}
+
+// The manager and its journal begin from the same record, so that a replay begins from it too.
+journal::Session session_of(const LiveSession::Frame& frame, const std::string& rules_text,
+                            const RuleSet& rules, Time start, const RunBeginning& beginning) {
+  const RunOptions& options = frame.options;
+  journal::Session session;
+  session.version = options.version;
+  session.robot = rules.robot;
+  session.rules_path = options.rules;
+  session.rules_text = rules_text;
+  session.planner = options.planner.to_json();
+  session.governor = options.governor.to_json();
+  session.advises = frame.advises;
+  session.boot = journal::boot_id();
+  session.start = start;
+  session.settling = from_seconds(options.settle_seconds);
+  session.forgetting = options.forgetting;
+  session.learned = beginning.learned;
+  session.interrupted = beginning.interrupted;
+  return session;
+}
+
+// By name, for the rules that come next.
+journal::Learned learned_by(const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  journal::Learned learned;
+  for (std::size_t s = 0; s < rules.strategies.size(); ++s) {
+    const Strategy& strategy = rules.strategies[s];
+    learned.beliefs.push_back({rules[strategy.rule].name, strategy.name,
+                               knowledge.beliefs[StrategyId(s)],
+                               initial_belief(strategy.success, strategy.confidence)});
+  }
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    for (const Couplings::Learned& each : knowledge.couplings.of(RuleId(r)))
+      learned.couplings.push_back({rules[each.cause].name, rules.rules[r].name, each.coupling});
+  }
+  return learned;
+}
+
+// The same component or rule of other rules; nothing: they do not have it.
+std::optional<Silenceable> translated(const Silenceable& what, const RuleSet& from,
+                                      const RuleSet& to) {
+  if (const auto* rule = std::get_if<RuleId>(&what)) {
+    const auto found = journal::find_rule(to, from[*rule].name);
+    return found ? std::optional<Silenceable>(*found) : std::nullopt;
+  }
+  const auto found = journal::find_component(to, from[std::get<ComponentId>(what)].name);
+  return found ? std::optional<Silenceable>(*found) : std::nullopt;
+}
+
+// What people have ordered and what still holds.
+std::vector<Observation> standing_orders(const Manager& manager, bool advised_at_first,
+                                         const RuleSet& next, Time now) {
+  std::vector<Observation> orders;
+  const auto add = [&](Order order) { orders.push_back({now, std::move(order)}); };
+  const bool advises = manager.autonomy() == Autonomy::kAdvise;
+  if (advises != advised_at_first)
+    add({0, "before the reload", "it was ordered so", SetDryRun{advises}});
+  if (manager.governor().is_paused()) add({0, "before the reload", "it was paused", Pause{}});
+  for (const Governor::ActiveSilence& each : manager.governor().silences()) {
+    const auto what = translated(each.what, manager.knowledge().rules, next);
+    if (!what || each.until <= now) continue;
+    Silence silence{*what, {}};
+    if (each.until != kNever) silence.lasts = each.until - now;
+    add({0, each.author, each.reason, silence});
+  }
+  return orders;
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, LoadedRules rules) {
+  auto setup = frame.options.robot();
+  if (!setup) return Error{setup.error()};
+  std::unique_ptr<LiveSession> session(new LiveSession(frame, std::move(rules)));
+  auto robot = LiveRobot::open(session->rules_, std::move(*setup));
+  if (!robot) return Error{robot.error()};
+  session->robot_ = std::move(*robot);
+  return session;
+}
+
+LiveSession::~LiveSession() = default;
+
+void LiveSession::begin(const std::atomic<bool>& stop) {
+  RunBeginning beginning;
+  if (frame_.records) beginning = begin_journal(frame_.options.journal_path(rules_), rules_);
+  for (const std::string& finding : beginning.findings) fmt::print("culprit: {}\n", finding);
+  std::vector<Observation> seen;
+  if (frame_.options.launch && !frame_.advises) {
+    seen = discover(*robot_, stop);
+    launch_missing(*robot_, rules_, seen);
+  }
+  if (beginning.is_paused)
+    seen.push_back(
+        {robot_->now(), Order{0, "the last run", "it was paused when it ended", Pause{}}});
+  manage(std::move(beginning), std::move(seen));
+}
+
+void LiveSession::begin(Handover before) {
+  RunBeginning beginning;
+  if (frame_.records) beginning = begin_journal(frame_.options.journal_path(rules_), rules_);
+  // What the manager knew is known, whether or not the journal could be written.
+  beginning.learned = std::move(before.learned);
+  manage(std::move(beginning), std::move(before.orders));
+}
+
+void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen) {
+  const journal::Session session =
+      session_of(frame_, rules_text_, rules_, robot_->now(), beginning);
+  const Autonomy autonomy = frame_.advises ? Autonomy::kAdvise : Autonomy::kAct;
+  manager_ = replay::manager_for(session, rules_, frame_.options.planner.planner(),
+                                 {autonomy, frame_.governor});
+  if (frame_.records) {
+    journal::Recorder::Options recorder;
+    recorder.path = frame_.options.journal_path(rules_);
+    recorder.wall_clock = wall_now;
+    recorder.on_trouble = [this](const std::string& what) { robot_->report(what); };
+    recorder_ = std::make_unique<journal::Recorder>(
+        std::move(beginning.writer), std::move(recorder), session, manager_->knowledge());
+  }
+  watched_ =
+      std::make_unique<web::WatchedManager>(*manager_, frame_.hub, frame_.metrics, frame_.start);
+  runtime_ = std::make_unique<Runtime>(*watched_, *robot_);
+  if (recorder_ != nullptr) {
+    runtime_->on_step = [this](const Runtime::Step& step) {
+      recorder_->stepped(step.now, step.observations, step.commands, step.events);
+    };
+  }
+  runtime_->on_events = [this](std::span<const Event> events) { tell(events); };
+  robot_->link().publish(health(manager_->knowledge()));
+  // No order was before the beginning.
+  for (Observation& each : seen) {
+    if (std::holds_alternative<Order>(each.what)) each.at = session.start;
+  }
+  runtime_->step(seen);
+}
+
+void LiveSession::tell(std::span<const Event> events) {
+  const Colour colour = colour_of(STDOUT_FILENO);
+  for (const Event& event : events) {
+    const std::string text = line(event, rules_, frame_.start, colour);
+    if (text.empty()) continue;
+    fmt::print("{}\n", text);
+    robot_->link().log(severity_of(event), describe(event, rules_));
+  }
+  std::fflush(stdout);
+  robot_->link().publish(health(manager_->knowledge()));
+}
+
+void LiveSession::announce(const std::string& kind, const std::string& text) {
+  const Time now = robot_->now();
+  fmt::print("{:8.3f}  {:<10}  {}\n", seconds(now - frame_.start), kind, text);
+  std::fflush(stdout);
+  frame_.hub.publish(
+      web::Kind::kEvent,
+      web::to_line({{"t", web::time_to_json(now, frame_.start)}, {"kind", kind}, {"text", text}}));
+  robot_->link().log(ros2::Severity::kInfo, text);
+}
+
+void LiveSession::run(Time until) {
+  runtime_->run(is_left_, until);
+  is_left_ = false;
+}
+
+void LiveSession::leave() {
+  is_left_ = true;
+  robot_->interrupt();
+}
+
+bool LiveSession::is_adapting() const {
+  for (const RuleId id : manager_->knowledge().states.active()) {
+    if (manager_->knowledge().states[id].attempt) return true;
+  }
+  return false;
+}
+
+LiveSession::Handover LiveSession::hand_over(const RuleSet& next) {
+  end();
+  return {learned_by(manager_->knowledge()),
+          standing_orders(*manager_, frame_.advises, next, robot_->now())};
+}
+
+void LiveSession::end() {
+  if (recorder_ == nullptr) return;
+  if (const auto written = recorder_->end(); !written)
+    fmt::print(stderr, "culprit: {}\n", written.error());
+  recorder_.reset();
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,84 @@
+// A live robot managed with one rule set, from discovery until the rules are others: robot,
+// manager, journal and loop. A reload of the rules ends one session and begins the next.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+
+#include "cli/live_robot.h"
+#include "cli/rule_file.h"
+#include "cli/run_journal.h"
+#include "cli/run_options.h"
+#include "manager/runtime.h"
+#include "web/watched_manager.h"
+
+namespace culprit::cli {
+
+class LiveSession {
+ public:
+  // What is the same for all sessions of a run. All that it refers to must outlive them.
+  struct Frame {
+    const RunOptions& options;
+    Governor::Options governor;
+    bool advises = false;  // a dry run, or another culprit manages the robot
+    bool records = true;   // into the journal
+    web::Hub& hub;
+    web::Metrics& metrics;
+    Time start;  // of the run: what people read counts from here
+  };
+  // What a session leaves to the next one.
+  struct Handover {
+    journal::Learned learned;
+    std::vector<Observation> orders;  // of people, that still hold
+  };
+
+  // Joins the robot's DDS domain. From then on what it shows is kept until the session begins.
+  static Expected<std::unique_ptr<LiveSession>> open(const Frame& frame, LoadedRules rules);
+  ~LiveSession();
+
+  // Takes over what the journal knows of the last run: at the beginning of a run.
+  void begin(const std::atomic<bool>& stop);
+  // Takes over from another session, which has ended.
+  void begin(Handover before);
+
+  // Manages until `until`, or leave() was called since.
+  void run(Time until);
+  // From any thread.
+  void leave();
+  void interrupt() { robot_->interrupt(); }
+  void submit(Order order) { runtime_->submit(std::move(order)); }
+
+  // Nothing more is done; the journal is whole. What is to go on with `next`. Errors are told on
+  // stderr.
+  Handover hand_over(const RuleSet& next);
+  // Likewise, but nothing goes on.
+  void end();
+
+  // Says it to people, wherever they look.
+  void announce(const std::string& kind, const std::string& text);
+
+  const RuleSet& rules() const { return rules_; }
+  Time now() const { return robot_->now(); }
+  // Whether a strategy is under way.
+  bool is_adapting() const;
+
+ private:
+  LiveSession(const Frame& frame, LoadedRules rules)
+      : frame_(frame), rules_(std::move(rules.rules)), rules_text_(std::move(rules.text)) {}
+
+  void manage(RunBeginning beginning, std::vector<Observation> seen);
+  void tell(std::span<const Event> events);
+
+  const Frame frame_;
+  const RuleSet rules_;
+  const std::string rules_text_;
+  std::unique_ptr<LiveRobot> robot_;
+  std::unique_ptr<Manager> manager_;
+  std::unique_ptr<journal::Recorder> recorder_;
+  std::unique_ptr<web::WatchedManager> watched_;
+  std::unique_ptr<Runtime> runtime_;
+  std::atomic<bool> is_left_ = false;
+};
+
+}  // namespace culprit::cli

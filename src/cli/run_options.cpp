@@ -1,0 +1,60 @@
+#include "cli/run_options.h"
+
+#include "cli/journal_file.h"
+#include "cli/paths.h"
+
+namespace culprit::cli {
+
+std::filesystem::path RunOptions::state_path() const {
+  return state_folder.empty() ? default_state_folder() : std::filesystem::path(state_folder);
+}
+
+std::filesystem::path RunOptions::journal_path(const RuleSet& rule_set) const {
+  return journal.empty() ? default_journal(state_path(), rule_set.robot)
+                         : std::filesystem::path(journal);
+}
+
+Expected<LiveRobot::Options> RunOptions::robot() const {
+  auto participant = ros2::options_from_environment();
+  if (!participant) return Error{participant.error()};
+  LiveRobot::Options out;
+  out.link.participant = *participant;
+  out.link.message_path = ros2::message_directories(message_path, environment("AMENT_PREFIX_PATH"));
+  out.link.parameters = {
+      {"rules", Value(rules)}, {"planner", Value(planner.name)}, {"dry_run", Value(dry_run)}};
+  out.supervisor = {state_path() / "log", {own_folder()}};
+  return out;
+}
+
+void RunOptions::add_to(CLI::App& command) {
+  command.add_option("RULES", rules, "The rule file")->required();
+  command.add_flag("--dry-run", dry_run, "Say what would be done, and do nothing");
+  command.add_flag("--launch", launch,
+                   "Start components that are missing, by their LAUNCH commands");
+  command
+      .add_option("--settle", settle_seconds,
+                  "For so many seconds, nothing is called missing because it was not seen")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  command.add_option("--state-dir", state_folder, "Where logs of started components go")
+      ->default_str("~/.local/state/culprit");
+  auto* kept = command.add_option(
+      "--journal", journal,
+      "Where everything is written down (default: <robot>.journal in the state folder)");
+  command.add_flag("--no-journal", no_journal, "Write nothing down, and know nothing")
+      ->excludes(kept);
+  command.add_option("--message-path", message_path,
+                     "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
+  command
+      .add_option("--forgetting", forgetting,
+                  "What was learned n outcomes ago weighs this to the n-th power; 1: nothing is "
+                  "forgotten")
+      ->check(CLI::Range(0.5, 1.0))
+      ->capture_default_str();
+  planner.add_to(command);
+  command.add_flag("--web", is_on_web, "Show in a browser what is seen, decided and done");
+  web.add_to(command);
+  governor.add_to(command);
+}
+
+}  // namespace culprit::cli

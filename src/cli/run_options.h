@@ -1,0 +1,41 @@
+// How `culprit run` was called, and what follows from it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/governor_options.h"
+#include "cli/live_robot.h"
+#include "cli/planner_options.h"
+#include "cli/web_service.h"
+#include "manager/manager.h"
+
+namespace culprit::cli {
+
+struct RunOptions {
+  std::string version;  // of culprit
+  std::string rules;
+  bool dry_run = false;
+  bool launch = false;
+  PlannerOptions planner;
+  GovernorOptions governor;
+  double forgetting = 1;
+  double settle_seconds = seconds(Manager::kDiscovery);
+  std::string state_folder;
+  std::string journal;
+  bool no_journal = false;
+  std::vector<std::filesystem::path> message_path;
+  bool is_on_web = false;
+  WebOptions web;
+
+  // The options must live as long as `command`.
+  void add_to(CLI::App& command);
+
+  std::filesystem::path state_path() const;
+  std::filesystem::path journal_path(const RuleSet& rules) const;
+  // Errors: the environment names no DDS domain.
+  Expected<LiveRobot::Options> robot() const;
+};
+
+}  // namespace culprit::cli

@@ -1,0 +1,21 @@
+// How often something comes, and how soon it would therefore show a change.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+
+#include "language/units.h"
+
+namespace culprit::monitor {
+
+// What comes seldom tells little about how fast it would show a change.
+constexpr Duration kLongestLatency = std::chrono::seconds(5);
+
+// A new interval counts for an eighth, as in TCP's round-trip estimate.
+inline Duration smoothed(Duration before, Duration now) {
+  return before == Duration::zero() ? now : before + (now - before) / 8;
+}
+
+inline Duration usual_latency(Duration interval) { return std::min(2 * interval, kLongestLatency); }
+
+}  // namespace culprit::monitor

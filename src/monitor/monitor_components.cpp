@@ -1,0 +1,111 @@
+// The monitor's part about the graph and its components: which are there, and which are alive.
+#include "monitor/monitor.h"
+
+namespace culprit {
+
+using Kind = Input::Kind;
+
+void Monitor::on(Time at, const NodeAppeared& seen) {
+  knowledge_.graph.node_appeared(seen.node);
+  const auto component = knowledge_.graph.component_of(seen.node);
+  if (!component) return;
+  ComponentState& state = knowledge_.components[*component];
+  const bool same_process = seen.pid != 0 && seen.pid == state.node_pid && state.in_graph;
+  if (!same_process) forget_process(*component, at);
+  state.in_graph = true;
+  state.node_seen = at;
+  state.node_pid = seen.pid;
+  state.missed_probes = 0;
+  if (seen.pid != state.pid) state.process = ProcessState::kRunning;
+  update_alive(*component, at, "");
+}
+
+void Monitor::on(Time at, const NodeVanished& seen) {
+  knowledge_.graph.node_vanished(seen.node);
+  const auto component = knowledge_.graph.component_of(seen.node);
+  if (!component) return;
+  forget_process(*component, at);
+  update_alive(*component, at, "its node left the graph");
+}
+
+void Monitor::on(Time, const NamesakesSeen& seen) {
+  const auto component = knowledge_.graph.component_of(seen.node);
+  if (component) knowledge_.components[*component].namesakes = seen.others;
+}
+
+void Monitor::on(Time, const EndpointAppeared& seen) {
+  knowledge_.graph.endpoint_appeared(seen.node, seen.kind, seen.name);
+}
+
+void Monitor::on(Time, const EndpointVanished& seen) {
+  knowledge_.graph.endpoint_vanished(seen.node, seen.kind, seen.name);
+}
+
+void Monitor::on(Time, const LifecycleRead& seen) {
+  ComponentState& state = knowledge_.components[seen.component];
+  state.lifecycle = seen.state;
+  const bool is_primary = seen.state != Lifecycle::kUnknown && seen.state != Lifecycle::kTransition;
+  if (is_primary && knowledge_.states.reservation(seen.component) == nullptr)
+    state.intended_lifecycle = seen.state;
+  for (const InputId id : component_inputs_[seen.component.index]) {
+    if (knowledge_.rules[id].kind != Kind::kLifecycle) continue;
+    knowledge_.signals.set(id, is_primary ? Slot::of(to_string(seen.state)) : Slot());
+  }
+}
+
+void Monitor::on(Time at, const ProcessSeen& seen) {
+  ComponentState& state = knowledge_.components[seen.component];
+  // A word about a process that the node no longer runs in says nothing about the node.
+  const bool is_other = seen.pid != 0 && state.node_pid != 0 && seen.pid != state.node_pid;
+  if (is_other && state.in_graph && seen.state != ProcessState::kRunning) return;
+  state.process = seen.state;
+  state.pid = seen.pid;
+  state.process_remark = seen.remark;
+  if (seen.state == ProcessState::kGone) {
+    knowledge_.graph.node_vanished(knowledge_.graph.node_name(seen.component));
+    forget_process(seen.component, at);
+  }
+  update_alive(seen.component, at,
+               seen.state == ProcessState::kStopped ? "its process is stopped" : seen.remark);
+}
+
+void Monitor::on(Time at, const Probed& seen) {
+  ComponentState& state = knowledge_.components[seen.component];
+  state.missed_probes = seen.answered ? 0 : state.missed_probes + 1;
+  update_alive(seen.component, at, "it does not answer");
+}
+
+void Monitor::on(Time at, const LinkTrouble& seen) { knowledge_.tell(at, Trouble{seen.text}); }
+
+// The node or its process is gone or is another now: what was known of it does not hold any more.
+void Monitor::forget_process(ComponentId component, Time at) {
+  ComponentState& state = knowledge_.components[component];
+  state.in_graph = false;
+  state.node_pid = 0;
+  on(at, LifecycleRead{component, Lifecycle::kUnknown});
+  for (std::size_t p = 0; p < knowledge_.rules.parameters.size(); ++p) {
+    if (knowledge_.rules.parameters[p].component != component) continue;
+    knowledge_.components[ParameterId(p)].reset();
+    for (const InputId id : parameter_inputs_[p]) knowledge_.signals.forget(id);
+  }
+}
+
+void Monitor::update_alive(ComponentId component, Time at, const std::string& remark) {
+  ComponentState& state = knowledge_.components[component];
+  const bool is_alive = state.in_graph && state.process == ProcessState::kRunning &&
+                        state.missed_probes < kMissedProbes;
+  if (!is_alive && !state.alive && at < settled_) return;  // it may still be discovered
+  if (state.alive == is_alive) return;
+  const bool was_known = state.alive.has_value();
+  state.alive = is_alive;
+  if (is_alive) {
+    knowledge_.tell(at, ComponentFound{component, state.node_pid});
+  } else {
+    knowledge_.tell(at, ComponentLost{component, was_known ? remark : "it was never seen"});
+  }
+  for (const InputId id : component_inputs_[component.index]) {
+    if (knowledge_.rules[id].kind == Kind::kAlive) knowledge_.signals.set(id, Slot::of(is_alive));
+  }
+}
+
+}  // namespace culprit

@@ -1,0 +1,102 @@
+// The monitor's part about topics: when a message came, and what time alone makes of that.
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/interval.h"
+#include "monitor/monitor.h"
+
+namespace culprit {
+
+using Kind = Input::Kind;
+using monitor::smoothed;
+using monitor::usual_latency;
+
+void Monitor::on(Time at, const SampleArrived& seen) {
+  Topic& topic = topics_[seen.topic.index];
+  if (!topic.first) topic.first = at;
+  if (topic.last)
+    topic.interval = smoothed(topic.interval, (at - *topic.last) / std::max(1u, seen.published));
+  topic.last = at;
+  knowledge_.signals.set_rhythm(seen.topic, {at, topic.interval});
+  if (topic.needs_phi) topic.phi.add(at, seen.published);
+  for (const InputId id : topic.inputs) {
+    const Input& input = knowledge_.rules[id];
+    if (input.kind == Kind::kRate) derived_[id.index].count.add(at, seen.published);
+    knowledge_.signals.set_latency(
+        id, input.kind == Kind::kRate ? input.window : usual_latency(topic.interval));
+    update(id, at);
+  }
+}
+
+Slot Monitor::age(InputId id, Time now) const {
+  const Topic& topic = topics_[knowledge_.rules[id].topic.index];
+  if (topic.last) return Slot::of(now - *topic.last);
+  return now >= settled_ ? Slot::of(now - start_) : Slot();
+}
+
+Slot Monitor::rate(InputId id, Time now) {
+  const Input& input = knowledge_.rules[id];
+  const Topic& topic = topics_[input.topic.index];
+  const bool window_is_full = topic.first && later(*topic.first, input.window) <= now;
+  if (topic.first ? !window_is_full : now < settled_) return {};
+  derived_[id.index].count.advance(now);
+  return Slot::of(derived_[id.index].count.rate());
+}
+
+Slot Monitor::phi(InputId id, Time now) const {
+  const auto suspicion = topics_[knowledge_.rules[id].topic.index].phi.phi(now);
+  return suspicion ? Slot::of(*suspicion) : Slot();
+}
+
+// The next time after `now` at which the input crosses a threshold if no message comes.
+Time Monitor::next_crossing(InputId id, Time now) const {
+  const Input& input = knowledge_.rules[id];
+  const Topic& topic = topics_[input.topic.index];
+  if (!topic.last && now < settled_) return settled_;
+  if (input.readers.empty()) return kNever;
+  if (!input.only_compared && input.kind != Kind::kRate) return later(now, knowledge_.rules.cycle);
+  switch (input.kind) {
+    case Kind::kAge:
+      return next_age(input, now);
+    case Kind::kPhi:
+      return next_phi(id, now);
+    default:
+      if (topic.first && now < later(*topic.first, input.window))
+        return later(*topic.first, input.window);
+      return next_rate(id);
+  }
+}
+
+Time Monitor::next_age(const Input& input, Time now) const {
+  const Time since = topics_[input.topic.index].last.value_or(start_);
+  for (const double threshold : input.thresholds) {
+    // One nanosecond on: `age > threshold` must hold then.
+    const Time crossing = later(since, from_seconds(threshold) + Duration(1));
+    if (crossing > now) return crossing;
+  }
+  return kNever;
+}
+
+Time Monitor::next_phi(InputId id, Time now) const {
+  for (const double deviations : derived_[id.index].deviations) {
+    const Time crossing = topics_[knowledge_.rules[id].topic.index].phi.exceeds(deviations);
+    if (crossing > now) return crossing;
+  }
+  return kNever;
+}
+
+Time Monitor::next_rate(InputId id) const {
+  const Input& input = knowledge_.rules[id];
+  const monitor::SlidingCount& count = derived_[id.index].count;
+  if (!input.only_compared) return count.falls_below(count.count());
+  const double rate = count.rate();
+  const auto above = std::upper_bound(input.thresholds.begin(), input.thresholds.end(), rate);
+  if (above == input.thresholds.begin()) return kNever;
+  const double threshold = *(above - 1);
+  if (rate == threshold) return count.falls_below(count.count());
+  const double at_threshold = std::floor(threshold * seconds(input.window));
+  return at_threshold < 0 ? kNever
+                          : count.falls_below(static_cast<std::uint64_t>(at_threshold) + 1);
+}
+
+}  // namespace culprit

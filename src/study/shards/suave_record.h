@@ -1,0 +1,19 @@
+// Runs and campaigns of SUAVE as JSON (as run_record.h).
+#pragma once
+
+#include "study/shards/run_record.h"
+#include "study/suave/campaign.h"
+
+namespace culprit::study {
+
+Expected<nlohmann::ordered_json> to_json(const SuaveRun& run);
+template <>
+Expected<SuaveRun> run_from_json(const nlohmann::ordered_json& json);
+
+// @pre the vehicle is the fitted one, which the file does not tell
+nlohmann::ordered_json to_json(const SuaveCampaign& campaign);
+// A campaign has managers, missions and generations that there are, and at least one run.
+template <>
+Expected<SuaveCampaign> campaign_from_json(const nlohmann::ordered_json& json);
+
+}  // namespace culprit::study

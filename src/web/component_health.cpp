@@ -1,0 +1,24 @@
+#include "web/component_health.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace culprit::web {
+
+std::vector<std::size_t> health_of_components(const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  std::vector<std::size_t> health(rules.components.size());
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    const RulePhase phase = knowledge.states[RuleId(r)].phase;
+    if (phase == RulePhase::kQuiet) continue;
+    const std::size_t level =
+        phase == RulePhase::kExhausted
+            ? std::size(kHealthWords) - 1
+            : 1 + static_cast<std::size_t>(rules.rules[r].policies.criticality);
+    for (const ComponentId c : rules.rules[r].components)
+      health[c.index] = std::max(health[c.index], level);
+  }
+  return health;
+}
+
+}  // namespace culprit::web

@@ -1,0 +1,72 @@
+// What culprit counts of itself, as Prometheus reads it (text format 0.0.4; the naming is that of
+// prometheus.io/docs/practices). docs/web.md lists it.
+//
+// The manager's thread counts; any thread may read. Counting a step in which nothing happened is a
+// handful of atomic additions, and no reader can hold the manager up: what it copies under the lock
+// is bounded by the rule set.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "manager/manager.h"
+
+namespace culprit::web {
+
+class Metrics {
+ public:
+  // Upper bounds of the histogram of step times, in seconds.
+  static constexpr std::array<double, 12> kStepBounds = {
+      0.00005, 0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 1};
+
+  // What `manager` may have to count is there from now on, at 0: a rate needs a beginning. Counts
+  // go on where another manager before it left off.
+  void watch(const Manager& manager);
+  // After each step of `manager`, which took so long.
+  void stepped(Duration took, std::size_t observations, const Manager& manager);
+
+  // From any thread.
+  std::uint64_t steps() const { return steps_; }
+  // The robot had its time to show itself.
+  bool is_settled() const { return is_settled_; }
+  // All of it, with what the operating system says of this process.
+  std::string text() const;
+
+ private:
+  using Series = std::map<std::string, std::uint64_t>;  // by labels: rule="CameraSilent"
+  struct Counts {
+    Series detected;
+    Series resolved;
+    Series exhausted;
+    Series plans;
+    Series strategies;
+    Series holds;
+    Series orders;
+    Series open;
+    Series components;
+    std::string info;
+    std::size_t approvals_pending = 0;
+    std::size_t silences = 0;
+    bool is_paused = false;
+    bool is_dry_run = false;
+    bool is_storm = false;
+  };
+
+  static void count(const Event& event, const RuleSet& rules, Counts& counts);
+  static void look(const Manager& manager, Counts& counts);
+
+  std::array<std::atomic<std::uint64_t>, kStepBounds.size() + 1> step_times_{};  // by bucket
+  std::atomic<std::uint64_t> steps_ = 0;
+  std::atomic<std::uint64_t> step_nanoseconds_ = 0;
+  std::atomic<std::uint64_t> observations_ = 0;
+  std::atomic<bool> is_settled_ = false;
+
+  mutable std::mutex mutex_;
+  Counts counts_;  // guarded by mutex_
+};
+
+}  // namespace culprit::web

@@ -1,0 +1,113 @@
+// What monitoring systems read of culprit while it heals a robot.
+#include "web/metrics.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+#include "web/status_routes.h"
+
+namespace culprit::web {
+namespace {
+
+using culprit::test::TestRobot;
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+constexpr const char* kRules = R"(
+ROBOT test
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE CameraSilent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 10
+)";
+
+// A robot whose manager is counted.
+struct Counted : testing::Test {
+  Counted() {
+    robot.add("camera", {}, "/rgb");
+    metrics.watch(robot.manager());
+    robot.before_commands = [this](auto& observations, auto) {
+      metrics.stepped(3ms, observations.size(), robot.manager());
+      return true;
+    };
+  }
+  Answer ask(Hub& hub, std::size_t route) const {
+    return status_routes(hub, metrics, 20ms)[route].answer(nullptr);
+  }
+
+  TestRobot robot{kRules};
+  Metrics metrics;
+};
+
+TEST_F(Counted, TellsOfFailuresStrategiesAndHealth) {
+  EXPECT_THAT(metrics.text(), HasSubstr("culprit_failures_detected_total{rule=\"CameraSilent\","
+                                        "criticality=\"ERROR\"} 0\n"))
+      << "a rate needs a beginning";
+  robot.discover();
+  robot.run_for(6s);
+  EXPECT_THAT(metrics.text(), HasSubstr("culprit_components{health=\"OK\"} 1\n"));
+  robot.kill("camera");
+  for (int i = 0; i < 100 && robot.manager().knowledge().states.active().empty(); ++i)
+    robot.run_for(10ms);
+  EXPECT_THAT(metrics.text(), HasSubstr("culprit_components{health=\"ERROR\"} 1\n"));
+  EXPECT_THAT(metrics.text(), HasSubstr("culprit_failures_open{criticality=\"ERROR\"} 1\n"));
+  robot.run_for(20s);
+  const std::string text = metrics.text();
+  for (const char* line :
+       {"culprit_failures_detected_total{rule=\"CameraSilent\",criticality=\"ERROR\"} 1\n",
+        "culprit_failures_resolved_total{rule=\"CameraSilent\",criticality=\"ERROR\"} 1\n",
+        "culprit_strategies_total{rule=\"CameraSilent\",strategy=\"redeploy\","
+        "outcome=\"resolved\"} 1\n",
+        "culprit_plans_total{result=\"chosen\"} 1\n",
+        "culprit_failures_open{criticality=\"ERROR\"} 0\n",
+        "culprit_governor_holds_total{restraint=\"paused\"} 0\n"})
+    EXPECT_THAT(text, HasSubstr(line));
+}
+
+// promtool has no package; these are the rules of the format that it would check.
+TEST_F(Counted, IsInPrometheusTextFormat) {
+  robot.discover();
+  std::istringstream text(metrics.text());
+  std::string family;
+  std::set<std::string> families;
+  for (std::string line; std::getline(text, line);) {
+    if (line.rfind("# HELP ", 0) == 0) {
+      family = line.substr(7, line.find(' ', 7) - 7);
+      EXPECT_TRUE(families.insert(family).second) << family << " is told twice";
+    } else if (line.rfind("# ", 0) == 0) {
+      EXPECT_EQ(line.rfind("# TYPE " + family + " ", 0), 0u) << line;
+    } else {
+      EXPECT_EQ(line.rfind(family, 0), 0u) << line << " stands under " << family;
+      EXPECT_THAT(line, testing::MatchesRegex("[a-z_]+(\\{[a-z_]+=\".*\"\\})? [-+.e0-9]+"));
+    }
+  }
+  EXPECT_TRUE(families.contains("process_resident_memory_bytes"));
+  EXPECT_TRUE(families.contains("process_start_time_seconds"));
+}
+
+TEST_F(Counted, HasEachStepInOneBucketAndInAllAbove) {
+  robot.discover();
+  const std::string steps = std::to_string(metrics.steps());
+  EXPECT_THAT(metrics.text(), HasSubstr("culprit_step_seconds_bucket{le=\"0.0025\"} 0\n"));
+  EXPECT_THAT(metrics.text(), HasSubstr("{le=\"0.005\"} " + steps + "\n"));
+  EXPECT_THAT(metrics.text(), HasSubstr("{le=\"+Inf\"} " + steps + "\n"));
+  EXPECT_THAT(metrics.text(), HasSubstr("culprit_step_seconds_count " + steps + "\n"));
+}
+
+TEST_F(Counted, IsAliveAsLongAsTheLoopComesRoundWhenAskedTo) {
+  Hub hanging([] {});
+  EXPECT_EQ(ask(hanging, 0).status, 503);
+  EXPECT_EQ(ask(hanging, 1).status, 503);
+  Hub hub([this] { metrics.stepped(1ms, 0, robot.manager()); });
+  EXPECT_EQ(ask(hub, 0).status, 200);
+  EXPECT_EQ(ask(hub, 1).status, 503) << "the robot did not have its time yet";
+  robot.discover();
+  robot.run_for(10s);
+  EXPECT_EQ(ask(hub, 1).status, 200);
+}
+
+}  // namespace
+}  // namespace culprit::web

@@ -1,0 +1,14 @@
+// What other programs ask of a service: whether it lives, whether it is ready, what it counts.
+#pragma once
+
+#include "web/hub.h"
+#include "web/metrics.h"
+#include "web/routes.h"
+
+namespace culprit::web {
+
+// Both must outlive the routes. A decision loop that does not come round in `patience` hangs.
+std::vector<Route> status_routes(Hub& hub, const Metrics& metrics,
+                                 std::chrono::milliseconds patience = std::chrono::seconds(2));
+
+}  // namespace culprit::web

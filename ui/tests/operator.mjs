@@ -1,0 +1,104 @@
+// A person in charge of a robot that runs: approves a repair, changes a rule and reloads it, takes what was learned
+// along; and names that are meant to harm are only names.
+//
+//     node operator.mjs <culprit> <node_modules> <folder>, with SUNSET's camera running in the DDS domain
+import { readFileSync, writeFileSync } from 'node:fs'
+import { expect, file, isAccessible, picture, session } from './session.mjs'
+
+const kRules = `ROBOT one_camera
+COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
+RULE CameraGone
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera redeploy 5
+`
+const path = file('operator.rules')
+writeFileSync(path, kRules)
+const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--state-dir', file('state')]
+
+// The process that culprit says the camera to be, newest last.
+const cameras = (said) => [...said.matchAll(/camera is there \(process (\d+)/g)].map((m) => Number(m[1]))
+
+async function approve(page, program) {
+  const log = page.getByRole('region', { name: 'What happened' })
+  await log.getByText('camera is there').first().waitFor()
+  process.kill(cameras(program.said()).at(-1), 'SIGKILL')
+  const question = page.getByRole('alert', { name: 'Approve camera_redeploy?' })
+  await question.getByText('redeploy camera').waitFor()
+  await isAccessible(page)
+  await picture(page, 'approval')
+  await question.getByRole('button', { name: 'Approve' }).click()
+  await log.getByText('CameraGone resolved by camera_redeploy').waitFor()
+  await question.waitFor({ state: 'detached' })
+}
+
+async function reload(page) {
+  await page.getByRole('link', { name: 'Rules' }).click()
+  const percent = page.getByRole('group', { name: 'Strategy camera_redeploy' }).getByLabel('helps in %')
+  await percent.fill('70')
+  await percent.press('Tab')
+  await page.getByText('changed', { exact: true }).waitFor()
+  expect(await page.getByRole('button', { name: 'Reload', exact: true }).isDisabled(), 'what is not saved is reloaded')
+  await page.getByRole('button', { name: 'Save …' }).click()
+  const dialog = page.getByRole('dialog')
+  await dialog.getByText('+     STRATEGY camera_redeploy 70 10').waitFor()
+  await dialog.getByRole('button', { name: 'Save and reload' }).click()
+  await page.getByText('Reloading the rules: done').waitFor()
+  await page.getByRole('link', { name: 'Robot' }).click()
+  const log = page.getByRole('region', { name: 'What happened' })
+  await log.getByText(`${path} is reloaded, with 1 rules`).waitFor()
+  expect(readFileSync(path, 'utf8').includes('camera_redeploy 70 10'), 'the file was not saved')
+  await page.getByRole('region', { name: 'Explanation' }).getByText('All is well').waitFor()
+}
+
+// The designer's number is the new one, and what was learned is still known.
+async function beliefs(page) {
+  await page.getByRole('link', { name: 'Beliefs' }).click()
+  const row = page.getByRole('row', { name: /CameraGone\.camera_redeploy/ })
+  await row.getByText('70 %').waitFor()
+  await row.getByText('1 outcome').waitFor()
+  const download = page.waitForEvent('download')
+  await page.getByRole('button', { name: 'Export …' }).click()
+  const learned = JSON.parse(readFileSync(await (await download).path(), 'utf8'))
+  expect(learned.format === 'culprit-beliefs', 'another format is exported')
+  expect(learned.beliefs[0].strategy === 'camera_redeploy', JSON.stringify(learned))
+}
+
+const kEvil = '<img src=x onerror="window.wasHarmed = true">'
+const kEvilStream = {
+  robot: { robot: kEvil, cycle_s: 0.2, components: [{ name: kEvil, can_start: false }], topics: [kEvil], inputs: [], rules: [] },
+  graph: { nodes: [{ node: kEvil, present: true, component: kEvil }], edges: [[kEvil, `${kEvil}2`, kEvil]] },
+  state: { t: 1, rules: [], components: [{ health: 'OK', present: true, alive: true, remark: kEvil }], topics: [{ rate: 1, age: 0 }], inputs: [], beliefs: [], couplings: [] },
+  event: { t: 1, kind: 'trouble', text: kEvil },
+}
+
+async function isHarmless(page) {
+  const body = Object.entries(kEvilStream).map(([kind, data]) => `event: ${kind}\ndata: ${JSON.stringify(data)}\n\n`)
+  await page.route('**/api/stream', (route) => route.fulfill({ contentType: 'text/event-stream', body: body.join('') }))
+  await page.goto(`${new URL(page.url()).origin}/#robot`)
+  await page.reload()
+  await page.getByRole('heading', { name: kEvil }).waitFor()
+  const component = page.getByRole('button', { name: kEvil }).first()
+  await component.click()
+  await page.getByRole('region', { name: 'What happened' }).getByText(kEvil).first().waitFor()
+  expect((await page.locator('img').count()) === 0, 'a name became an element')
+  expect(!(await page.evaluate('window.wasHarmed')), 'a name was run')
+}
+
+await session(kArguments, async (page, program) => {
+  try {
+    await approve(page, program)
+    await reload(page)
+    await beliefs(page)
+    await isHarmless(page)
+  } finally {
+    for (const pid of cameras(program.said())) {
+      try {
+        process.kill(pid, 'SIGKILL') // culprit leaves the robot running
+      } catch {
+        // It ended before.
+      }
+    }
+  }
+})

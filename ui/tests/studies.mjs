@@ -1,0 +1,68 @@
+// A campaign that is started, watched and read; a result that is opened; and rules in one another's way, drawn.
+import { writeFileSync } from 'node:fs'
+import { expect, file, isAccessible, picture, session } from './session.mjs'
+
+const kRules = `COMPONENT lamp NODE /lamp
+SIGNAL brightness TOPIC /light FIELD data
+RULE TooDark
+  POLICIES WARNING
+  TRIGGER brightness < 0.3
+    STRATEGY light 90 10
+      ADAPTATION lamp activate 5
+RULE TooBright
+  POLICIES WARNING
+  TRIGGER brightness > 0.2
+    STRATEGY dark 90 10
+      ADAPTATION lamp deactivate 5
+`
+const path = file('lamp.rules')
+writeFileSync(path, kRules)
+
+async function conflicts(page) {
+  const drawing = page.getByText('Rules that are in one another’s way')
+  await drawing.waitFor()
+  await page.getByText('TooDark, TooBright', { exact: true }).waitFor()
+  expect((await page.locator('path.arc-undo').count()) === 1, 'the oscillation is not drawn')
+  await isAccessible(page)
+  await picture(page, 'conflicts')
+  const trigger = page.getByRole('region', { name: 'Form' }).getByLabel('trigger').last()
+  await trigger.fill('brightness > 0.7')
+  await trigger.press('Tab')
+  await page.getByText('Rules that adapt the same components').waitFor() // a band lies between them
+}
+
+async function campaign(page) {
+  await page.getByRole('link', { name: 'Studies' }).click()
+  await page.getByLabel('campaign').selectOption('sunset')
+  await page.getByLabel('runs of each configuration').fill('1')
+  await page.getByRole('button', { name: 'Start', exact: true }).click()
+  await page.getByText(/sunset .*is running|sunset .*is done/).waitFor()
+  await page.getByText('✓ is done').waitFor()
+  const findings = page.getByRole('region', { name: 'Findings' })
+  await findings.getByText('sunset, 1 runs of each configuration, seed 1').waitFor()
+  expect((await findings.getByRole('row').count()) > 8, 'rows are missing')
+  await isAccessible(page)
+  await picture(page, 'studies')
+
+  const [report] = await Promise.all([page.waitForEvent('popup'), page.getByRole('link', { name: 'Open the report' }).click()])
+  await report.getByRole('heading', { level: 1 }).waitFor()
+  expect((await report.evaluate('self.origin')) === 'null', 'the report has the origin of the app')
+  await report.close()
+}
+
+async function result(page) {
+  const input = page.getByLabel('or open a result')
+  writeFileSync(file('result.json'), JSON.stringify({ rows: [{ planner: 'mine', wrong_component: { mean: 0.25, sd: 0.5 } }] }))
+  await input.setInputFiles(file('result.json'))
+  await page.getByRole('cell', { name: '0.25 ± 0.5' }).waitFor()
+  writeFileSync(file('nonsense.json'), '{"rows": 1}')
+  await input.setInputFiles(file('nonsense.json'))
+  await page.getByText('it has no rows').waitFor()
+}
+
+process.env.XDG_STATE_HOME = file('studies') // where campaigns leave their results
+await session(['web', path], async (page) => {
+  await conflicts(page)
+  await campaign(page)
+  await result(page)
+})
