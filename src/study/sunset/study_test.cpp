@@ -32,7 +32,7 @@ TEST(SunsetClaims, BalancedIsBetterThanThePapersFullConfigurationInEveryHonestMe
 
 // Its nearest among the paper's configurations is the one that ignores impact.
 TEST(SunsetClaims, TheDowntimeObjectiveHasTheLowestDowntime) {
-  const CampaignResult result = played({{kWithoutImpact, "paper"}, {kFull, "bayes:downtime"}}, 540);
+  const CampaignResult result = played({{kWithoutImpact, "paper"}, {kFull, "bayes:downtime"}}, 324);
   EXPECT_LT(result.rows[1][Metric::kHonestDowntime].mean(),
             result.rows[0][Metric::kHonestDowntime].mean());
   EXPECT_LT(result.rows[1][Metric::kStrategiesPerFault].mean(),
@@ -43,7 +43,7 @@ TEST(SunsetClaims, AnOracleIsABoundAndAgesComeNearIt) {
   for (const char* profile : {"live", "live:phi"}) {
     SCOPED_TRACE(profile);
     const CampaignResult result =
-        played({{kFull, "oracle", profile}, {kFull, "bayes:downtime", profile}}, 162);
+        played({{kFull, "oracle", profile}, {kFull, "bayes:downtime", profile}}, 54);
     const Row& oracle = result.rows[0];
     const Row& bayes = result.rows[1];
     EXPECT_EQ(oracle[Metric::kWrongComponent].mean(), 0);
