@@ -270,7 +270,7 @@ void add_study(CLI::App& app, const std::string& version, int& exit_code) {
   command->require_subcommand(1);
   add_sunset(*command, version, exit_code);
   add_study_suave(*command, version, exit_code);
-  add_study_rca(*command, exit_code);
+  add_study_rca(*command, version, exit_code);
   add_merge(*command, exit_code);
 }
 
