@@ -170,7 +170,7 @@ void LiveSession::begin(const std::atomic<bool>& stop) {
   if (beginning.is_paused) go_on_with("it was paused when it ended", Pause{});
   if (beginning.is_dry_run && !frame_.advises)
     go_on_with("a dry run was ordered when it ended", SetDryRun{true});
-  manage(std::move(beginning), std::move(seen));
+  manage(std::move(beginning), std::move(seen), "");
 }
 
 void LiveSession::begin(Handover before) {
@@ -178,13 +178,14 @@ void LiveSession::begin(Handover before) {
   if (frame_.records) beginning = look_back();
   // What the manager knew is known, whether or not the journal could be written.
   beginning.learned = std::move(before.learned);
-  manage(std::move(beginning), std::move(before.orders));
+  manage(std::move(beginning), std::move(before.orders), std::move(before.occasion));
 }
 
-void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen) {
+void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
+                         std::string occasion) {
   adopt_again(*robot_, beginning.past);
-  const journal::Session session =
-      session_of(frame_, rules_text_, rules_, robot_->now(), beginning);
+  journal::Session session = session_of(frame_, rules_text_, rules_, robot_->now(), beginning);
+  session.occasion = std::move(occasion);
   const Autonomy autonomy = frame_.advises ? Autonomy::kAdvise : Autonomy::kAct;
   manager_ = replay::manager_for(session, rules_, frame_.options.planner.planner(),
                                  {autonomy, frame_.governor});
@@ -252,10 +253,10 @@ bool LiveSession::is_adapting() const {
   return false;
 }
 
-LiveSession::Handover LiveSession::hand_over(const RuleSet& next) {
+LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string occasion) {
   end();
   return {learned_by(manager_->knowledge()),
-          standing_orders(*manager_, frame_.advises, next, robot_->now())};
+          standing_orders(*manager_, frame_.advises, next, robot_->now()), std::move(occasion)};
 }
 
 void LiveSession::end() {

@@ -32,11 +32,11 @@ class LiveSession {
   struct Handover {
     journal::Learned learned;
     std::vector<Observation> orders;  // of people, that still hold
+    std::string occasion;             // why there is a next one
   };
 
   // Joins the robot's DDS domain. From then on what it shows is kept until the session begins.
   static Expected<std::unique_ptr<LiveSession>> open(const Frame& frame, LoadedRules rules);
-  ~LiveSession();
 
   // Takes over what the journal knows of the last run: at the beginning of a run.
   void begin(const std::atomic<bool>& stop);
@@ -52,7 +52,7 @@ class LiveSession {
 
   // Nothing more is done; the journal is whole. What is to go on with `next`. Errors are told on
   // stderr.
-  Handover hand_over(const RuleSet& next);
+  Handover hand_over(const RuleSet& next, std::string occasion);
   // Likewise, but nothing goes on.
   void end();
 
@@ -72,7 +72,7 @@ class LiveSession {
       : frame_(frame), rules_(std::move(rules.rules)), rules_text_(std::move(rules.text)) {}
 
   RunBeginning look_back();
-  void manage(RunBeginning beginning, std::vector<Observation> seen);
+  void manage(RunBeginning beginning, std::vector<Observation> seen, std::string occasion);
   void tell(std::span<const Event> events);
 
   const Frame frame_;

@@ -100,7 +100,7 @@ std::unique_ptr<LiveSession> reloaded(std::unique_ptr<LiveSession> old, Stage::N
   std::unique_ptr<LiveSession> session = std::move(*opened);
   orders.close();
   stage.enter(nullptr);
-  LiveSession::Handover handover = old->hand_over(session->rules());
+  LiveSession::Handover handover = old->hand_over(session->rules(), "reloaded by " + next.author);
   old.reset();
   session->begin(std::move(handover));
   session->announce("reloaded", fmt::format("{}: {} is reloaded, with {} rules", next.author, path,

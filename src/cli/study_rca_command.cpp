@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "language/text_file.h"
+#include "study/rca/learning_report.h"
 #include "study/rca/repair_process.h"
 #include "study/rca/report.h"
 #include "study/rca/scenario_json.h"
@@ -39,6 +40,11 @@ struct RcaOptions {
   std::string output;    // empty: the standard output
   std::string scenario;  // a file; empty: random robots
   std::optional<std::uint32_t> explained;
+  std::optional<std::uint32_t> learned;  // faults; nothing: no learning is measured
+  double forgetting = 1;
+  bool drift = false;
+  std::string html;  // a report on learning; empty: none
+  std::string version;
   std::string scenario_output;  // empty: the episodes are played
 
   Times times() const { return timing ? Times::kShown : Times::kLeftOut; }
@@ -101,7 +107,36 @@ std::string in_format(const RcaOptions& options, const RcaCampaign& campaign,
   return options.format == "latex" ? study::latex(table) : study::text(table);
 }
 
+int study_learning(const RcaOptions& options) {
+  study::rca::LearningCampaign campaign;
+  campaign.setting = {options.components.front(), options.faults.front(), options.noise.front(),
+                      options.cyclic};
+  campaign.objective = *parse_objective(options.objective);
+  campaign.faults = *options.learned;
+  campaign.forgetting = options.forgetting;
+  campaign.has_drift = options.drift;
+  campaign.seed = options.seed;
+  const StopSignals signals;
+  const auto result = study::rca::learn(campaign, [&] { return signals.stopped().load(); });
+  if (!result) return fail("interrupted; nothing is written", kFailed);
+  const auto written = write_text(
+      options.output, options.format == "json" ? study::rca::learning_json(campaign, *result)
+                                               : study::rca::learning_text(campaign, *result));
+  if (!written) return fail(written.error(), kFailed);
+  if (options.html.empty()) return kOk;
+  const std::string command = fmt::format(
+      "culprit study rca --learn {} --components {} --faults {} --noise {:g}{} --objective {} "
+      "--forgetting {:g}{} --seed {}",
+      campaign.faults, campaign.setting.components, campaign.setting.faults, campaign.setting.noise,
+      options.cyclic ? " --cyclic" : "", options.objective, campaign.forgetting,
+      options.drift ? " --drift" : "", campaign.seed);
+  const auto page = write_text(
+      options.html, study::rca::learning_html(campaign, *result, command, options.version));
+  return page ? kOk : fail(page.error(), kFailed);
+}
+
 int study_rca(const RcaOptions& options) {
+  if (options.learned) return study_learning(options);
   const auto campaign = campaign_of(options);
   if (!campaign) return fail(campaign.error(), kUsage);
   if (!options.scenario_output.empty()) {
@@ -128,8 +163,9 @@ int study_rca(const RcaOptions& options) {
 
 }  // namespace
 
-void add_study_rca(CLI::App& study, int& exit_code) {
+void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) {
   auto options = std::make_shared<RcaOptions>();
+  options->version = version;
   CLI::App* command = study.add_subcommand(
       "rca", "A benchmark of root-cause analysis: random robots with several faults at once");
   command->add_option("--components", options->components, "Sizes of the robots")
@@ -160,6 +196,23 @@ void add_study_rca(CLI::App& study, int& exit_code) {
                       "Write the first episode's scenario there, and play nothing");
   command->add_option("--explain", options->explained,
                       "Tell what happened in this episode, from 0, with each planner");
+  auto* learn =
+      command
+          ->add_option(
+              "--learn", options->learned,
+              "Let bayes learn from so many faults on one robot, and measure on as many or "
+              "more how true that is")
+          ->check(CLI::Range(1U, 1'000'000U))
+          ->excludes(scenario);
+  command->add_option("--forgetting", options->forgetting, "As of culprit run")
+      ->check(CLI::Range(0.5, 1.0))
+      ->capture_default_str()
+      ->needs(learn);
+  command
+      ->add_flag("--drift", options->drift,
+                 "What helps changes for the last quarter of what is learned from")
+      ->needs(learn);
+  command->add_option("--html", options->html, "Also a page with calibration plots")->needs(learn);
   command->add_option("--objective", options->objective, "What the bayes planner spares most")
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
       ->capture_default_str();

@@ -1,11 +1,13 @@
 // culprit study rca, as a part of culprit study.
 #pragma once
 
+#include <string>
+
 #include <CLI/CLI.hpp>
 
 namespace culprit::cli {
 
 // Adds itself to the `study` command, and gives its exit code when it was chosen.
-void add_study_rca(CLI::App& study, int& exit_code);
+void add_study_rca(CLI::App& study, const std::string& version, int& exit_code);
 
 }  // namespace culprit::cli

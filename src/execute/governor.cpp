@@ -96,7 +96,11 @@ std::optional<std::string> Governor::objection(const Order& order, Autonomy auto
                                  [&](const ActiveSilence& s) { return s.what == o.what; });
                  return is_there ? std::nullopt : Objection("it is not silenced");
                },
-               [&](const RunStrategy& o) { return objection_to_run(o.strategy, autonomy); }},
+               [&](const RunStrategy& o) { return objection_to_run(o.strategy, autonomy); },
+               [&](const Forget& o) -> Objection {
+                 if (o.rule && o.rule->index >= rules.rules.size()) return "there is no such rule";
+                 return std::nullopt;
+               }},
       order.what);
 }
 
@@ -139,7 +143,7 @@ void Governor::obey(const Order& order, Time now) {
                  std::erase_if(silences_, [&](const ActiveSilence& s) { return s.what == o.what; });
                },
                // The manager's.
-               [](const SetDryRun&) {}, [](const RunStrategy&) {}},
+               [](const SetDryRun&) {}, [](const RunStrategy&) {}, [](const Forget&) {}},
       order.what);
 }
 

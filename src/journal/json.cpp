@@ -155,6 +155,7 @@ class EventWriter {
     const char* operator()(const Silence&) const { return "silence"; }
     const char* operator()(const LiftSilence&) const { return "lift_silence"; }
     const char* operator()(const RunStrategy&) const { return "run_strategy"; }
+    const char* operator()(const Forget&) const { return "forget"; }
   };
   Json of_order(const char* type, const Order& order) const {
     Json json = {{"type", type},

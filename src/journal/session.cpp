@@ -82,7 +82,9 @@ Json to_json(const Session& session) {
           {"dry_run", session.is_dry_run},
           {"rules_path", session.rules_path},
           {"rules_text", session.rules_text},
+          {"occasion", session.occasion},
           {"text", "culprit " + session.version + " began to manage with " + session.rules_path +
+                       (session.occasion.empty() ? "" : ", " + session.occasion) +
                        (session.advises ? " (only advising)" : "")}};
 }
 
@@ -95,6 +97,7 @@ Expected<Session> session_from_json(const Json& json) {
   session.robot = text_of(json, "robot");
   session.rules_path = text_of(json, "rules_path");
   session.rules_text = text_of(json, "rules_text");
+  session.occasion = text_of(json, "occasion");
   session.planner = json.value("planner", Json::object());
   session.governor = json.value("governor", Json::object());
   session.advises = flag_of(json, "advises");

@@ -13,6 +13,7 @@ struct Session {
   std::string robot;
   std::string rules_path;
   std::string rules_text;
+  std::string occasion;            // "reloaded by ada"; empty: culprit was started
   Json planner;                    // as its options have it
   Json governor = Json::object();  // likewise
   bool advises = false;

@@ -68,6 +68,7 @@ class Manager : public ManagingSystem {
   void react(std::vector<Command>& commands);
   void obey(const Order& order, Time now);
   void refresh_conditions(StrategyId strategy, Time now);
+  void forget(std::optional<RuleId> rule);
   void abandon_all(const std::string& reason, Time now);
   void plan(Time now);
   std::vector<Verdict> allowed_plan(const std::vector<RuleId>& failures, Time now);

@@ -27,6 +27,19 @@ constexpr std::array<std::array<double, kFaultKinds>, kRepairs> kHelps = {{
 constexpr std::array<int, kRepairs> kImpact = {2, 5, 15};
 constexpr std::array<double, kRepairs> kTakes_s = {0.2, 1, 3};
 
+std::vector<InjectedFault> faults(const RcaSetting& setting, Random& random) {
+  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random.next() % n); };
+  std::set<std::size_t> faulty;
+  std::vector<InjectedFault> all;
+  while (faulty.size() < std::min(setting.faults, setting.components)) {
+    const std::size_t component = below(setting.components);
+    if (!faulty.insert(component).second) continue;
+    const auto kind = static_cast<FaultKind>(below(kFaultKinds));
+    all.push_back({component, kind, kFirstFault_s + random.uniform(0, kAtOnce_s)});
+  }
+  return all;
+}
+
 class Generator {
  public:
   Generator(const RcaSetting& setting, std::uint64_t seed) : setting_(setting), random_(seed) {
@@ -39,7 +52,7 @@ class Generator {
     add_redundancy();
     if (setting_.is_cyclic) add_feedback();
     if (setting_.components >= 20) add_infrastructure();
-    add_faults();
+    scenario_.faults = faults(setting_, random_);
     return std::move(scenario_);
   }
 
@@ -143,22 +156,17 @@ class Generator {
     subscribe(scenario_.topics.size() - 2, monitor, 0);
   }
 
-  void add_faults() {
-    std::set<std::size_t> faulty;
-    while (faulty.size() < std::min(setting_.faults, size())) {
-      const std::size_t component = below(size());
-      if (!faulty.insert(component).second) continue;
-      scenario_.faults.push_back({component, static_cast<FaultKind>(below(kFaultKinds)),
-                                  kFirstFault_s + random_.uniform(0, kAtOnce_s)});
-    }
-  }
-
   const RcaSetting& setting_;
   Random random_;
   RcaScenario scenario_;
 };
 
 }  // namespace
+
+std::vector<InjectedFault> random_faults(const RcaSetting& setting, std::uint64_t seed) {
+  Random random(seed);
+  return faults(setting, random);
+}
 
 RcaScenario generate(const RcaSetting& setting, std::uint64_t seed) {
   return Generator(setting, seed).run();

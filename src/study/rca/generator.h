@@ -23,6 +23,9 @@ struct RcaSetting {
   bool operator==(const RcaSetting&) const = default;
 };
 
+// As many faults on components of such a robot.
+std::vector<InjectedFault> random_faults(const RcaSetting& setting, std::uint64_t seed);
+
 RcaScenario generate(const RcaSetting& setting, std::uint64_t seed);
 
 }  // namespace culprit::study::rca

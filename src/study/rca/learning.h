@@ -1,0 +1,46 @@
+// What a manager learns of one robot of the benchmark over many faults, and how true that is.
+//
+// The robot stays the same; each episode has new faults and new luck, and begins with the beliefs
+// and couplings that the last one ended with. First it learns. Then, while it goes on learning,
+// every outcome that moves a belief or a coupling is held against what was believed just before:
+//   - of a strategy that was executed: did it help?
+//   - of a failure that was there when another was resolved: did it go away too?
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "plan/bayes/objective.h"
+#include "study/rca/calibration.h"
+#include "study/rca/generator.h"
+
+namespace culprit::study::rca {
+
+struct LearningCampaign {
+  RcaSetting setting{10, 1, 0, false};
+  Objective objective = Objective::kBalanced;
+  std::uint32_t faults = 500;  // to learn from before anything is measured
+  double forgetting = 1;
+  // For the last quarter of these, and from then on, a restart helps as little as a configuration
+  // did, and the other way round.
+  bool has_drift = false;
+  std::uint64_t seed = 1;
+
+  // On how many faults it is measured: on few after a drift, because in the long run all learn.
+  std::uint32_t measured() const { return has_drift ? faults : 4 * faults; }
+};
+
+struct LearningResult {
+  std::uint32_t learned = 0;   // faults
+  std::uint32_t measured = 0;  // faults
+  Calibration success;
+  Calibration rates;  // the same by strategy: is each believed in as often as it helps?
+  Calibration kappa;
+};
+
+// Depends on nothing but the campaign. `is_stopped` is asked after each episode (null: never);
+// where it stopped nothing is given.
+std::optional<LearningResult> learn(const LearningCampaign& campaign,
+                                    const std::function<bool()>& is_stopped);
+
+}  // namespace culprit::study::rca
