@@ -13,7 +13,7 @@ Guid writer(std::uint8_t participant) {
   return guid;
 }
 
-EndpointInfo claim(std::uint8_t participant, const std::string& user_data) {
+EndpointInfo says(std::uint8_t participant, const std::string& user_data) {
   return {.guid = writer(participant),
           .topic = ManagerLease::kTopic,
           .type = ManagerLease::kType,
@@ -21,7 +21,7 @@ EndpointInfo claim(std::uint8_t participant, const std::string& user_data) {
           .qos = {}};
 }
 EndpointInfo claim(std::uint8_t participant, const LeaseClaim& what) {
-  return claim(participant, ManagerLease(what).user_data());
+  return says(participant, ManagerLease(what).user_data());
 }
 
 ManagerLease lease_of(std::int64_t since, std::int64_t id = 5) {
@@ -67,9 +67,9 @@ TEST(ManagerLease, PassesOnWhenTheElderIsGone) {
 TEST(ManagerLease, IsOfOneRobotOnlyAndIgnoresNonsense) {
   ManagerLease lease = lease_of(100);
   lease.apply(claim(1, {"rover", 1, 1}));
-  lease.apply(claim(2, "robot=drone;since=early;id=1;"));
-  lease.apply(claim(3, "robot=drone;since=1x;id=1;"));
-  lease.apply(claim(4, ""));
+  lease.apply(says(2, "robot=drone;since=early;id=1;"));
+  lease.apply(says(3, "robot=drone;since=1x;id=1;"));
+  lease.apply(says(4, ""));
   EndpointInfo other = claim(6, {"drone", 1, 1});
   other.topic = "rt/chatter";
   lease.apply(other);

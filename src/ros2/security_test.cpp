@@ -122,8 +122,12 @@ TEST(Security, HearsThoseWithKeysAndNoOthers) {
   ParticipantOptions secured = domain.options();
   secured.security =
       **security_with({{"ROS_SECURITY_ENABLE", "true"}, {"ROS_SECURITY_KEYSTORE", keys.path()}});
-  const ReaderOptions what{.topic = "rt/secret", .type = "std_msgs::msg::dds_::String_"};
-  const WriterOptions same{.topic = what.topic, .type = what.type};
+  ReaderOptions what;
+  what.topic = "rt/secret";
+  what.type = "std_msgs::msg::dds_::String_";
+  WriterOptions same;
+  same.topic = what.topic;
+  same.type = what.type;
 
   EventLog<std::string> heard;
   const auto open = [&](const ParticipantOptions& options) {
