@@ -74,7 +74,7 @@ void read_file(const std::string& bytes) {
   const std::string path = "/proc/self/fd/" + std::to_string(file);
   if (const auto journal = journal::Reader::open(path); is_there && journal) {
     (void)journal::verify(*journal);
-    (void)journal::recover(*journal, rules());
+    (void)journal::recover(*journal, rules(), {Time(std::chrono::hours(1)), 1});
     if (auto recording = replay::Recording::open(*journal))
       (void)replay::repeat(*recording, *journal, std::make_unique<BayesPlanner>(), {});
   }

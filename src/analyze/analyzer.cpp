@@ -11,6 +11,12 @@ namespace {
 bool is_true(const Slot& slot) { return slot.known && slot.b; }
 bool is_false(const Slot& slot) { return slot.known && !slot.b; }
 
+// After so many rounds, at least one.
+Duration pause_after(int rounds) {
+  const int doublings = std::min(rounds - 1, 10);
+  return std::min<Duration>(Analyzer::kFirstBackoff * (1 << doublings), Analyzer::kLongestBackoff);
+}
+
 }  // namespace
 
 Duration longest_detection(const RuleSet& rules) {
@@ -40,6 +46,52 @@ std::vector<RuleId> Analyzer::plannable(Time now) const {
   return ids;
 }
 
+void Analyzer::remember(const Past& past) {
+  for (const Event& event : past) remember(event);
+}
+
+void Analyzer::remember(const Event& event) {
+  const auto left_off = [&](RuleId id) -> std::optional<Search>& {
+    return knowledge_.states.state(id).left_off;
+  };
+  const auto begin_anew = [](Search& search) { search.tried.assign(search.tried.size(), false); };
+  if (const auto* detected = std::get_if<FailureDetected>(&event.what)) {
+    auto& search = left_off(detected->rule);
+    // A process that took the search over detected the failure anew.
+    if (search) return;
+    search.emplace().since = event.at;
+    search->tried.assign(knowledge_.rules[detected->rule].strategies.size(), false);
+  } else if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) {
+    remember_gone(resolved->rule, event.at, knowledge_.rules[resolved->rule].policies.cooldown);
+  } else if (const auto* lost = std::get_if<FailureLost>(&event.what)) {
+    left_off(lost->rule).reset();
+  } else if (const auto* failed = std::get_if<StrategyFailed>(&event.what)) {
+    const RuleId rule = knowledge_.rules[failed->strategy].rule;
+    if (auto& search = left_off(rule)) {
+      ++search->attempts;
+      search->tried[knowledge_.states.place_of(failed->strategy)] = true;
+    }
+  } else if (const auto* spent = std::get_if<RoundSpent>(&event.what)) {
+    if (auto& search = left_off(spent->rule)) {
+      begin_anew(*search);
+      search->retry_at = later(event.at, pause_after(++search->round));
+    }
+  } else if (const auto* last = std::get_if<LastResortReached>(&event.what)) {
+    if (auto& search = left_off(last->rule)) {
+      begin_anew(*search);
+      search->is_at_last_resort = true;
+    }
+  } else if (const auto* exhausted = std::get_if<RuleExhausted>(&event.what)) {
+    if (auto& search = left_off(exhausted->rule)) search->is_exhausted = true;
+  }
+}
+
+void Analyzer::remember_gone(RuleId id, Time at, Duration quiet) {
+  RuleState& state = knowledge_.states.state(id);
+  state.left_off.reset();
+  state.quiet_until = later(at, quiet);
+}
+
 void Analyzer::look_at(RuleId id, Time now) {
   evaluate_trigger(id, now);
   switch (knowledge_.states[id].phase) {
@@ -65,7 +117,15 @@ void Analyzer::evaluate_trigger(RuleId id, Time now) {
     state.trigger_since = now;
   }
   if (!is_true(value)) state.armed = true;
+  if (is_false(value) && state.left_off) forget_left_off(id, now);
   if (!state.history.empty()) sample_history(id, now);
+}
+
+// What an earlier process left off at went away while nobody looked on.
+void Analyzer::forget_left_off(RuleId id, Time now) {
+  const auto left_off = std::exchange(knowledge_.states.state(id).left_off, std::nullopt);
+  knowledge_.tell(
+      now, FailureResolved{id, FailureResolved::How::kWithoutStrategy, {}, now - left_off->since});
 }
 
 void Analyzer::sample_history(RuleId id, Time now) {
@@ -100,18 +160,15 @@ bool Analyzer::is_gone(RuleId id, Time now) const {
 void Analyzer::detect(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   const bool recurs = state.gone_since != kLongAgo && now < later(state.gone_since, kRecurs);
+  const bool was_exhausted = state.left_off && state.left_off->is_exhausted;
   state.recurring_since = recurs ? state.first_detected() : kNever;
-  state.failing_since = now;
   state.armed = false;
-  state.attempts = 0;
-  state.round = 0;
-  state.retry_at = now;
-  state.is_at_last_resort = false;
   state.is_advised = false;
   state.settling.reset();
-  std::fill(state.tried.begin(), state.tried.end(), false);
+  knowledge_.states.begin_search(id, now);
   knowledge_.states.enter(id, RulePhase::kFailing);
   knowledge_.tell(now, FailureDetected{id});
+  if (was_exhausted) exhaust(id, now);
 }
 
 void Analyzer::watch_failing(RuleId id, Time now) {
@@ -221,9 +278,7 @@ void Analyzer::round_is_spent(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   ++state.round;
   std::fill(state.tried.begin(), state.tried.end(), false);
-  const int doublings = std::min(state.round - 1, 10);
-  state.retry_at =
-      later(now, std::min<Duration>(kFirstBackoff * (1 << doublings), kLongestBackoff));
+  state.retry_at = later(now, pause_after(state.round));
   if (state.is_at_last_resort) {
     exhaust(id, now);
   } else {

@@ -30,6 +30,7 @@
 #include "analyze/coupling_watch.h"
 #include "knowledge/deadlines.h"
 #include "knowledge/knowledge.h"
+#include "knowledge/past.h"
 
 namespace culprit {
 
@@ -48,6 +49,9 @@ class Analyzer {
 
   // `knowledge` must outlive the analyzer.
   explicit Analyzer(Knowledge& knowledge);
+
+  // What earlier processes tried. Before the first advance().
+  void remember(const Past& past);
 
   // Looks at every rule that the monitor touched and at those whose time has come.
   void advance(Time now);
@@ -68,11 +72,14 @@ class Analyzer {
  private:
   void look_at(RuleId id, Time now);
   void evaluate_trigger(RuleId id, Time now);
+  void forget_left_off(RuleId id, Time now);
   void sample_history(RuleId id, Time now);
   bool detects(RuleId id, Time now) const;
   bool is_gone(RuleId id, Time now) const;
   Duration clearing_time(RuleId id) const;
 
+  void remember(const Event& event);
+  void remember_gone(RuleId id, Time at, Duration quiet);
   void detect(RuleId id, Time now);
   void watch_failing(RuleId id, Time now);
   void judge(RuleId id, Time now);

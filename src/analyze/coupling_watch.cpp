@@ -15,7 +15,7 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
         is_only_cause(strategy, clearing.rule, attempt.first_change))
       knowledge_.couplings.cleared(cause, clearing.rule);
   }
-  settle(knowledge_.rules[strategy].components, cause, attempt.effective, now);
+  settle(knowledge_.rules[strategy].components, cause, attempt.effective, {}, now);
   for (const RuleId effect : knowledge_.states.active()) {
     const RuleState& state = knowledge_.states[effect];
     if (effect == cause || state.attempt) continue;
@@ -27,29 +27,31 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
   }
 }
 
-// How long `effect` may take to go away after `cause`; with HOLD, so many evaluations longer as it
-// looks at.
+// With HOLD, the evaluations that a rule looks at.
+Duration CouplingWatch::held(RuleId rule) const {
+  const int window = knowledge_.rules[rule].policies.hold_window;
+  return duration_of(Cycles{window > 1 ? window : 0}, knowledge_.rules);
+}
+
+// How long `effect` may take to go away after `cause`.
 Duration CouplingWatch::delay(RuleId cause, RuleId effect) const {
-  const RuleSet& rules = knowledge_.rules;
-  const int window = rules[effect].policies.hold_window;
-  const Duration held = duration_of(Cycles{window > 1 ? window : 0}, rules);
   const RuleState& of_cause = knowledge_.states[cause];
   const Time cause_came = of_cause.first_detected();
   const Time effect_came = knowledge_.states[effect].first_detected();
-  if (effect_came <= cause_came) return held;  // also if the cause never came by itself
+  if (effect_came <= cause_came) return held(effect);  // also if the cause never came by itself
   if (effect_came <= later(cause_came, kLongestDelay)) {
     const Duration came = effect_came - cause_came;
-    return held + came + came / 2;
+    return held(effect) + came + came / 2;
   }
   const bool recurs = of_cause.first_detected() != of_cause.failing_since;
-  return held + (recurs ? duration_of(kUsualDelay, rules) : Duration::zero());
+  return held(effect) + (recurs ? duration_of(kUsualDelay, knowledge_.rules) : Duration::zero());
 }
 
 // What depends on these components is given the time to show that it is well, now that the failure
 // `cause` is gone. Not what is no effect of it: it was detected long before it, or only after
-// things had `changed`.
+// things had `changed` (and, if that may have come `on_its_way`, later than so after the cause).
 void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed,
-                           Time now) {
+                           std::optional<Cycles> on_its_way, Time now) {
   std::vector<bool> is_downstream(knowledge_.rules.components.size(), false);
   for (const ComponentId c : repaired) {
     is_downstream[c.index] = true;
@@ -59,7 +61,11 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
   const Time begun = knowledge_.states[cause].first_detected();
   for (const RuleId effect : knowledge_.states.active()) {
     RuleState& state = knowledge_.states.state(effect);
-    if (effect == cause || state.attempt || state.failing_since > changed) continue;
+    if (effect == cause || state.attempt) continue;
+    const bool may_be_on_its_way =
+        on_its_way && state.first_detected() <=
+                          later(begun, duration_of(*on_its_way, knowledge_.rules) + held(effect));
+    if (state.failing_since > changed && !may_be_on_its_way) continue;
     const auto& touched = knowledge_.rules[effect].components;
     const bool depends = std::any_of(touched.begin(), touched.end(),
                                      [&](ComponentId c) { return is_downstream[c.index]; });
@@ -71,10 +77,29 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
   }
 }
 
+// When what made a failure go away took effect: the last change upstream since it was detected, or
+// just now if there was none.
+Time CouplingWatch::last_change_for(RuleId cleared, Time now) const {
+  const Sources sources(knowledge_, cleared);
+  const Time detected = knowledge_.states[cleared].failing_since;
+  std::optional<Time> last;
+  const auto consider = [&](StrategyId strategy, Time effective) {
+    if (effective >= detected && effective <= now &&
+        sources.have(knowledge_.rules[strategy].components))
+      last = std::max(last.value_or(effective), effective);
+  };
+  for (const Change& change : changes_) consider(change.strategy, change.effective);
+  for (const RuleId id : knowledge_.states.active()) {
+    const auto& attempt = knowledge_.states[id].attempt;
+    if (attempt) consider(attempt->strategy, attempt->effective);
+  }
+  return last.value_or(now);
+}
+
 void CouplingWatch::cleared(RuleId rule, Time now) {
   forget_what_is_settled(now);
   clearings_.push_back({rule, now});
-  settle(knowledge_.rules[rule].components, rule, now, now);
+  settle(knowledge_.rules[rule].components, rule, last_change_for(rule, now), kUsualDelay, now);
   std::erase_if(questions_, [&](const Question& q) {
     if (q.effect != rule) return false;
     if (is_only_cause(q.strategy, rule, q.since))
@@ -86,7 +111,7 @@ void CouplingWatch::cleared(RuleId rule, Time now) {
 void CouplingWatch::ended(const Attempt& attempt, Time now) {
   forget_what_is_settled(now);
   if (attempt.first_change != kNever)
-    changes_.push_back({attempt.strategy, attempt.first_change, now});
+    changes_.push_back({attempt.strategy, attempt.first_change, attempt.effective, now});
 }
 
 void CouplingWatch::advance(Time now) {

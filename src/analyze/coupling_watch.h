@@ -12,6 +12,7 @@
 // comes and goes (flapping) may have effects that are there from the time before.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "knowledge/knowledge.h"
@@ -26,7 +27,7 @@ class CouplingWatch {
   static constexpr std::size_t kMostWatched = 1000;
   // An effect that comes or goes later than so long after its cause is taken for none.
   static constexpr Duration kLongestDelay = std::chrono::seconds(5);
-  // For an effect from the time before: how long it may take to go.
+  // How late an effect usually comes; for one from the time before: how long it may take to go.
   static constexpr Cycles kUsualDelay{10};
 
   // `knowledge` must outlive the watch.
@@ -56,6 +57,7 @@ class CouplingWatch {
   struct Change {
     StrategyId strategy;
     Time begin;
+    Time effective;
     Time end;
   };
   struct Clearing {
@@ -63,7 +65,10 @@ class CouplingWatch {
     Time at;
   };
 
-  void settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed, Time now);
+  void settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed,
+              std::optional<Cycles> on_its_way, Time now);
+  Duration held(RuleId rule) const;
+  Time last_change_for(RuleId cleared, Time now) const;
   Duration delay(RuleId cause, RuleId effect) const;
   Time shown(const Change& change, RuleId rule) const;
   bool is_only_cause(StrategyId strategy, RuleId effect, Time since) const;

@@ -42,7 +42,7 @@ struct Journal : testing::Test {
 
 int process_that_is_there(const std::string& output) {
   const std::string words = "camera is there (process ";
-  return std::stoi(output.substr(output.find(words) + words.size()));
+  return std::stoi(output.substr(output.rfind(words) + words.size()));
 }
 
 TEST_F(Journal, SurvivesAKillAndTellsAndReplaysWhatHappened) {
@@ -80,6 +80,28 @@ TEST_F(Journal, SurvivesAKillAndTellsAndReplaysWhatHappened) {
   EXPECT_THAT(said_by({"replay", journal, "--planner", "bayes"}), HasSubstr("lines differ"));
 }
 
+TEST_F(Journal, IsTakenOverByTheCulpritOfAnotherMachineWhenTheFirstIsGone) {
+  TestProgram camera(world, {"sunset-node", "camera"});
+  TestProgram first = culprit({"run", rules, "--settle", "1", "--state-dir", state});
+  ASSERT_TRUE(first.prints("camera is there")) << first.output();
+  setenv("CULPRIT_LOCK", "another machine's", 1);
+  const std::string other = (world.folder() / "other").string();
+  TestProgram second = culprit({"run", rules, "--settle", "1", "--state-dir", other});
+  unsetenv("CULPRIT_LOCK");
+  ASSERT_TRUE(second.prints("another culprit manages this robot, on ")) << second.output();
+  first.signal(SIGINT);
+  EXPECT_EQ(first.wait(), 0);
+  EXPECT_THAT(first.output(), testing::Not(HasSubstr("another culprit")));
+  ASSERT_TRUE(second.prints("this one manages the robot from now on")) << second.output();
+
+  camera.signal(SIGKILL);
+  camera.wait();
+  ASSERT_TRUE(second.prints("redeploy camera: done")) << second.output();
+  second.signal(SIGINT);
+  EXPECT_EQ(second.wait(), 0);
+  kill(process_that_is_there(second.output()), SIGKILL);
+}
+
 // In the middle of a repair, which goes on.
 TEST_F(Journal, GoesOnWithRulesThatAreReloaded) {
   TestProgram camera(world, {"sunset-node", "camera"});
@@ -105,6 +127,7 @@ RULE CameraStopped
   ASSERT_TRUE(run.prints("camera_redeploy for CameraGone was under way")) << run.output();
   run.signal(SIGINT);
   EXPECT_EQ(run.wait(), 0);
+  EXPECT_THAT(said_by({"log", "--journal", journal}), HasSubstr("one.rules, reloaded by SIGHUP"));
   EXPECT_THAT(said_by({"replay", journal}), HasSubstr("all decided as recorded"));
   EXPECT_THAT(said_by({"replay", journal, "--session", "1"}), HasSubstr("all decided as recorded"));
   EXPECT_THAT(said_by({"audit", "verify", "--journal", journal}),

@@ -73,7 +73,18 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   session.forgetting = options.forgetting;
   session.learned = beginning.learned;
   session.interrupted = beginning.interrupted;
+  session.past = journal::to_json(beginning.past, rules);
+  session.is_paused = beginning.is_paused;
+  session.is_dry_run = beginning.is_dry_run;
   return session;
+}
+
+// Also those that left the graph while nobody looked on, because they were stopped, say.
+void adopt_again(LiveRobot& robot, const Past& past) {
+  for (const Event& event : past) {
+    if (const auto* found = std::get_if<ComponentFound>(&event.what))
+      robot.supervisor().adopt_again(found->component, found->pid, event.at);
+  }
 }
 
 // By name, for the rules that come next.
@@ -129,6 +140,9 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
   auto setup = frame.options.robot();
   if (!setup) return Error{setup.error()};
   std::unique_ptr<LiveSession> session(new LiveSession(frame, std::move(rules)));
+  setup->link.claim = frame.lease;
+  setup->supervisor.robot =
+      fmt::format("{}/{}", setup->link.participant.domain, session->rules_.robot);
   auto robot = LiveRobot::open(session->rules_, std::move(*setup));
   if (!robot) return Error{robot.error()};
   session->robot_ = std::move(*robot);
@@ -137,32 +151,41 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
 
 LiveSession::~LiveSession() = default;
 
+RunBeginning LiveSession::look_back() {
+  return begin_journal(frame_.options.journal_path(rules_), rules_, {robot_->now(), wall_now()});
+}
+
 void LiveSession::begin(const std::atomic<bool>& stop) {
   RunBeginning beginning;
-  if (frame_.records) beginning = begin_journal(frame_.options.journal_path(rules_), rules_);
+  if (frame_.records) beginning = look_back();
   for (const std::string& finding : beginning.findings) fmt::print("culprit: {}\n", finding);
   std::vector<Observation> seen;
   if (frame_.options.launch && !frame_.advises) {
     seen = discover(*robot_, stop);
     launch_missing(*robot_, rules_, seen);
   }
-  if (beginning.is_paused)
-    seen.push_back(
-        {robot_->now(), Order{0, "the last run", "it was paused when it ended", Pause{}}});
-  manage(std::move(beginning), std::move(seen));
+  const auto go_on_with = [&](const char* reason, auto order) {
+    seen.push_back({robot_->now(), Order{0, "the last run", reason, order}});
+  };
+  if (beginning.is_paused) go_on_with("it was paused when it ended", Pause{});
+  if (beginning.is_dry_run && !frame_.advises)
+    go_on_with("a dry run was ordered when it ended", SetDryRun{true});
+  manage(std::move(beginning), std::move(seen), "");
 }
 
 void LiveSession::begin(Handover before) {
   RunBeginning beginning;
-  if (frame_.records) beginning = begin_journal(frame_.options.journal_path(rules_), rules_);
+  if (frame_.records) beginning = look_back();
   // What the manager knew is known, whether or not the journal could be written.
   beginning.learned = std::move(before.learned);
-  manage(std::move(beginning), std::move(before.orders));
+  manage(std::move(beginning), std::move(before.orders), std::move(before.occasion));
 }
 
-void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen) {
-  const journal::Session session =
-      session_of(frame_, rules_text_, rules_, robot_->now(), beginning);
+void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
+                         std::string occasion) {
+  adopt_again(*robot_, beginning.past);
+  journal::Session session = session_of(frame_, rules_text_, rules_, robot_->now(), beginning);
+  session.occasion = std::move(occasion);
   const Autonomy autonomy = frame_.advises ? Autonomy::kAdvise : Autonomy::kAct;
   manager_ = replay::manager_for(session, rules_, frame_.options.planner.planner(),
                                  {autonomy, frame_.governor});
@@ -230,10 +253,10 @@ bool LiveSession::is_adapting() const {
   return false;
 }
 
-LiveSession::Handover LiveSession::hand_over(const RuleSet& next) {
+LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string occasion) {
   end();
   return {learned_by(manager_->knowledge()),
-          standing_orders(*manager_, frame_.advises, next, robot_->now())};
+          standing_orders(*manager_, frame_.advises, next, robot_->now()), std::move(occasion)};
 }
 
 void LiveSession::end() {

@@ -21,8 +21,9 @@ class LiveSession {
   struct Frame {
     const RunOptions& options;
     Governor::Options governor;
-    bool advises = false;  // a dry run, or another culprit manages the robot
-    bool records = true;   // into the journal
+    bool advises = false;                   // a dry run, or another culprit manages the robot
+    bool records = true;                    // into the journal
+    std::optional<ros2::LeaseClaim> lease;  // to be announced; nothing: it would never manage
     web::Hub& hub;
     web::Metrics& metrics;
     Time start;  // of the run: what people read counts from here
@@ -31,11 +32,11 @@ class LiveSession {
   struct Handover {
     journal::Learned learned;
     std::vector<Observation> orders;  // of people, that still hold
+    std::string occasion;             // why there is a next one
   };
 
   // Joins the robot's DDS domain. From then on what it shows is kept until the session begins.
   static Expected<std::unique_ptr<LiveSession>> open(const Frame& frame, LoadedRules rules);
-  ~LiveSession();
 
   // Takes over what the journal knows of the last run: at the beginning of a run.
   void begin(const std::atomic<bool>& stop);
@@ -51,7 +52,7 @@ class LiveSession {
 
   // Nothing more is done; the journal is whole. What is to go on with `next`. Errors are told on
   // stderr.
-  Handover hand_over(const RuleSet& next);
+  Handover hand_over(const RuleSet& next, std::string occasion);
   // Likewise, but nothing goes on.
   void end();
 
@@ -59,6 +60,9 @@ class LiveSession {
   void announce(const std::string& kind, const std::string& text);
 
   const RuleSet& rules() const { return rules_; }
+  // For a session with the same.
+  LoadedRules loaded_rules() const { return {rules_, rules_text_, ""}; }
+  const ros2::Link& link() const { return robot_->link(); }
   Time now() const { return robot_->now(); }
   // Whether a strategy is under way.
   bool is_adapting() const;
@@ -67,7 +71,8 @@ class LiveSession {
   LiveSession(const Frame& frame, LoadedRules rules)
       : frame_(frame), rules_(std::move(rules.rules)), rules_text_(std::move(rules.text)) {}
 
-  void manage(RunBeginning beginning, std::vector<Observation> seen);
+  RunBeginning look_back();
+  void manage(RunBeginning beginning, std::vector<Observation> seen, std::string occasion);
   void tell(std::span<const Event> events);
 
   const Frame frame_;

@@ -8,10 +8,10 @@
 #include "cli/journal_file.h"
 #include "cli/live_session.h"
 #include "cli/robot_names.h"
+#include "cli/role.h"
 #include "cli/run_options.h"
 #include "cli/service_manager.h"
 #include "cli/what_if_route.h"
-#include "ros2/named_lock.h"
 #include "web/live_routes.h"
 #include "web/name_routes.h"
 #include "web/order_routes.h"
@@ -22,13 +22,16 @@
 namespace culprit::cli {
 namespace {
 
-// Two managers on one robot would undo each other's work: the second one only looks on. It neither
-// acts nor writes the journal.
-Expected<std::optional<ros2::NamedLock>> claim_robot(const RuleSet& rules) {
+Expected<RoleOfCulprit> claim_robot(const RuleSet& rules) {
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
-  return ros2::NamedLock::take("culprit-manages-" + std::to_string(participant->domain) + "-" +
-                               rules.robot);
+  return RoleOfCulprit::claim(rules, participant->domain);
+}
+
+// Whoever only advises neither acts nor writes the journal.
+void take_role(LiveSession::Frame& frame, Role role) {
+  frame.advises = frame.options.dry_run || role == Role::kAdvise;
+  frame.records = !frame.options.no_journal && role == Role::kManage;
 }
 
 std::string name_of(const RuleSet& rules) {
@@ -104,7 +107,7 @@ std::unique_ptr<LiveSession> reloaded(std::unique_ptr<LiveSession> old, Stage::N
   std::unique_ptr<LiveSession> session = std::move(*opened);
   orders.close();
   stage.enter(nullptr);
-  LiveSession::Handover handover = old->hand_over(session->rules());
+  LiveSession::Handover handover = old->hand_over(session->rules(), "reloaded by " + next.author);
   old.reset();
   session->begin(std::move(handover));
   session->announce("reloaded", fmt::format("{}: {} is reloaded, with {} rules", next.author, path,
@@ -131,13 +134,40 @@ std::vector<web::Route> web_routes(web::Hub& hub, const web::Metrics& metrics, w
   return all;
 }
 
-// One session after the other, as often as the rules are reloaded.
-void manage(std::unique_ptr<LiveSession> session, const LiveSession::Frame& frame, Stage& stage,
-            web::OrderDesk& orders, const std::atomic<bool>& stopped) {
+// Begins anew in another role, with the same rules. Gives null, and says why, if the robot cannot
+// be joined.
+std::unique_ptr<LiveSession> in_role(const RoleOfCulprit& role, std::unique_ptr<LiveSession> old,
+                                     LiveSession::Frame& frame, Stage& stage,
+                                     web::OrderDesk& orders, const std::atomic<bool>& stopped) {
+  orders.close();
+  stage.enter(nullptr);
+  LoadedRules rules = old->loaded_rules();
+  old->end();
+  old.reset();
+  take_role(frame, role.role());
+  auto session = LiveSession::open(frame, std::move(rules));
+  if (!session) return complain(session.error()), nullptr;
+  (*session)->begin(stopped);
+  (*session)->announce("role", role.reason());
+  stage.enter(session->get());
+  orders.open((*session)->rules(),
+              [&session = **session](Order order) { session.submit(std::move(order)); });
+  return std::move(*session);
+}
+
+// One session after the other, as often as the rules are reloaded or the role is another one.
+int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, RoleOfCulprit& role,
+           Stage& stage, web::OrderDesk& orders, const std::atomic<bool>& stopped) {
   ServiceManager systemd;
   systemd.ready("watching " + name_of(session->rules()));
   std::optional<Stage::Next> next;
+  Time joined = session->now();
   while (!stopped) {
+    if (role.has_changed(session->link(), session->now(), joined)) {
+      session = in_role(role, std::move(session), frame, stage, orders, stopped);
+      if (session == nullptr) return kFailed;
+      joined = session->now();
+    }
     systemd.feed(session->now());
     // Without a journal nobody would know what is under way: then the new rules wait for its end.
     const bool has_to_wait = next && !frame.records && session->is_adapting();
@@ -146,7 +176,8 @@ void manage(std::unique_ptr<LiveSession> session, const LiveSession::Frame& fram
       next.reset();
     }
     constexpr Duration kLook = std::chrono::milliseconds(100);
-    const Time until = has_to_wait ? later(session->now(), kLook) : kNever;
+    constexpr Duration kLookAtRole = std::chrono::milliseconds(500);
+    const Time until = later(session->now(), has_to_wait ? kLook : kLookAtRole);
     session->run(std::min(until, systemd.next_feeding()));
     if (auto newest = stage.take_next()) next = std::move(newest);
   }
@@ -154,6 +185,7 @@ void manage(std::unique_ptr<LiveSession> session, const LiveSession::Frame& fram
   orders.close();
   stage.enter(nullptr);
   session->end();
+  return kOk;
 }
 
 int run(const RunOptions& options) {
@@ -162,22 +194,16 @@ int run(const RunOptions& options) {
   fmt::print(stderr, "{}", rules->remarks);
   const auto governor = options.governor.options();
   if (!governor) return complain(governor.error()), kUsage;
-  const auto claim = claim_robot(rules->rules);
-  if (!claim) return complain(claim.error()), kUsage;
-  if (!*claim)
-    fmt::print(
-        "culprit: another culprit manages this robot; this one only says what it would do\n");
+  auto role = claim_robot(rules->rules);
+  if (!role) return complain(role.error()), kUsage;
+  if (!role->reason().empty()) fmt::print("culprit: {}\n", role->reason());
   StopSignals signals(Hangup::kReloads);
   Stage stage(options);
   web::Hub hub([&] { stage.interrupt(); });
   web::Metrics metrics;
-  const LiveSession::Frame frame{options,
-                                 *governor,
-                                 options.dry_run || !*claim,
-                                 !options.no_journal && claim->has_value(),
-                                 hub,
-                                 metrics,
-                                 live_now()};
+  LiveSession::Frame frame{options, *governor, false, true, {}, hub, metrics, live_now()};
+  take_role(frame, role->role());
+  if (!options.dry_run) frame.lease = role->lease();
   const std::string robot = name_of(rules->rules);
   auto session = LiveSession::open(frame, std::move(*rules));
   if (!session) return complain(session.error());
@@ -204,9 +230,10 @@ int run(const RunOptions& options) {
     if (const auto count = stage.reload("SIGHUP"); !count)
       fmt::print(stderr, "culprit: the rules are not reloaded: {}\n", count.error());
   });
-  manage(std::move(*session), frame, stage, orders, signals.stopped());
+  const int code = manage(std::move(*session), frame, *role, stage, orders, signals.stopped());
   signals.on_stop({});
   signals.on_reload({});
+  if (code != kOk) return code;
   fmt::print("culprit: stopped; the robot goes on as it is\n");
   return kOk;
 }

@@ -31,9 +31,10 @@ void tell(const Recovery& recovery, const RuleSet& rules, std::vector<std::strin
         "the last run ended without being asked to; nothing was left in the middle");
 }
 
-void take_over(const journal::Reader& reader, const RuleSet& rules, RunBeginning& beginning) {
+void take_over(const journal::Reader& reader, const RuleSet& rules, const journal::Moment& now,
+               RunBeginning& beginning) {
   const auto learned = reader.learned();
-  const auto recovery = journal::recover(reader, rules);
+  const auto recovery = journal::recover(reader, rules, now);
   if (learned) beginning.learned = *learned;
   if (!learned || !recovery) {
     beginning.findings.push_back("the journal cannot be read whole: " +
@@ -42,6 +43,8 @@ void take_over(const journal::Reader& reader, const RuleSet& rules, RunBeginning
   }
   tell(*recovery, rules, beginning.findings);
   beginning.is_paused = recovery->is_paused;
+  beginning.is_dry_run = recovery->is_dry_run;
+  beginning.past = recovery->past;
   if (!learned->beliefs.empty())
     beginning.findings.push_back(
         fmt::format("what was learned of {} strategies is known", learned->beliefs.size()));
@@ -52,7 +55,8 @@ void take_over(const journal::Reader& reader, const RuleSet& rules, RunBeginning
 
 }  // namespace
 
-RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rules) {
+RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rules,
+                           const journal::Moment& now) {
   RunBeginning beginning;
   auto writer = journal::Writer::open(path, {});
   if (writer) {
@@ -66,7 +70,7 @@ RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rul
   }
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return beginning;
-  if (const auto reader = journal::Reader::open(path)) take_over(*reader, rules, beginning);
+  if (const auto reader = journal::Reader::open(path)) take_over(*reader, rules, now, beginning);
   return beginning;
 }
 

@@ -12,12 +12,15 @@ struct RunBeginning {
   std::optional<journal::Writer> writer;  // nothing: it cannot be written now
   journal::Learned learned;
   journal::Json interrupted = journal::Json::array();
+  Past past;
   bool is_paused = false;
+  bool is_dry_run = false;
   std::vector<std::string> findings;  // for the user, one line each
 };
 
 // Opens the journal, or reads it if it cannot be written, and finds out what the last run left
 // behind. Nothing that is wrong with a journal keeps culprit from managing the robot.
-RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rules);
+RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rules,
+                           const journal::Moment& now);
 
 }  // namespace culprit::cli

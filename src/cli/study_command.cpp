@@ -24,6 +24,7 @@ struct StudyOptions {
   std::vector<std::string> planners = {"paper"};
   std::vector<std::string> objectives = {"balanced"};
   std::string profile = "paper";
+  std::vector<std::string> detectors = {"own"};
   std::uint32_t runs = 162;
   std::uint32_t repetitions = 20;
   std::uint64_t seed = 1;
@@ -64,10 +65,18 @@ std::vector<std::string> planners_of(const StudyOptions& options) {
   return planners;
 }
 
+// The profile once for each kind of detectors, as the study calls it.
+std::vector<std::string> profiles_of(const StudyOptions& options) {
+  std::vector<std::string> profiles;
+  for (const std::string& detectors : options.detectors)
+    profiles.push_back(detectors == "own" ? options.profile : options.profile + ":" + detectors);
+  return profiles;
+}
+
 // The rows of the paper's tables, in the paper's order.
-std::vector<study::Configuration> rows_of(const StudyOptions& options) {
+void add_rows(const StudyOptions& options, const std::string& profile,
+              std::vector<study::Configuration>& rows) {
   using study::Probabilities;
-  std::vector<study::Configuration> rows;
   for (const std::string& planner : planners_of(options)) {
     for (const bool d : {false, true}) {
       for (const bool c : {false, true}) {
@@ -75,13 +84,18 @@ std::vector<study::Configuration> rows_of(const StudyOptions& options) {
           const bool is_full = d && c && s;
           if (!study::has_switches(planner) && !is_full) continue;
           if (options.has_ablation() || (options.has_robustness() && is_full))
-            rows.push_back({{d, c, s}, planner, options.profile, Probabilities::kIdeal});
+            rows.push_back({{d, c, s}, planner, profile, Probabilities::kIdeal});
         }
       }
     }
     if (options.has_robustness())
-      rows.push_back({{}, planner, options.profile, Probabilities::kMisspecified});
+      rows.push_back({{}, planner, profile, Probabilities::kMisspecified});
   }
+}
+
+std::vector<study::Configuration> rows_of(const StudyOptions& options) {
+  std::vector<study::Configuration> rows;
+  for (const std::string& profile : profiles_of(options)) add_rows(options, profile, rows);
   return rows;
 }
 
@@ -93,13 +107,16 @@ std::string command_of(const StudyOptions& options) {
   for (const std::string& planner : options.planners) command += " --planner " + planner;
   if (options.objectives != StudyOptions().objectives)
     command += fmt::format(" --objective {}", fmt::join(options.objectives, ","));
+  if (options.detectors != StudyOptions().detectors)
+    command += fmt::format(" --detectors {}", fmt::join(options.detectors, ","));
   return command + fmt::format(" --profile {} --runs {} --seed {}", options.profile, options.runs,
                                options.seed);
 }
 
 Expected<std::vector<study::LearningCurve>> learn(const StudyOptions& options) {
   auto study = study::SunsetStudy::make(
-      {{{}, "paper", options.profile, study::Probabilities::kMisspecified}}, options.seed);
+      {{{}, "paper", profiles_of(options).front(), study::Probabilities::kMisspecified}},
+      options.seed);
   if (!study) return Error{study.error()};
   return study->learn(options.runs, options.repetitions);
 }
@@ -140,8 +157,8 @@ int run_campaign(const study::SunsetStudy& study, const study::Campaign& campaig
 int explain(const StudyOptions& options) {
   const auto switches = parse_switches(options.switches);
   if (!switches) return fail(switches.error(), kUsage);
-  const study::Configuration wanted{*switches, planners_of(options).front(), options.profile,
-                                    study::Probabilities::kIdeal};
+  const study::Configuration wanted{*switches, planners_of(options).front(),
+                                    profiles_of(options).front(), study::Probabilities::kIdeal};
   // The same row as in the campaign, so that it is the same run.
   std::vector<study::Configuration> rows = rows_of(options);
   const auto row = std::find(rows.begin(), rows.end(), wanted);
@@ -191,7 +208,8 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
           "--planner", options->planners,
           "paper (Algorithm 1 as meant), reference (the authors' public code with its "
           "slips), bayes (culprit's own); bt, metacontrol, rosa (others': one failure and one "
-          "strategy at a time); several, one after the other")
+          "strategy at a time); oracle (knows each fault at once, and what ends it: a bound); "
+          "several, one after the other")
       ->capture_default_str();
   command
       ->add_option("--objective", options->objectives,
@@ -202,6 +220,14 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
   command
       ->add_option("--profile", options->profile,
                    "Which SUNSET: paper, head, october (versions of the exemplar) or live (ours)")
+      ->capture_default_str();
+  command
+      ->add_option("--detectors", options->detectors,
+                   "How outages are seen: own (the profile's: SUNSET's monitoring as in the paper; "
+                   "of live, age), age (three messages missed) or phi (a silence out of its "
+                   "rhythm); several, one after the other")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"own", "age", "phi"}))
       ->capture_default_str();
   command->add_option("--runs", options->runs, "Of each configuration")
       ->check(CLI::Range(1U, 1'000'000'000U))

@@ -28,7 +28,7 @@ void Executor::begin(StrategyId strategy, Time now) {
 void Executor::resume(Interrupted interrupted, Time now, Time from) {
   const StrategyId strategy = interrupted.strategy;
   const RuleId rule = knowledge_.rules[strategy].rule;
-  knowledge_.states.state(rule).failing_since = now;
+  knowledge_.states.begin_search(rule, now);
   begin(strategy, now);
   Attempt& attempt = *knowledge_.states.state(rule).attempt;
   attempt.first_change = now;

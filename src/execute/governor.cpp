@@ -50,6 +50,17 @@ Governor::Governor(Knowledge& knowledge, Options options, Time start)
       refused_(knowledge.rules.strategies.size(), kNever),
       told_(knowledge.rules.strategies.size()) {}
 
+void Governor::remember(const Past& past) {
+  limits_.remember(past);
+  for (const Event& event : past) {
+    const auto* accepted = std::get_if<OrderAccepted>(&event.what);
+    const bool is_silence =
+        accepted != nullptr && (std::holds_alternative<Silence>(accepted->order.what) ||
+                                std::holds_alternative<LiftSilence>(accepted->order.what));
+    if (is_silence) obey(accepted->order, event.at);
+  }
+}
+
 // ---- orders
 
 std::optional<std::string> Governor::objection(const Order& order, Autonomy autonomy) const {
@@ -85,7 +96,11 @@ std::optional<std::string> Governor::objection(const Order& order, Autonomy auto
                                  [&](const ActiveSilence& s) { return s.what == o.what; });
                  return is_there ? std::nullopt : Objection("it is not silenced");
                },
-               [&](const RunStrategy& o) { return objection_to_run(o.strategy, autonomy); }},
+               [&](const RunStrategy& o) { return objection_to_run(o.strategy, autonomy); },
+               [&](const Forget& o) -> Objection {
+                 if (o.rule && o.rule->index >= rules.rules.size()) return "there is no such rule";
+                 return std::nullopt;
+               }},
       order.what);
 }
 
@@ -128,7 +143,7 @@ void Governor::obey(const Order& order, Time now) {
                  std::erase_if(silences_, [&](const ActiveSilence& s) { return s.what == o.what; });
                },
                // The manager's.
-               [](const SetDryRun&) {}, [](const RunStrategy&) {}},
+               [](const SetDryRun&) {}, [](const RunStrategy&) {}, [](const Forget&) {}},
       order.what);
 }
 

@@ -13,6 +13,7 @@
 #include "execute/limits.h"
 #include "execute/storm_watch.h"
 #include "knowledge/knowledge.h"
+#include "knowledge/past.h"
 #include "robot/order.h"
 
 namespace culprit {
@@ -47,6 +48,9 @@ class Governor {
 
   // `knowledge` must outlive the governor.
   Governor(Knowledge& knowledge, Options options, Time start);
+
+  // What earlier processes spent, and what people told them. Before the first advance().
+  void remember(const Past& past);
 
   // ---- orders
 

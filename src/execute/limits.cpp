@@ -95,9 +95,8 @@ std::optional<Limits::Limit> Limits::on(StrategyId id, Time now) const {
   return std::nullopt;
 }
 
-bool Limits::was_healthy(ComponentId component, RuleId rule) const {
+bool Limits::was_healthy(ComponentId component, RuleId rule, Time failed) const {
   const PerComponent& state = components_[component.index];
-  const Time failed = knowledge_.states[rule].failing_since;
   return state.well_since >= state.restarted &&
          later(state.well_since, options_.backoff.healthy) <= failed &&
          !knowledge_.states.is_sick(component, Criticality::kNonCritical, rule);
@@ -106,7 +105,7 @@ bool Limits::was_healthy(ComponentId component, RuleId rule) const {
 std::optional<Limits::Limit> Limits::backoff(ComponentId component, RuleId rule, Time now) const {
   const PerComponent& state = components_[component.index];
   if (options_.backoff.first == Duration::zero() || state.restarts == 0 ||
-      was_healthy(component, rule))
+      was_healthy(component, rule, knowledge_.states[rule].failing_since))
     return std::nullopt;
   const int doublings = std::min(state.restarts - 1, 20);
   const Duration wait =
@@ -134,6 +133,31 @@ std::optional<Limits::Limit> Limits::quiet(ComponentId component, Time now) cons
 }
 
 void Limits::began(StrategyId id, Time now) {
+  spend(id, now, knowledge_.states[knowledge_.rules[id].rule].failing_since);
+}
+
+void Limits::remember(const Past& past) {
+  std::vector<Time> detected(knowledge_.rules.rules.size(), kLongAgo);
+  for (const Event& event : past) {
+    const auto spent = [&](StrategyId id) {
+      spend(id, event.at, detected[knowledge_.rules[id].rule.index]);
+    };
+    if (const auto* failure = std::get_if<FailureDetected>(&event.what)) {
+      detected[failure->rule.index] = event.at;
+    } else if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
+      spent(chosen->strategy);
+    } else if (const auto* resumed = std::get_if<StrategyResumed>(&event.what)) {
+      spent(resumed->strategy);
+    } else if (const auto* accepted = std::get_if<OrderAccepted>(&event.what)) {
+      const auto* run = std::get_if<RunStrategy>(&accepted->order.what);
+      if (run != nullptr) spent(run->strategy);
+    } else {
+      note(event);
+    }
+  }
+}
+
+void Limits::spend(StrategyId id, Time now, Time failed) {
   const Strategy& strategy = knowledge_.rules[id];
   overall_.spend(now);
   kinds_[static_cast<std::size_t>(kind_of(strategy))].spend(now);
@@ -142,7 +166,7 @@ void Limits::began(StrategyId id, Time now) {
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (!restarts(adaptation)) continue;
     PerComponent& state = components_[adaptation.component.index];
-    if (was_healthy(adaptation.component, strategy.rule)) state.restarts = 0;
+    if (was_healthy(adaptation.component, strategy.rule, failed)) state.restarts = 0;
     ++state.restarts;
     state.restarted = now;
   }

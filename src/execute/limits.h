@@ -12,6 +12,7 @@
 
 #include "execute/intensity.h"
 #include "knowledge/knowledge.h"
+#include "knowledge/past.h"
 
 namespace culprit {
 
@@ -51,6 +52,8 @@ class Limits {
   std::optional<Limit> on_all(Time now) const;
   std::optional<Limit> on(StrategyId strategy, Time now) const;
   void began(StrategyId strategy, Time now);
+  // What earlier processes spent.
+  void remember(const Past& past);
   // Of the step that is over.
   void note(const Event& event);
 
@@ -65,7 +68,9 @@ class Limits {
 
   std::optional<Limit> backoff(ComponentId component, RuleId rule, Time now) const;
   std::optional<Limit> quiet(ComponentId component, Time now) const;
-  bool was_healthy(ComponentId component, RuleId rule) const;
+  // `failed`: when the failure of `rule` was detected.
+  void spend(StrategyId strategy, Time now, Time failed);
+  bool was_healthy(ComponentId component, RuleId rule, Time failed) const;
 
   const Knowledge& knowledge_;
   Options options_;

@@ -6,8 +6,6 @@ namespace culprit::journal {
 namespace {
 
 constexpr int kBusyMilliseconds = 250;
-constexpr const char* kDamaged = "it is damaged";
-constexpr const char* kNoDatabase = "it is no journal, or its beginning is damaged";
 
 std::string why(int code, const char* message) {
   switch (code & 0xff) {
@@ -21,9 +19,9 @@ std::string why(int code, const char* message) {
     case SQLITE_CANTOPEN:
       return "it cannot be opened; does its folder exist, and may it be written?";
     case SQLITE_CORRUPT:
-      return kDamaged + (" (" + std::string(message) + ")");
+      return "it is damaged (" + std::string(message) + ")";
     case SQLITE_NOTADB:
-      return kNoDatabase;
+      return "it is no journal, or its beginning is damaged";
     default:
       return message;
   }
@@ -140,8 +138,13 @@ Expected<std::int64_t> Database::number(const std::string& sql) const {
   return *row ? statement->integer(0) : 0;
 }
 
-bool Database::is_damage(const std::string& error) {
-  return error.starts_with(kDamaged) || error.starts_with(kNoDatabase);
+bool Database::is_damaged(const std::filesystem::path& path, const char* look) {
+  sqlite3* connection = nullptr;
+  int code = sqlite3_open_v2(uri_of(path, "").c_str(), &connection,
+                             SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);
+  const Database database(connection);
+  if (code == SQLITE_OK) code = sqlite3_exec(connection, look, nullptr, nullptr, nullptr);
+  return (code & 0xff) == SQLITE_CORRUPT || (code & 0xff) == SQLITE_NOTADB;
 }
 
 Error Database::error() const {

@@ -61,8 +61,9 @@ class Database {
   // The one number that `sql` selects.
   Expected<std::int64_t> number(const std::string& sql) const;
 
-  // Whether an error of this class means that the file itself is broken, or is no database.
-  static bool is_damage(const std::string& error);
+  // Whether the file itself is broken, or is no database: SQLite's result codes say so when it
+  // runs `look`. False if something else is in the way.
+  static bool is_damaged(const std::filesystem::path& path, const char* look);
 
  private:
   struct Close {

@@ -155,13 +155,33 @@ class EventWriter {
     const char* operator()(const Silence&) const { return "silence"; }
     const char* operator()(const LiftSilence&) const { return "lift_silence"; }
     const char* operator()(const RunStrategy&) const { return "run_strategy"; }
+    const char* operator()(const Forget&) const { return "forget"; }
   };
-  static Json of_order(const char* type, const Order& order) {
-    return {{"type", type},
-            {"order", std::visit(WordOfOrder{}, order.what)},
-            {"number", order.number},
-            {"author", order.author},
-            {"reason", order.reason}};
+  Json of_order(const char* type, const Order& order) const {
+    Json json = {{"type", type},
+                 {"order", std::visit(WordOfOrder{}, order.what)},
+                 {"number", order.number},
+                 {"author", order.author},
+                 {"reason", order.reason}};
+    if (const auto* silence = std::get_if<Silence>(&order.what)) {
+      add_target(json, silence->what);
+      if (silence->lasts) json["lasts_ns"] = silence->lasts->count();
+    } else if (const auto* lift = std::get_if<LiftSilence>(&order.what)) {
+      add_target(json, lift->what);
+    } else if (const auto* run = std::get_if<RunStrategy>(&order.what)) {
+      // An order that is refused may be about what does not exist.
+      if (run->strategy.index >= rules_.strategies.size()) return json;
+      json["rule"] = name(rules_[run->strategy].rule);
+      json["strategy"] = name(run->strategy);
+    }
+    return json;
+  }
+  void add_target(Json& json, const Silenceable& what) const {
+    const auto* rule = std::get_if<RuleId>(&what);
+    const auto* component = std::get_if<ComponentId>(&what);
+    if (rule != nullptr && rule->index < rules_.rules.size()) json["rule"] = name(*rule);
+    if (component != nullptr && component->index < rules_.components.size())
+      json["component"] = name(*component);
   }
   template <class Id>
   const std::string& name(Id id) const {

@@ -9,6 +9,9 @@ namespace {
 
 bool changes_something(const Command& command) { return !is_read(command); }
 
+// A person was told that it holds.
+bool is_order(const Event& event) { return std::holds_alternative<OrderAccepted>(event.what); }
+
 // What `news` speaks of is now as `news` says.
 void replace(Learned& learned, const Learned& news) {
   for (const LearnedBelief& each : news.beliefs) {
@@ -95,8 +98,9 @@ void Recorder::stepped(Time now, std::vector<Observation>& observations,
                        std::span<const Command> commands, std::span<const Event> events) {
   const std::int64_t wall = wall_of(now);
   const Learned learned = events.empty() ? Learned() : changes();
-  const bool wait =
-      !is_nothing(learned) || std::any_of(commands.begin(), commands.end(), changes_something);
+  const bool wait = !is_nothing(learned) ||
+                    std::any_of(commands.begin(), commands.end(), changes_something) ||
+                    std::any_of(events.begin(), events.end(), is_order);
   {
     const std::lock_guard lock(mutex_);
     constexpr std::size_t kMaxQueued = 1 << 17;

@@ -2,7 +2,8 @@
 //
 // The manager's thread hands over each step and goes on; a thread of the recorder's own turns it
 // into rows and writes them several times a second. Only a step that asks for changes on the robot,
-// or that learned something, waits: its rows are on the disk before anything is asked for or said.
+// that learned something or took an order waits: its rows are on the disk before anything is asked
+// for or said.
 //
 // If the file cannot be written, nothing waits for it: the robot is managed all the same. Rows are
 // kept and written as soon as it is possible again. If they become too many, the oldest `steps` go

@@ -14,7 +14,12 @@ class Trail {
   Trail(const RuleSet& rules, std::vector<std::string>& given_up)
       : rules_(rules), given_up_(given_up) {}
 
-  void begin_with(const Json& interrupted) {
+  void begin_with(const Json& session) {
+    if (!session.is_object()) return;
+    past_ = past_from_json(session.value("past", Json()), rules_);
+    is_paused_ = flag_of(session, "paused");
+    is_dry_run_ = flag_of(session, "dry_run");
+    const Json interrupted = session.value("interrupted", Json());
     if (!interrupted.is_array()) return;
     for (const Json& each : interrupted) {
       auto known = interrupted_from_json(each, rules_);
@@ -29,12 +34,17 @@ class Trail {
   void follow(const Entry& entry) {
     const Json body = from_text(entry.body);
     if (!body.is_object()) return;
-    if (entry.kind == kind::kEvent) event(body);
+    if (entry.kind == kind::kEvent) {
+      event(body);
+      if (auto event = past_event(body, rules_)) past_.push_back(std::move(*event));
+    }
     if (entry.kind == kind::kIntent) intent(body);
     if (entry.kind == kind::kOutcome) outcome(body);
   }
 
   bool is_paused() const { return is_paused_; }
+  bool is_dry_run() const { return is_dry_run_; }
+  const Past& past() const { return past_; }
 
   // Those that had begun to change anything.
   std::vector<Interrupted> open() && {
@@ -74,6 +84,8 @@ class Trail {
   void order(const std::string& word) {
     if (word == "pause") is_paused_ = true;
     if (word == "resume") is_paused_ = false;
+    if (word == "dry_run") is_dry_run_ = true;
+    if (word == "act") is_dry_run_ = false;
   }
 
   void intent(const Json& body) {
@@ -118,12 +130,19 @@ class Trail {
   const RuleSet& rules_;
   std::vector<std::string>& given_up_;
   std::vector<Interrupted> open_;
+  Past past_;
   bool is_paused_ = false;
+  bool is_dry_run_ = false;
 };
+
+// The robot's clock counts from the start of the machine: what it showed then in what it shows now.
+Duration shift_of_clock(const Entry& begin, Time robot_then, const Moment& now) {
+  return (now.robot - robot_then) - Duration(now.wall - begin.at);
+}
 
 }  // namespace
 
-Expected<Recovery> recover(const Reader& journal, const RuleSet& rules) {
+Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Moment& now) {
   Recovery recovery;
   const auto last = journal.newest(kind::kSession);
   if (!last) return Error{last.error()};
@@ -132,7 +151,7 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules) {
   const Json begin = from_text((*last)->body);
   recovery.was_other_boot = text_of(begin, "boot") != boot_id();
   Trail trail(rules, recovery.given_up);
-  if (begin.is_object()) trail.begin_with(begin.value("interrupted", Json::array()));
+  trail.begin_with(begin);
   auto rows = journal.entries(Which::kReadable, (*last)->id + 1);
   if (!rows) return Error{rows.error()};
   Entry entry;
@@ -143,6 +162,12 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules) {
   }
   if (!row) return Error{row.error()};
   recovery.is_paused = trail.is_paused();
+  recovery.is_dry_run = trail.is_dry_run();
+  const Time robot_then = Time(Duration(integer_of(begin, "start")));
+  recovery.past = still_counting(
+      recovery.was_other_boot ? after_restart(trail.past(), shift_of_clock(**last, robot_then, now))
+                              : trail.past(),
+      now.robot, rules);
   recovery.interrupted = std::move(trail).open();
   return recovery;
 }

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "journal/past.h"
 #include "journal/reader.h"
 #include "journal/session.h"
 #include "knowledge/interrupted.h"
@@ -17,11 +18,19 @@ struct Recovery {
   bool was_stopped = false;     // and it was asked to end
   bool was_other_boot = false;  // the machine was started anew since
   bool is_paused = false;       // by a person, who has to resume it
+  bool is_dry_run = false;      // likewise
   std::vector<Interrupted> interrupted;
   std::vector<std::string> given_up;  // what was under way and cannot be finished, and why
+  Past past;                          // of all runs before, on the robot's clock
+};
+
+// Two clocks at one moment. `wall`: nanoseconds since 1970.
+struct Moment {
+  Time robot;
+  std::int64_t wall = 0;
 };
 
 // Errors: the file cannot be read.
-Expected<Recovery> recover(const Reader& journal, const RuleSet& rules);
+Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Moment& now);
 
 }  // namespace culprit::journal

@@ -77,9 +77,14 @@ Json to_json(const Session& session) {
           {"governor", session.governor},
           {"learned", to_json(session.learned)},
           {"interrupted", session.interrupted},
+          {"past", session.past},
+          {"paused", session.is_paused},
+          {"dry_run", session.is_dry_run},
           {"rules_path", session.rules_path},
           {"rules_text", session.rules_text},
+          {"occasion", session.occasion},
           {"text", "culprit " + session.version + " began to manage with " + session.rules_path +
+                       (session.occasion.empty() ? "" : ", " + session.occasion) +
                        (session.advises ? " (only advising)" : "")}};
 }
 
@@ -92,6 +97,7 @@ Expected<Session> session_from_json(const Json& json) {
   session.robot = text_of(json, "robot");
   session.rules_path = text_of(json, "rules_path");
   session.rules_text = text_of(json, "rules_text");
+  session.occasion = text_of(json, "occasion");
   session.planner = json.value("planner", Json::object());
   session.governor = json.value("governor", Json::object());
   session.advises = flag_of(json, "advises");
@@ -102,6 +108,9 @@ Expected<Session> session_from_json(const Json& json) {
   session.forgetting = number_of(json, "forgetting", 1);
   session.learned = *learned;
   session.interrupted = json.value("interrupted", Json::array());
+  session.past = json.value("past", Json::array());
+  session.is_paused = flag_of(json, "paused");
+  session.is_dry_run = flag_of(json, "dry_run");
   if (!(session.forgetting > 0 && session.forgetting <= 1) || session.settling < Duration::zero() ||
       session.rules_text.size() > (64u << 20))
     return Error{"the beginning of a run cannot be read"};

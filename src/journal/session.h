@@ -13,6 +13,7 @@ struct Session {
   std::string robot;
   std::string rules_path;
   std::string rules_text;
+  std::string occasion;            // "reloaded by ada"; empty: culprit was started
   Json planner;                    // as its options have it
   Json governor = Json::object();  // likewise
   bool advises = false;
@@ -23,6 +24,10 @@ struct Session {
   double forgetting = 1;
   Learned learned;                   // what was known at the start
   Json interrupted = Json::array();  // what the run before left behind (requests.h)
+  Json past = Json::array();         // what earlier runs did that still counts (past.h)
+  // By a person's order in the run before, which goes on: said anew with the first step.
+  bool is_paused = false;
+  bool is_dry_run = false;
 };
 
 // Also the form of what `culprit beliefs export` writes.

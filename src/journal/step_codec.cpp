@@ -30,7 +30,8 @@ enum class OrderTag : std::uint8_t {
   kRefuse = 5,
   kSilence = 6,
   kLiftSilence = 7,
-  kRunStrategy = 8
+  kRunStrategy = 8,
+  kForget = 9
 };
 
 enum class ValueTag : std::uint8_t {
@@ -183,6 +184,11 @@ class Encoder {
     word(OrderTag::kRunStrategy);
     out_.natural(o.strategy.index);
   }
+  void write_order(const Forget& o) {
+    word(OrderTag::kForget);
+    out_.byte(o.rule ? 1 : 0);
+    if (o.rule) out_.natural(o.rule->index);
+  }
   void silenced(const Silenceable& what) {
     const auto* component = std::get_if<ComponentId>(&what);
     out_.byte(component != nullptr ? 0 : 1);
@@ -321,6 +327,9 @@ class Decoder {
         return LiftSilence{silenced()};
       case OrderTag::kRunStrategy:
         return RunStrategy{id<StrategyId>(rules_.strategies.size())};
+      case OrderTag::kForget:
+        if (in_.byte() == 0) return Forget{};
+        return Forget{id<RuleId>(rules_.rules.size())};
     }
     in_.fail();
     return Pause{};

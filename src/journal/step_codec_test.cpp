@@ -44,7 +44,7 @@ decltype(Order::what) any_order() {
   const StrategyId strategy(*rc::gen::inRange<std::size_t>(0, 2));
   const Silenceable what =
       *rc::gen::arbitrary<bool>() ? Silenceable(ComponentId(1)) : Silenceable(RuleId(0));
-  switch (*rc::gen::inRange(0, 8)) {
+  switch (*rc::gen::inRange(0, 9)) {
     case 0:
       return Pause{};
     case 1:
@@ -59,6 +59,8 @@ decltype(Order::what) any_order() {
       return Silence{what, *rc::gen::arbitrary<bool>() ? std::optional(Duration(5)) : std::nullopt};
     case 6:
       return LiftSilence{what};
+    case 7:
+      return *rc::gen::arbitrary<bool>() ? Forget{RuleId(0)} : Forget{};
     default:
       return RunStrategy{strategy};
   }

@@ -46,10 +46,10 @@ Expected<Database> open_database(const fs::path& path) {
 // Whether there is a journal of ours that cannot be read any more. A file of another program is
 // none of our business.
 bool is_damaged(const fs::path& path) {
+  if (Database::is_damaged(path, "SELECT count(*) FROM sqlite_schema")) return true;
   const auto database = Database::open(path, Database::Mode::kRead);
-  if (!database) return Database::is_damage(database.error());
-  const auto newest = newest_link(*database);
-  return !newest && check_schema(*database) && Database::is_damage(newest.error());
+  return database && check_schema(*database) &&
+         Database::is_damaged(path, "SELECT id, hash FROM entry ORDER BY id DESC LIMIT 1");
 }
 
 Json body_of(const LearnedBelief& learned) {

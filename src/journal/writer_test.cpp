@@ -260,19 +260,61 @@ TEST(Faults, AJournalOfANewerCulpritIsLeftAlone) {
   EXPECT_THAT(unread.error(), HasSubstr("newer culprit"));
 }
 
+// Root may write everywhere: while this lives, the test is nobody, and the folder is nobody's.
+class AsNobody {
+ public:
+  explicit AsNobody(const TestFolder& folder) : was_(geteuid()) {
+    if (was_ != 0) return;
+    chown(folder.path());
+    for (const auto& each : std::filesystem::recursive_directory_iterator(folder.path()))
+      chown(each.path());
+    if (seteuid(kNobody) != 0) throw std::runtime_error("cannot become nobody");
+  }
+  ~AsNobody() {
+    if (was_ == 0 && seteuid(0) != 0) std::abort();
+  }
+  AsNobody(const AsNobody&) = delete;
+
+ private:
+  static constexpr uid_t kNobody = 65534;
+  static void chown(const std::filesystem::path& path) {
+    if (::chown(path.c_str(), kNobody, static_cast<gid_t>(-1)) != 0)
+      throw std::runtime_error("cannot give " + path.string() + " away");
+  }
+
+  const uid_t was_;
+};
+
 TEST(Faults, AReadOnlyFolderIsReadAndNotWritten) {
-  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   const TestFolder folder;
   {
     Writer writer = open(folder / "a.journal");
     ASSERT_TRUE(append(writer, batch(3)));
   }
+  const AsNobody nobody(folder);
   std::filesystem::permissions(
       folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   EXPECT_EQ(verified(folder / "a.journal").rows, 3);
   const auto failed = Writer::open(folder / "b.journal", {});
   ASSERT_FALSE(failed);
   EXPECT_THAT(failed.error(), HasSubstr("ermission denied"));
+}
+
+TEST(Faults, AJournalThatMayNotBeReadIsLeftAloneAndNamed) {
+  const TestFolder folder;
+  {
+    Writer writer = open(folder / "a.journal");
+    ASSERT_TRUE(append(writer, batch(3)));
+  }
+  const AsNobody nobody(folder);
+  std::filesystem::permissions(folder / "a.journal", std::filesystem::perms::none);
+  const auto unread = Reader::open(folder / "a.journal");
+  ASSERT_FALSE(unread);
+  EXPECT_THAT(unread.error(), HasSubstr("a.journal"));
+  const auto unwritten = Writer::open(folder / "a.journal", {});
+  ASSERT_FALSE(unwritten);
+  EXPECT_THAT(unwritten.error(), HasSubstr("a.journal"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.journal.damaged-1"));
 }
 
 TEST(Faults, AFolderThatCannotBeMadeIsNamed) {

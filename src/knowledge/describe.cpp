@@ -156,6 +156,9 @@ class Describer {
     return "the silence of " + name_of(o.what) + " is lifted";
   }
   std::string operator()(const RunStrategy& o) const { return "run " + with_rule(o.strategy); }
+  std::string operator()(const Forget& o) const {
+    return "forget what was learned of " + (o.rule ? name_of(*o.rule) : "all strategies");
+  }
 
  private:
   // Strategies of different rules may have the same name. An order may name one that is not there.

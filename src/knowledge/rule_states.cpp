@@ -1,6 +1,7 @@
 #include "knowledge/rule_states.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace culprit {
 
@@ -29,6 +30,22 @@ bool RuleStates::is_tried(StrategyId id) const {
 
 void RuleStates::set_tried(StrategyId id, bool tried) {
   states_[rules_[id].rule.index].tried[place_of(id)] = tried;
+}
+
+void RuleStates::begin_search(RuleId id, Time now) {
+  RuleState& state = states_[id.index];
+  const auto left_off = std::exchange(state.left_off, std::nullopt);
+  state.failing_since = now;
+  state.attempts = left_off ? left_off->attempts : 0;
+  state.round = left_off ? left_off->round : 0;
+  state.retry_at = left_off ? std::max(now, left_off->retry_at) : now;
+  state.is_at_last_resort = left_off && left_off->is_at_last_resort;
+  if (left_off) {
+    state.recurring_since = left_off->since;
+    state.tried = left_off->tried;
+  } else {
+    std::fill(state.tried.begin(), state.tried.end(), false);
+  }
 }
 
 void RuleStates::enter(RuleId id, RulePhase phase) {

@@ -32,6 +32,17 @@ struct Settling {
   Time until = kNever;  // when what its trigger reads would have shown it
 };
 
+// How far the search for a strategy that helps has come.
+struct Search {
+  Time since{};                    // when the failure was detected
+  int attempts = 0;                // strategies executed since then
+  int round = 0;                   // how often all strategies were gone through
+  Time retry_at = kLongAgo;        // back-off after a round
+  std::vector<bool> tried;         // in this round, by place in Rule::strategies
+  bool is_at_last_resort = false;  // only the last resorts are left to try
+  bool is_exhausted = false;
+};
+
 struct RuleState {
   RulePhase phase = RulePhase::kQuiet;
   Slot trigger;                   // as last evaluated
@@ -57,6 +68,8 @@ struct RuleState {
   bool is_at_last_resort = false;  // only the last resorts are left to try
   bool is_advised = false;         // dry run: what would be done was said
   std::optional<Settling> settling;
+  // Where an earlier process of culprit came to with this failure. Nobody has seen it gone since.
+  std::optional<Search> left_off;
 
   // Since when the failure is there, with pauses or without.
   Time first_detected() const { return std::min(failing_since, recurring_since); }
@@ -72,9 +85,13 @@ class RuleStates {
   // For everything but `phase`, which enter() changes.
   RuleState& state(RuleId id) { return states_[id.index]; }
 
+  // Where the strategy stands in Rule::strategies.
+  std::size_t place_of(StrategyId id) const;
   // Was it tried in this round?
   bool is_tried(StrategyId id) const;
   void set_tried(StrategyId id, bool tried);
+  // The search for a strategy begins: anew, or where an earlier process left off.
+  void begin_search(RuleId id, Time now);
 
   // Moves a rule to another phase and keeps the health of its components.
   void enter(RuleId id, RulePhase phase);
@@ -97,8 +114,6 @@ class RuleStates {
   static bool is_active(RulePhase phase) {
     return phase == RulePhase::kFailing || phase == RulePhase::kAttempting;
   }
-  std::size_t place_of(StrategyId id) const;
-
   const RuleSet& rules_;
   std::vector<RuleState> states_;
   std::vector<RuleId> active_;

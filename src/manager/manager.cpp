@@ -39,6 +39,11 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
   knowledge_.couplings.set_forgetting(options.forgetting);
 }
 
+void Manager::remember(const Past& past) {
+  governor_.remember(past);
+  analyzer_.remember(past);
+}
+
 void Manager::resume(Interrupted interrupted) {
   if (autonomy_ == Autonomy::kAdvise) return;
   const StrategyId strategy = interrupted.strategy;
@@ -110,6 +115,24 @@ void Manager::obey(const Order& order, Time now) {
       knowledge_.states.state(id).is_advised = false;
   } else if (const auto* run = std::get_if<RunStrategy>(&order.what)) {
     begin(run->strategy, now);
+  } else if (const auto* forgotten = std::get_if<Forget>(&order.what)) {
+    forget(forgotten->rule);
+  }
+}
+
+void Manager::forget(std::optional<RuleId> rule) {
+  const RuleSet& rules = knowledge_.rules;
+  for (std::size_t s = 0; s < rules.strategies.size(); ++s) {
+    const Strategy& strategy = rules.strategies[s];
+    if (!rule || strategy.rule == *rule)
+      knowledge_.beliefs.set(StrategyId(s), initial_belief(strategy.success, strategy.confidence));
+  }
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    const RuleId effect(r);
+    for (const Couplings::Learned& each : knowledge_.couplings.of(effect)) {
+      if (!rule || each.cause == *rule || effect == *rule)
+        knowledge_.couplings.set(each.cause, effect, {});
+    }
   }
 }
 

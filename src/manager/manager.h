@@ -56,6 +56,9 @@ class Manager : public ManagingSystem {
   void set_coupling(RuleId cause, RuleId effect, Coupling coupling) {
     knowledge_.couplings.set(cause, effect, coupling);
   }
+  // What earlier processes did counts: budgets, back-offs, silences and what was tried last on.
+  // Before the first step, and before resume().
+  void remember(const Past& past);
   // A strategy that an earlier process left in the middle is finished, once the robot had the time
   // of settling to show itself. Before the first step; one for each rule at most.
   void resume(Interrupted interrupted);
@@ -65,6 +68,7 @@ class Manager : public ManagingSystem {
   void react(std::vector<Command>& commands);
   void obey(const Order& order, Time now);
   void refresh_conditions(StrategyId strategy, Time now);
+  void forget(std::optional<RuleId> rule);
   void abandon_all(const std::string& reason, Time now);
   void plan(Time now);
   std::vector<Verdict> allowed_plan(const std::vector<RuleId>& failures, Time now);

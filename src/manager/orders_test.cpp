@@ -94,6 +94,18 @@ TEST(Orders, DryRunCanBeSwitchedOnAndOff) {
   EXPECT_TRUE(r.works("camera")) << transcript(r);
 }
 
+TEST(Orders, WhatWasLearnedIsForgotten) {
+  TestRobot r = robot();
+  const Belief prior = r.manager().knowledge().beliefs[kRestart];
+  r["camera"].fault = "restart";
+  r.run_for(5s);
+  ASSERT_NE(r.manager().knowledge().beliefs[kRestart], prior) << transcript(r);
+  r.order(order(Forget{RuleId(99)}));
+  EXPECT_NE(r.manager().knowledge().beliefs[kRestart], prior) << "there is no such rule";
+  r.order(order(Forget{}));
+  EXPECT_EQ(r.manager().knowledge().beliefs[kRestart], prior);
+}
+
 TEST(Orders, ASilencedComponentIsWatchedAndLeftAloneUntilTheSilenceEnds) {
   TestRobot r = robot();
   r.order(order(Silence{kCamera, 10s}, "recalibration"));

@@ -1,11 +1,13 @@
 #include "process/spawn.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 #include <unistd.h>
 
@@ -39,6 +41,21 @@ class Attributes {
 bool is_executable(const std::filesystem::path& path) {
   std::error_code error;
   return std::filesystem::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0;
+}
+
+// What is inherited, without what `added` has a value for, and `added`.
+std::vector<char*> environment_with(std::vector<std::string>& added) {
+  std::vector<char*> all;
+  for (char** each = environ; *each != nullptr; ++each) {
+    const std::string_view variable(*each);
+    const std::string_view name = variable.substr(0, variable.find('=') + 1);
+    const bool is_replaced = std::any_of(added.begin(), added.end(),
+                                         [&](const std::string& a) { return a.starts_with(name); });
+    if (!is_replaced) all.push_back(*each);
+  }
+  for (std::string& each : added) all.push_back(each.data());
+  all.push_back(nullptr);
+  return all;
 }
 
 }  // namespace
@@ -91,9 +108,11 @@ Expected<int> spawn(const Program& program) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
+  std::vector<std::string> added = program.environment;
+  const std::vector<char*> environment = environment_with(added);
   pid_t pid = 0;
-  const int failed =
-      posix_spawn(&pid, path->c_str(), files.get(), attributes.get(), argv.data(), environ);
+  const int failed = posix_spawn(&pid, path->c_str(), files.get(), attributes.get(), argv.data(),
+                                 environment.data());
   if (failed == 0) return static_cast<int>(pid);
   const bool log_fails =
       access(program.log.parent_path().empty() ? "." : program.log.parent_path().c_str(), W_OK) !=

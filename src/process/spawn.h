@@ -12,7 +12,8 @@ namespace culprit::process {
 struct Program {
   std::vector<std::string> arguments;  // the first is the program, with or without a path
   std::vector<std::filesystem::path> search_first;  // where to look for it before PATH
-  std::filesystem::path log;  // its output is appended here; parent folders are made
+  std::filesystem::path log;               // its output is appended here; parent folders are made
+  std::vector<std::string> environment{};  // "NAME=value", beside what it inherits
 };
 
 // The new process leads a session and a process group of its own (a Ctrl-C at culprit's terminal is

@@ -7,7 +7,9 @@
 #include <set>
 #include <sys/eventfd.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include "process/proc.h"
 #include "process/spawn.h"
 
 namespace culprit::process {
@@ -24,8 +26,10 @@ Supervisor::Supervisor(const RuleSet& rules, Options options, Inbox& inbox)
     : rules_(rules),
       options_(std::move(options)),
       inbox_(inbox),
-      wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
-      thread_([this] { run(); }) {}
+      wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  for (std::size_t c = 0; c < rules_.components.size(); ++c) take_over(ComponentId(c));
+  thread_ = std::thread([this] { run(); });
+}
 
 Supervisor::~Supervisor() {
   {
@@ -36,6 +40,24 @@ Supervisor::~Supervisor() {
   thread_.join();
 }
 
+std::string Supervisor::mark(ComponentId component) const {
+  return "CULPRIT_COMPONENT=" + options_.robot + "/" + rules_[component].name;
+}
+
+void Supervisor::take_over(ComponentId component) {
+  if (options_.robot.empty() || rules_[component].launch.empty()) return;
+  for (const int pid : processes_with(mark(component))) {
+    const bool has_ended = state_letter(pid).value_or('X') == 'Z';
+    if (!has_ended && pid != getpid()) adopt(component, pid);
+  }
+}
+
+void Supervisor::adopt_again(ComponentId component, int pid, Time known) {
+  const auto started = started_at(pid);
+  const bool has_ended = state_letter(pid).value_or('X') == 'Z';
+  if (started && *started <= known && !has_ended) adopt(component, pid);
+}
+
 void Supervisor::start(CommandId command, ComponentId component) {
   const Component& what = rules_[component];
   const auto answer = [&](Outcome outcome, decltype(Reply::value) value, std::string text) {
@@ -43,11 +65,14 @@ void Supervisor::start(CommandId command, ComponentId component) {
   };
   if (what.launch.empty())
     return answer(Outcome::kUnreachable, {}, what.name + " has no LAUNCH command");
+  take_over(component);
   const std::lock_guard lock(mutex_);
   // The old process must be proven gone before a new one takes its place.
   if (!is_gone(component)) return answer(Outcome::kRefused, {}, what.name + " is running already");
-  const auto pid =
-      spawn({what.launch, options_.search_first, options_.log_folder / (what.name + ".log")});
+  Program program{
+      what.launch, options_.search_first, options_.log_folder / (what.name + ".log"), {}};
+  if (!options_.robot.empty()) program.environment = {mark(component)};
+  const auto pid = spawn(program);
   if (!pid) return answer(Outcome::kUnreachable, {}, pid.error());
   auto process = WatchedProcess::watch(*pid, Relation::kChild);
   if (!process) return answer(Outcome::kUnreachable, {}, process.error());
@@ -59,10 +84,7 @@ void Supervisor::start(CommandId command, ComponentId component) {
 
 void Supervisor::adopt(ComponentId component, int pid) {
   const std::lock_guard lock(mutex_);
-  const bool known = std::any_of(members_.begin(), members_.end(), [&](const Member& m) {
-    return m.process.pid() == pid && m.component == component;
-  });
-  if (known) return;
+  if (is_known(component, pid)) return;
   // A supervisor before this one may have started it.
   const Relation relation = is_child(pid) ? Relation::kChild : Relation::kAdopted;
   auto process = WatchedProcess::watch(pid, relation);
@@ -96,6 +118,12 @@ void Supervisor::stop_all() {
   wake();
   something_ended_.wait(lock, [&] {
     return std::all_of(started.begin(), started.end(), [&](ComponentId c) { return is_gone(c); });
+  });
+}
+
+bool Supervisor::is_known(ComponentId component, int pid) const {
+  return std::any_of(members_.begin(), members_.end(), [&](const Member& m) {
+    return m.process.pid() == pid && m.component == component;
   });
 }
 

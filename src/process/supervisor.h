@@ -5,6 +5,10 @@
 // It decides nothing: restarting is up to the manager. A stopped process cannot act on a polite
 // signal and must not wake up to do so late: it is killed at once.
 //
+// What it starts carries a mark in its environment, CULPRIT_COMPONENT, so that whoever supervises
+// the same robot later knows it again, also if this process died the moment after: a component is
+// never started beside a process that runs already.
+//
 // Whatever it started goes on running when the supervisor ends, unless stop_all() was called.
 #pragma once
 
@@ -34,9 +38,12 @@ class Supervisor {
   struct Options {
     std::filesystem::path log_folder;
     std::vector<std::filesystem::path> search_first;  // for launch commands without a path
+    // Which robot, of all on this machine: "0/sunset". Empty: nothing is marked, and what other
+    // supervisors started is not looked for.
+    std::string robot{};
   };
 
-  // `rules` and `inbox` must outlive the supervisor.
+  // `rules` and `inbox` must outlive the supervisor. Takes over what carries its mark.
   Supervisor(const RuleSet& rules, Options options, Inbox& inbox);
   ~Supervisor();
 
@@ -50,6 +57,10 @@ class Supervisor {
   // Watches a process that is already running as the component's. Does nothing if it is watched
   // already.
   void adopt(ComponentId component, int pid);
+
+  // Likewise, if it is the process that had this number at `known`, and not a later one. Says
+  // nothing if it is not.
+  void adopt_again(ComponentId component, int pid, Time known);
 
   // Ends every process that was started here, and waits until all are gone.
   void stop_all();
@@ -69,9 +80,12 @@ class Supervisor {
     Time escalate = kNever;  // when the next one is due
   };
 
+  std::string mark(ComponentId component) const;
+  void take_over(ComponentId component);
   void run();
   void look(Time now);
   void escalate(Shutdown& shutdown, Time now);
+  bool is_known(ComponentId component, int pid) const;
   bool is_gone(ComponentId component) const;
   void begin_shutdown(CommandId command, ComponentId component);
   void end_member(Member& member);

@@ -20,14 +20,14 @@ using namespace std::chrono_literals;
 // Supervises component c with the given launch command and tells what came of it.
 class Supervised {
  public:
-  explicit Supervised(const std::string& launch)
+  explicit Supervised(const std::string& launch, const std::string& robot = "")
       : folder_(std::filesystem::temp_directory_path() /
                 ("culprit-test-" + std::to_string(getpid()))),
         rules_(*check(Source("test.rules", "COMPONENT c LAUNCH \"" + launch + "\"\n")).rules) {
-    supervisor.emplace(rules_, Supervisor::Options{folder_, {}}, inbox);
+    supervisor.emplace(rules_, Supervisor::Options{folder_, {}, robot}, inbox);
   }
   ~Supervised() {
-    supervisor->stop_all();
+    if (supervisor) supervisor->stop_all();
     supervisor.reset();
     std::filesystem::remove_all(folder_);
   }
@@ -200,6 +200,44 @@ TEST(Supervisor, LeavesItsProcessesRunningWhenItEnds) {
   EXPECT_TRUE(exists(pid));
   kill(pid, SIGKILL);
   waitpid(pid, nullptr, 0);
+}
+
+// As after a crash: nothing is known but what the operating system says.
+TEST(Supervisor, TakesOverWhatAnotherOneOfTheSameRobotStarted) {
+  const std::string robot = "test/" + std::to_string(getpid());
+  auto first = std::make_unique<Supervised>("sleep 1000", robot);
+  const int pid = first->start();
+  kill(pid, SIGSTOP);
+  first->state(ProcessState::kStopped);
+  first->supervisor.reset();
+
+  Supervised stranger("sleep 1000", robot + "0");
+  EXPECT_NE(stranger.start(), pid) << "another robot's component of the same name";
+  Supervised second("sleep 1000", robot);
+  EXPECT_EQ(second.state(ProcessState::kRunning).pid, pid);
+  second.supervisor->start({3}, ComponentId(0));
+  EXPECT_EQ(second.reply_to({3}).outcome, Outcome::kRefused);
+  second.supervisor->stop({2}, ComponentId(0), 0);
+  EXPECT_EQ(second.reply_to({2}).outcome, Outcome::kDone);
+  EXPECT_FALSE(exists(pid));
+  EXPECT_NE(second.start(), pid);
+}
+
+TEST(Supervisor, AdoptsAProcessAgainOnlyIfItIsTheSameOne) {
+  Supervised c("sleep 1000");
+  const Time before = live_now() - 1s;
+  const auto foreign = spawn({{"sleep", "1000"}, {}, "/dev/null", {}});
+  ASSERT_TRUE(foreign);
+  c.supervisor->adopt_again(ComponentId(0), *foreign, before);
+  const int started = c.start();
+  EXPECT_NE(started, *foreign) << "a number that was given out anew since is not adopted";
+  c.stop();
+  c.supervisor->adopt_again(ComponentId(0), *foreign, live_now());
+  c.supervisor->start({3}, ComponentId(0));
+  EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused);
+  c.supervisor->stop({4}, ComponentId(0), 0);
+  EXPECT_EQ(c.reply_to({4}).outcome, Outcome::kDone);
+  EXPECT_FALSE(exists(*foreign));
 }
 
 TEST(Spawn, PassesArgumentsAsTheyAre) {

@@ -3,26 +3,14 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <fstream>
 #include <poll.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "process/proc.h"
+
 namespace culprit::process {
-namespace {
-
-// The state letter of /proc/<pid>/stat; the command before it is in parentheses and may hold
-// anything.
-char state_letter(int pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
-  std::string line;
-  std::getline(file, line);
-  const auto end = line.rfind(')');
-  return end == std::string::npos || end + 2 >= line.size() ? '\0' : line[end + 2];
-}
-
-}  // namespace
 
 Expected<WatchedProcess> WatchedProcess::watch(int pid, Relation relation) {
   const auto fd = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
@@ -34,13 +22,12 @@ Expected<WatchedProcess> WatchedProcess::watch(int pid, Relation relation) {
 ProcessState WatchedProcess::state() const {
   pollfd ended{pidfd_.get(), POLLIN, 0};
   if (poll(&ended, 1, 0) > 0) return ProcessState::kGone;
-  switch (state_letter(pid_)) {
+  switch (state_letter(pid_).value_or('X')) {
     case 'T':
     case 't':
       return ProcessState::kStopped;
     case 'Z':
     case 'X':
-    case '\0':
       return ProcessState::kGone;
     default:
       return ProcessState::kRunning;

@@ -5,12 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "journal/recorder.h"
-#include "journal/recovery.h"
-#include "journal/requests.h"
 #include "journal/test_folder.h"
-#include "manager/test_robot.h"
-#include "replay/replay.h"
+#include "replay/test_life.h"
 
 namespace culprit::replay {
 namespace {
@@ -18,82 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 using culprit::test::TestRobot;
 using journal::test::TestFolder;
+using test::Life;
+using test::moment;
+using test::value_of;
 using namespace std::chrono_literals;
-
-constexpr std::int64_t kWall = 1'800'000'000'000'000'000;
-
-template <class T>
-T value_of(Expected<T> expected) {
-  if (!expected) throw std::runtime_error(expected.error());
-  return std::move(*expected);
-}
-
-// As the file system has it at this moment: what is not written yet dies with the process.
-void copy_journal(const fs::path& from, const fs::path& to) {
-  for (const char* part : {"", "-wal"}) {
-    if (fs::exists(from.string() + part)) fs::copy_file(from.string() + part, to.string() + part);
-  }
-}
-
-// A manager on a robot, with its journal.
-class Life {
- public:
-  Life(const fs::path& path, TestRobot& robot, const std::string& rules_text)
-      : robot_(robot), path_(path) {
-    auto writer = value_of(journal::Writer::open(path, {}));
-    const journal::Reader reader = value_of(journal::Reader::open(path));
-    const auto recovery = value_of(journal::recover(reader, robot.rules()));
-    interrupted = recovery.interrupted.size();
-    journal::Session session;
-    session.rules_path = "test.rules";
-    session.rules_text = rules_text;
-    session.planner = {{"name", "bayes"}};
-    session.boot = journal::boot_id();
-    session.start = robot.now;
-    session.settling = 2s;
-    session.learned = value_of(reader.learned());
-    for (const Interrupted& each : recovery.interrupted)
-      session.interrupted.push_back(journal::to_json(each, robot.rules()));
-    robot.replace_manager(manager_for(session, robot.rules(), std::make_unique<BayesPlanner>(),
-                                      {Autonomy::kAct, {}}));
-    journal::Recorder::Options options;
-    options.path = path;
-    options.wall_clock = [&robot] { return kWall + robot.now.time_since_epoch().count(); };
-    recorder_ = std::make_unique<journal::Recorder>(std::move(writer), options, session,
-                                                    robot.manager().knowledge());
-    robot.before_commands = [this](auto& observations, auto commands) {
-      return step(observations, commands);
-    };
-  }
-
-  // After so many steps that ask or say anything; whether its last requests still go out.
-  void die_after(int steps, bool sends) {
-    steps_left_ = steps;
-    sends_ = sends;
-  }
-  bool is_dead() const { return is_dead_; }
-  fs::path remains() const { return path_.string() + ".remains"; }
-
-  std::size_t interrupted = 0;
-
- private:
-  bool step(std::vector<Observation>& observations, std::span<const Command> commands) {
-    if (is_dead_) return false;
-    recorder_->stepped(robot_.now, observations, commands, robot_.manager().events());
-    const bool matters = !commands.empty() || !robot_.manager().events().empty();
-    if (steps_left_ < 0 || !matters || --steps_left_ >= 0) return true;
-    is_dead_ = true;
-    copy_journal(path_, remains());
-    return sends_;
-  }
-
-  TestRobot& robot_;
-  fs::path path_;
-  std::unique_ptr<journal::Recorder> recorder_;
-  int steps_left_ = -1;
-  bool sends_ = true;
-  bool is_dead_ = false;
-};
 
 struct Story {
   const char* name;
@@ -210,7 +134,7 @@ RULE Silent
   life.die_after(0, true);
   while (!life.is_dead()) robot.run_for(10ms);
   const journal::Reader reader = value_of(journal::Reader::open(life.remains()));
-  const auto recovery = value_of(journal::recover(reader, robot.rules()));
+  const auto recovery = value_of(journal::recover(reader, robot.rules(), moment(robot)));
   ASSERT_EQ(recovery.interrupted.size(), 1u);
   const Interrupted& interrupted = recovery.interrupted.front();
   ASSERT_EQ(interrupted.requests.size(), 2u) << "stop, start";

@@ -1,5 +1,6 @@
 #include "replay/replay.h"
 
+#include "journal/past.h"
 #include "journal/recorder.h"
 #include "journal/requests.h"
 #include "knowledge/describe.h"
@@ -50,6 +51,7 @@ std::unique_ptr<Manager> manager_for(const journal::Session& session, const Rule
   options.forgetting = session.forgetting;
   auto manager = std::make_unique<Manager>(rules, std::move(planner), options);
   restore(*manager, session.learned, rules);
+  manager->remember(journal::past_from_json(session.past, rules));
   if (!session.interrupted.is_array()) return manager;
   for (const journal::Json& each : session.interrupted) {
     if (auto interrupted = journal::interrupted_from_json(each, rules))

@@ -49,11 +49,18 @@ struct RunStrategy {
   StrategyId strategy;
 };
 
+// What was learned of the rule's strategies, and of what goes away with it, is as the rules say
+// again. Nothing: of all rules.
+struct Forget {
+  std::optional<RuleId> rule{};
+};
+
 struct Order {
   std::uint64_t number = 0;  // of the sender's choosing, for it to know the answer by
   std::string author;        // who says so, for the record
   std::string reason;        // may be empty
-  std::variant<Pause, Resume, SetDryRun, Approve, Refuse, Silence, LiftSilence, RunStrategy> what;
+  std::variant<Pause, Resume, SetDryRun, Approve, Refuse, Silence, LiftSilence, RunStrategy, Forget>
+      what;
 };
 
 }  // namespace culprit

@@ -35,7 +35,7 @@ Graph::Options Context::with_watches(Graph::Options options) {
 Expected<void> Context::open(const ParticipantOptions& options) {
   gid_size_ = options.gid_size;
   auto participant = Participant::create(options, [this](DiscoveryEvent event) {
-    tasks_.post([this, event = std::move(event)] { on_discovery(event); });
+    tasks_.post([this, event = std::move(event)] { discovered(event); });
   });
   if (!participant) return Error{participant.error()};
   participant_ = std::move(*participant);
@@ -111,8 +111,9 @@ void Context::on_server_left(const std::string& service) {
   }
 }
 
-void Context::on_discovery(const DiscoveryEvent& event) {
+void Context::discovered(const DiscoveryEvent& event) {
   graph_.apply(event);
+  if (discovery_listener_) discovery_listener_(event);
   const auto* endpoint = std::get_if<EndpointInfo>(&event);
   if (endpoint == nullptr || gid_size_) return;
   // Iron and newer put the hash of the type into the user data of every endpoint.

@@ -44,6 +44,9 @@ class Context {
   // On the executor's thread only.
   const Graph& graph() const { return graph_; }
 
+  // Hears of each event after the graph did, on the executor's thread. Before the executor runs.
+  void on_discovery(DiscoveryCallback listener) { discovery_listener_ = std::move(listener); }
+
   // A text that no other has: Cyclone's services find the two endpoints of a client by it.
   std::string unique_id();
 
@@ -70,7 +73,7 @@ class Context {
   Expected<void> open(const ParticipantOptions& options);
 
   // On the executor's thread.
-  void on_discovery(const DiscoveryEvent& event);
+  void discovered(const DiscoveryEvent& event);
   void on_info(const Bytes& payload, const GuidPrefix& sender);
   void decide(GidSize size);
   void announce();
@@ -83,6 +86,7 @@ class Context {
   Graph graph_;
   std::optional<GidSize> gid_size_;
   bool is_deciding_ = false;
+  DiscoveryCallback discovery_listener_;  // may be empty
 
   std::mutex mutex_;      // guards the rest of this block
   bool is_open_ = false;  // the members below are set, and stay as they are

@@ -222,6 +222,11 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
   const std::string user_data = "enclave=" + options.enclave + ";";
   out.user_data().setValue({user_data.begin(), user_data.end()});
 
+  if (options.security) {
+    for (auto& [name, value] : properties_of(*options.security))
+      out.properties().properties().emplace_back(name, value);
+  }
+
   auto& builtin = out.wire_protocol().builtin;
   // Many nodes in one process make discovery data larger than the default of 5 kB.
   builtin.readerHistoryMemoryPolicy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;

@@ -64,6 +64,7 @@ Link::~Link() {
   watches_.clear();
   links_.clear();
   diagnostics_.reset();
+  lease_writer_.reset();
   node_.reset();
   context_.reset();
 }
@@ -85,6 +86,7 @@ Expected<void> Link::start() {
   if (!publisher) return Error{publisher.error()};
   diagnostics_.emplace(std::move(*publisher));
   if (auto declared = declare_parameters(); !declared) return declared;
+  if (auto claimed = claim_lease(); !claimed) return claimed;
 
   for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
     watches_.emplace(rules_.topics[t].name,
@@ -98,6 +100,35 @@ Expected<void> Link::start() {
   probing_ = std::make_unique<Timer>(executor_, kProbePeriod, [this] { probe(); });
   thread_ = std::thread([this] { executor_.run(); });
   return {};
+}
+
+Expected<void> Link::claim_lease() {
+  if (!options_.claim) return {};
+  lease_.emplace(*options_.claim);
+  auto writer = context_->participant().create_writer({.topic = ManagerLease::kTopic,
+                                                       .type = ManagerLease::kType,
+                                                       .qos = {},
+                                                       .user_data = lease_->user_data(),
+                                                       .on_match = {}});
+  if (!writer) return Error{writer.error()};
+  lease_writer_ = std::move(*writer);
+  context_->on_discovery([this](const DiscoveryEvent& event) { on_lease(event); });
+  return {};
+}
+
+void Link::on_lease(const DiscoveryEvent& event) {
+  lease_->apply(event);
+  const auto elder = lease_->elder();
+  const ParticipantInfo* info = elder ? context_->graph().participant(*elder) : nullptr;
+  const std::lock_guard lock(mutex_);
+  elder_.reset();
+  if (elder)
+    elder_ = info == nullptr || info->host.empty() ? "another machine" : printable(info->host);
+}
+
+std::optional<std::string> Link::elder() const {
+  const std::lock_guard lock(mutex_);
+  return elder_;
 }
 
 Expected<void> Link::declare_parameters() {

@@ -10,6 +10,8 @@
 
 #include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -21,6 +23,7 @@
 #include "robot/inbox.h"
 #include "ros2/component_link.h"
 #include "ros2/diagnostics_watch.h"
+#include "ros2/manager_lease.h"
 #include "ros2/node.h"
 #include "ros2/timer.h"
 #include "ros2/topic_watch.h"
@@ -45,6 +48,9 @@ class Link {
     std::vector<std::filesystem::path> message_path;  // where to find .msg files
     std::vector<std::pair<std::string, Value>>
         parameters;  // what the node shows of itself, read-only
+    // Announced to other culprits, of which one manages the robot (manager_lease.h). Nothing: this
+    // one never will.
+    std::optional<LeaseClaim> claim{};
   };
 
   // `rules` and `inbox` must outlive the link. Errors: the domain cannot be joined.
@@ -56,13 +62,19 @@ class Link {
   void publish(std::vector<Health> health);
   void log(Severity severity, std::string text);
 
+  // Where the culprit runs that goes before this one: a host's name, or "another machine" where it
+  // does not say. Nothing: there is none. From any thread.
+  std::optional<std::string> elder() const;
+
  private:
   Link(const RuleSet& rules, Options options, Inbox& inbox);
   Expected<void> start();
   Expected<void> declare_parameters();
+  Expected<void> claim_lease();
   Expected<void> watch_parameter_events();
 
   // On the executor's thread.
+  void on_lease(const DiscoveryEvent& event);
   void on_change(const GraphChange& change);
   void on_joined(const GraphNode& node);
   void on_left(const std::string& node);
@@ -93,8 +105,11 @@ class Link {
   std::map<std::string, std::vector<std::string>> systems_;  // by the mode manager's node
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;
+  std::optional<ManagerLease> lease_;
+  std::unique_ptr<Writer> lease_writer_;
 
-  std::mutex mutex_;  // guards what follows; a link that is made stays
+  mutable std::mutex mutex_;  // guards what follows; a link that is made stays
+  std::optional<std::string> elder_;
   std::vector<Health> health_;
   std::vector<std::unique_ptr<ComponentLink>> links_;  // by component
 

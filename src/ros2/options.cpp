@@ -71,6 +71,10 @@ Expected<ParticipantOptions> options_from_environment(const Environment& get) {
     if (end > 0) options.peers.emplace_back(peers.substr(0, end));
     peers.remove_prefix(std::min(end + 1, peers.size()));
   }
+  auto security = security_from_environment(get);
+  if (!security) return Error{security.error()};
+  options.security = std::move(*security);
+  if (options.security) options.enclave = options.security->enclave;
   return options;
 }
 

@@ -11,6 +11,7 @@
 
 #include "language/expected.h"
 #include "ros2/discovery_info.h"
+#include "ros2/security.h"
 
 namespace culprit::ros2 {
 
@@ -27,13 +28,14 @@ struct ParticipantOptions {
   // Of the UDP sockets; the system's default of 208 kB loses large best effort samples.
   // net.core.rmem_max caps it.
   std::uint32_t socket_buffer_bytes = 4 * 1024 * 1024;
+  std::optional<Security> security{};  // nothing: in the clear
 };
 
 // The value of a variable, or null.
 using Environment = std::function<const char*(const char* name)>;
 
-// ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS. An error
-// names the variable.
+// ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, and those of
+// security.h. An error names the variable.
 Expected<ParticipantOptions> options_from_environment(const Environment& get);
 Expected<ParticipantOptions> options_from_environment();
 

@@ -242,7 +242,10 @@ class Participant::Impl {
         dds::StatusMask::none());
     if (participant_ == nullptr) {
       return Error{"cannot join DDS domain " + std::to_string(options.domain) +
-                   "; is there a network interface, and a free UDP port for it?"};
+                   (options.security
+                        ? " with the keys of " + options.security->folder.string() +
+                              "; are they of one keystore, signed and not expired?"
+                        : "; is there a network interface, and a free UDP port for it?")};
     }
     *listens = true;
     guid_ = fast_dds::to_guid(participant_->guid());

@@ -56,6 +56,13 @@ Expected<What> about_silence(const std::string& word, const Json& body, const Ru
   return What(Silence{*what, from_seconds(seconds->get<double>())});
 }
 
+Expected<What> about_learning(const Json& body, const RuleSet& rules) {
+  if (!body.contains("rule")) return What(Forget{});
+  const auto rule = find<RuleId>(rules.rules, text_of(body, "rule"));
+  if (!rule) return Error{"there is no such 'rule'; without one, all is forgotten"};
+  return What(Forget{*rule});
+}
+
 Expected<What> read(const Json& body, const RuleSet& rules) {
   const std::string word = text_of(body, "order").value_or("");
   if (word == "pause") return What(Pause{});
@@ -68,7 +75,9 @@ Expected<What> read(const Json& body, const RuleSet& rules) {
   if (word == "approve" || word == "refuse" || word == "run")
     return about_strategy(word, body, rules);
   if (word == "silence" || word == "lift") return about_silence(word, body, rules);
-  return Error{"'order' has to be pause, resume, dry_run, approve, refuse, silence, lift or run"};
+  if (word == "forget") return about_learning(body, rules);
+  return Error{
+      "'order' has to be pause, resume, dry_run, approve, refuse, silence, lift, run or forget"};
 }
 
 }  // namespace

@@ -189,6 +189,14 @@ TEST_F(Routes, GiveOrdersToTheManager) {
   EXPECT_EQ(answer.body["number"], orders[0].number);
 }
 
+TEST_F(Routes, ForgetWhatWasLearned) {
+  EXPECT_EQ(ask("post /api/orders", {{"order", "forget"}, {"author", "ada"}}).status, 202);
+  const Json wrong{{"order", "forget"}, {"author", "ada"}, {"rule", "nothing"}};
+  EXPECT_EQ(ask("post /api/orders", wrong).status, 400) << "that would be all rules";
+  ASSERT_EQ(orders.size(), 1u);
+  EXPECT_FALSE(std::get<Forget>(orders[0].what).rule);
+}
+
 TEST_F(Routes, TakeNoOrdersWhileTheRulesAreReplaced) {
   order_desk.close();
   EXPECT_EQ(ask("post /api/orders", {{"order", "pause"}, {"author", "ada"}}).status, 503);

@@ -27,21 +27,29 @@ export class Refusal extends Error {
   }
 }
 
-export async function call<T>(method: string, path: string, body?: unknown): Promise<T> {
-  const init: RequestInit = { method, headers: headers() }
-  if (body !== undefined) {
-    init.headers = headers({ 'Content-Type': 'application/json' })
-    init.body = JSON.stringify(body)
-  }
+async function ask(path: string, init: RequestInit): Promise<Response> {
   let response: Response
   try {
     response = await fetch(path, init)
   } catch {
     throw new Refusal(0, 'culprit does not answer; is it still running?')
   }
+  if (response.ok) return response
   const answer = await response.json().catch(() => ({}))
-  if (!response.ok) throw new Refusal(response.status, answer.error ?? `error ${response.status}`)
-  return answer as T
+  throw new Refusal(response.status, answer.error ?? `error ${response.status}`)
+}
+
+export async function call<T>(method: string, path: string, body?: unknown): Promise<T> {
+  const init: RequestInit = { method, headers: headers() }
+  if (body !== undefined) {
+    init.headers = headers({ 'Content-Type': 'application/json' })
+    init.body = JSON.stringify(body)
+  }
+  return (await ask(path, init)).json()
+}
+
+export async function textOf(path: string): Promise<string> {
+  return (await ask(path, { headers: headers() })).text()
 }
 
 export interface StreamMessage {

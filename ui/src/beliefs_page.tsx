@@ -2,10 +2,12 @@
 import { useEffect, useRef, useState } from 'preact/hooks'
 import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
-import { call } from './api'
+import { call, hasToken } from './api'
 import { beta, density } from './beta'
+import { download } from './download'
 import { act } from './faults'
-import { robot, state } from './store'
+import { order } from './order'
+import { can, robot, state } from './store'
 import { colour, isDark } from './theme'
 import type { Strategy } from './types'
 
@@ -71,13 +73,44 @@ const kFile = 'beliefs.json'
 const exportAll = () =>
   act('Exporting what was learned', async () => {
     const learned = await call<unknown>('GET', '/api/beliefs')
-    const blob = new Blob([JSON.stringify(learned, null, 2) + '\n'], { type: 'application/json' })
-    const link = document.createElement('a')
-    link.href = URL.createObjectURL(blob)
-    link.download = kFile
-    link.click()
-    URL.revokeObjectURL(link.href)
+    download(kFile, JSON.stringify(learned, null, 2) + '\n', 'application/json')
   })
+
+// Forgetting cannot be taken back, so that it is asked twice.
+function Forget({ rule }: { rule: string }) {
+  const [asked, ask] = useState<string | null>(null) // '' is all rules
+  if (!can('post', '/api/orders')) return null
+  const words = asked === '' ? 'all that was learned' : `what was learned of ${asked}`
+  if (asked !== null)
+    return (
+      <span class="bar" role="alert">
+        Forget {words}? It cannot be taken back.
+        <button
+          type="button"
+          class="danger"
+          onClick={() => {
+            void order(`Forgetting ${words}`, { order: 'forget', ...(asked ? { rule: asked } : {}) })
+            ask(null)
+          }}
+        >
+          Forget
+        </button>
+        <button type="button" onClick={() => ask(null)}>
+          Keep
+        </button>
+      </span>
+    )
+  return (
+    <>
+      <button type="button" disabled={!hasToken || !rule} onClick={() => ask(rule)}>
+        Reset {rule} …
+      </button>
+      <button type="button" disabled={!hasToken} onClick={() => ask('')}>
+        Reset all …
+      </button>
+    </>
+  )
+}
 
 export function BeliefsPage() {
   const [chosen, choose] = useState(0)
@@ -89,6 +122,7 @@ export function BeliefsPage() {
         <button type="button" onClick={() => void exportAll()}>
           Export …
         </button>
+        <Forget rule={list[chosen]?.rule ?? ''} />
       </div>
       <div class="columns">
         <table>

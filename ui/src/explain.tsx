@@ -74,6 +74,10 @@ function Suspects({ failure }: { failure: Failure }) {
   )
 }
 
+// What makes no sense was not weighed.
+export const costOf = ({ cost, excluded }: { cost: number; excluded: unknown }) =>
+  excluded && cost === 0 ? '–' : cost.toFixed(2)
+
 function Candidates({ list, chosen }: { list: Candidate[]; chosen?: string | null }) {
   if (list.length === 0) return null
   return (
@@ -90,7 +94,7 @@ function Candidates({ list, chosen }: { list: Candidate[]; chosen?: string | nul
         {list.map((c) => (
           <tr class={c.strategy === chosen ? 'chosen' : ''}>
             <th scope="row">{c.strategy}</th>
-            <td class="number">{c.cost.toFixed(2)}</td>
+            <td class="number">{costOf(c)}</td>
             <td>{c.excluded ? c.excluded.text : <b>chosen</b>}</td>
           </tr>
         ))}

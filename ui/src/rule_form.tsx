@@ -76,7 +76,7 @@ function Field(
 
 function Choice(props: { label: string; value: string; of: string[]; take: (v: string) => void }) {
   return (
-    <label class="field">
+    <label class="field choice">
       <span>{props.label}</span>
       <select value={props.value} onChange={(e) => props.take(e.currentTarget.value)}>
         {!props.of.includes(props.value) && <option>{props.value}</option>}

@@ -3,6 +3,7 @@
 import { signal } from '@preact/signals'
 import { useEffect, useState } from 'preact/hooks'
 import { call, Refusal } from './api'
+import { costOf } from './explain'
 import { graph, robot, state } from './store'
 import type { State } from './types'
 
@@ -145,7 +146,7 @@ function PlanView({ plan }: { plan: Plan }) {
                 <tr class={c.chosen ? 'chosen' : ''}>
                   <th scope="row">{c.strategy}</th>
                   <td class="number">{(100 * c.success).toFixed(0)} %</td>
-                  <td class="number">{c.cost.toFixed(2)}</td>
+                  <td class="number">{costOf(c)}</td>
                   <td>
                     {c.excluded ? c.excluded.text : <b>chosen</b>}
                     {c.flips.length > 0 && (

@@ -1,7 +1,8 @@
 // Campaigns over the exemplars: start one, see how far it is and what it found; or open a result.
 import { signal } from '@preact/signals'
 import { useEffect, useState } from 'preact/hooks'
-import { call, hasToken, Refusal } from './api'
+import { call, hasToken, Refusal, textOf } from './api'
+import { download } from './download'
 import { act, notice } from './faults'
 import { type StudyTable, studyTable } from './study_table'
 
@@ -81,6 +82,10 @@ function Start() {
 
 const kWords = { running: 'is running', done: '✓ is done', failed: '◆ failed', stopped: 'was stopped' }
 
+// A link cannot send the token, which an address that others can reach asks for.
+const save = async (study: string) =>
+  download(`${study}.html`, await textOf('/api/studies/report'), 'text/html')
+
 function Progress() {
   const now = campaign.value
   if (!now) return null
@@ -108,7 +113,10 @@ function Progress() {
           <a href="/api/studies/report" target="_blank" rel="noopener">
             Open the report
           </a>
-          , with plots and timelines
+          , with plots and timelines, or{' '}
+          <button type="button" onClick={() => void act('Saving the report', () => save(now.study!))}>
+            Save it …
+          </button>
         </p>
       )}
     </section>

@@ -63,6 +63,10 @@ async function beliefs(page) {
   const learned = JSON.parse(readFileSync(await (await download).path(), 'utf8'))
   expect(learned.format === 'culprit-beliefs', 'another format is exported')
   expect(learned.beliefs[0].strategy === 'camera_redeploy', JSON.stringify(learned))
+  await page.getByRole('button', { name: 'Reset all …' }).click()
+  await isAccessible(page)
+  await page.getByRole('button', { name: 'Forget', exact: true }).click()
+  await row.getByText('nothing yet').waitFor()
 }
 
 const kEvil = '<img src=x onerror="window.wasHarmed = true">'

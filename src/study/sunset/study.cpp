@@ -10,6 +10,7 @@
 #include "study/managers/paced_manager.h"
 #include "study/reference/reference_manager.h"
 #include "study/reference/sunset_blackboard.h"
+#include "study/sunset/detectors.h"
 #include "study/sunset/rules.h"
 
 namespace culprit::study {
@@ -18,9 +19,12 @@ namespace {
 // When managing begins everything has run for a while, so what is not seen is not there.
 constexpr Duration kSettling = std::chrono::milliseconds(200);
 
-const char* rules_of(const Configuration& configuration, const sunset::model::Profile& profile) {
-  if (configuration.planner == "reference") return kReferenceRules;
-  return profile.has_blackboard ? kStudyRules : kLiveRules;
+std::string rules_of(const std::string& planner, const sunset::model::Profile& profile,
+                     Detectors detectors) {
+  if (planner == "reference") return kReferenceRules;
+  if (planner == "oracle") return kOracleRules;
+  if (detectors == Detectors::kPhi) return with_phi(kLiveRules);
+  return detectors == Detectors::kAge || !profile.has_blackboard ? kLiveRules : kStudyRules;
 }
 
 // 20 % off, as in the paper, which does not say in which direction: every other strategy of a rule
@@ -84,7 +88,7 @@ std::string component_of(sunset::Member member, const RuleSet& rules) {
 std::vector<std::string_view> sunset_planners() {
   return {
       "paper", "reference",   "bayes", "bayes:downtime", "bayes:adaptations", "bayes:redeployments",
-      "bt",    "metacontrol", "rosa"};
+      "bt",    "metacontrol", "rosa",  "oracle"};
 }
 
 bool has_switches(std::string_view planner) { return planner == "paper" || planner == "reference"; }
@@ -96,13 +100,17 @@ Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::ui
     if (std::find(planners.begin(), planners.end(), row.planner) == planners.end())
       return Error{"there is no planner '" + row.planner +
                    "'; there are paper, reference, bayes, bayes with an objective "
-                   "(bayes:downtime), bt, metacontrol, rosa"};
-    const auto profile = sunset::model::find_profile(row.profile);
+                   "(bayes:downtime), bt, metacontrol, rosa, oracle"};
+    const auto named = parse_profile(row.profile);
+    if (!named) return Error{named.error()};
+    const auto profile = sunset::model::find_profile(named->first);
     if (!profile) return Error{profile.error()};
-    if (row.planner == "reference" && !(*profile)->has_blackboard)
+    if (row.planner == "reference" &&
+        (!(*profile)->has_blackboard || named->second != Detectors::kOwn))
       return Error{"the reference planner reads SUNSET's blackboard, and profile '" + row.profile +
                    "' has none"};
-    const Checked checked = check(Source("study.rules", rules_of(row, **profile)));
+    const Checked checked =
+        check(Source("study.rules", rules_of(row.planner, **profile, named->second)));
     RuleSet rules = *checked.rules;  // a test checks what is built in
     if (row.probabilities == Probabilities::kMisspecified) misspecify(rules);
     settings.push_back(
@@ -141,6 +149,9 @@ std::unique_ptr<ManagingSystem> SunsetStudy::manager(const Setting& setting,
   std::unique_ptr<const Planner> planner;
   if (const auto objective = objective_of(setting.configuration.planner)) {
     planner = std::make_unique<BayesPlanner>(*objective);
+  } else if (setting.configuration.planner == "oracle") {
+    // Who knows each fault need not ask which failure is whose effect.
+    planner = std::make_unique<PaperPlanner>(PaperSwitches{false, false, false});
   } else {
     planner = std::make_unique<PaperPlanner>(setting.configuration.switches);
   }

@@ -23,7 +23,7 @@ namespace culprit::study {
 class SunsetStudy {
  public:
   // Errors: a planner or profile that does not exist, or a planner that cannot watch a profile (the
-  // reference needs a blackboard).
+  // reference needs a blackboard). A profile may name its detectors (detectors.h).
   static Expected<SunsetStudy> make(std::vector<Configuration> rows, std::uint64_t seed);
 
   // From several threads if you like.
@@ -60,7 +60,8 @@ class SunsetStudy {
 };
 
 // The planners that there are: "paper", "reference", "bayes" (balanced), "bayes:downtime" and so on
-// with another objective, and the managers of others, "bt", "metacontrol" and "rosa".
+// // with another objective, the managers of others, "bt", "metacontrol" and "rosa", and "oracle",
+// who knows each fault at once, and what ends it.
 std::vector<std::string_view> sunset_planners();
 
 // Whether a planner has the paper's D, C and S to switch off.

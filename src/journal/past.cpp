@@ -1,0 +1,189 @@
+#include "journal/past.h"
+
+#include <algorithm>
+
+#include "journal/requests.h"
+
+namespace culprit::journal {
+namespace {
+
+template <class... What>
+bool is_any_of(const Event& event) {
+  return (std::holds_alternative<What>(event.what) || ...);
+}
+
+template <class What>
+const What* order_of(const Event& event) {
+  const auto* accepted = std::get_if<OrderAccepted>(&event.what);
+  return accepted == nullptr ? nullptr : std::get_if<What>(&accepted->order.what);
+}
+
+std::optional<decltype(Event::what)> about_rule(const std::string& type, RuleId rule) {
+  if (type == "failure_detected") return FailureDetected{rule};
+  if (type == "failure_resolved") return FailureResolved{rule, {}, {}, {}};
+  if (type == "failure_lost") return FailureLost{rule};
+  if (type == "round_spent") return RoundSpent{rule, {}};
+  if (type == "last_resort_reached") return LastResortReached{rule};
+  if (type == "rule_exhausted") return RuleExhausted{rule};
+  return std::nullopt;
+}
+
+std::optional<decltype(Event::what)> about_strategy(const std::string& type, const Json& body,
+                                                    StrategyId strategy, const RuleSet& rules) {
+  if (type == "strategy_chosen" && !flag_of(body, "dry_run"))
+    return StrategyChosen{strategy, {}, {}, false};
+  if (type == "strategy_resumed") return StrategyResumed{strategy};
+  if (type == "strategy_failed") return StrategyFailed{strategy, ""};
+  const std::int64_t adaptation = integer_of(body, "adaptation", -1);
+  const auto count = static_cast<std::int64_t>(rules[strategy].adaptations.size());
+  if (type == "adaptation_done" && adaptation >= 0 && adaptation < count)
+    return AdaptationDone{strategy, static_cast<std::size_t>(adaptation), ""};
+  return std::nullopt;
+}
+
+std::optional<decltype(Event::what)> about_order(const Json& body, const RuleSet& rules) {
+  const std::string word = text_of(body, "order");
+  Order order{0, text_of(body, "author"), text_of(body, "reason"), Pause{}};
+  const auto rule = find_rule(rules, text_of(body, "rule"));
+  const auto component = find_component(rules, text_of(body, "component"));
+  if (word == "run_strategy") {
+    const auto strategy = find_strategy(rules, text_of(body, "rule"), text_of(body, "strategy"));
+    if (!strategy) return std::nullopt;
+    order.what = RunStrategy{*strategy};
+    return OrderAccepted{std::move(order)};
+  }
+  if ((!rule && !component) || (word != "silence" && word != "lift_silence")) return std::nullopt;
+  const Silenceable target = rule ? Silenceable(*rule) : Silenceable(*component);
+  if (word == "lift_silence") {
+    order.what = LiftSilence{target};
+    return OrderAccepted{std::move(order)};
+  }
+  Silence silence{target, {}};
+  if (body.contains("lasts_ns"))
+    silence.lasts = Duration(std::max<std::int64_t>(0, integer_of(body, "lasts_ns")));
+  order.what = silence;
+  return OrderAccepted{std::move(order)};
+}
+
+std::optional<decltype(Event::what)> about_process(const Json& body, const RuleSet& rules) {
+  const auto component = find_component(rules, text_of(body, "component"));
+  const std::int64_t pid = integer_of(body, "pid");
+  if (!component || pid <= 0 || pid > INT32_MAX) return std::nullopt;
+  return ComponentFound{*component, static_cast<int>(pid)};
+}
+
+bool is_over(const Silence& silence, Time began, Time now) {
+  return silence.lasts && later(began, *silence.lasts) <= now;
+}
+
+// The rule that an event of a search is about; nothing for others.
+std::optional<RuleId> searched(const Event& event, const RuleSet& rules) {
+  if (const auto* e = std::get_if<FailureDetected>(&event.what)) return e->rule;
+  if (const auto* e = std::get_if<RoundSpent>(&event.what)) return e->rule;
+  if (const auto* e = std::get_if<LastResortReached>(&event.what)) return e->rule;
+  if (const auto* e = std::get_if<RuleExhausted>(&event.what)) return e->rule;
+  if (const auto* e = std::get_if<StrategyFailed>(&event.what)) return rules[e->strategy].rule;
+  return std::nullopt;
+}
+
+// By rule: from which event on its failure is there; past.size() if it is not.
+std::vector<std::size_t> open_since(const Past& past, const RuleSet& rules) {
+  std::vector<std::size_t> since(rules.rules.size(), past.size());
+  for (std::size_t i = 0; i < past.size(); ++i) {
+    if (const auto* e = std::get_if<FailureDetected>(&past[i].what))
+      since[e->rule.index] = std::min(since[e->rule.index], i);
+    if (const auto* e = std::get_if<FailureResolved>(&past[i].what))
+      since[e->rule.index] = past.size();
+    if (const auto* e = std::get_if<FailureLost>(&past[i].what)) since[e->rule.index] = past.size();
+  }
+  return since;
+}
+
+// What each process says anew of a failure that is still there. @pre its failure is there
+bool is_said_again(const Event& event, const Past& kept, const RuleSet& rules) {
+  if (!is_any_of<FailureDetected, LastResortReached, RuleExhausted>(event)) return false;
+  return std::any_of(kept.rbegin(), kept.rend(), [&](const Event& old) {
+    return old.what.index() == event.what.index() && searched(old, rules) == searched(event, rules);
+  });
+}
+
+}  // namespace
+
+std::optional<Event> past_event(const Json& body, const RuleSet& rules) {
+  const std::string type = text_of(body, "type");
+  const auto rule = find_rule(rules, text_of(body, "rule"));
+  const auto strategy = find_strategy(rules, text_of(body, "rule"), text_of(body, "strategy"));
+  std::optional<decltype(Event::what)> what;
+  if (type == "order_accepted") what = about_order(body, rules);
+  if (type == "component_found") what = about_process(body, rules);
+  if (!what && rule) what = about_rule(type, *rule);
+  if (!what && strategy) what = about_strategy(type, body, *strategy, rules);
+  if (!what) return std::nullopt;
+  return Event{Time(Duration(integer_of(body, "time"))), std::move(*what)};
+}
+
+Past still_counting(const Past& past, Time now, const RuleSet& rules) {
+  const std::vector<std::size_t> open = open_since(past, rules);
+  Past kept;
+  for (std::size_t i = 0; i < past.size(); ++i) {
+    const Event& event = past[i];
+    const auto* silence = order_of<Silence>(event);
+    const auto* lift = order_of<LiftSilence>(event);
+    if (silence != nullptr || lift != nullptr) {
+      const Silenceable& what = silence != nullptr ? silence->what : lift->what;
+      std::erase_if(kept, [&](const Event& old) {
+        const auto* other = order_of<Silence>(old);
+        return other != nullptr && other->what == what;
+      });
+      if (silence != nullptr && !is_over(*silence, event.at, now)) kept.push_back(event);
+      continue;
+    }
+    if (const auto* found = std::get_if<ComponentFound>(&event.what)) {
+      std::erase_if(kept, [&](const Event& old) {
+        const auto* other = std::get_if<ComponentFound>(&old.what);
+        return other != nullptr && other->component == found->component;
+      });
+      kept.push_back(event);
+      continue;
+    }
+    const auto rule = searched(event, rules);
+    if (rule && i > open[rule->index] && is_said_again(event, kept, rules)) continue;
+    const bool is_open = rule && i >= open[rule->index];
+    const bool is_only_of_search =
+        is_any_of<StrategyFailed, RoundSpent, LastResortReached, RuleExhausted>(event);
+    const bool is_recent = later(event.at, kPastCounts) > now && !is_only_of_search;
+    if (is_open || is_recent) kept.push_back(event);
+  }
+  return kept;
+}
+
+Past after_restart(const Past& past, Duration shift) {
+  Past kept;
+  for (const Event& event : past) {
+    if (order_of<Silence>(event) == nullptr && order_of<LiftSilence>(event) == nullptr) continue;
+    kept.push_back(event);
+    kept.back().at += shift;
+  }
+  return kept;
+}
+
+Json to_json(const Past& past, const RuleSet& rules) {
+  Json json = Json::array();
+  for (const Event& event : past) {
+    json.push_back(to_json(event, rules));
+    // For people there is the row that it came from.
+    json.back().erase("text");
+  }
+  return json;
+}
+
+Past past_from_json(const Json& json, const RuleSet& rules) {
+  Past past;
+  if (!json.is_array()) return past;
+  for (const Json& each : json) {
+    if (auto event = past_event(each, rules)) past.push_back(std::move(*event));
+  }
+  return past;
+}
+
+}  // namespace culprit::journal

@@ -1,0 +1,29 @@
+// What runs of culprit did on this robot, as the next one remembers it (knowledge/past.h): gathered
+// from rows, and carried on from session to session until it no longer counts.
+#pragma once
+
+#include "journal/json.h"
+#include "knowledge/past.h"
+
+namespace culprit::journal {
+
+// Nothing counts for longer, but silences, what was tried on failures that are still there,
+// and which processes there were.
+inline constexpr Duration kPastCounts = std::chrono::hours(1);
+
+// Of the body of an `event` row; nothing if it is of another kind, or about what `rules` does not
+// have.
+std::optional<Event> past_event(const Json& body, const RuleSet& rules);
+
+// Leaves out what does not count at `now` any more.
+Past still_counting(const Past& past, Time now, const RuleSet& rules);
+
+// Only what outlives a restart of the machine, whose clock then begins anew: silences. `shift` is
+// added to their times.
+Past after_restart(const Past& past, Duration shift);
+
+Json to_json(const Past& past, const RuleSet& rules);
+// Leaves out what `rules` does not have.
+Past past_from_json(const Json& json, const RuleSet& rules);
+
+}  // namespace culprit::journal

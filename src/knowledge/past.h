@@ -1,0 +1,21 @@
+// What earlier processes of culprit did on this robot, as far as it still counts: what they told,
+// oldest first.
+//
+//   StrategyChosen, StrategyResumed, OrderAccepted of RunStrategy    what was spent of the budgets
+//   FailureDetected, FailureResolved, FailureLost, AdaptationDone    health, launches, cooldowns
+//   StrategyFailed, RoundSpent, LastResortReached, RuleExhausted     what was tried
+//   OrderAccepted of Silence and LiftSilence                         silences
+//   ComponentFound                                                   which process it last ran in
+//
+// Events of other kinds say nothing here.
+#pragma once
+
+#include <vector>
+
+#include "knowledge/event.h"
+
+namespace culprit {
+
+using Past = std::vector<Event>;
+
+}  // namespace culprit

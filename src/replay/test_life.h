@@ -1,0 +1,104 @@
+// For tests of what outlives a process of culprit: managers that die, one after the other, on one
+// robot.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "journal/recorder.h"
+#include "journal/recovery.h"
+#include "journal/requests.h"
+#include "manager/test_robot.h"
+#include "replay/replay.h"
+
+namespace culprit::replay::test {
+
+namespace fs = std::filesystem;
+using culprit::test::TestRobot;
+using namespace std::chrono_literals;
+
+inline constexpr std::int64_t kWall = 1'800'000'000'000'000'000;
+
+template <class T>
+T value_of(Expected<T> expected) {
+  if (!expected) throw std::runtime_error(expected.error());
+  return std::move(*expected);
+}
+
+// As the file system has it at this moment: what is not written yet dies with the process.
+inline void copy_journal(const fs::path& from, const fs::path& to) {
+  for (const char* part : {"", "-wal"}) {
+    if (fs::exists(from.string() + part)) fs::copy_file(from.string() + part, to.string() + part);
+  }
+}
+
+inline journal::Moment moment(const TestRobot& robot) {
+  return {robot.now, kWall + robot.now.time_since_epoch().count()};
+}
+
+// A manager on a robot, with its journal.
+class Life {
+ public:
+  Life(const fs::path& path, TestRobot& robot, const std::string& rules_text,
+       const Governor::Options& governor = {})
+      : robot_(robot), path_(path) {
+    auto writer = value_of(journal::Writer::open(path, {}));
+    const journal::Reader reader = value_of(journal::Reader::open(path));
+    recovery = value_of(journal::recover(reader, robot.rules(), moment(robot)));
+    journal::Session session;
+    session.rules_path = "test.rules";
+    session.rules_text = rules_text;
+    session.planner = {{"name", "bayes"}};
+    session.boot = journal::boot_id();
+    session.start = robot.now;
+    session.settling = 2s;
+    session.learned = value_of(reader.learned());
+    session.is_paused = recovery.is_paused;
+    session.is_dry_run = recovery.is_dry_run;
+    session.past = journal::to_json(recovery.past, robot.rules());
+    for (const Interrupted& each : recovery.interrupted)
+      session.interrupted.push_back(journal::to_json(each, robot.rules()));
+    robot.replace_manager(manager_for(session, robot.rules(), std::make_unique<BayesPlanner>(),
+                                      {Autonomy::kAct, governor}));
+    journal::Recorder::Options options;
+    options.path = path;
+    options.wall_clock = [&robot] { return kWall + robot.now.time_since_epoch().count(); };
+    recorder_ = std::make_unique<journal::Recorder>(std::move(writer), options, session,
+                                                    robot.manager().knowledge());
+    robot.before_commands = [this](auto& observations, auto commands) {
+      return step(observations, commands);
+    };
+  }
+
+  // After so many steps that ask or say anything; whether its last requests still go out.
+  void die_after(int steps, bool sends) {
+    steps_left_ = steps;
+    sends_ = sends;
+  }
+  bool is_dead() const { return is_dead_; }
+  fs::path remains() const { return path_.string() + ".remains"; }
+
+  journal::Recovery recovery;  // what it found
+
+ private:
+  bool step(std::vector<Observation>& observations, std::span<const Command> commands) {
+    if (is_dead_) return false;
+    recorder_->stepped(robot_.now, observations, commands, robot_.manager().events());
+    const bool matters = !commands.empty() || !robot_.manager().events().empty();
+    if (steps_left_ < 0 || !matters || --steps_left_ >= 0) return true;
+    is_dead_ = true;
+    copy_journal(path_, remains());
+    return sends_;
+  }
+
+  TestRobot& robot_;
+  fs::path path_;
+  std::unique_ptr<journal::Recorder> recorder_;
+  int steps_left_ = -1;
+  bool sends_ = true;
+  bool is_dead_ = false;
+};
+
+}  // namespace culprit::replay::test

@@ -1,0 +1,74 @@
+// What is claimed of culprit on SUNSET (docs/planning.md), on fewer runs than there.
+#include "study/sunset/study.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "study/campaign_result.h"
+#include "study/sunset/detectors.h"
+#include "study/sunset/rules.h"
+
+namespace culprit::study {
+namespace {
+
+constexpr PaperSwitches kFull;
+constexpr PaperSwitches kWithoutImpact{true, true, false};
+
+CampaignResult played(std::vector<Configuration> rows, std::uint32_t runs) {
+  const auto study = SunsetStudy::make(rows, 1);
+  CampaignFold fold({std::move(rows), runs, 1, "", ""});
+  const Campaign campaign = fold.result().campaign;
+  for (std::uint64_t i = 0; i < campaign.size(); ++i) fold.add(study->run(campaign[i]));
+  return std::move(fold).result();
+}
+
+TEST(SunsetClaims, BalancedIsBetterThanThePapersFullConfigurationInEveryHonestMetric) {
+  const CampaignResult result = played({{kFull, "paper"}, {kFull, "bayes"}}, 162);
+  for (const Metric metric : {Metric::kHonestDowntime, Metric::kStrategiesPerFault,
+                              Metric::kWrongComponent, Metric::kRecovery})
+    EXPECT_LT(result.rows[1][metric].mean(), result.rows[0][metric].mean()) << name(metric);
+  EXPECT_LE(result.rows[1][Metric::kUnresolved].mean(), result.rows[0][Metric::kUnresolved].mean());
+}
+
+// Its nearest among the paper's configurations is the one that ignores impact.
+TEST(SunsetClaims, TheDowntimeObjectiveHasTheLowestDowntime) {
+  const CampaignResult result = played({{kWithoutImpact, "paper"}, {kFull, "bayes:downtime"}}, 540);
+  EXPECT_LT(result.rows[1][Metric::kHonestDowntime].mean(),
+            result.rows[0][Metric::kHonestDowntime].mean());
+  EXPECT_LT(result.rows[1][Metric::kStrategiesPerFault].mean(),
+            result.rows[0][Metric::kStrategiesPerFault].mean());
+}
+
+TEST(SunsetClaims, WithAgesDowntimeIsCloseToThatOfAnOracle) {
+  for (const char* profile : {"live", "live:phi"}) {
+    SCOPED_TRACE(profile);
+    const CampaignResult result =
+        played({{kFull, "oracle", profile}, {kFull, "bayes:downtime", profile}}, 162);
+    const Row& oracle = result.rows[0];
+    const Row& bayes = result.rows[1];
+    EXPECT_EQ(oracle[Metric::kWrongComponent].mean(), 0);
+    EXPECT_LE(oracle[Metric::kStrategiesPerFault].mean(), 1);
+    EXPECT_LT(bayes[Metric::kHonestDowntime].mean(), 1.5);
+    EXPECT_LT(bayes[Metric::kHonestDowntime].mean(), 1.5 * oracle[Metric::kHonestDowntime].mean());
+  }
+}
+
+TEST(Detectors, AreNamedBehindTheProfile) {
+  EXPECT_EQ(*parse_profile("paper"), std::pair(std::string("paper"), Detectors::kOwn));
+  EXPECT_EQ(*parse_profile("head:age"), std::pair(std::string("head"), Detectors::kAge));
+  EXPECT_EQ(*parse_profile("live:phi"), std::pair(std::string("live"), Detectors::kPhi));
+  EXPECT_EQ(parse_profile("live:eye").error(),
+            "there are no detectors 'eye'; there are own, age, phi");
+  EXPECT_FALSE(SunsetStudy::make({{kFull, "reference", "paper:age"}}, 1));
+}
+
+TEST(Detectors, PhiTakesThePlaceOfEachAge) {
+  const std::string rules = with_phi(kLiveRules);
+  EXPECT_THAT(rules, testing::Not(testing::HasSubstr("age(")));
+  EXPECT_THAT(rules, testing::Not(testing::HasSubstr("silence\n")));
+  EXPECT_THAT(rules, testing::HasSubstr("phi(/managed_subsystem/segmentation) > suspicion\n"));
+  EXPECT_THAT(rules, testing::HasSubstr("CONST suspicion     = 8\n"));
+}
+
+}  // namespace
+}  // namespace culprit::study
