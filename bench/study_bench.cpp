@@ -1,5 +1,5 @@
-// The SUNSET study in virtual time: how long the paper's ablation takes on one core, and whether
-// more runs need more memory.
+// The studies in virtual time: how long the paper's ablation on SUNSET and all managers of SUAVE
+// take on one core, and whether more runs need more memory.
 #include <chrono>
 #include <fstream>
 #include <string>
@@ -8,6 +8,7 @@
 
 #include "claims.h"
 #include "study/campaign_result.h"
+#include "study/suave/campaign.h"
 #include "study/sunset/study.h"
 
 namespace culprit::bench {
@@ -52,6 +53,23 @@ void sunset_study(benchmark::State& state) {
   }
 }
 BENCHMARK(sunset_study)->Iterations(1)->Unit(benchmark::kSecond);
+
+void suave_study(benchmark::State& state) {
+  study::SuaveCampaign campaign;
+  campaign.plan = *suave::model::find_mission_plan("extended");
+  campaign.generation = *suave::model::find_generation("era");
+  for (const study::SuaveContender& each : study::suave_contenders())
+    campaign.managers.push_back(each.name);
+  campaign.runs = 100;
+  campaign.seed = 1;
+  for (auto _ : state) {
+    const auto begin = Clock::now();
+    benchmark::DoNotOptimize(study::run_campaign(campaign, 1));
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    claim("SUAVE's extended mission, 6 managers x 100 runs, on one core", seconds, 10, "s");
+  }
+}
+BENCHMARK(suave_study)->Iterations(1)->Unit(benchmark::kSecond);
 
 }  // namespace
 }  // namespace culprit::bench

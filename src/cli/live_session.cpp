@@ -149,8 +149,6 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
   return session;
 }
 
-LiveSession::~LiveSession() = default;
-
 RunBeginning LiveSession::look_back() {
   return begin_journal(frame_.options.journal_path(rules_), rules_, {robot_->now(), wall_now()});
 }

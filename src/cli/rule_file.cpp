@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "cli/console.h"
+#include "language/improvise.h"
 
 namespace culprit::cli {
 
@@ -16,6 +17,20 @@ Expected<LoadedRules> read_rules(const std::string& path, Strictness strictness,
   for (const Diagnostic& d : checked.diagnostics) remarks += render(d, *source, colour);
   if (!checked.rules) return Error{fmt::format("{} has errors\n{}", path, remarks)};
   return LoadedRules{std::move(*checked.rules), std::string(source->text()), std::move(remarks)};
+}
+
+Expected<LoadedRules> improvised(LoadedRules loaded, const std::string& path) {
+  const std::string more = improvised_rules(loaded.rules);
+  if (more.empty()) return loaded;
+  const Source source(path, loaded.text + more);
+  Checked checked = check(source);
+  if (!checked.rules) {
+    std::string why;
+    for (const Diagnostic& d : checked.diagnostics) why += render(d, source, Colour::kOff);
+    return Error{fmt::format("{} cannot be improvised on: name nothing \"{}...\"\n{}", path,
+                             kImprovised, why)};
+  }
+  return LoadedRules{std::move(*checked.rules), loaded.text + more, std::move(loaded.remarks)};
 }
 
 std::unique_ptr<const RuleSet> load_rules(const std::string& path, Strictness strictness) {

@@ -19,6 +19,9 @@ Expected<LoadedRules> read_rules(const std::string& path,
                                  Strictness strictness = Strictness::kLenient,
                                  Colour colour = Colour::kOff);
 
+// The same with rules for components that nobody wrote one for (language/improvise.h).
+Expected<LoadedRules> improvised(LoadedRules loaded, const std::string& path);
+
 // Reads and checks a rule file. Prints what is wrong with it to stderr; null if that are errors.
 std::unique_ptr<const RuleSet> load_rules(const std::string& path,
                                           Strictness strictness = Strictness::kLenient);

@@ -38,6 +38,12 @@ std::string name_of(const RuleSet& rules) {
   return rules.robot.empty() ? "the robot" : rules.robot;
 }
 
+Expected<LoadedRules> rules_for(const RunOptions& options, Colour colour) {
+  auto loaded = read_rules(options.rules, Strictness::kLenient, colour);
+  if (!loaded || !options.improvise) return loaded;
+  return improvised(std::move(*loaded), options.rules);
+}
+
 // The session that is on, for other threads, and the rules that are to be next.
 class Stage {
  public:
@@ -46,7 +52,8 @@ class Stage {
     std::string author;
   };
 
-  explicit Stage(std::string path) : path_(std::move(path)) {}
+  // `options` must outlive it.
+  explicit Stage(const RunOptions& options) : options_(options) {}
 
   // Null: none is on now.
   void enter(LiveSession* session) {
@@ -63,14 +70,14 @@ class Stage {
   }
   // web::Reload
   Expected<std::size_t> reload(const std::string& author) {
-    auto loaded = read_rules(path_);
+    auto loaded = rules_for(options_, Colour::kOff);
     if (!loaded) return Error{loaded.error()};
     const std::size_t count = loaded->rules.rules.size();
     const std::lock_guard lock(mutex_);
     if (session_ == nullptr) return Error{"the rules are just being reloaded; ask again"};
     if (loaded->rules.robot != session_->rules().robot)
       return Error{fmt::format("{} is now about the robot '{}' instead of '{}'; start culprit anew",
-                               path_, loaded->rules.robot, session_->rules().robot)};
+                               options_.rules, loaded->rules.robot, session_->rules().robot)};
     next_ = Next{std::move(*loaded), author};
     session_->leave();
     return count;
@@ -81,7 +88,7 @@ class Stage {
   }
 
  private:
-  const std::string path_;
+  const RunOptions& options_;
   std::mutex mutex_;  // guards what follows
   LiveSession* session_ = nullptr;
   std::optional<Next> next_;
@@ -182,7 +189,7 @@ int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, Role
 }
 
 int run(const RunOptions& options) {
-  auto rules = read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
+  auto rules = rules_for(options, colour_of(STDERR_FILENO));
   if (!rules) return complain(rules.error());
   fmt::print(stderr, "{}", rules->remarks);
   const auto governor = options.governor.options();
@@ -191,7 +198,7 @@ int run(const RunOptions& options) {
   if (!role) return complain(role.error()), kUsage;
   if (!role->reason().empty()) fmt::print("culprit: {}\n", role->reason());
   StopSignals signals(Hangup::kReloads);
-  Stage stage(options.rules);
+  Stage stage(options);
   web::Hub hub([&] { stage.interrupt(); });
   web::Metrics metrics;
   LiveSession::Frame frame{options, *governor, false, true, {}, hub, metrics, live_now()};

@@ -31,6 +31,9 @@ void RunOptions::add_to(CLI::App& command) {
   command.add_flag("--dry-run", dry_run, "Say what would be done, and do nothing");
   command.add_flag("--launch", launch,
                    "Start components that are missing, by their LAUNCH commands");
+  command.add_flag("--improvise", improvise,
+                   "Also repair components that no rule adapts, by what they offer: restart, "
+                   "redeploy");
   command
       .add_option("--settle", settle_seconds,
                   "For so many seconds, nothing is called missing because it was not seen")

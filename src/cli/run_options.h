@@ -18,6 +18,7 @@ struct RunOptions {
   std::string rules;
   bool dry_run = false;
   bool launch = false;
+  bool improvise = false;
   PlannerOptions planner;
   GovernorOptions governor;
   double forgetting = 1;

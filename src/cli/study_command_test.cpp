@@ -74,6 +74,19 @@ TEST_F(StudyCommand, GivesTheRowsOfAllThreeTables) {
   EXPECT_EQ(document["learning"].size(), 5);  // strategies of F1 and F4
 }
 
+TEST_F(StudyCommand, SeesOutagesByTheDetectorsThatAreChosen) {
+  ASSERT_EQ(run({"sunset", "--ablation", "--runs", "2", "--planner", "bayes", "--planner", "oracle",
+                 "--detectors", "own,phi", "--json"}),
+            kOk)
+      << complaint;
+  const auto rows = nlohmann::json::parse(said)["rows"];
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0]["profile"], "paper");
+  EXPECT_EQ(rows[2]["profile"], "paper:phi");
+  EXPECT_EQ(rows[3]["planner"], "oracle");
+  EXPECT_LT(rows[2]["honest"]["downtime_s"]["mean"], rows[0]["honest"]["downtime_s"]["mean"]);
+}
+
 TEST_F(StudyCommand, GivesTheSameBytesWithAnyNumberOfJobs) {
   ASSERT_EQ(run_small({"--jobs", "1", "--json"}), kOk);
   const std::string one = said;

@@ -1,0 +1,84 @@
+// Improvised rules on a robot: what nobody wrote a rule for is repaired too, and only then.
+#include "language/improvise.h"
+
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+constexpr const char* kRules = R"(COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT map NODE /map LAUNCH "map"
+COMPONENT lidar NODE /lidar
+RULE CameraSilent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY restart 50 10
+      ADAPTATION camera restart 4
+)";
+
+std::string improvised() {
+  return kRules + improvised_rules(*check(Source("test.rules", kRules)).rules);
+}
+
+TEST(Improvise, WritesRulesForWhatNobodyAdapts) {
+  EXPECT_EQ(improvised_rules(*check(Source("test.rules", kRules)).rules), R"(
+# Improvised: nobody wrote rules for these components.
+
+RULE improvised_map
+  POLICIES NON_CRITICAL FOR 2s ATTEMPTS 3
+  TRIGGER !alive(map) || lifecycle(map) == "finalized" || lifecycle(map) == "unconfigured"
+    STRATEGY improvised_restart 50 2 WHEN lifecycle(map) == "unconfigured"
+      ADAPTATION map restart 2
+    STRATEGY improvised_redeploy 50 2
+      ADAPTATION map redeploy 4
+
+RULE improvised_lidar
+  POLICIES NON_CRITICAL FOR 2s ATTEMPTS 3
+  TRIGGER lifecycle(lidar) == "unconfigured"
+    STRATEGY improvised_restart 50 2 WHEN lifecycle(lidar) == "unconfigured"
+      ADAPTATION lidar restart 2
+)");
+}
+
+TEST(Improvise, HasNothingToAddToItsOwnRules) {
+  const Checked checked = check(Source("test.rules", improvised()));
+  ASSERT_TRUE(checked.rules);
+  const auto before = check(Source("test.rules", kRules)).diagnostics;
+  EXPECT_EQ(checked.diagnostics.size(), before.size()) << "nothing is wrong with what is added";
+  EXPECT_EQ(improvised_rules(*checked.rules), "");
+}
+
+TEST(Improvise, ReplacesAProcessThatNoRuleIsAbout) {
+  for (const bool is_on : {false, true}) {
+    TestRobot robot(is_on ? improvised() : kRules);
+    robot.add("camera", {}, "/rgb");
+    robot.add("map");
+    robot.add("lidar");
+    robot.discover();
+    robot.run_for(6s);
+    robot.kill("map");
+    robot.run_for(20s);
+    EXPECT_EQ(robot.works("map"), is_on);
+    EXPECT_EQ(robot.count("improvised_redeploy") > 0, is_on) << "what is said is marked";
+  }
+}
+
+TEST(Improvise, BringsALifecycleBackAndLeavesAnInactiveOneAlone) {
+  TestRobot robot(improvised());
+  robot.add("camera", {}, "/rgb");
+  robot.add("map").state = Lifecycle::kInactive;
+  robot.add("lidar");
+  robot.discover();
+  robot.run_for(6s);
+  robot["lidar"].state = Lifecycle::kUnconfigured;
+  robot.tell(LifecycleRead{ComponentId(2), Lifecycle::kUnconfigured});
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.was_asked("lidar: "));
+  EXPECT_FALSE(robot.was_asked("map: activate"));
+  EXPECT_FALSE(robot.was_asked("map: stop"));
+}
+
+}  // namespace
+}  // namespace culprit::test
