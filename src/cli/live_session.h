@@ -37,7 +37,6 @@ class LiveSession {
 
   // Joins the robot's DDS domain. From then on what it shows is kept until the session begins.
   static Expected<std::unique_ptr<LiveSession>> open(const Frame& frame, LoadedRules rules);
-  ~LiveSession();
 
   // Takes over what the journal knows of the last run: at the beginning of a run.
   void begin(const std::atomic<bool>& stop);
