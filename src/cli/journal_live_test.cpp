@@ -121,7 +121,7 @@ RULE CameraStopped
 )");
   camera.signal(SIGKILL);
   camera.wait();
-  ASSERT_TRUE(run.prints("CameraGone detected")) << run.output();
+  ASSERT_TRUE(run.prints("camera is held responsible")) << run.output();
   run.signal(SIGHUP);
   ASSERT_TRUE(run.prints("is reloaded, with 2 rules")) << run.output();
   ASSERT_TRUE(run.prints("camera_redeploy for CameraGone was under way")) << run.output();
