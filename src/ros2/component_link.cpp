@@ -62,7 +62,7 @@ void ComponentLink::service_seen(const std::string& service, const std::string& 
   }
   if (service == node_ + "/change_state") {
     watch_transitions();
-    read_lifecycle();
+    read_lifecycle(kJoining, Told::kAlways);
   }
   if (service == node_ + "/get_parameters") read_parameters();
   if (service == node_ + "/change_mode") modes();
@@ -116,29 +116,44 @@ ServiceClient* ComponentLink::routine(const std::string& service, const std::str
 
 // ---- what is read without being commanded
 
-void ComponentLink::read_lifecycle() {
+void ComponentLink::check_lifecycle() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!lifecycle_) return;
+  }
+  read_lifecycle(kProbe, Told::kIfNew);
+}
+
+void ComponentLink::read_lifecycle(Duration patience, Told told) {
   ServiceClient* client = lifecycle();
   if (client == nullptr) return;
-  client->probe()->call(
-      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kJoining,
-      [this](const CallResult& result) {
-        if (result.outcome != CallOutcome::kAnswered) return;
-        const auto response = decode<srv::GetState::Response>(result.reply);
-        if (response)
-          inbox_.put(LifecycleRead{component_, to_lifecycle(response->current_state.id)});
-      });
+  client->probe()->call(encode(srv::GetState::Request{}), Repeat::kUntilAnswered, patience,
+                        [this, told](const CallResult& result) {
+                          if (result.outcome != CallOutcome::kAnswered) return;
+                          const auto response = decode<srv::GetState::Response>(result.reply);
+                          if (response) tell(to_lifecycle(response->current_state.id), told);
+                        });
+}
+
+void ComponentLink::tell(Lifecycle state, Told told) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (told == Told::kIfNew && told_ == state) return;
+    told_ = state;
+  }
+  inbox_.put(LifecycleRead{component_, state});
 }
 
 void ComponentLink::watch_transitions() {
   const std::lock_guard lock(mutex_);
   if (transitions_) return;
   constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 10};
-  auto subscription = RawSubscription::create(
-      self_, node_ + "/transition_event", msg::TransitionEvent::kType, kQos, PayloadUse::kWhole,
-      [this](const Sample& sample) {
-        const auto event = decode<msg::TransitionEvent>(sample.payload);
-        if (event) inbox_.put(LifecycleRead{component_, to_lifecycle(event->goal_state.id)});
-      });
+  auto subscription =
+      RawSubscription::create(self_, node_ + "/transition_event", msg::TransitionEvent::kType, kQos,
+                              PayloadUse::kWhole, [this](const Sample& sample) {
+                                const auto event = decode<msg::TransitionEvent>(sample.payload);
+                                if (event) tell(to_lifecycle(event->goal_state.id), Told::kAlways);
+                              });
   if (subscription) transitions_ = std::move(*subscription);
 }
 
@@ -224,7 +239,7 @@ void ComponentLink::run(const Command& command, const ReadLifecycle&) {
   ask<srv::GetState>(client == nullptr ? nullptr : client->probe(), {}, Repeat::kUntilAnswered,
                      command, [this](const srv::GetState::Response& response) {
                        const Lifecycle state = to_lifecycle(response.current_state.id);
-                       inbox_.put(LifecycleRead{component_, state});
+                       tell(state, Told::kAlways);
                        return Answer{Outcome::kDone, state, ""};
                      });
 }

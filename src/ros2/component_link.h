@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "language/rule_set.h"
@@ -33,6 +34,11 @@ class ComponentLink {
 
   // A cheap read that proves that the node answers.
   void probe();
+
+  // Reads the state of a node that was seen to have a lifecycle, and tells it if it is another than
+  // was told last. Events tell of transitions sooner, and they may be lost: nobody repeats them,
+  // and the first ones pass before both sides know of each other.
+  void check_lifecycle();
 
   void execute(const Command& command);
 
@@ -60,7 +66,9 @@ class ComponentLink {
            const Command& command, Understand understand);
   void reply(const Command& command, Answer answer);
 
-  void read_lifecycle();
+  enum class Told : std::uint8_t { kAlways, kIfNew };
+  void read_lifecycle(Duration patience, Told told);
+  void tell(Lifecycle state, Told told);
   void watch_transitions();
   void read_parameters();
 
@@ -84,6 +92,7 @@ class ComponentLink {
   std::map<std::string, std::unique_ptr<ServiceClient>> routines_;
   std::map<std::string, std::string> services_;  // that the node offers: name -> type
   std::unique_ptr<RawSubscription> transitions_;
+  std::optional<Lifecycle> told_;
 };
 
 }  // namespace culprit::ros2

@@ -237,6 +237,10 @@ void Link::on_parameter_event(const msg::ParameterEvent& event) {
 
 void Link::probe() {
   for (const auto& [node, component] : probed_) make_link(component, node)->probe();
+  for (const Input& input : rules_.inputs) {
+    if (input.kind != Input::Kind::kLifecycle) continue;
+    if (ComponentLink* link = link_of(input.component)) link->check_lifecycle();
+  }
 }
 
 // ---- commands

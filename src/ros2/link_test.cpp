@@ -1,5 +1,6 @@
 #include "ros2/link.h"
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <unistd.h>
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "language/checker.h"
+#include "ros2/lifecycle.h"
 #include "ros2/lifecycle_node.h"
 #include "ros2/live_test.h"
 #include "ros2/services.h"
@@ -237,6 +239,33 @@ TEST(Link, SteersLifecycleAndParameters) {
   EXPECT_TRUE(linked.wait<ParameterRead>([](const ParameterRead& r) {
     return r.value == Value(3.0);
   })) << "announced";
+}
+
+TEST(Link, KnowsTheStateOfANodeWhoseTransitionsItDoesNotHearOf) {
+  const TestDomain domain;
+  LiveContext context(domain.options());
+  std::unique_ptr<Node> node;
+  std::vector<std::unique_ptr<ServiceServer>> services;
+  std::atomic<std::uint8_t> state = static_cast<std::uint8_t>(LifecycleState::kInactive);
+  context.run([&] {
+    node = std::move(*Node::create(*context, {"/", "robot"}));
+    services.push_back(std::move(*node->create_service<srv::ChangeState>(
+        "~/change_state",
+        [](const srv::ChangeState::Request&) { return srv::ChangeState::Response{false}; })));
+    services.push_back(std::move(
+        *node->create_service<srv::GetState>("~/get_state", [&](const srv::GetState::Request&) {
+          return srv::GetState::Response{{state, ""}};
+        })));
+  });
+  Linked linked(domain);
+  const auto reads = [&](Lifecycle expected) {
+    return linked.wait<LifecycleRead>([&](const LifecycleRead& r) { return r.state == expected; })
+        .has_value();
+  };
+  EXPECT_TRUE(reads(Lifecycle::kInactive));
+  state = static_cast<std::uint8_t>(LifecycleState::kActive);
+  EXPECT_TRUE(reads(Lifecycle::kActive));
+  context.run([&] { services.clear(); });
 }
 
 TEST(Link, SaysWhyAParameterCannotBe) {
