@@ -175,6 +175,7 @@ void Link::on_change(const GraphChange& change) {
 void Link::on_joined(const GraphNode& node) {
   inbox_.put(NodeAppeared{node.name, node.pid});
   pids_[node.name] = node.pid;
+  for (auto& [manager, systems] : systems_) std::erase(systems, node.name);
   const auto component = binding_.bind(node.name);
   if (!component) return;
   make_link(*component, node.name);
@@ -196,13 +197,16 @@ void Link::on_left(const std::string& node) {
 }
 
 // A system of system_modes is no node: its mode manager offers its services, and it is there as
-// long as the manager is.
+// long as the manager is. It offers the same for nodes that have modes, which are there by
+// themselves.
 void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
   const std::string system = service.name.substr(0, service.name.rfind('/'));
   const auto component = binding_.bind(system);
   if (system == manager || !component || rules_[*component].node != system) return;
-  systems_[manager].push_back(system);
-  inbox_.put(NodeAppeared{system, pids_[manager]});
+  if (!pids_.contains(system)) {
+    systems_[manager].push_back(system);
+    inbox_.put(NodeAppeared{system, pids_[manager]});
+  }
   make_link(*component, system)->service_seen(service.name, service.type);
 }
 

@@ -1,5 +1,6 @@
 #include "ros2/link.h"
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
@@ -58,6 +59,14 @@ class Linked {
       const auto* what = std::get_if<What>(&seen_[i].what);
       if (what != nullptr && fits(*what)) return *what;
     }
+  }
+  // Whether one was among those that came so far.
+  template <class What, class Fits>
+  bool has_seen(Fits fits) const {
+    return std::any_of(seen_.begin(), seen_.end(), [&](const Observation& observation) {
+      const auto* what = std::get_if<What>(&observation.what);
+      return what != nullptr && fits(*what);
+    });
   }
   Reply ask(decltype(Command::what) what, Duration timeout = 5s,
             ComponentId component = ComponentId(0)) {
@@ -328,6 +337,36 @@ TEST(Link, ChangesModes) {
   Linked linked(domain);
   EXPECT_EQ(linked.ask(ChangeMode{"fast"}).outcome, Outcome::kDone);
   EXPECT_EQ(std::get<Value>(linked.ask(ReadMode{}).value), Value(std::string("fast")));
+}
+
+TEST(Link, TellsSystemsFromNodesWhoseModesAManagerChanges) {
+  const TestDomain domain;
+  Robot robot(domain);
+  Linked linked(domain);
+  ASSERT_TRUE(linked.sees("/robot"));
+  const auto is = [](const char* name) {
+    return [=](const auto& seen) { return seen.node == name; };
+  };
+  {
+    LiveContext context(domain.options());
+    std::unique_ptr<Node> manager;
+    std::vector<std::unique_ptr<ServiceServer>> services;
+    context.run([&] {
+      manager = std::move(*Node::create(*context, {"/", "modes"}));
+      for (const char* service : {"/robot/change_mode", "/absent/change_mode"})
+        services.push_back(std::move(*manager->create_service<srv::ChangeMode>(
+            service,
+            [](const srv::ChangeMode::Request&) { return srv::ChangeMode::Response{true}; })));
+    });
+    EXPECT_TRUE(linked.sees("/absent")) << "a system is there with its manager";
+    context.run([&] {
+      services.clear();
+      manager.reset();
+    });
+  }
+  EXPECT_TRUE(linked.wait<NodeVanished>(is("/modes")));
+  EXPECT_TRUE(linked.has_seen<NodeVanished>(is("/absent")));
+  EXPECT_FALSE(linked.has_seen<NodeVanished>(is("/robot"))) << "a node is there by itself";
 }
 
 TEST(Link, AnswersForNodesThatAreNotThere) {
