@@ -9,7 +9,10 @@ namespace {
 
 std::string make_temporary_folder() {
   std::string path = (std::filesystem::temp_directory_path() / "culprit-tests-XXXXXX").string();
-  return mkdtemp(path.data()) == nullptr ? std::string() : path;
+  if (mkdtemp(path.data()) == nullptr) return "";
+  // For tests that take another user's part.
+  std::filesystem::permissions(path, static_cast<std::filesystem::perms>(0755));
+  return path;
 }
 
 }  // namespace
