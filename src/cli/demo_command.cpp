@@ -29,6 +29,7 @@ namespace culprit::cli {
 namespace {
 
 struct DemoOptions {
+  bool is_extended = false;
   std::string robot = "sunset";
   std::string scenario;
   std::uint64_t seed = 1;
@@ -221,13 +222,19 @@ int demo_sunset(const DemoOptions& options) {
 }
 
 int demo(const DemoOptions& options) {
+  if (options.robot == "sunset" && options.is_extended) {
+    fmt::print(stderr, "culprit: --extended is for --robot suave\n");
+    return kUsage;
+  }
   if (options.robot == "sunset") return demo_sunset(options);
   if (!options.scenario.empty() || options.stay) {
     fmt::print(stderr,
-               "culprit: --scenario and --stay are for --robot sunset; SUAVE has one mission\n");
+               "culprit: --scenario and --stay are for --robot sunset; SUAVE has its missions, the "
+               "standard one and --extended\n");
     return kUsage;
   }
   SuaveDemo::Options setup;
+  setup.is_extended = options.is_extended;
   setup.speed = options.speed;
   setup.seed = options.seed;
   setup.planner = options.planner.factory();
@@ -252,6 +259,9 @@ void add_demo(CLI::App& app, int& exit_code) {
       "One scenario instead: 001 to 018, a name such as image_shift+gpu_failure, 'random', or what "
       "happens to "
       "processes: kill:camera, stop:depth, crash:segmentation, kill:camera+segmentation");
+  command->add_flag(
+      "--extended", options->is_extended,
+      "With --robot suave: the battery runs low as well, and what dies is started anew");
   command->add_option("--seed", options->seed, "Of the flight or dive, and of 'random'")
       ->capture_default_str();
   command->add_option("--speed", options->speed, "How much faster than real time the robot lives")

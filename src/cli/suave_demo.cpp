@@ -18,11 +18,26 @@ using namespace std::chrono_literals;
 
 constexpr double kMissionSec = 300;  // of robot time, at most
 
+constexpr const char* kModesFile = "suave-modes.yaml";
+
 std::string processes_with(const std::filesystem::path& modes) {
   std::string text;
   for (const char* name : {"vehicle", "search", "follow", "motion", "recharge", "mission"})
     text += fmt::format("COMPONENT {0} LAUNCH \"suave-node {0}\"\n", name);
   return text + fmt::format("COMPONENT mode_manager LAUNCH \"culprit modes {}\"\n", modes.string());
+}
+
+// What the rules can start are the exemplar's nodes; here these are our own.
+RuleSet rules_of(bool is_extended, const std::filesystem::path& modes) {
+  RuleSet rules = is_extended ? embedded_rules("suave-extended.rules", kSuaveExtendedRules)
+                              : embedded_rules("suave.rules", kSuaveRules);
+  for (Component& component : rules.components) {
+    if (component.launch.empty()) continue;
+    const std::string function = component.name.substr(0, component.name.find("_node"));
+    component.launch = {"suave-node", function};
+    if (component.name == "mode_manager") component.launch = {"culprit", "modes", modes.string()};
+  }
+  return rules;
 }
 
 }  // namespace
@@ -31,16 +46,21 @@ Expected<std::unique_ptr<SuaveDemo>> SuaveDemo::start(Options options,
                                                       const std::atomic<bool>& stop) {
   auto domain = make_own_domain();
   if (!domain) return Error{domain.error()};
-  std::unique_ptr<SuaveDemo> demo(new SuaveDemo(std::move(options), stop, std::move(*domain)));
+  auto state = make_state_folder();
+  if (!state) return Error{state.error()};
+  std::unique_ptr<SuaveDemo> demo(
+      new SuaveDemo(std::move(options), stop, std::move(*domain), std::move(*state)));
   if (auto opened = demo->open(); !opened) return Error{opened.error()};
   return demo;
 }
 
-SuaveDemo::SuaveDemo(Options options, const std::atomic<bool>& stop, ros2::DomainLock domain)
+SuaveDemo::SuaveDemo(Options options, const std::atomic<bool>& stop, ros2::DomainLock domain,
+                     std::filesystem::path state)
     : options_(std::move(options)),
       stop_(stop),
       domain_(std::move(domain)),
-      rules_(embedded_rules("suave.rules", kSuaveRules)),
+      state_(std::move(state)),
+      rules_(rules_of(options_.is_extended, state_ / kModesFile)),
       start_(live_now()),
       episode_(rules_) {}
 
@@ -50,10 +70,11 @@ SuaveDemo::~SuaveDemo() {
   if (runtime_.joinable()) runtime_.join();
   observer_.reset();
   if (supervisor_) supervisor_->stop_all();
+  if (robot_) robot_->supervisor().stop_all();  // what was started anew
   robot_.reset();
   supervisor_.reset();
   std::error_code error;
-  if (!keeps_state_ && !state_.empty()) std::filesystem::remove_all(state_, error);
+  if (!keeps_state_) std::filesystem::remove_all(state_, error);
 }
 
 const std::filesystem::path& SuaveDemo::keep_state() {
@@ -62,10 +83,8 @@ const std::filesystem::path& SuaveDemo::keep_state() {
 }
 
 Expected<void> SuaveDemo::open() {
-  auto state = make_state_folder();
-  if (!state) return Error{state.error()};
-  state_ = *state;
   setenv("SUAVE_SPEED", fmt::format("{}", options_.speed).c_str(), 1);
+  setenv("SUAVE_MISSION", options_.is_extended ? "extended" : "standard", 1);
   setenv("SUAVE_SEED", std::to_string(options_.seed).c_str(), 1);
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
@@ -95,7 +114,7 @@ Expected<void> SuaveDemo::open() {
 }
 
 Expected<void> SuaveDemo::start_processes() {
-  const auto modes = state_ / "suave-modes.yaml";
+  const auto modes = state_ / kModesFile;
   if (auto written = write_text(modes, kSuaveModes); !written) return written;
   processes_ = embedded_rules("processes.rules", processes_with(modes).c_str());
   supervisor_ = std::make_unique<process::Supervisor>(

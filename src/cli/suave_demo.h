@@ -2,7 +2,8 @@
 // own state folder, and nothing left behind.
 //
 // The robot is a handful of processes (exemplars/suave) and `culprit modes`, which changes their
-// modes; the water gets murky and a thruster fails as in the standard mission.
+// modes; the water gets murky and a thruster fails, and in the extended mission the battery runs
+// low. There culprit also starts anew what dies.
 #pragma once
 
 #include <atomic>
@@ -35,6 +36,7 @@ struct MissionOutcome {
 class SuaveDemo {
  public:
   struct Options {
+    bool is_extended = false;
     double speed = 1;  // robot seconds in a second
     std::uint64_t seed = 1;
     PlannerFactory planner = [] { return std::make_unique<PaperPlanner>(); };
@@ -54,7 +56,8 @@ class SuaveDemo {
   const std::filesystem::path& keep_state();
 
  private:
-  SuaveDemo(Options options, const std::atomic<bool>& stop, ros2::DomainLock domain);
+  SuaveDemo(Options options, const std::atomic<bool>& stop, ros2::DomainLock domain,
+            std::filesystem::path state);
   Expected<void> open();
   Expected<void> start_processes();
   void on_events(std::span<const Event> events);
@@ -62,9 +65,9 @@ class SuaveDemo {
   Options options_;
   const std::atomic<bool>& stop_;
   ros2::DomainLock domain_;
-  const RuleSet rules_;
-  std::filesystem::path state_;
+  const std::filesystem::path state_;
   bool keeps_state_ = false;
+  const RuleSet rules_;
 
   RuleSet processes_;  // as components of their own: what is managed are their nodes
   Inbox processes_inbox_;

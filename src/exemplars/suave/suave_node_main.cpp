@@ -55,12 +55,16 @@ int main(int argc, char** argv) {
       ->envname("SUAVE_SPEED")
       ->check(CLI::Range(0.01, 100.0));
   app.add_option("--seed", options.seed, "Of the mission, 1 unless given")->envname("SUAVE_SEED");
+  std::string mission = "standard";
+  app.add_option("--mission", mission, "standard, or extended: the battery runs low")
+      ->envname("SUAVE_MISSION")
+      ->check(CLI::IsMember({"standard", "extended"}))
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
-  // The newest: only it publishes what a live manager can rely on. Its faults are the standard
-  // ones.
+  // The newest: only it publishes what a live manager can rely on.
   const model::Generation& generation = **model::find_generation("new");
-  const model::MissionPlan& plan = **model::find_mission_plan("standard");
+  const model::MissionPlan& plan = **model::find_mission_plan(mission);
   return run([&](ros2::Executor& executor, ros2::Context& context) {
     const auto function = kFunctions.find(name);
     if (function != kFunctions.end()) {
