@@ -127,6 +127,7 @@ RULE CameraStopped
   ASSERT_TRUE(run.prints("camera_redeploy for CameraGone was under way")) << run.output();
   run.signal(SIGINT);
   EXPECT_EQ(run.wait(), 0);
+  kill(process_that_is_there(run.output()), SIGKILL);
   EXPECT_THAT(said_by({"log", "--journal", journal}), HasSubstr("one.rules, reloaded by SIGHUP"));
   EXPECT_THAT(said_by({"replay", journal}), HasSubstr("all decided as recorded"));
   EXPECT_THAT(said_by({"replay", journal, "--session", "1"}), HasSubstr("all decided as recorded"));
