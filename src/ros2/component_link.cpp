@@ -136,12 +136,8 @@ void ComponentLink::read_lifecycle(Duration patience, Told told) {
 }
 
 void ComponentLink::tell(Lifecycle state, Told told) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (told == Told::kIfNew && told_ == state) return;
-    told_ = state;
-  }
-  inbox_.put(LifecycleRead{component_, state});
+  const Lifecycle before = told_.exchange(state);
+  if (told == Told::kAlways || state != before) inbox_.put(LifecycleRead{component_, state});
 }
 
 void ComponentLink::watch_transitions() {

@@ -7,10 +7,10 @@
 // that a request is neither lost to discovery nor sent twice.
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 
 #include "language/rule_set.h"
@@ -84,6 +84,8 @@ class ComponentLink {
   const std::string node_;
   const RuleSet& rules_;
   Inbox& inbox_;
+  // Not under the mutex: a receive thread that waited for it would stop whoever makes a client.
+  std::atomic<Lifecycle> told_ = Lifecycle::kUnknown;
 
   std::mutex mutex_;  // guards what follows; never held while calling
   std::unique_ptr<ServiceClient> lifecycle_;
@@ -92,7 +94,6 @@ class ComponentLink {
   std::map<std::string, std::unique_ptr<ServiceClient>> routines_;
   std::map<std::string, std::string> services_;  // that the node offers: name -> type
   std::unique_ptr<RawSubscription> transitions_;
-  std::optional<Lifecycle> told_;
 };
 
 }  // namespace culprit::ros2
