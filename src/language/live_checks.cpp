@@ -11,7 +11,7 @@
 namespace culprit {
 namespace {
 
-using Kind = Occurrence::Kind;
+using OccurrenceKind = Occurrence::Kind;
 using Names = std::vector<std::string_view>;
 
 template <class Table>
@@ -80,8 +80,8 @@ class LiveChecks {
     const auto all = occurrences(file_);
     for (const Occurrence& o : all) {
       look_up(o);
-      const bool asks_state = before != nullptr && before->kind == Kind::kFunction &&
-                              before->name == "lifecycle" && o.kind == Kind::kComponent;
+      const bool asks_state = before != nullptr && before->kind == OccurrenceKind::kFunction &&
+                              before->name == "lifecycle" && o.kind == OccurrenceKind::kComponent;
       if (asks_state) managed_node(o.name, o.span);
       before = &o;
     }
@@ -97,17 +97,17 @@ class LiveChecks {
  private:
   void look_up(const Occurrence& o) {
     switch (o.kind) {
-      case Kind::kComponent:
+      case OccurrenceKind::kComponent:
         return component(o);
-      case Kind::kTopic:
+      case OccurrenceKind::kTopic:
         return topic(o);
-      case Kind::kParameter:
+      case OccurrenceKind::kParameter:
         return parameter(o);
-      case Kind::kSignal:
+      case OccurrenceKind::kSignal:
         return looked_up_signal(o);
-      case Kind::kDiagnostic:
+      case OccurrenceKind::kDiagnostic:
         return status(o);
-      case Kind::kService:
+      case OccurrenceKind::kService:
         return routine(o);
       default:
         return;
@@ -118,7 +118,8 @@ class LiveChecks {
 
   void component(const Occurrence& o) {
     const Component* c = component_of(o.name);
-    if (c == nullptr || !node_of(o.name).empty() || !is_first(Kind::kComponent, c->name)) return;
+    if (c == nullptr || !node_of(o.name).empty() || !is_first(OccurrenceKind::kComponent, c->name))
+      return;
     const auto declared = declarations_.find(c->name);
     const std::string remedy = c->launch.empty()
                                    ? "start it, or correct the name"
@@ -150,7 +151,7 @@ class LiveChecks {
     }
     const auto found = robot_.topics.find(name);
     if (found != robot_.topics.end() && found->second.is_published) return;
-    if (!is_first(Kind::kTopic, name)) return;
+    if (!is_first(OccurrenceKind::kTopic, name)) return;
     if (found != robot_.topics.end()) {
       warn(Code::kNoSuchTopic, o.span, "no node publishes '" + name + "' now",
            "start its publisher, or name a topic that is published");
@@ -171,7 +172,7 @@ class LiveChecks {
     const std::string node = node_of(o.scope);
     if (!o.scope.empty() && node.empty()) return;
     const std::string name = service_of(o.name, node);
-    if (robot_.services.contains(name) || !is_first(Kind::kService, name)) return;
+    if (robot_.services.contains(name) || !is_first(OccurrenceKind::kService, name)) return;
     constexpr const char* kRoutine = "std_srvs/srv/Trigger";
     Names routines;
     for (const auto& [service, type] : robot_.services) {
@@ -213,7 +214,7 @@ class LiveChecks {
               const std::string& lack, std::string remedy) {
     const std::string node = node_of(component);
     if (node.empty() || robot_.services.contains(node + "/" + service)) return;
-    if (!is_first(Kind::kService, node + "/" + service)) return;
+    if (!is_first(OccurrenceKind::kService, node + "/" + service)) return;
     warn(Code::kNoSuchService, place,
          "node '" + node + "' " + lack + ": it offers no service '" + service + "'",
          std::move(remedy));
@@ -223,7 +224,8 @@ class LiveChecks {
     const auto node = robot_.nodes.find(node_of(o.scope));
     if (node == robot_.nodes.end() || !node->second.parameters) return;
     const auto& parameters = *node->second.parameters;
-    if (parameters.contains(o.name) || !is_first(Kind::kParameter, node->first + "\n" + o.name))
+    if (parameters.contains(o.name) ||
+        !is_first(OccurrenceKind::kParameter, node->first + "\n" + o.name))
       return;
     warn(Code::kNoSuchParameter, o.span,
          "node '" + node->first + "' has no parameter '" + o.name + "'",
@@ -240,7 +242,7 @@ class LiveChecks {
       known.push_back(s.name);
       known.push_back(s.hardware_id);
     }
-    if (!is_first(Kind::kDiagnostic, o.name)) return;
+    if (!is_first(OccurrenceKind::kDiagnostic, o.name)) return;
     warn(Code::kNoSuchDiagnostic, o.span, "no diagnostic status '" + o.name + "' was heard",
          kListenLonger, as_written(closest(o.name, known)));
   }
@@ -257,7 +259,7 @@ class LiveChecks {
       for (const auto& [key, value] : s.values) known.push_back(key);
     }
     const std::string both = source->status.text + "\n" + source->key.text;
-    if (!is_heard || !is_first(Kind::kDiagnostic, both)) return;
+    if (!is_heard || !is_first(OccurrenceKind::kDiagnostic, both)) return;
     warn(Code::kNoSuchDiagnostic, source->key.span,
          "status '" + source->status.text + "' has no key '" + source->key.text + "'",
          "correct the key", as_written(closest(source->key.text, known)));
@@ -266,7 +268,7 @@ class LiveChecks {
   // The key of a diagnostic, or "<status>_<key>" (ros2/diagnostics_watch.h).
   void looked_up_signal(const Occurrence& o) {
     const auto signal = looked_up_.find(o.name);
-    if (signal == looked_up_.end() || !is_first(Kind::kSignal, o.name)) return;
+    if (signal == looked_up_.end() || !is_first(OccurrenceKind::kSignal, o.name)) return;
     if (robot_.value_of(*signal->second, rules_)) return;
     Names known;
     for (const auto& s : robot_.diagnostics) {
@@ -299,7 +301,9 @@ class LiveChecks {
     return own_names_;
   }
 
-  bool is_first(Kind kind, const std::string& name) { return said_.emplace(kind, name).second; }
+  bool is_first(OccurrenceKind kind, const std::string& name) {
+    return said_.emplace(kind, name).second;
+  }
 
   // `near` is what was probably meant at `where`; empty if that is not known.
   void warn(Code code, Span place, std::string cause, std::string remedy, const std::string& near,
@@ -323,7 +327,7 @@ class LiveChecks {
   std::unordered_map<std::string, const syntax::Component*> declarations_;
   std::unordered_map<std::string, const Component*> components_;  // by name and by node
   std::unordered_map<std::string, const Signal*> looked_up_;
-  std::set<std::pair<Kind, std::string>> said_;
+  std::set<std::pair<OccurrenceKind, std::string>> said_;
   Names own_names_;
   std::vector<Diagnostic> found_;
 };

@@ -8,7 +8,7 @@
 namespace culprit {
 namespace {
 
-using Kind = Occurrence::Kind;
+using OccurrenceKind = Occurrence::Kind;
 
 class Collector {
  public:
@@ -18,15 +18,16 @@ class Collector {
 
   std::vector<Occurrence> collect() {
     for (const syntax::Constant& c : file_.constants) {
-      add(Kind::kConstant, c.name, true);
+      add(OccurrenceKind::kConstant, c.name, true);
       expression(c.value);
     }
-    for (const syntax::Component& c : file_.components) add(Kind::kComponent, c.name, true);
+    for (const syntax::Component& c : file_.components)
+      add(OccurrenceKind::kComponent, c.name, true);
     for (const syntax::Dependency& d : file_.dependencies) {
-      add(Kind::kComponent, d.consumer);
-      for (const syntax::Name& producer : d.producers) add(Kind::kComponent, producer);
+      add(OccurrenceKind::kComponent, d.consumer);
+      for (const syntax::Name& producer : d.producers) add(OccurrenceKind::kComponent, producer);
     }
-    for (const syntax::Name& topic : file_.ignored_topics) add(Kind::kTopic, topic);
+    for (const syntax::Name& topic : file_.ignored_topics) add(OccurrenceKind::kTopic, topic);
     for (const syntax::Interlock& i : file_.interlocks) expression(i.condition);
     for (const syntax::Signal& s : file_.signals) signal(s);
     for (const syntax::Rule& r : file_.rules) rule(r);
@@ -37,32 +38,33 @@ class Collector {
   }
 
  private:
-  void add(Kind kind, const syntax::Name& name, bool declares = false, std::string scope = "") {
+  void add(OccurrenceKind kind, const syntax::Name& name, bool declares = false,
+           std::string scope = "") {
     if (!name.text.empty())
       all_.push_back({kind, name.text, std::move(scope), name.span, declares});
   }
 
-  void add_ros_name(Kind kind, const syntax::Name& name, const syntax::Name& component) {
+  void add_ros_name(OccurrenceKind kind, const syntax::Name& name, const syntax::Name& component) {
     add(kind, name, false, name.text.starts_with('/') ? "" : component.text);
   }
 
   void signal(const syntax::Signal& s) {
-    add(Kind::kSignal, s.name, true);
+    add(OccurrenceKind::kSignal, s.name, true);
     if (const auto* diagnostic = std::get_if<syntax::DiagnosticSource>(&s.source)) {
-      add(Kind::kDiagnostic, diagnostic->status);
+      add(OccurrenceKind::kDiagnostic, diagnostic->status);
     } else if (const auto* topic = std::get_if<syntax::TopicSource>(&s.source)) {
-      add(Kind::kTopic, topic->topic);
+      add(OccurrenceKind::kTopic, topic->topic);
     } else if (const auto* parameter = std::get_if<syntax::ParameterSource>(&s.source)) {
-      add(Kind::kComponent, parameter->component);
-      add(Kind::kParameter, parameter->parameter, false, parameter->component.text);
+      add(OccurrenceKind::kComponent, parameter->component);
+      add(OccurrenceKind::kParameter, parameter->parameter, false, parameter->component.text);
     }
   }
 
   void rule(const syntax::Rule& r) {
-    add(Kind::kRule, r.name, true);
+    add(OccurrenceKind::kRule, r.name, true);
     if (r.trigger) expression(*r.trigger);
     for (const syntax::Strategy& s : r.strategies) {
-      add(Kind::kStrategy, s.name, true, r.name.text);
+      add(OccurrenceKind::kStrategy, s.name, true, r.name.text);
       if (s.when) expression(*s.when);
       for (const syntax::Adaptation& a : s.adaptations) adaptation(a);
     }
@@ -70,24 +72,24 @@ class Collector {
 
   void adaptation(const syntax::Adaptation& a) {
     using enum syntax::AdaptationType;
-    add(Kind::kComponent, a.component);
+    add(OccurrenceKind::kComponent, a.component);
     const bool has_parameter = a.type == kSetParameter || a.type == kIncreaseParameter ||
                                a.type == kDecreaseParameter || a.type == kChangeCommunication;
-    if (has_parameter) add(Kind::kParameter, a.subject, false, a.component.text);
-    if (a.type == kCall) add_ros_name(Kind::kService, a.subject, a.component);
-    add_ros_name(Kind::kTopic, a.topic, a.component);
+    if (has_parameter) add(OccurrenceKind::kParameter, a.subject, false, a.component.text);
+    if (a.type == kCall) add_ros_name(OccurrenceKind::kService, a.subject, a.component);
+    add_ros_name(OccurrenceKind::kTopic, a.topic, a.component);
     if (a.value) expression(*a.value);
   }
 
   void expression(const syntax::Expression& e) {
     if (e.kind == syntax::Expression::Kind::kName) {
       const bool is_constant = constants_.contains(e.name.text);
-      add(is_constant ? Kind::kConstant : Kind::kSignal, e.name);
+      add(is_constant ? OccurrenceKind::kConstant : OccurrenceKind::kSignal, e.name);
       return;
     }
     const FunctionInfo* function = nullptr;
     if (e.kind == syntax::Expression::Kind::kCall) {
-      add(Kind::kFunction, e.name);
+      add(OccurrenceKind::kFunction, e.name);
       function = find_function(e.name.text);
     }
     for (std::size_t i = 0; i < e.children.size(); ++i) {
@@ -100,13 +102,13 @@ class Collector {
     const syntax::Expression& e = call.children[i];
     switch (place) {
       case Argument::kTopic:
-        return add(Kind::kTopic, e.name);
+        return add(OccurrenceKind::kTopic, e.name);
       case Argument::kComponent:
-        return add(Kind::kComponent, e.name);
+        return add(OccurrenceKind::kComponent, e.name);
       case Argument::kParameter:
-        return add(Kind::kParameter, e.name, false, call.children[0].name.text);
+        return add(OccurrenceKind::kParameter, e.name, false, call.children[0].name.text);
       case Argument::kDiagnostic:
-        return add(Kind::kDiagnostic, e.name);
+        return add(OccurrenceKind::kDiagnostic, e.name);
       case Argument::kExpression:
         return expression(e);
     }

@@ -107,15 +107,15 @@ class Parser {
 
   // The name that the line was about to declare, so that its uses are not called undeclared.
   void broken_declaration(std::string_view keyword, Scanner s) {
-    using Kind = syntax::BrokenDeclaration::Kind;
+    using Broken = syntax::BrokenDeclaration::Kind;
     const Token name = s.next();
     if (name.kind != Token::Kind::kIdentifier) return;
     if (keyword == "CONST")
-      file_.broken_declarations.push_back({Kind::kConstant, {name.text, name.span}});
+      file_.broken_declarations.push_back({Broken::kConstant, {name.text, name.span}});
     if (keyword == "COMPONENT")
-      file_.broken_declarations.push_back({Kind::kComponent, {name.text, name.span}});
+      file_.broken_declarations.push_back({Broken::kComponent, {name.text, name.span}});
     if (keyword == "SIGNAL")
-      file_.broken_declarations.push_back({Kind::kSignal, {name.text, name.span}});
+      file_.broken_declarations.push_back({Broken::kSignal, {name.text, name.span}});
   }
 
   // The paper's and our own documentation write <name> where a name is to be put in; people copy

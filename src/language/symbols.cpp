@@ -121,13 +121,13 @@ void Symbols::declare_signal(const syntax::Signal& s) {
 
 // There is an error, so the rule set will not be used; only the names have to be there.
 void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
-  using Kind = syntax::BrokenDeclaration::Kind;
+  using Broken = syntax::BrokenDeclaration::Kind;
   const std::string& name = broken.name.text;
   switch (broken.kind) {
-    case Kind::kConstant:
+    case Broken::kConstant:
       constants_.try_emplace(name, Constant{{}, true});
       return;
-    case Kind::kComponent:
+    case Broken::kComponent:
       if (const auto [entry, is_new] =
               components_.try_emplace(name, ComponentId(rules_.components.size()));
           is_new) {
@@ -136,7 +136,7 @@ void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
         rules_.components.push_back({name, "", {""}, true});
       }
       return;
-    case Kind::kSignal:
+    case Broken::kSignal:
       if (signals_.try_emplace(name, SignalId(rules_.signals.size())).second) {
         rules_.signals.push_back({name, LookedUp{}, Type::kDouble, {}, {}});
         signal_types_.push_back(types_.add(std::nullopt));

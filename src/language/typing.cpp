@@ -14,7 +14,7 @@ using syntax::Expression;
 using syntax::Operator;
 using Kind = Expression::Kind;
 
-bool is_number(Type type) { return type == Type::kInt || type == Type::kDouble; }
+bool is_numeric(Type type) { return type == Type::kInt || type == Type::kDouble; }
 bool is_exact(Type type) { return type == Type::kInt || type == Type::kDuration; }
 
 template <class... Children>
@@ -264,7 +264,7 @@ class Typer {
     if (left.type == Type::kDuration || right.type == Type::kDuration) {
       return duration_arithmetic(e, std::move(left), std::move(right));
     }
-    if (!is_number(left.type) || !is_number(right.type))
+    if (!is_numeric(left.type) || !is_numeric(right.type))
       return mismatch(e, left.type, right.type, "calculate with");
     alike(left, right);
     const bool exact = left.type == Type::kInt;
@@ -296,7 +296,7 @@ class Typer {
     }
     if (e.op == Operator::kMultiply && right.type == Type::kDuration) std::swap(left, right);
     const bool scales = e.op == Operator::kMultiply || e.op == Operator::kDivide;
-    if (scales && left.type == Type::kDuration && is_number(right.type)) {
+    if (scales && left.type == Type::kDuration && is_numeric(right.type)) {
       auto factor = converted(std::move(right), Type::kDouble);
       const Op op = e.op == Operator::kMultiply ? Op::kScale : Op::kShrink;
       return node(op, Type::kDuration, std::move(left), std::move(*factor));
@@ -471,7 +471,7 @@ class Typer {
   // Makes both of one type if a whole number may become a number.
   static bool alike(Typed& a, Typed& b) {
     if (a.type == b.type) return true;
-    if (!is_number(a.type) || !is_number(b.type)) return false;
+    if (!is_numeric(a.type) || !is_numeric(b.type)) return false;
     Typed& whole = a.type == Type::kInt ? a : b;
     whole = *converted(std::move(whole), Type::kDouble);
     return true;
@@ -479,8 +479,8 @@ class Typer {
 
   std::nullopt_t mismatch(const Expression& e, Type left, Type right, const std::string& verb) {
     std::string remedy;
-    const bool duration_and_number = (left == Type::kDuration && is_number(right)) ||
-                                     (right == Type::kDuration && is_number(left));
+    const bool duration_and_number = (left == Type::kDuration && is_numeric(right)) ||
+                                     (right == Type::kDuration && is_numeric(left));
     if (duration_and_number) remedy = "give the number a unit, as in 500ms or 2s";
     if (left == Type::kString || right == Type::kString)
       remedy = "texts compare with texts: \"active\"";

@@ -6,7 +6,7 @@
 namespace culprit {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string quoted_text(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     switch (c) {
@@ -37,7 +37,7 @@ std::string shortest(double number) {
   return looks_whole ? text + ".0" : text;
 }
 
-std::string_view trimmed(std::string_view text) {
+std::string_view stripped(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\n";
   const auto first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};
@@ -66,11 +66,11 @@ std::string to_string(const Value& value) {
   if (const auto* b = std::get_if<bool>(&value)) return *b ? "true" : "false";
   if (const auto* i = std::get_if<std::int64_t>(&value)) return std::to_string(*i);
   if (const auto* d = std::get_if<double>(&value)) return shortest(*d);
-  return quoted(std::get<std::string>(value));
+  return quoted_text(std::get<std::string>(value));
 }
 
 Value value_from_text(std::string_view text) {
-  text = trimmed(text);
+  text = stripped(text);
   if (is_word(text, "true")) return true;
   if (is_word(text, "false")) return false;
   std::string_view digits = text;

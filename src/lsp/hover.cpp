@@ -8,7 +8,7 @@
 namespace culprit::lsp {
 namespace {
 
-using Kind = Occurrence::Kind;
+using OccurrenceKind = Occurrence::Kind;
 
 std::string code(std::string_view text) { return "```\n" + std::string(text) + "\n```"; }
 
@@ -58,25 +58,25 @@ std::string of_component(const Document& document, const Occurrence& thing) {
 // What the file and the language say.
 std::string meaning(const Document& document, const Occurrence& thing) {
   switch (thing.kind) {
-    case Kind::kFunction: {
+    case OccurrenceKind::kFunction: {
       const FunctionInfo* function = find_function(thing.name);
       return function == nullptr ? "" : code(function->usage);
     }
-    case Kind::kSignal:
+    case OccurrenceKind::kSignal:
       return of_signal(document, thing);
-    case Kind::kComponent:
+    case OccurrenceKind::kComponent:
       return of_component(document, thing);
-    case Kind::kConstant:
-    case Kind::kRule:
-    case Kind::kStrategy:
+    case OccurrenceKind::kConstant:
+    case OccurrenceKind::kRule:
+    case OccurrenceKind::kStrategy:
       return declaration(document, thing);
-    case Kind::kTopic:
+    case OccurrenceKind::kTopic:
       return "Topic `" + thing.name + "`";
-    case Kind::kDiagnostic:
+    case OccurrenceKind::kDiagnostic:
       return "Diagnostic status `" + thing.name + "`";
-    case Kind::kService:
+    case OccurrenceKind::kService:
       return "Service `" + thing.name + "`";
-    case Kind::kParameter:
+    case OccurrenceKind::kParameter:
       return "Parameter `" + thing.name + "` of `" + thing.scope + "`";
   }
   return "";

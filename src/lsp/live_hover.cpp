@@ -9,7 +9,7 @@
 namespace culprit::lsp {
 namespace {
 
-using Kind = Occurrence::Kind;
+using OccurrenceKind = Occurrence::Kind;
 
 std::string now(const std::optional<Value>& value) {
   return value ? "Now `" + to_string(*value) + "`." : "";
@@ -69,18 +69,18 @@ std::string of_service(const Document& document, const Occurrence& thing,
 std::string live_facts(const Document& document, const Occurrence& thing,
                        const LiveInventory& robot) {
   switch (thing.kind) {
-    case Kind::kSignal:
+    case OccurrenceKind::kSignal:
       return of_signal(document, thing.name, robot);
-    case Kind::kComponent:
+    case OccurrenceKind::kComponent:
       return of_component(document, thing.name, robot);
-    case Kind::kTopic:
+    case OccurrenceKind::kTopic:
       return of_topic(document, thing, robot);
-    case Kind::kParameter:
+    case OccurrenceKind::kParameter:
       return now(robot.value_of_parameter(robot.node_of(document.component_called(thing.scope)),
                                           thing.name));
-    case Kind::kDiagnostic:
+    case OccurrenceKind::kDiagnostic:
       return of_status(thing.name, robot);
-    case Kind::kService:
+    case OccurrenceKind::kService:
       return of_service(document, thing, robot);
     default:
       return "";

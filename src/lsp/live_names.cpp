@@ -4,7 +4,11 @@
 
 namespace culprit::lsp {
 
+namespace {
+
 using Kind = Proposal::Kind;
+
+}  // namespace
 
 std::vector<Proposal> live_nodes(const LiveInventory& robot) {
   std::vector<Proposal> out;

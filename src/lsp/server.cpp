@@ -12,7 +12,7 @@ namespace culprit::lsp {
 namespace {
 
 using Json = nlohmann::json;
-using Kind = Occurrence::Kind;
+using OccurrenceKind = Occurrence::Kind;
 
 // JSON-RPC 2.0 and LSP error codes.
 constexpr int kParseError = -32700;
@@ -117,15 +117,15 @@ constexpr std::array kTokenTypes = {"enumMember", "class",  "variable", "string"
                                     "namespace",  "method", "function", "string", "string"};
 
 // SymbolKind, for things that a file declares.
-int symbol_kind(Kind kind) {
+int symbol_kind(OccurrenceKind kind) {
   switch (kind) {
-    case Kind::kConstant:
+    case OccurrenceKind::kConstant:
       return 14;
-    case Kind::kComponent:
+    case OccurrenceKind::kComponent:
       return 5;
-    case Kind::kRule:
+    case OccurrenceKind::kRule:
       return 3;
-    case Kind::kStrategy:
+    case OccurrenceKind::kStrategy:
       return 6;
     default:
       return 13;
@@ -387,12 +387,12 @@ Json Server::symbols(const Document& document) const {
   for (const Occurrence& o : document.names()) {
     if (!o.declares) continue;
     Json entry = symbol(document, o);
-    if (o.kind == Kind::kStrategy && !all.empty() && all.back().contains("children")) {
+    if (o.kind == OccurrenceKind::kStrategy && !all.empty() && all.back().contains("children")) {
       all.back()["range"]["end"] = entry["range"]["end"];
       all.back()["children"].push_back(std::move(entry));
       continue;
     }
-    if (o.kind == Kind::kRule) entry["children"] = Json::array();
+    if (o.kind == OccurrenceKind::kRule) entry["children"] = Json::array();
     all.push_back(std::move(entry));
   }
   return all;

@@ -7,12 +7,6 @@
 namespace culprit::web {
 namespace {
 
-Json names_of(const auto& ids, const RuleSet& rules) {
-  Json names = Json::array();
-  for (const auto id : ids) names.push_back(rules[id].name);
-  return names;
-}
-
 Json of_strategy(const char* kind, StrategyId id, const RuleSet& rules) {
   const Strategy& strategy = rules[id];
   return {{"kind", kind},

@@ -13,6 +13,13 @@ using Json = nlohmann::ordered_json;
 // Seconds since `start`, to the millisecond; null for kNever and kLongAgo.
 Json time_to_json(Time at, Time start);
 
+// Of components or rules, say.
+Json names_of(const auto& ids, const RuleSet& rules) {
+  Json names = Json::array();
+  for (const auto id : ids) names.push_back(rules[id].name);
+  return names;
+}
+
 Json to_json(const Event& event, const RuleSet& rules, Time start);
 Json to_json(const Candidate& candidate, const RuleSet& rules);
 Json to_json(const Suspect& suspect, const RuleSet& rules);

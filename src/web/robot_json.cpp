@@ -6,15 +6,10 @@
 
 #include "knowledge/describe.h"
 #include "web/component_health.h"
+#include "web/event_json.h"
 
 namespace culprit::web {
 namespace {
-
-Json names_of(const auto& ids, const RuleSet& rules) {
-  Json names = Json::array();
-  for (const auto id : ids) names.push_back(rules[id].name);
-  return names;
-}
 
 Json strategy_to_json(const Strategy& strategy, const RuleSet& rules) {
   const Belief prior = initial_belief(strategy.success, strategy.confidence);
@@ -133,7 +128,7 @@ Json rules_to_json(const RuleSet& rules) {
   for (const Input& i : rules.inputs) json["inputs"].push_back(describe(i, rules));
   for (const Rule& rule : rules.rules) {
     Json entry{{"name", rule.name},
-               {"criticality", to_string(rule.policies.criticality)},
+               {"criticality", culprit::to_string(rule.policies.criticality)},
                {"attempts", rule.policies.attempts},
                {"components", names_of(rule.components, rules)},
                {"inputs", Json::array()},

@@ -14,7 +14,7 @@ using syntax::Operator;
 using Kind = Expression::Kind;
 using enum AdaptationType;
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
+bool is_space(char c) { return c == ' ' || c == '\t'; }
 
 class ConditionDialect {
  public:
@@ -91,7 +91,7 @@ class ConditionDialect {
                           "write for example COMPONENTS [/robot/camera, /robot/lidar]");
     std::string name;
     for (const char c : text.substr(1)) {
-      if (c != ',' && c != ']' && !is_blank(c)) {
+      if (c != ',' && c != ']' && !is_space(c)) {
         name += c;
       } else if (!name.empty()) {
         components_.push_back(std::move(name));
@@ -239,13 +239,13 @@ class ConditionDialect {
 
   std::string_view text() const { return reader_.source().text(); }
   void skip_blanks() {
-    while (at_ < end_ && is_blank(text()[at_])) ++at_;
+    while (at_ < end_ && is_space(text()[at_])) ++at_;
   }
   // Up to a blank or a parenthesis.
   Word next_word() {
     skip_blanks();
     const std::uint32_t begin = at_;
-    while (at_ < end_ && !is_blank(text()[at_]) && text()[at_] != '(' && text()[at_] != ')') ++at_;
+    while (at_ < end_ && !is_space(text()[at_]) && text()[at_] != '(' && text()[at_] != ')') ++at_;
     return {std::string(text().substr(begin, at_ - begin)), {begin, at_}};
   }
 

@@ -37,9 +37,9 @@ int precedence(Operator op) {
   return 7;
 }
 
-class Writer {
+class ExpressionWriter {
  public:
-  explicit Writer(const Meanings& meanings) : meanings_(meanings) {}
+  explicit ExpressionWriter(const Meanings& meanings) : meanings_(meanings) {}
 
   struct Text {
     std::string text;
@@ -94,7 +94,7 @@ class Writer {
 }  // namespace
 
 std::string expression_text(const Expression& expression, const Meanings& meanings) {
-  return Writer(meanings).write(expression).text;
+  return ExpressionWriter(meanings).write(expression).text;
 }
 
 std::string literal_text(const syntax::Literal& literal) {

@@ -5,11 +5,10 @@
 #include <cmath>
 
 #include "language/diagnostic.h"
+#include "language/scanner.h"
 
 namespace culprit::foreign {
 namespace {
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 
 template <class Number>
 bool parse_number(std::string_view text, Number& number) {

@@ -30,11 +30,6 @@ bool is_free_name(const std::string& name) {
          scanner.at_end();
 }
 
-void collect_names(const Expression& e, std::vector<std::string>& names) {
-  if (e.kind == Kind::kName) names.push_back(e.name.text);
-  for (const Expression& child : e.children) collect_names(child, names);
-}
-
 struct Uses {
   std::vector<std::string> readings;  // as values that change
   std::vector<std::string> limits;    // as what such a value is compared with
@@ -54,6 +49,11 @@ void collect_uses(const Expression& e, Uses& uses) {
 }
 
 }  // namespace
+
+void collect_names(const Expression& e, std::vector<std::string>& names) {
+  if (e.kind == Kind::kName) names.push_back(e.name.text);
+  for (const Expression& child : e.children) collect_names(child, names);
+}
 
 std::string NameClaims::claim(const std::string& wanted) {
   constexpr std::size_t kLongest = 200;

@@ -19,6 +19,9 @@
 
 namespace culprit::foreign {
 
+// Adds the names that `e` uses, in order, as often as it uses them.
+void collect_names(const syntax::Expression& e, std::vector<std::string>& names);
+
 // Names that are given once each.
 class NameClaims {
  public:

@@ -48,11 +48,6 @@ std::string name_text(const std::string& name) {
   return is_bare ? name : to_string(Value(name));
 }
 
-void collect_names(const Expression& e, std::vector<std::string>& names) {
-  if (e.kind == Kind::kName) names.push_back(e.name.text);
-  for (const Expression& child : e.children) collect_names(child, names);
-}
-
 class Writer {
  public:
   Writer(const File& file, const std::string& name) : file_(file), name_(name), vocabulary_(file) {}
