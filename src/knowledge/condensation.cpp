@@ -26,9 +26,9 @@ struct Neighbours {
 };
 
 // Tarjan's search, with its own stack: a long chain must not overflow the program's.
-class Search {
+class Traversal {
  public:
-  explicit Search(const Neighbours& neighbours)
+  explicit Traversal(const Neighbours& neighbours)
       : neighbours_(neighbours),
         number_(neighbours.first.size() - 1, kNone),
         low_(number_.size()),
@@ -110,7 +110,7 @@ void ChannelEdges::add(std::span<const Vertex> producers, std::span<const Vertex
 
 Condensation::Condensation(std::size_t vertices, std::span<const Edge> edges) {
   const Neighbours neighbours(vertices, edges);
-  Search search(neighbours);
+  Traversal search(neighbours);
   knot_of_ = search.run();
   std::vector<Edge> between;
   between.reserve(edges.size());

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -36,12 +37,17 @@ class Condensation {
  public:
   using Knot = std::uint32_t;
   using Vertex = std::uint32_t;
+  static constexpr Knot kNone = std::numeric_limits<Knot>::max();
 
   // `edges` lead from a consumer to a producer; both are below `vertices`. Tarjan's algorithm.
   Condensation(std::size_t vertices, std::span<const std::pair<Vertex, Vertex>> edges);
 
   std::size_t size() const { return first_producer_.size() - 1; }
   Knot knot_of(Vertex vertex) const { return knot_of_[vertex]; }
+  // Their order, as that of a LiveCondensation: each number is its place, and none is empty.
+  std::size_t places() const { return size(); }
+  Knot at(std::size_t place) const { return static_cast<Knot>(place); }
+  std::size_t place_of(Knot knot) const { return knot; }
   // What a knot depends on directly: lower numbers, possibly more than once.
   std::span<const Knot> producers(Knot knot) const {
     return std::span(producers_)

@@ -28,15 +28,21 @@ DependencyGraph::DependencyGraph(const RuleSet& rules)
     // A component without a known node gets a place now and its name when it is seen.
     for (const ComponentId c : {d.consumer, d.producer}) {
       if (nodes_of_components_[c.index]) continue;
-      nodes_of_components_[c.index] = NodeId(nodes_.size());
-      nodes_.emplace_back();
+      nodes_of_components_[c.index] = add_node();
       nodes_.back().component = c;
     }
     const NodeId consumer = *nodes_of_components_[d.consumer.index];
     const NodeId producer = *nodes_of_components_[d.producer.index];
     nodes_[consumer.index].declared_producers.push_back(producer);
     nodes_[producer.index].declared_consumers.push_back(consumer);
+    condensation_.add_dependency(consumer.index, producer.index);
   }
+}
+
+NodeId DependencyGraph::add_node() {
+  nodes_.emplace_back();
+  condensation_.add_node();
+  return NodeId(nodes_.size() - 1);
 }
 
 std::optional<NodeId> DependencyGraph::intern_node(const std::string& name) {
@@ -47,15 +53,11 @@ std::optional<NodeId> DependencyGraph::intern_node(const std::string& name) {
   const std::optional<ComponentId> component = binding_.bind(name);
   std::optional<NodeId> id;
   if (component) id = nodes_of_components_[component->index];
-  if (!id) {
-    id = NodeId(nodes_.size());
-    nodes_.emplace_back();
-  }
+  if (!id) id = add_node();
   nodes_[id->index].name = name;
   nodes_[id->index].component = component;
   if (component) nodes_of_components_[component->index] = id;
   node_ids_[name] = *id;
-  condensation_.reset();
   return id;
 }
 
@@ -74,7 +76,7 @@ std::optional<DependencyGraph::ChannelId> DependencyGraph::intern_channel(Endpoi
 bool DependencyGraph::node_appeared(const std::string& node) {
   const auto id = intern_node(node);
   if (!id || nodes_[id->index].is_present) return false;
-  condensation_.reset();
+  note_channels_of(*id);
   return nodes_[id->index].is_present = true;
 }
 
@@ -82,26 +84,18 @@ bool DependencyGraph::node_vanished(const std::string& node) {
   const auto id = node_ids_.find(node);
   if (id == node_ids_.end() || !nodes_[id->second.index].is_present) return false;
   nodes_[id->second.index].is_present = false;
-  condensation_.reset();
+  note_channels_of(id->second);
   return true;
+}
+
+// What a node's presence decides: whether its ends count that are only remembered.
+void DependencyGraph::note_channels_of(NodeId node) {
+  for (const ChannelId channel : nodes_[node.index].consumes) condensation_.note(channel.index);
+  for (const ChannelId channel : nodes_[node.index].produces) condensation_.note(channel.index);
 }
 
 bool DependencyGraph::endpoint_appeared(const std::string& node, EndpointKind kind,
                                         const std::string& name) {
-  const bool has_changed = add_endpoint(node, kind, name);
-  if (has_changed) condensation_.reset();
-  return has_changed;
-}
-
-bool DependencyGraph::endpoint_vanished(const std::string& node, EndpointKind kind,
-                                        const std::string& name) {
-  const bool has_changed = remove_endpoint(node, kind, name);
-  if (has_changed) condensation_.reset();
-  return has_changed;
-}
-
-bool DependencyGraph::add_endpoint(const std::string& node, EndpointKind kind,
-                                   const std::string& name) {
   if (!is_service(kind) && ignored_.contains(name)) return false;
   const auto node_id = intern_node(node);
   const auto channel_id = intern_channel(kind, name);
@@ -117,11 +111,12 @@ bool DependencyGraph::add_endpoint(const std::string& node, EndpointKind kind,
   }
   if (++end->count > 1) return false;
   if (produces(kind)) ++channel.live_producers;
+  condensation_.note(channel_id->index);
   return true;
 }
 
-bool DependencyGraph::remove_endpoint(const std::string& node, EndpointKind kind,
-                                      const std::string& name) {
+bool DependencyGraph::endpoint_vanished(const std::string& node, EndpointKind kind,
+                                        const std::string& name) {
   const auto node_id = node_ids_.find(node);
   const auto channel_id = channel_ids_.find((is_service(kind) ? 's' : 't') + name);
   if (node_id == node_ids_.end() || channel_id == channel_ids_.end()) return false;
@@ -132,7 +127,29 @@ bool DependencyGraph::remove_endpoint(const std::string& node, EndpointKind kind
   if (end == ends.end() || end->count == 0) return false;
   if (--end->count > 0) return false;
   if (produces(kind)) --channel.live_producers;
+  condensation_.note(channel_id->second.index);
   return true;
+}
+
+std::vector<NodeId> DependencyGraph::publishers_of(const std::string& topic) const {
+  std::vector<NodeId> nodes;
+  const auto known = channel_ids_.find('t' + topic);
+  if (known == channel_ids_.end()) return nodes;
+  const Channel& channel = channels_[known->second.index];
+  for (const End& end : channel.producers) {
+    if (counts(end, channel, true)) nodes.push_back(end.node);
+  }
+  return nodes;
+}
+
+std::size_t DependencyGraph::publisher_count(const std::string& topic) const {
+  return publishers_of(topic).size();
+}
+
+bool DependencyGraph::publishes(ComponentId component, const std::string& topic) const {
+  const auto node = nodes_of_components_[component.index];
+  const std::vector<NodeId> publishers = publishers_of(topic);
+  return node && std::find(publishers.begin(), publishers.end(), *node) != publishers.end();
 }
 
 bool DependencyGraph::counts(const End& end, const Channel& channel, bool producer) const {
@@ -194,13 +211,21 @@ const std::vector<ComponentId>& DependencyGraph::reach(ComponentId from,
   return found_;
 }
 
-const Condensation& DependencyGraph::condensation() const {
-  if (condensation_) return *condensation_;
-  ChannelEdges edges(nodes_.size());
-  for_each_channel([&](std::span<const Vertex> producers, std::span<const Vertex> consumers) {
-    edges.add(producers, consumers);
-  });
-  return condensation_.emplace(edges.vertices(), edges.edges());
+void DependencyGraph::find_ends(const Channel& channel, std::vector<Vertex>& producers,
+                                std::vector<Vertex>& consumers) const {
+  for (const End& end : channel.producers) {
+    if (counts(end, channel, true)) producers.push_back(end.node.index);
+  }
+  for (const End& end : channel.consumers) {
+    if (counts(end, channel, false)) consumers.push_back(end.node.index);
+  }
+}
+
+const LiveCondensation& DependencyGraph::condensation() const {
+  return condensation_.up_to_date(
+      [this](std::size_t channel, std::vector<Vertex>& producers, std::vector<Vertex>& consumers) {
+        find_ends(channels_[channel], producers, consumers);
+      });
 }
 
 std::optional<DependencyGraph::Vertex> DependencyGraph::vertex_of(ComponentId component) const {
@@ -208,10 +233,11 @@ std::optional<DependencyGraph::Vertex> DependencyGraph::vertex_of(ComponentId co
   return node ? std::optional<Vertex>(node->index) : std::nullopt;
 }
 
-std::optional<Condensation::Knot> DependencyGraph::knot_of(ComponentId component) const {
-  const auto vertex = vertex_of(component);
-  if (!vertex) return std::nullopt;
-  return condensation().knot_of(*vertex);
+std::optional<LiveCondensation::Knot> DependencyGraph::knot_of(ComponentId component) const {
+  const auto node = vertex_of(component);
+  if (!node) return std::nullopt;
+  condensation();
+  return condensation_.knot_of(*node);
 }
 
 std::vector<std::string> DependencyGraph::nodes() const {

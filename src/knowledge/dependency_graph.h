@@ -18,7 +18,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "knowledge/condensation.h"
+#include "knowledge/channel_condensation.h"
 #include "language/rule_set.h"
 #include "robot/component_binding.h"
 #include "robot/observation.h"
@@ -49,19 +49,24 @@ class DependencyGraph {
   // The component that this node is, if it is one.
   std::optional<ComponentId> component_of(const std::string& node) const;
 
+  // How many nodes publish `topic`, as far as was seen and is not ignored, and whether the
+  // component is among them.
+  std::size_t publisher_count(const std::string& topic) const;
+  bool publishes(ComponentId component, const std::string& topic) const;
+
   // The components that `component` depends on, directly or through any nodes between; not itself.
   // The reference is valid until the next call.
   const std::vector<ComponentId>& upstream(ComponentId component) const;
   // The components that depend on it, likewise.
   const std::vector<ComponentId>& downstream(ComponentId component) const;
 
-  // All that counts now, with circles drawn together. Made anew when the graph has changed; the
-  // reference is valid until then.
-  const Condensation& condensation() const;
+  // All that counts now, with circles drawn together. What has changed is worked in when it is
+  // asked for; the reference is valid until the next change.
+  const LiveCondensation& condensation() const;
   // Nothing while the component was not seen and is not declared to depend on another.
-  std::optional<Condensation::Knot> knot_of(ComponentId component) const;
+  std::optional<LiveCondensation::Knot> knot_of(ComponentId component) const;
 
-  using Vertex = Condensation::Vertex;
+  using Vertex = std::uint32_t;
   // Nodes as numbers below size(). Nothing as for knot_of().
   std::size_t size() const { return nodes_.size(); }
   std::optional<Vertex> vertex_of(ComponentId component) const;
@@ -105,11 +110,15 @@ class DependencyGraph {
   };
   enum class Direction : std::uint8_t { kUpstream, kDownstream };
 
+  NodeId add_node();
   std::optional<NodeId> intern_node(const std::string& name);
   std::optional<ChannelId> intern_channel(EndpointKind kind, const std::string& name);
-  bool add_endpoint(const std::string& node, EndpointKind kind, const std::string& name);
-  bool remove_endpoint(const std::string& node, EndpointKind kind, const std::string& name);
+  void note_channels_of(NodeId node);
   bool counts(const End& end, const Channel& channel, bool producer) const;
+  std::vector<NodeId> publishers_of(const std::string& topic) const;
+  // Appends those that count.
+  void find_ends(const Channel& channel, std::vector<Vertex>& producers,
+                 std::vector<Vertex>& consumers) const;
   const std::vector<ComponentId>& reach(ComponentId from, Direction direction) const;
 
   ComponentBinding binding_;
@@ -120,7 +129,7 @@ class DependencyGraph {
   std::vector<std::optional<NodeId>> nodes_of_components_;
   std::unordered_set<std::string> ignored_;
 
-  mutable std::optional<Condensation> condensation_;  // of the present graph, if it was asked for
+  mutable ChannelCondensation condensation_;
 
   // Scratch of reach(): who was visited in which search.
   mutable std::vector<std::uint32_t> visited_;
@@ -143,12 +152,7 @@ void DependencyGraph::for_each_channel(Visit visit) const {
   for (const Channel& channel : channels_) {
     producers.clear();
     consumers.clear();
-    for (const End& end : channel.producers) {
-      if (counts(end, channel, true)) producers.push_back(end.node.index);
-    }
-    for (const End& end : channel.consumers) {
-      if (counts(end, channel, false)) consumers.push_back(end.node.index);
-    }
+    find_ends(channel, producers, consumers);
     if (!producers.empty() && !consumers.empty())
       visit(std::span<const Vertex>(producers), std::span<const Vertex>(consumers));
   }

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
+#include "knowledge/condensation.h"
 #include "language/checker.h"
 
 namespace culprit {
@@ -152,6 +154,60 @@ TEST(DependencyGraph, FindsUndeclaredComponentsByTheNameOfTheirNode) {
   EXPECT_EQ((*graph).component_of("/robot/fusion"), ComponentId(0));
   EXPECT_EQ((*graph).component_of("/other/fusion"), std::nullopt) << "the first one is it";
   EXPECT_EQ(graph.upstream("fusion"), Names{"lidar"});
+}
+
+// What the condensation says of the components, and what one of the same graph from nothing says.
+void check_condensation(const RuleSet& rules, const DependencyGraph& graph) {
+  ChannelEdges edges(graph.size());
+  graph.for_each_channel([&](auto producers, auto consumers) { edges.add(producers, consumers); });
+  const Condensation anew(edges.vertices(), edges.edges());
+  const auto knot_of = [&](std::size_t c) {
+    return anew.knot_of(*graph.vertex_of(ComponentId(c)));
+  };
+  for (std::size_t a = 0; a < rules.components.size(); ++a) {
+    for (std::size_t b = 0; b < rules.components.size(); ++b) {
+      RC_ASSERT((graph.knot_of(ComponentId(a)) == graph.knot_of(ComponentId(b))) ==
+                (knot_of(a) == knot_of(b)));
+    }
+  }
+  const LiveCondensation& live = graph.condensation();
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    for (const ComponentId producer : graph.upstream(ComponentId(c))) {
+      RC_ASSERT(live.place_of(*graph.knot_of(producer)) <=
+                live.place_of(*graph.knot_of(ComponentId(c))));
+    }
+  }
+}
+
+RC_GTEST_PROP(DependencyGraph, CondensesTheSameWhateverCameAndWent, ()) {
+  std::string text = "DEPENDENCY c0 ON c1\n";
+  const int components = *rc::gen::inRange(2, 12);
+  for (int c = components - 1; c >= 0; --c)
+    text = "COMPONENT c" + std::to_string(c) + " NODE /c" + std::to_string(c) + "\n" + text;
+  const RuleSet rules = *check(Source("test.rules", text)).rules;
+  DependencyGraph graph(rules);
+  for (int changes = *rc::gen::inRange(0, 200); changes > 0; --changes) {
+    const std::string node = "/c" + std::to_string(*rc::gen::inRange(0, components));
+    const std::string topic = "/t" + std::to_string(*rc::gen::inRange(0, 2 * components));
+    const auto kind = *rc::gen::element(kPublisher, kSubscriber);
+    switch (*rc::gen::weightedElement<int>({{6, 0}, {4, 1}, {1, 2}, {1, 3}, {2, 4}})) {
+      case 0:
+        graph.endpoint_appeared(node, kind, topic);
+        break;
+      case 1:
+        graph.endpoint_vanished(node, kind, topic);
+        break;
+      case 2:
+        graph.node_appeared(node);
+        break;
+      case 3:
+        graph.node_vanished(node);
+        break;
+      default:
+        check_condensation(rules, graph);
+    }
+  }
+  check_condensation(rules, graph);
 }
 
 }  // namespace

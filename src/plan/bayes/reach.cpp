@@ -43,8 +43,8 @@ Reach::Knots knots_of(const Knowledge& knowledge) {
 }
 
 // Components, by knot.
-std::vector<std::uint32_t> members_of(const Condensation& graph, const Reach::Knots& knots) {
-  std::vector<std::uint32_t> members(graph.size(), 0);
+std::vector<std::uint32_t> members_of(std::size_t size, const Reach::Knots& knots) {
+  std::vector<std::uint32_t> members(size, 0);
   for (const auto knot : knots) {
     if (knot) ++members[*knot];
   }
@@ -54,14 +54,24 @@ std::vector<std::uint32_t> members_of(const Condensation& graph, const Reach::Kn
 }  // namespace
 
 Reach::Reach(const Knowledge& knowledge, std::vector<ComponentId> components)
-    : Reach(knowledge.graph.condensation(), knots_of(knowledge), std::move(components)) {}
+    : Reach(std::move(components)) {
+  find(knowledge.graph.condensation(), knots_of(knowledge));
+}
 
 Reach::Reach(const Condensation& graph, const Knots& knots, std::vector<ComponentId> components)
+    : Reach(std::move(components)) {
+  find(graph, knots);
+}
+
+Reach::Reach(std::vector<ComponentId> components)
     : components_(each_once(std::move(components))),
       upstream_(components_.size(), components_.size()),
       downstream_(components_.size(), components_.size()),
-      dependents_(components_.size(), 0) {
-  const std::vector<std::uint32_t> members = members_of(graph, knots);
+      dependents_(components_.size(), 0) {}
+
+template <class Graph>
+void Reach::find(const Graph& graph, const Knots& knots) {
+  const std::vector<std::uint32_t> members = members_of(graph.size(), knots);
   // By the order of their knots, so that a pass can begin at its first.
   std::vector<std::size_t> order;
   for (std::size_t p = 0; p < components_.size(); ++p) {
@@ -69,7 +79,7 @@ Reach::Reach(const Condensation& graph, const Knots& knots, std::vector<Componen
   }
   const auto knot_at = [&](std::size_t place) { return *knots[components_[place].index]; };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(knot_at(a), a) < std::pair(knot_at(b), b);
+    return std::pair(graph.place_of(knot_at(a)), a) < std::pair(graph.place_of(knot_at(b)), b);
   });
 
   std::vector<Word> own(graph.size(), 0);      // which of the 64 are in the knot
@@ -77,10 +87,12 @@ Reach::Reach(const Condensation& graph, const Knots& knots, std::vector<Componen
   for (std::size_t begin = 0; begin < order.size(); begin += kWordBits) {
     const std::size_t end = std::min(order.size(), begin + kWordBits);
     for (std::size_t i = begin; i < end; ++i) own[knot_at(order[i])] |= Word{1} << (i - begin);
-    const Knot first = knot_at(order[begin]);
-    std::fill(reached.begin(), reached.begin() + first, 0);
+    const std::size_t first = graph.place_of(knot_at(order[begin]));
+    std::fill(reached.begin(), reached.end(), 0);
     BitCounts counts;
-    for (Knot knot = first; knot < graph.size(); ++knot) {
+    for (std::size_t place = first; place < graph.places(); ++place) {
+      const Knot knot = graph.at(place);
+      if (knot == Graph::kNone) continue;
       Word bits = own[knot];
       for (const Knot producer : graph.producers(knot)) bits |= reached[producer];
       reached[knot] = bits;

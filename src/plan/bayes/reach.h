@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "knowledge/condensation.h"
 #include "knowledge/knowledge.h"
 #include "plan/bayes/bit_rows.h"
 
@@ -32,6 +33,10 @@ class Reach {
   std::size_t dependents(std::size_t place) const { return dependents_[place]; }
 
  private:
+  explicit Reach(std::vector<ComponentId> components);
+  template <class Graph>
+  void find(const Graph& graph, const Knots& knots);
+
   std::vector<ComponentId> components_;  // ascending, each once
   BitRows upstream_;
   BitRows downstream_;

@@ -8,7 +8,7 @@ namespace culprit::plan {
 
 Watchers::Watchers(const Knowledge& knowledge, Time until)
     : knowledge_(knowledge), places_(knowledge.graph.condensation().size()) {
-  const Condensation& graph = knowledge.graph.condensation();
+  const LiveCondensation& graph = knowledge.graph.condensation();
   const RuleSet& rules = knowledge.rules;
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     if (const auto knot = knowledge.graph.knot_of(ComponentId(c))) ++places_[*knot].components;
@@ -22,8 +22,10 @@ Watchers::Watchers(const Knowledge& knowledge, Time until)
       if (const auto knot = knowledge.graph.knot_of(c)) ++places_[*knot].rules[level];
     }
   }
-  for (Condensation::Knot knot = 0; knot < places_.size(); ++knot) {
-    for (const Condensation::Knot producer : graph.producers(knot)) {
+  for (std::size_t place = 0; place < graph.places(); ++place) {
+    const LiveCondensation::Knot knot = graph.at(place);
+    if (knot == LiveCondensation::kNone) continue;
+    for (const LiveCondensation::Knot producer : graph.producers(knot)) {
       const Place& before = places_[producer];
       int highest = before.above;
       for (int level = 0; level < 3; ++level) {
