@@ -20,13 +20,13 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
     const auto* appeared = std::get_if<NodeAppeared>(&observations[i].what);
     if (appeared == nullptr || appeared->pid == 0) continue;
     if (const auto component = binding_.bind(appeared->node))
-      supervisor_->adopt(*component, appeared->pid);
+      supervisor_->adopt(*component, appeared->pid, observations[i].at);
   }
 }
 
 void LiveRobot::execute(const Command& command) {
-  if (const auto* stop = std::get_if<StopProcess>(&command.what)) {
-    supervisor_->stop(command.id, command.component, stop->pid);
+  if (std::holds_alternative<StopProcess>(command.what)) {
+    supervisor_->stop(command.id, command.component);
   } else if (std::holds_alternative<StartProcess>(command.what)) {
     supervisor_->start(command.id, command.component);
   } else {

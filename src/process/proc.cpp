@@ -28,14 +28,6 @@ Duration now_on(clockid_t clock) {
   return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
 }
 
-bool has_variable(const fs::path& process, const std::string& variable) {
-  std::ifstream environment(process / "environ", std::ios::binary);
-  for (std::string text; std::getline(environment, text, '\0');) {
-    if (text == variable) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 std::optional<char> state_letter(int pid) {
@@ -56,6 +48,14 @@ std::optional<Time> started_at(int pid) {
   return Time(std::chrono::nanoseconds(ticks * (1'000'000'000 / in_second)) - sleep);
 }
 
+bool has_variable(int pid, const std::string& variable) {
+  std::ifstream environment("/proc/" + std::to_string(pid) + "/environ", std::ios::binary);
+  for (std::string text; std::getline(environment, text, '\0');) {
+    if (text == variable) return true;
+  }
+  return false;
+}
+
 std::vector<int> processes_with(const std::string& variable) {
   std::vector<int> pids;
   std::error_code error;
@@ -65,7 +65,7 @@ std::vector<int> processes_with(const std::string& variable) {
     int pid = 0;
     const auto [rest, failed] = std::from_chars(name.data(), name.data() + name.size(), pid);
     const bool is_process = failed == std::errc() && rest == name.data() + name.size();
-    if (is_process && has_variable(i->path(), variable)) pids.push_back(pid);
+    if (is_process && has_variable(pid, variable)) pids.push_back(pid);
   }
   return pids;
 }

@@ -15,8 +15,10 @@ std::optional<char> state_letter(int pid);
 // On live_now()'s clock, to a hundredth of a second.
 std::optional<Time> started_at(int pid);
 
-// Processes with `variable` ("NAME=value") in the environment that they were started with, which
-// others may not read: only those of one's own user, unless one may read all.
+// Whether `variable` ("NAME=value") is in the environment that the process was started with, which
+// others may not read: false for processes of another user, unless one may read all.
+bool has_variable(int pid, const std::string& variable);
+// All such processes.
 std::vector<int> processes_with(const std::string& variable);
 
 }  // namespace culprit::process

@@ -14,11 +14,13 @@ struct Program {
   std::vector<std::filesystem::path> search_first;  // where to look for it before PATH
   std::filesystem::path log;               // its output is appended here; parent folders are made
   std::vector<std::string> environment{};  // "NAME=value", beside what it inherits
+  // A variable that holds the new process's own pid, and in processes that it starts, not theirs.
+  std::string pid_variable{};
 };
 
 // The new process leads a session and a process group of its own (a Ctrl-C at culprit's terminal is
-// not for it, and it outlives culprit), reads nothing, inherits the environment and no open file,
-// and has default signal handling.
+// not for it, and it outlives culprit), reads nothing, inherits the environment, no open file and
+// no capability that whoever started this program gave it, and has default signal handling.
 //
 // Gives its pid. The caller reaps it. Errors: no such program, not executable, the log cannot be
 // written.

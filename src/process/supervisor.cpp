@@ -15,6 +15,19 @@
 namespace culprit::process {
 namespace {
 
+constexpr const char* kPidVariable = "CULPRIT_PROCESS";
+
+// Not one that it started in turn, which inherits the mark.
+bool is_what_was_launched(int pid) {
+  return has_variable(pid, kPidVariable + ("=" + std::to_string(pid)));
+}
+
+// Numbers are given out anew.
+bool was_there(int pid, Time known) {
+  const auto started = started_at(pid);
+  return started && *started <= known;
+}
+
 bool is_child(int pid) {
   siginfo_t info{};
   return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0;
@@ -48,14 +61,14 @@ void Supervisor::take_over(ComponentId component) {
   if (options_.robot.empty() || rules_[component].launch.empty()) return;
   for (const int pid : processes_with(mark(component))) {
     const bool has_ended = state_letter(pid).value_or('X') == 'Z';
-    if (!has_ended && pid != getpid()) adopt(component, pid);
+    if (!has_ended && pid != getpid() && is_what_was_launched(pid))
+      adopt(component, pid, live_now());
   }
 }
 
 void Supervisor::adopt_again(ComponentId component, int pid, Time known) {
-  const auto started = started_at(pid);
   const bool has_ended = state_letter(pid).value_or('X') == 'Z';
-  if (started && *started <= known && !has_ended) adopt(component, pid);
+  if (!has_ended && was_there(pid, known)) adopt(component, pid, known);
 }
 
 void Supervisor::start(CommandId command, ComponentId component) {
@@ -71,7 +84,10 @@ void Supervisor::start(CommandId command, ComponentId component) {
   if (!is_gone(component)) return answer(Outcome::kRefused, {}, what.name + " is running already");
   Program program{
       what.launch, options_.search_first, options_.log_folder / (what.name + ".log"), {}};
-  if (!options_.robot.empty()) program.environment = {mark(component)};
+  if (!options_.robot.empty()) {
+    program.environment = {mark(component)};
+    program.pid_variable = kPidVariable;
+  }
   const auto pid = spawn(program);
   if (!pid) return answer(Outcome::kUnreachable, {}, pid.error());
   auto process = WatchedProcess::watch(*pid, Relation::kChild);
@@ -82,9 +98,13 @@ void Supervisor::start(CommandId command, ComponentId component) {
   wake();
 }
 
-void Supervisor::adopt(ComponentId component, int pid) {
+void Supervisor::adopt(ComponentId component, int pid, Time known) {
   const std::lock_guard lock(mutex_);
   if (is_known(component, pid)) return;
+  if (!was_there(pid, known)) {
+    inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, "ended"});
+    return;
+  }
   // A supervisor before this one may have started it.
   const Relation relation = is_child(pid) ? Relation::kChild : Relation::kAdopted;
   auto process = WatchedProcess::watch(pid, relation);
@@ -97,8 +117,7 @@ void Supervisor::adopt(ComponentId component, int pid) {
   wake();
 }
 
-void Supervisor::stop(CommandId command, ComponentId component, int pid) {
-  if (pid != 0) adopt(component, pid);
+void Supervisor::stop(CommandId command, ComponentId component) {
   const std::lock_guard lock(mutex_);
   begin_shutdown(command, component);
   wake();

@@ -7,7 +7,9 @@
 //
 // What it starts carries a mark in its environment, CULPRIT_COMPONENT, so that whoever supervises
 // the same robot later knows it again, also if this process died the moment after: a component is
-// never started beside a process that runs already.
+// never started beside a process that runs already. What that process starts in turn inherits the
+// mark and is not the component: CULPRIT_PROCESS says which process is. (The tools of ROS 2 leave a
+// daemon behind, which outlives whatever was launched with them.)
 //
 // Whatever it started goes on running when the supervisor ends, unless stop_all() was called.
 #pragma once
@@ -50,16 +52,15 @@ class Supervisor {
   // Starts the component's launch command and replies.
   void start(CommandId command, ComponentId component);
 
-  // Ends all processes of the component, `pid` among them if it is not 0, and replies when they are
-  // gone.
-  void stop(CommandId command, ComponentId component, int pid);
+  // Ends all processes of the component that are watched, and no others, whatever their numbers;
+  // replies when they are gone.
+  void stop(CommandId command, ComponentId component);
 
-  // Watches a process that is already running as the component's. Does nothing if it is watched
-  // already.
-  void adopt(ComponentId component, int pid);
+  // Watches the process that had this number at `known` as the component's; one that began later is
+  // another. Tells that it is gone if it is. Does nothing if it is watched already.
+  void adopt(ComponentId component, int pid, Time known);
 
-  // Likewise, if it is the process that had this number at `known`, and not a later one. Says
-  // nothing if it is not.
+  // Likewise. Says nothing if it is gone.
   void adopt_again(ComponentId component, int pid, Time known);
 
   // Ends every process that was started here, and waits until all are gone.

@@ -1,8 +1,11 @@
 #include "process/supervisor.h"
 
 #include <fstream>
+#include <linux/capability.h>
 #include <optional>
 #include <signal.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -39,8 +42,8 @@ class Supervised {
     const auto* pid = std::get_if<Value>(&reply.value);
     return pid == nullptr ? 0 : static_cast<int>(std::get<std::int64_t>(*pid));
   }
-  void stop(int pid = 0) {
-    supervisor->stop({2}, ComponentId(0), pid);
+  void stop() {
+    supervisor->stop({2}, ComponentId(0));
     EXPECT_EQ(reply_to({2}).outcome, Outcome::kDone);
   }
   Reply reply_to(CommandId command) {
@@ -93,7 +96,7 @@ TEST(Supervisor, StartsAndStopsPolitely) {
   const int pid = c.start();
   EXPECT_TRUE(exists(pid));
   EXPECT_EQ(getpgid(pid), pid) << "it leads its own process group";
-  c.supervisor->stop({2}, ComponentId(0), pid);
+  c.supervisor->stop({2}, ComponentId(0));
   EXPECT_EQ(c.state(ProcessState::kGone).remark, "killed by signal 2");
   EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
 }
@@ -175,9 +178,9 @@ TEST(Supervisor, AdoptsAndEndsAProcessThatWasThere) {
   Supervised c("sleep 1000");
   const auto foreign = spawn({{"sleep", "1000"}, {}, "/dev/null"});
   ASSERT_TRUE(foreign);
-  c.supervisor->adopt(ComponentId(0), *foreign);
+  c.supervisor->adopt(ComponentId(0), *foreign, live_now());
   EXPECT_EQ(c.state(ProcessState::kRunning).pid, *foreign);
-  c.supervisor->stop({2}, ComponentId(0), *foreign);
+  c.supervisor->stop({2}, ComponentId(0));
   EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(*foreign)) << "what is a child of this program is reaped, too";
 }
@@ -216,10 +219,25 @@ TEST(Supervisor, TakesOverWhatAnotherOneOfTheSameRobotStarted) {
   EXPECT_EQ(second.state(ProcessState::kRunning).pid, pid);
   second.supervisor->start({3}, ComponentId(0));
   EXPECT_EQ(second.reply_to({3}).outcome, Outcome::kRefused);
-  second.supervisor->stop({2}, ComponentId(0), 0);
+  second.supervisor->stop({2}, ComponentId(0));
   EXPECT_EQ(second.reply_to({2}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(pid));
   EXPECT_NE(second.start(), pid);
+}
+
+// As the tools of ROS 2 leave their daemon behind: in a session of its own, with all that it
+// inherited.
+TEST(Supervisor, IsNotMistakenAboutWhatAProcessLeftBehind) {
+  const std::string robot = "test/daemon/" + std::to_string(getpid());
+  Supervised c("sh -c 'setsid sleep 1000 & echo daemon $!; wait'", robot);
+  const int first = c.start();
+  const std::string log = c.log_when("daemon ");
+  const int daemon = std::stoi(log.substr(log.find("daemon ") + 7));
+  c.stop();
+  EXPECT_FALSE(exists(first));
+  ASSERT_TRUE(exists(daemon)) << "it leads a group of its own";
+  EXPECT_NE(c.start(), daemon) << "the component runs no more, so it can be started";
+  kill(daemon, SIGKILL);
 }
 
 TEST(Supervisor, AdoptsAProcessAgainOnlyIfItIsTheSameOne) {
@@ -234,9 +252,21 @@ TEST(Supervisor, AdoptsAProcessAgainOnlyIfItIsTheSameOne) {
   c.supervisor->adopt_again(ComponentId(0), *foreign, live_now());
   c.supervisor->start({3}, ComponentId(0));
   EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused);
-  c.supervisor->stop({4}, ComponentId(0), 0);
+  c.supervisor->stop({4}, ComponentId(0));
   EXPECT_EQ(c.reply_to({4}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(*foreign));
+}
+
+TEST(Supervisor, AProcessThatBeganLaterIsAnother) {
+  Supervised c("sleep 1000");
+  const auto stranger = spawn({{"sleep", "1000"}, {}, "/dev/null", {}});
+  ASSERT_TRUE(stranger);
+  c.supervisor->adopt(ComponentId(0), *stranger, live_now() - 1s);
+  EXPECT_EQ(c.state(ProcessState::kGone).pid, *stranger) << "what had its number is gone";
+  c.stop();
+  EXPECT_TRUE(exists(*stranger)) << "it is nobody's business";
+  kill(*stranger, SIGKILL);
+  waitpid(*stranger, nullptr, 0);
 }
 
 TEST(Spawn, PassesArgumentsAsTheyAre) {
@@ -248,6 +278,51 @@ TEST(Spawn, PassesArgumentsAsTheyAre) {
   std::ifstream file(log);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "a b|$HOME|; rm|*|");
   std::filesystem::remove(log);
+}
+
+TEST(Spawn, TellsTheProgramItsPid) {
+  const auto log =
+      std::filesystem::temp_directory_path() / ("culprit-pid-" + std::to_string(getpid()));
+  const auto pid =
+      spawn({{"sh", "-c", "sh -c 'echo $CULPRIT_PROCESS'"}, {}, log, {}, "CULPRIT_PROCESS"});
+  ASSERT_TRUE(pid) << pid.error();
+  waitpid(*pid, nullptr, 0);
+  std::ifstream file(log);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), std::to_string(*pid) + "\n");
+  std::filesystem::remove(log);
+}
+
+TEST(Spawn, PassesNoCapabilityOn) {
+  if (prctl(PR_CAPBSET_READ, CAP_KILL) != 1) GTEST_SKIP() << "there is none to pass on";
+  __user_cap_header_struct who{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct has[2] = {};
+  ASSERT_EQ(syscall(SYS_capget, &who, has), 0);
+  has[0].inheritable |= 1U << CAP_KILL;
+  if (syscall(SYS_capset, &who, has) != 0 ||
+      prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_RAISE, CAP_KILL, 0, 0) != 0)
+    GTEST_SKIP() << "this user cannot pass it on";
+  const auto log =
+      std::filesystem::temp_directory_path() / ("culprit-capability-" + std::to_string(getpid()));
+  const auto pid = spawn({{"grep", "CapAmb", "/proc/self/status"}, {}, log});
+  prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
+  ASSERT_TRUE(pid) << pid.error();
+  waitpid(*pid, nullptr, 0);
+  std::ifstream file(log);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "CapAmb:\t0000000000000000\n");
+  std::filesystem::remove(log);
+}
+
+TEST(Spawn, SaysWhyAProgramCannotBeStarted) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("culprit-spawn-" + std::to_string(getpid()));
+  std::filesystem::create_directory(folder);
+  const auto bad = folder / "bad";
+  std::ofstream(bad) << "#!/no/such/interpreter\n";
+  std::filesystem::permissions(bad, std::filesystem::perms::owner_all);
+  const auto pid = spawn({{bad}, {}, folder / "log"});
+  ASSERT_FALSE(pid);
+  EXPECT_EQ(pid.error(), "cannot start '" + bad.string() + "': No such file or directory");
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
