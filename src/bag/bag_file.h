@@ -1,57 +1,57 @@
-// A rosbag2 recording in SQLite3 storage: its topics, and its messages in the order of their times.
+// A rosbag2 recording: its topics, and its messages in the order of their times.
 //
-// A bag is one .db3 file, or a folder of them that were split while recording. What is in it came
-// from elsewhere and is not trusted.
+// A bag is one file in SQLite3 storage or MCAP, or a folder of them that were split while
+// recording; each may be compressed with Zstandard as a whole (`.zstd`), or message by message.
+// What is in it came from elsewhere and is not trusted: what is whole is read, and what is not is
+// said.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "journal/database.h"
+#include "bag/bag_contents.h"
+#include "bag/decompression.h"
+#include "language/expected.h"
 
 namespace culprit::bag {
-
-struct BagTopic {
-  std::string name;
-  std::string type;  // "sensor_msgs/msg/Image"
-};
-
-struct BagMessage {
-  std::int64_t at = 0;     // nanoseconds since 1970, as recorded
-  std::size_t topic = 0;   // in BagFile::topics()
-  std::string_view bytes;  // CDR; valid until the next message
-};
 
 // Whether `path` looks like a bag rather than like a journal.
 bool is_bag(const std::filesystem::path& path);
 
 class BagFile {
  public:
-  // Errors: there is no such bag, it has another storage (MCAP), or it is compressed.
-  static Expected<BagFile> open(const std::filesystem::path& path);
-
-  const std::vector<BagTopic>& topics() const { return topics_; }
-
-  // False at the end.
-  Expected<bool> next(BagMessage& message);
-
- private:
-  struct Part {
-    journal::Database database;
-    std::vector<std::pair<std::int64_t, std::size_t>> topics;  // its number -> ours
+  struct Limits {
+    std::size_t most_memory = std::size_t{256} << 20;  // bytes, of a chunk or a message
   };
 
-  BagFile() = default;
-  Expected<void> add(const std::filesystem::path& path);
-  std::size_t place_of(BagTopic topic);
+  // Errors: there is no such bag, or nothing of it can be read.
+  static Expected<BagFile> open(const std::filesystem::path& path, Limits limits);
+  static Expected<BagFile> open(const std::filesystem::path& path) { return open(path, {}); }
 
-  std::vector<BagTopic> topics_;
-  std::vector<Part> parts_;
-  std::size_t part_ = 0;
-  std::optional<journal::Statement> rows_;  // of the part
+  // May grow with each message. At an address that stays.
+  const BagContents& contents() const { return *contents_; }
+
+  // False at the end. Times never go back: a message that comes after a later one counts at the
+  // time of that.
+  bool next(BagMessage& message);
+
+  // Messages whose time was earlier than that of one before them.
+  std::uint64_t out_of_order() const { return out_of_order_; }
+
+ private:
+  BagFile() = default;
+  Expected<void> open_next_part();
+  bool next_of_part(BagMessage& message);
+  bool is_usable(BagMessage& message);
+
+  Limits limits_;
+  std::unique_ptr<BagContents> contents_ = std::make_unique<BagContents>();
+  std::vector<std::filesystem::path> parts_;
+  std::size_t next_part_ = 0;
+  std::unique_ptr<Storage> part_;
+  Decompressor decompress_;
+  std::string decompressed_;
+  std::int64_t last_ = 0;
+  std::uint64_t out_of_order_ = 0;
 };
 
 }  // namespace culprit::bag

@@ -14,6 +14,14 @@ ros2::ByteView view(std::string_view bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
+// What a node's messages on /rosout are signed with: of "/arm/gripper" it is "arm.gripper"
+// (design.ros2.org/articles/logging.html, rcl's node.c).
+std::string logger_of(const std::string& node) {
+  std::string name = node.substr(1);
+  std::replace(name.begin(), name.end(), '/', '.');
+  return name;
+}
+
 Lifecycle lifecycle_from(const std::string& label) {
   for (const Lifecycle state : {Lifecycle::kUnconfigured, Lifecycle::kInactive, Lifecycle::kActive,
                                 Lifecycle::kFinalized}) {
@@ -24,58 +32,79 @@ Lifecycle lifecycle_from(const std::string& label) {
 
 }  // namespace
 
-BagReading::BagReading(const RuleSet& rules, const std::vector<BagTopic>& topics,
+BagReading::BagReading(const RuleSet& rules, const BagContents& contents,
                        ros2::MessageLibrary& library)
-    : rules_(rules), diagnostics_(rules), binding_(rules) {
+    : rules_(rules), contents_(contents), library_(library), diagnostics_(rules), binding_(rules) {
   diagnostics_.on_level = [this](DiagnosticId id, std::uint8_t level) {
     put(DiagnosticRead{id, level});
   };
   diagnostics_.on_signal = [this](SignalId id, const std::string& text) {
     put(SignalRead{id, Value(text)});
   };
-  for (const BagTopic& topic : topics) plans_.push_back(plan_for(topic, library));
-  look_for_missing(topics);
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    const std::string& declared = binding_.node_of(ComponentId(c));
+    const std::string node = declared.empty() ? "/" + rules.components[c].name : declared;
+    loggers_.try_emplace(logger_of(node), node);
+  }
 }
 
-BagReading::Plan BagReading::plan_for(const BagTopic& topic, ros2::MessageLibrary& library) {
+BagReading::Plan BagReading::plan_for(const BagTopic& topic) {
   Plan plan;
+  for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
+    if (rules_.topics[t].name == topic.name) plan.topic = TopicId(t);
+  }
+  plan_fields(topic, plan);
+  if (topic.encoding != "cdr") return plan;
   if (topic.type == ros2::msg::DiagnosticArray::kType && diagnostics_.is_wanted())
     plan.use = Use::kDiagnostics;
+  if (topic.type == ros2::msg::Log::kType) plan.use = Use::kLog;
   if (topic.type == ros2::msg::ParameterEvent::kType) plan.use = Use::kParameters;
   if (topic.type == ros2::msg::TransitionEvent::kType && topic.name.ends_with(kTransitions)) {
     plan.use = Use::kTransition;
     plan.node = topic.name.substr(0, topic.name.size() - kTransitions.size());
   }
-  for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
-    if (rules_.topics[t].name == topic.name) plan.topic = TopicId(t);
-  }
-  for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
-    const auto* field = std::get_if<TopicField>(&rules_.signals[s].source);
-    if (field == nullptr || plan.topic != field->topic) continue;
-    auto reader = ros2::FieldReader::compile(library, topic.type, field->field);
-    if (reader) {
-      plan.fields.push_back({SignalId(s), std::move(*reader)});
-    } else {
-      missing_.push_back("signal " + rules_.signals[s].name + ": " + reader.error());
-    }
-  }
   return plan;
 }
 
-void BagReading::look_for_missing(const std::vector<BagTopic>& topics) {
+void BagReading::plan_fields(const BagTopic& topic, Plan& plan) {
+  for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
+    const auto* field = std::get_if<TopicField>(&rules_.signals[s].source);
+    if (field == nullptr || plan.topic != field->topic) continue;
+    const std::string& name = rules_.signals[s].name;
+    if (topic.encoding != "cdr") {
+      unreadable_.push_back("signal " + name + ": its messages are in '" + topic.encoding +
+                            "', not in CDR");
+      continue;
+    }
+    if (const std::string* definition = contents_.definition_of(topic.type))
+      library_.learn(topic.type, *definition);
+    auto reader = ros2::FieldReader::compile(library_, topic.type, field->field);
+    if (reader) {
+      plan.fields.push_back({SignalId(s), std::move(*reader)});
+    } else {
+      unreadable_.push_back("signal " + name + ": " + reader.error());
+    }
+  }
+}
+
+std::vector<std::string> BagReading::missing() const {
   const auto has = [&](const auto& is_it) {
-    return std::any_of(topics.begin(), topics.end(), is_it);
+    return std::any_of(contents_.topics().begin(), contents_.topics().end(), is_it);
   };
+  std::vector<std::string> missing = unreadable_;
   for (const Topic& topic : rules_.topics) {
     if (!has([&](const BagTopic& each) { return each.name == topic.name; }))
-      missing_.push_back("topic " + topic.name);
+      missing.push_back("topic " + topic.name);
   }
   if (diagnostics_.is_wanted() &&
       !has([](const BagTopic& each) { return each.type == ros2::msg::DiagnosticArray::kType; }))
-    missing_.emplace_back("/diagnostics");
+    missing.emplace_back("/diagnostics");
+  return missing;
 }
 
 void BagReading::read(const BagMessage& message, std::vector<Observation>& observations) {
+  while (plans_.size() <= message.topic)  // The bag tells of its topics as it comes to them.
+    plans_.push_back(plan_for(contents_.topics()[plans_.size()]));
   const Plan& plan = plans_[message.topic];
   const ros2::ByteView payload = view(message.bytes);
   now_ = Time(Duration(message.at));
@@ -93,6 +122,8 @@ void BagReading::read(const BagMessage& message, std::vector<Observation>& obser
     read_parameters(payload);
   } else if (plan.use == Use::kTransition) {
     read_transition(plan.node, payload);
+  } else if (plan.use == Use::kLog) {
+    read_log(payload);
   }
 }
 
@@ -118,6 +149,20 @@ void BagReading::read_transition(const std::string& node, ros2::ByteView payload
   if (!event) return;
   if (const auto component = node_seen(node))
     put(LifecycleRead{*component, lifecycle_from(event->goal_state.label)});
+}
+
+// Also what a part of a node says: "arm.gripper.planner" is of "/arm/gripper".
+void BagReading::read_log(ros2::ByteView payload) {
+  const auto log = ros2::decode<ros2::msg::Log>(payload);
+  constexpr std::size_t kLongestName = 1024;
+  if (!log || log->name.size() > kLongestName) return;
+  for (std::size_t end = log->name.size(); end != std::string::npos && end > 0;
+       end = log->name.rfind('.', end - 1)) {
+    const auto logger = loggers_.find(log->name.substr(0, end));
+    if (logger == loggers_.end()) continue;
+    (void)node_seen(logger->second);
+    return;
+  }
 }
 
 std::optional<ComponentId> BagReading::node_seen(const std::string& node) {

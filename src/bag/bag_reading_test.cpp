@@ -1,60 +1,20 @@
-// Bags as ros2 bag record writes them: what rules see in them, and what becomes of broken ones.
+// What rules see in a bag.
 #include "bag/bag_reading.h"
-
-#include <array>
-#include <cstring>
-#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "bag/test_bag.h"
+#include "bag/test_mcap.h"
 #include "language/checker.h"
 
 namespace culprit::bag {
 namespace {
 
-using testing::HasSubstr;
-namespace fs = std::filesystem;
-
-template <class T>
-T value_of(Expected<T> expected) {
-  if (!expected) throw std::runtime_error(expected.error());
-  return std::move(*expected);
-}
-
-class BagTest : public testing::Test {
- protected:
-  BagTest() {
-    std::string name = (fs::temp_directory_path() / "culprit-bag-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~BagTest() override { fs::remove_all(folder_); }
-
-  // The schema of rosbag2_storage_sqlite3.
-  journal::Database make(const std::string& name) {
-    auto database =
-        value_of(journal::Database::open(folder_ / name, journal::Database::Mode::kWrite));
-    EXPECT_TRUE(database.run(
-        "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
-        "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);"
-        "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp "
-        "INTEGER NOT NULL, data BLOB NOT NULL);"
-        "INSERT INTO topics VALUES(1, '/water_visibility', 'std_msgs/msg/Float64', 'cdr', ''),"
-        "(2, '/camera/transition_event', 'lifecycle_msgs/msg/TransitionEvent', 'cdr', ''),"
-        "(3, '/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', 'cdr', '')"));
-    return database;
-  }
-  static void add(journal::Database& database, int topic, std::int64_t at,
-                  const ros2::Bytes& bytes) {
-    auto insert = value_of(
-        database.prepare("INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)"));
-    insert.bind(1, std::int64_t{topic}).bind(2, at);
-    insert.bind_blob(3, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    EXPECT_TRUE(insert.step());
-  }
-
-  fs::path folder_;
-};
+using test::BagTest;
+using test::number;
+using test::text_of;
+using test::value_of;
 
 constexpr const char* kRules = R"(
 COMPONENT camera NODE /camera
@@ -67,72 +27,110 @@ RULE R
       ADAPTATION camera restart 2
 )";
 
-ros2::Bytes number(double value) {
-  ros2::Bytes bytes = {0, 1, 0, 0};
-  std::array<std::uint8_t, 8> raw{};
-  std::memcpy(raw.data(), &value, 8);
-  bytes.insert(bytes.end(), raw.begin(), raw.end());
-  return bytes;
-}
-
-TEST_F(BagTest, ShowsTopicsFieldsDiagnosticsAndLifecyclesInTheOrderOfTime) {
-  {
-    auto second = make("bag_10.db3");
-    add(second, 1, 400, number(0.5));
-    auto first = make("bag_9.db3");
-    ros2::msg::TransitionEvent event;
-    event.goal_state.label = "active";
-    add(first, 2, 300, ros2::encode(event));
-    add(first, 1, 100, number(2.5));
-    ros2::msg::DiagnosticArray array;
-    array.status.resize(1);
-    array.status[0].name = "segmentation";
-    array.status[0].values = {{"entropy", "0.25"}};
-    add(first, 3, 200, ros2::encode(array));
-    add(first, 1, -5, number(9));            // no recorder writes that
-    add(first, 3, 250, ros2::Bytes(7, 99));  // nor that
-  }
-  const auto checked = check(Source("t", kRules));
-  ros2::MessageLibrary library;
-  BagFile bag = value_of(BagFile::open(folder_));
-  BagReading reading(*checked.rules, bag.topics(), library);
-  EXPECT_THAT(reading.missing(), testing::ElementsAre("topic /lidar"));
-
-  std::vector<Observation> seen;
-  BagMessage message;
-  while (value_of(bag.next(message))) reading.read(message, seen);
+// Values and what else was seen, by time.
+std::vector<std::pair<std::int64_t, std::string>> said_by(const std::vector<Observation>& seen) {
   std::vector<std::pair<std::int64_t, std::string>> said;
   for (const Observation& o : seen) {
     const std::int64_t at = o.at.time_since_epoch().count();
     if (const auto* signal = std::get_if<SignalRead>(&o.what))
       said.emplace_back(at, to_string(signal->value));
-    if (std::holds_alternative<NodeAppeared>(o.what)) said.emplace_back(at, "node");
+    if (const auto* node = std::get_if<NodeAppeared>(&o.what))
+      said.emplace_back(at, "node " + node->node);
     if (const auto* state = std::get_if<LifecycleRead>(&o.what))
       said.emplace_back(at, state->state == Lifecycle::kActive ? "active" : "?");
   }
-  const std::vector<std::pair<std::int64_t, std::string>> expected = {
-      {100, "2.5"}, {200, "\"0.25\""}, {300, "node"}, {300, "active"}, {400, "0.5"}};
-  EXPECT_EQ(said, expected);
+  return said;
 }
 
-TEST_F(BagTest, SaysWhyABagCannotBeRead) {
-  const auto nowhere = BagFile::open(folder_ / "nowhere.db3");
-  ASSERT_FALSE(nowhere);
-  EXPECT_THAT(nowhere.error(), HasSubstr("there is no such bag"));
-  const auto empty = BagFile::open(folder_);
-  ASSERT_FALSE(empty);
-  EXPECT_THAT(empty.error(), HasSubstr("no .db3 file"));
-  std::ofstream(folder_ / "a.mcap") << "MCAP";
-  const auto mcap = BagFile::open(folder_);
-  ASSERT_FALSE(mcap);
-  EXPECT_THAT(mcap.error(), HasSubstr("ros2 bag convert"));
-  std::ofstream(folder_ / "a.db3") << "no database at all, but long enough to be looked at";
-  EXPECT_FALSE(BagFile::open(folder_ / "a.db3"));
-  (void)value_of(journal::Database::open(folder_ / "b.db3", journal::Database::Mode::kWrite))
-      .run("CREATE TABLE t(a)");
-  const auto foreign = BagFile::open(folder_ / "b.db3");
-  ASSERT_FALSE(foreign);
-  EXPECT_THAT(foreign.error(), HasSubstr("it is no bag"));
+struct Seen {
+  std::vector<std::pair<std::int64_t, std::string>> said;
+  std::vector<std::string> missing;
+};
+
+Seen read(const std::filesystem::path& path, const char* rules) {
+  const auto checked = check(Source("t", rules));
+  ros2::MessageLibrary library;
+  BagFile bag = value_of(BagFile::open(path));
+  BagReading reading(*checked.rules, bag.contents(), library);
+  std::vector<Observation> seen;
+  BagMessage message;
+  while (bag.next(message)) reading.read(message, seen);
+  return {said_by(seen), reading.missing()};
+}
+
+TEST_F(BagTest, ShowsTopicsFieldsDiagnosticsAndLifecyclesInTheOrderOfTime) {
+  {
+    auto second = make("bag_10.db3");
+    add(second, 1, 400, text_of(number(0.5)));
+    auto first = make("bag_9.db3");
+    ros2::msg::TransitionEvent event;
+    event.goal_state.label = "active";
+    add(first, 2, 300, text_of(ros2::encode(event)));
+    add(first, 1, 100, text_of(number(2.5)));
+    ros2::msg::DiagnosticArray array;
+    array.status.resize(1);
+    array.status[0].name = "segmentation";
+    array.status[0].values = {{"entropy", "0.25"}};
+    add(first, 3, 200, text_of(ros2::encode(array)));
+    add(first, 1, -5, text_of(number(9)));  // no recorder writes that
+    add(first, 3, 250, "garbage");          // nor that
+  }
+  const Seen seen = read(folder_, kRules);
+  EXPECT_THAT(seen.missing, testing::ElementsAre("topic /lidar"));
+  const std::vector<std::pair<std::int64_t, std::string>> expected = {
+      {100, "2.5"}, {200, "\"0.25\""}, {300, "node /camera"}, {300, "active"}, {400, "0.5"}};
+  EXPECT_EQ(seen.said, expected);
+}
+
+TEST_F(BagTest, ReadsTypesThatOnlyTheBagDescribes) {
+  const std::string definition = "Depth[] depths\n" + std::string(80, '=') +
+                                 "\nMSG: my_msgs/Depth\nuint8 quality\nfloat64 metres\n" +
+                                 std::string(80, '=') + "\nMSG: my_msgs/Unused\n";
+  ros2::Bytes bytes = {0, 1, 0, 0, 1, 0, 0, 0, 7, 0, 0, 0};  // one depth, of quality 7
+  const ros2::Bytes metres = number(1.5);
+  bytes.insert(bytes.end(), metres.begin() + 4, metres.end());
+  write("a.mcap",
+        test::mcap(test::schema(4, "my_msgs/msg/Sonar", definition) +
+                       test::channel(1, 4, "/sonar") + test::channel(2, 0, "/map", "json") +
+                       test::message(1, 10, text_of(bytes)) + test::message(2, 20, "{}"),
+                   2));
+  const Seen seen = read(folder_ / "a.mcap", R"(
+COMPONENT sonar NODE /sonar
+SIGNAL depth TOPIC /sonar FIELD depths[0].metres
+SIGNAL size TOPIC /map FIELD size
+RULE R
+  POLICIES ERROR
+  TRIGGER depth < 1 || size > 1
+    STRATEGY restart 50 10
+      ADAPTATION sonar restart 2
+)");
+  EXPECT_THAT(seen.said, testing::ElementsAre(testing::Pair(10, "1.5")));
+  EXPECT_THAT(seen.missing,
+              testing::ElementsAre("signal size: its messages are in 'json', not in CDR"));
+}
+
+TEST_F(BagTest, KnowsNodesByWhatTheyLog) {
+  const auto log = [](std::uint64_t at, const std::string& name) {
+    ros2::msg::Log message;
+    message.name = name;
+    return test::message(1, at, text_of(ros2::encode(message)));
+  };
+  write("a.mcap",
+        test::mcap(test::schema(1, "rcl_interfaces/msg/Log", "") + test::channel(1, 1, "/rosout") +
+                       log(1, "somebody") + log(2, "arm.gripper.planner") + log(3, "arm.gripper") +
+                       log(4, "x.camera") + log(5, "camera"),
+                   5));
+  const Seen seen = read(folder_ / "a.mcap", R"(
+COMPONENT gripper NODE /arm/gripper
+COMPONENT camera
+RULE R
+  POLICIES ERROR
+  TRIGGER !alive(gripper)
+    STRATEGY restart 50 10
+      ADAPTATION camera restart 2
+)");
+  EXPECT_THAT(seen.said, testing::ElementsAre(testing::Pair(2, "node /arm/gripper"),
+                                              testing::Pair(5, "node /camera")));
 }
 
 }  // namespace

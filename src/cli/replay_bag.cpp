@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "bag/bag_file.h"
 #include "bag/bag_reading.h"
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -67,26 +68,27 @@ int replay_bag(const BagReplay& options) {
   if (!bag) return complain(bag.error());
   ros2::MessageLibrary library(
       ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH")));
-  bag::BagReading reading(*rules, bag->topics(), library);
-  for (const std::string& each : reading.missing())
-    fmt::print(stderr, "culprit: the bag does not have what the rules read: {}\n", each);
+  bag::BagReading reading(*rules, bag->contents(), library);
 
   std::optional<BagRun> run;
   std::vector<Observation> observations;
   std::uint64_t messages = 0;
-  bag::BagMessage message;
-  auto more = bag->next(message);
-  for (; more && *more; more = bag->next(message)) {
+  for (bag::BagMessage message; bag->next(message); ++messages) {
     const Time now{Duration(message.at)};
     if (!run) run.emplace(*rules, options.planner, now);
     observations.clear();
     reading.read(message, observations);
     run->step(now, observations);
-    ++messages;
   }
-  if (!more) return complain("cannot read the bag '" + options.bag + "': " + more.error());
-  fmt::print("{} messages, {} decisions\n", messages, run ? run->decisions() : 0);
-  return kOk;
+  for (const std::string& each : reading.missing())
+    fmt::print(stderr, "culprit: the bag does not have what the rules read: {}\n", each);
+  const std::vector<std::string> losses = bag->contents().losses();
+  for (const std::string& each : losses)
+    fmt::print(stderr, "culprit: the bag is not whole: {}\n", each);
+  const std::string late =
+      bag->out_of_order() > 0 ? fmt::format(" ({} out of order)", bag->out_of_order()) : "";
+  fmt::print("{} messages{}, {} decisions\n", messages, late, run ? run->decisions() : 0);
+  return losses.empty() ? kOk : kFailed;
 }
 
 }  // namespace culprit::cli

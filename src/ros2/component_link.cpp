@@ -53,7 +53,12 @@ msg::Transition to_message(Transition transition) {
 
 ComponentLink::ComponentLink(NodeEntry& self, ComponentId component, std::string node,
                              const RuleSet& rules, Inbox& inbox)
-    : self_(self), component_(component), node_(std::move(node)), rules_(rules), inbox_(inbox) {}
+    : self_(self),
+      component_(component),
+      node_(std::move(node)),
+      rules_(rules),
+      needs_(needs_of(component, rules)),
+      inbox_(inbox) {}
 
 void ComponentLink::service_seen(const std::string& service, const std::string& type) {
   {
@@ -65,17 +70,19 @@ void ComponentLink::service_seen(const std::string& service, const std::string& 
     read_lifecycle(kJoining, Told::kAlways);
   }
   if (service == node_ + "/get_parameters") read_parameters();
-  if (service == node_ + "/change_mode") modes();
+  if (service == node_ + "/change_mode" && needs_.changes_modes) modes();
 }
 
 // ---- clients
 
 ServiceClient* ComponentLink::make(std::unique_ptr<ServiceClient>& client,
                                    const std::string& service, std::string_view type,
-                                   const Qos& qos, ServiceClient::Probe probe) {
+                                   const Qos& qos, std::optional<ServiceClient::Probe> probe) {
   const std::lock_guard lock(mutex_);
   if (client) return client.get();
-  auto made = ServiceClient::create(self_, {service, std::string(type)}, qos, std::move(probe));
+  const ServiceName name{service, std::string(type)};
+  auto made = probe ? ServiceClient::create(self_, name, qos, std::move(*probe))
+                    : ServiceClient::create(self_, name, qos);
   if (!made) {
     inbox_.put(LinkTrouble{"cannot call " + service + ": " + made.error()});
     return nullptr;
@@ -86,21 +93,36 @@ ServiceClient* ComponentLink::make(std::unique_ptr<ServiceClient>& client,
 
 ServiceClient* ComponentLink::lifecycle() {
   return make(lifecycle_, node_ + "/change_state", srv::ChangeState::kType, qos::kServices,
-              {{node_ + "/get_state", std::string(srv::GetState::kType)},
-               encode(srv::GetState::Request{})});
+              {{{node_ + "/get_state", std::string(srv::GetState::kType)},
+                encode(srv::GetState::Request{})}});
+}
+
+ServiceClient* ComponentLink::lifecycle_reader() {
+  if (!needs_.changes_lifecycle)
+    return make(lifecycle_reader_, node_ + "/get_state", srv::GetState::kType, qos::kServices);
+  ServiceClient* client = lifecycle();
+  return client == nullptr ? nullptr : client->probe();
 }
 
 ServiceClient* ComponentLink::parameters() {
   return make(parameters_, node_ + "/set_parameters", srv::SetParameters::kType,
               qos::kParameterServices,
-              {{node_ + "/get_parameters", std::string(srv::GetParameters::kType)},
-               encode(srv::GetParameters::Request{})});
+              {{{node_ + "/get_parameters", std::string(srv::GetParameters::kType)},
+                encode(srv::GetParameters::Request{})}});
+}
+
+ServiceClient* ComponentLink::parameter_reader() {
+  if (!needs_.sets_parameters)
+    return make(parameter_reader_, node_ + "/get_parameters", srv::GetParameters::kType,
+                qos::kParameterServices);
+  ServiceClient* client = parameters();
+  return client == nullptr ? nullptr : client->probe();
 }
 
 ServiceClient* ComponentLink::modes() {
   return make(
       modes_, node_ + "/change_mode", srv::ChangeMode::kType, qos::kServices,
-      {{node_ + "/get_mode", std::string(srv::GetMode::kType)}, encode(srv::GetMode::Request{})});
+      {{{node_ + "/get_mode", std::string(srv::GetMode::kType)}, encode(srv::GetMode::Request{})}});
 }
 
 ServiceClient* ComponentLink::routine(const std::string& service, const std::string& type) {
@@ -110,8 +132,8 @@ ServiceClient* ComponentLink::routine(const std::string& service, const std::str
     place = &routines_[service];
   }
   return make(*place, service, type, qos::kServices,
-              {{node_ + "/get_parameters", std::string(srv::GetParameters::kType)},
-               encode(srv::GetParameters::Request{})});
+              {{{node_ + "/get_parameters", std::string(srv::GetParameters::kType)},
+                encode(srv::GetParameters::Request{})}});
 }
 
 // ---- what is read without being commanded
@@ -119,20 +141,20 @@ ServiceClient* ComponentLink::routine(const std::string& service, const std::str
 void ComponentLink::check_lifecycle() {
   {
     const std::lock_guard lock(mutex_);
-    if (!lifecycle_) return;
+    if (!lifecycle_ && !lifecycle_reader_) return;
   }
   read_lifecycle(kProbe, Told::kIfNew);
 }
 
 void ComponentLink::read_lifecycle(Duration patience, Told told) {
-  ServiceClient* client = lifecycle();
+  ServiceClient* client = lifecycle_reader();
   if (client == nullptr) return;
-  client->probe()->call(encode(srv::GetState::Request{}), Repeat::kUntilAnswered, patience,
-                        [this, told](const CallResult& result) {
-                          if (result.outcome != CallOutcome::kAnswered) return;
-                          const auto response = decode<srv::GetState::Response>(result.reply);
-                          if (response) tell(to_lifecycle(response->current_state.id), told);
-                        });
+  client->call(encode(srv::GetState::Request{}), Repeat::kUntilAnswered, patience,
+               [this, told](const CallResult& result) {
+                 if (result.outcome != CallOutcome::kAnswered) return;
+                 const auto response = decode<srv::GetState::Response>(result.reply);
+                 if (response) tell(to_lifecycle(response->current_state.id), told);
+               });
 }
 
 void ComponentLink::tell(Lifecycle state, Told told) {
@@ -154,31 +176,30 @@ void ComponentLink::watch_transitions() {
 }
 
 void ComponentLink::read_parameters() {
-  ServiceClient* client = parameters();
+  ServiceClient* client = parameter_reader();
   if (client == nullptr) return;
   for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
     if (rules_.parameters[p].component != component_) continue;
     // One by one: a name that is not declared would leave all of them unanswered.
-    client->probe()->call(encode(srv::GetParameters::Request{{rules_.parameters[p].name}}),
-                          Repeat::kUntilAnswered, kJoining, [this, p](const CallResult& result) {
-                            if (result.outcome != CallOutcome::kAnswered) return;
-                            const auto response =
-                                decode<srv::GetParameters::Response>(result.reply);
-                            if (!response || response->values.size() != 1) return;
-                            if (auto value = to_value(response->values[0])) {
-                              inbox_.put(ParameterRead{ParameterId(p), std::move(*value)});
-                            }
-                          });
+    client->call(encode(srv::GetParameters::Request{{rules_.parameters[p].name}}),
+                 Repeat::kUntilAnswered, kJoining, [this, p](const CallResult& result) {
+                   if (result.outcome != CallOutcome::kAnswered) return;
+                   const auto response = decode<srv::GetParameters::Response>(result.reply);
+                   if (!response || response->values.size() != 1) return;
+                   if (auto value = to_value(response->values[0])) {
+                     inbox_.put(ParameterRead{ParameterId(p), std::move(*value)});
+                   }
+                 });
   }
 }
 
 void ComponentLink::probe() {
-  ServiceClient* client = parameters();
+  ServiceClient* client = parameter_reader();
   if (client == nullptr) return;
-  client->probe()->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kProbe,
-                        [this](const CallResult& result) {
-                          inbox_.put(Probed{component_, result.outcome == CallOutcome::kAnswered});
-                        });
+  client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kProbe,
+               [this](const CallResult& result) {
+                 inbox_.put(Probed{component_, result.outcome == CallOutcome::kAnswered});
+               });
 }
 
 // ---- commands
@@ -231,9 +252,8 @@ void ComponentLink::run(const Command& command, const ChangeLifecycle& what) {
 }
 
 void ComponentLink::run(const Command& command, const ReadLifecycle&) {
-  ServiceClient* client = lifecycle();
-  ask<srv::GetState>(client == nullptr ? nullptr : client->probe(), {}, Repeat::kUntilAnswered,
-                     command, [this](const srv::GetState::Response& response) {
+  ask<srv::GetState>(lifecycle_reader(), {}, Repeat::kUntilAnswered, command,
+                     [this](const srv::GetState::Response& response) {
                        const Lifecycle state = to_lifecycle(response.current_state.id);
                        tell(state, Told::kAlways);
                        return Answer{Outcome::kDone, state, ""};
@@ -253,9 +273,8 @@ void ComponentLink::run(const Command& command, const SetParameter& what) {
 }
 
 void ComponentLink::run(const Command& command, const ReadParameter& what) {
-  ServiceClient* client = parameters();
   ask<srv::GetParameters>(
-      client == nullptr ? nullptr : client->probe(), {{what.name}}, Repeat::kUntilAnswered, command,
+      parameter_reader(), {{what.name}}, Repeat::kUntilAnswered, command,
       [name = what.name](const srv::GetParameters::Response& response) {
         const bool is_there = response.values.size() == 1 && response.values[0].type != 0;
         if (!is_there) return Answer{Outcome::kRefused, {}, "there is no parameter " + name};

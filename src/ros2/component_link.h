@@ -4,18 +4,21 @@
 // Clients are made when the node is seen to offer a service, or at the first command that needs it,
 // and kept: a client that the server knows already needs no discovery when every millisecond
 // counts. Each changing service has a read of the same node as its probe (service_client.h), so
-// that a request is neither lost to discovery nor sent twice.
+// that a request is neither lost to discovery nor sent twice. Where the rules only look at a node,
+// there is only a client that reads: a secured domain need not allow more (policy.h).
 #pragma once
 
 #include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "language/rule_set.h"
 #include "robot/command.h"
 #include "robot/inbox.h"
+#include "ros2/component_needs.h"
 #include "ros2/service_client.h"
 #include "ros2/subscription.h"
 
@@ -73,23 +76,29 @@ class ComponentLink {
   void read_parameters();
 
   ServiceClient* lifecycle();
+  ServiceClient* lifecycle_reader();
   ServiceClient* parameters();
+  ServiceClient* parameter_reader();
   ServiceClient* modes();
   ServiceClient* routine(const std::string& service, const std::string& type);
   ServiceClient* make(std::unique_ptr<ServiceClient>& client, const std::string& service,
-                      std::string_view type, const Qos& qos, ServiceClient::Probe probe);
+                      std::string_view type, const Qos& qos,
+                      std::optional<ServiceClient::Probe> probe = {});
 
   NodeEntry& self_;
   const ComponentId component_;
   const std::string node_;
   const RuleSet& rules_;
+  const ComponentNeeds needs_;
   Inbox& inbox_;
   // Not under the mutex: a receive thread that waited for it would stop whoever makes a client.
   std::atomic<Lifecycle> told_ = Lifecycle::kUnknown;
 
   std::mutex mutex_;  // guards what follows; never held while calling
   std::unique_ptr<ServiceClient> lifecycle_;
+  std::unique_ptr<ServiceClient> lifecycle_reader_;  // where the rules only look
   std::unique_ptr<ServiceClient> parameters_;
+  std::unique_ptr<ServiceClient> parameter_reader_;  // likewise
   std::unique_ptr<ServiceClient> modes_;
   std::map<std::string, std::unique_ptr<ServiceClient>> routines_;
   std::map<std::string, std::string> services_;  // that the node offers: name -> type

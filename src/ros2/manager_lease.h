@@ -1,7 +1,7 @@
 // Which culprit manages a robot, of all that are in its DDS domain, on whichever machine.
 //
-// Each announces that it would, by a writer on the topic `culprit_lease` that says in its user data
-// which robot and since when. Nothing is ever written: discovery alone tells everybody of
+// Each announces that it would, by a writer on the hidden topic /_culprit_lease that says in its
+// user data which robot and since when. Nothing is ever written: discovery alone tells everybody of
 // everybody, and that one is gone, at once if it ended in order, else when its lease of 20 s is
 // over. The one that began first, by its own clock, manages; of two that began at once, the one
 // with the lower GUID. All come to the same answer, so a robot has one manager also after a network
@@ -26,8 +26,8 @@ struct LeaseClaim {
 
 class ManagerLease {
  public:
-  static constexpr const char* kTopic = "culprit_lease";
-  static constexpr const char* kType = "culprit::Lease";
+  static constexpr const char* kTopic = "rt/_culprit_lease";
+  static constexpr const char* kType = "culprit::msg::dds_::Lease_";
 
   explicit ManagerLease(LeaseClaim own) : own_(std::move(own)) {}
 

@@ -12,6 +12,25 @@ namespace culprit::ros2 {
 MessageLibrary::MessageLibrary(std::vector<std::filesystem::path> directories)
     : directories_(std::move(directories)) {}
 
+void MessageLibrary::learn(std::string_view type, std::string_view text) {
+  static const std::string kSeparator = '\n' + std::string(80, '=') + '\n';
+  constexpr std::string_view kName = "MSG: ";
+  std::string name(type);
+  while (true) {
+    const std::size_t end = std::min(text.find(kSeparator), text.size());
+    learned_.try_emplace(std::move(name), text.substr(0, end));
+    if (end == text.size()) return;
+    text.remove_prefix(end + kSeparator.size());
+    const std::size_t line = text.find('\n');
+    if (!text.starts_with(kName) || line == std::string_view::npos) return;
+    name = text.substr(kName.size(), line - kName.size());
+    const std::size_t slash = name.find('/');
+    if (slash != std::string::npos && name.find('/', slash + 1) == std::string::npos)
+      name.insert(slash, "/msg");
+    text.remove_prefix(line);  // The end of the line may begin the next separator.
+  }
+}
+
 Expected<const MessageDefinition*> MessageLibrary::find(std::string_view type) {
   if (const auto known = known_.find(type); known != known_.end()) return &known->second;
   // The name may come from the network, and becomes part of a path.
@@ -23,6 +42,8 @@ Expected<const MessageDefinition*> MessageLibrary::find(std::string_view type) {
 }
 
 Expected<MessageDefinition> MessageLibrary::load(std::string_view type) const {
+  if (const auto learned = learned_.find(type); learned != learned_.end())
+    return parse_message_definition(learned->second, type, type);
   const std::filesystem::path below = std::string(type) + ".msg";
   for (const auto& directory : directories_) {
     for (const auto& path : {directory / below, directory / "share" / below}) {

@@ -1,5 +1,5 @@
-// The message definitions that are to be had: files under the search directories, then the standard
-// types built in.
+// The message definitions that are to be had: those that were learned, files under the search
+// directories, then the standard types built in.
 #pragma once
 
 #include <filesystem>
@@ -20,6 +20,11 @@ class MessageLibrary {
   // share/<package>/msg/<Type>.msg.
   explicit MessageLibrary(std::vector<std::filesystem::path> directories = {});
 
+  // What a recorder or another program keeps of `type`: the text of its .msg file, then those of
+  // the types in it, each after a line of 80 '=' and one "MSG: package/Type"
+  // (mcap.dev/spec/registry, ros2msg). Goes before the directories; the first one of a type counts.
+  void learn(std::string_view type, std::string_view text);
+
   // `type` is "package/msg/Type". The definition lives as long as the library.
   Expected<const MessageDefinition*> find(std::string_view type);
 
@@ -27,6 +32,7 @@ class MessageLibrary {
   Expected<MessageDefinition> load(std::string_view type) const;
 
   std::vector<std::filesystem::path> directories_;
+  std::map<std::string, std::string, std::less<>> learned_;  // texts
   std::map<std::string, MessageDefinition, std::less<>> known_;
 };
 

@@ -88,6 +88,22 @@ TEST(MessageLibrary, NeverLooksOutsideItsDirectories) {
   EXPECT_FALSE(library.find("etc/msg/../../etc/passwd"));
 }
 
+TEST(MessageLibrary, LearnsATypeWithThoseInIt) {
+  MessageLibrary library;
+  const std::string line = std::string(80, '=') + "\n";
+  library.learn("a/msg/Outer", "Inner one\nb/Other two\n" + line + "MSG: a/Inner\nint8 x\n" + line +
+                                   "MSG: b/msg/Other\n" + line + "MSG: a/Inner\nint16 x\n" + line +
+                                   "no name");
+  library.learn("a/msg/Outer", "int32 other");
+  const auto outer = library.find("a/msg/Outer");
+  ASSERT_TRUE(outer) << outer.error();
+  EXPECT_EQ((*outer)->fields.size(), 2);
+  const auto inner = library.find("a/msg/Inner");
+  ASSERT_TRUE(inner) << inner.error();
+  EXPECT_EQ(std::get<Primitive>((*inner)->fields.at(0).element), Primitive::kInt8);
+  EXPECT_TRUE(library.find("b/msg/Other"));
+}
+
 TEST(MessageLibrary, SearchesTheGivenDirectoriesBeforeThePrefixPath) {
   EXPECT_THAT(message_directories({"/mine"}, "/a:/b::"), ElementsAre("/mine", "/a", "/b"));
   EXPECT_THAT(message_directories({}, ""), ElementsAre());

@@ -8,7 +8,7 @@ namespace culprit::ros2 {
 namespace {
 
 // How long a node that was just seen may take until its services answer.
-constexpr Duration kPatience = std::chrono::seconds(5);
+constexpr Duration kAnswerPatience = std::chrono::seconds(5);
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void NodeReading::list_parameters() {
       self_.create_client<srv::ListParameters>(node_ + "/list_parameters", qos::kParameterServices);
   if (!client) return;
   list_ = std::move(*client);
-  list_->call({}, Repeat::kUntilAnswered, kPatience,
+  list_->call({}, Repeat::kUntilAnswered, kAnswerPatience,
               [this](const Client<srv::ListParameters>::Answer& answer) {
                 if (answer.response) get_parameters(answer.response->names);
               });
@@ -45,7 +45,7 @@ void NodeReading::get_parameters(std::vector<std::string> names) {
       self_.create_client<srv::GetParameters>(node_ + "/get_parameters", qos::kParameterServices);
   if (!client) return;
   get_ = std::move(*client);
-  get_->call({names}, Repeat::kUntilAnswered, kPatience,
+  get_->call({names}, Repeat::kUntilAnswered, kAnswerPatience,
              [this, names](const Client<srv::GetParameters>::Answer& answer) {
                if (!answer.response) return;
                const auto& values = answer.response->values;
@@ -79,7 +79,7 @@ void NodeReading::read_lifecycle() {
   auto client = self_.create_client<srv::GetState>(node_ + "/get_state");
   if (!client) return;
   state_ = std::move(*client);
-  state_->call({}, Repeat::kUntilAnswered, kPatience,
+  state_->call({}, Repeat::kUntilAnswered, kAnswerPatience,
                [this](const Client<srv::GetState>::Answer& answer) {
                  if (answer.response) set_lifecycle(answer.response->current_state.id);
                });

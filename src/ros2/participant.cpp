@@ -77,6 +77,13 @@ class Gate {
   bool open_ = true;
 };
 
+// Why the middleware may refuse a reader or writer, as far as one can tell.
+std::string likely_refusal(const std::optional<Security>& security) {
+  if (!security) return "";
+  return "; do the permissions of the enclave " + security->enclave +
+         " allow it? culprit policy writes what a rule file needs";
+}
+
 template <class Status>
 Match match_of(const Status& status) {
   return status.current_count_change > 0 ? Match::kMade : Match::kLost;
@@ -95,7 +102,7 @@ class Reader::Impl final : public dds::DataReaderListener {
   }
 
   // The destructor undoes whatever of this succeeded.
-  Expected<void> open() {
+  Expected<void> open(const std::string& likely_refusal) {
     const auto topic = topics_.acquire(options_.topic, options_.type);
     if (!topic) return Error{topic.error()};
     has_topic_ = true;
@@ -104,7 +111,8 @@ class Reader::Impl final : public dds::DataReaderListener {
         *topic, fast_dds::reader_qos(options_.qos, options_.user_data), this,
         dds::StatusMask::data_available() << dds::StatusMask::subscription_matched());
     if (reader_ == nullptr)
-      return Error{"no reader of " + printable(options_.topic) + " can be created"};
+      return Error{"no reader of " + printable(options_.topic) + " can be created" +
+                   likely_refusal};
     guid_ = fast_dds::to_guid(reader_->guid());
     return {};
   }
@@ -167,7 +175,7 @@ class Writer::Impl final : public dds::DataWriterListener {
   Impl(dds::Publisher& publisher, Topics& topics, WriterOptions options)
       : publisher_(publisher), topics_(topics), options_(std::move(options)) {}
 
-  Expected<void> open() {
+  Expected<void> open(const std::string& likely_refusal) {
     const auto topic = topics_.acquire(options_.topic, options_.type);
     if (!topic) return Error{topic.error()};
     has_topic_ = true;
@@ -175,7 +183,8 @@ class Writer::Impl final : public dds::DataWriterListener {
         publisher_.create_datawriter(*topic, fast_dds::writer_qos(options_.qos, options_.user_data),
                                      this, dds::StatusMask::publication_matched());
     if (writer_ == nullptr)
-      return Error{"no writer of " + printable(options_.topic) + " can be created"};
+      return Error{"no writer of " + printable(options_.topic) + " can be created" +
+                   likely_refusal};
     guid_ = fast_dds::to_guid(writer_->guid());
     return {};
   }
@@ -248,6 +257,7 @@ class Participant::Impl {
                         : "; is there a network interface, and a free UDP port for it?")};
     }
     *listens = true;
+    likely_refusal_ = likely_refusal(options.security);
     guid_ = fast_dds::to_guid(participant_->guid());
     publisher_ = participant_->create_publisher(dds::PublisherQos());
     subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
@@ -266,13 +276,13 @@ class Participant::Impl {
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample) {
     auto reader = std::make_unique<Reader::Impl>(*subscriber_, *topics_, std::move(options),
                                                  std::move(on_sample));
-    if (auto opened = reader->open(); !opened) return Error{opened.error()};
+    if (auto opened = reader->open(likely_refusal_); !opened) return Error{opened.error()};
     return std::make_unique<Reader>(std::move(reader));
   }
 
   Expected<std::unique_ptr<Writer>> create_writer(WriterOptions options) {
     auto writer = std::make_unique<Writer::Impl>(*publisher_, *topics_, std::move(options));
-    if (auto opened = writer->open(); !opened) return Error{opened.error()};
+    if (auto opened = writer->open(likely_refusal_); !opened) return Error{opened.error()};
     return std::make_unique<Writer>(std::move(writer));
   }
 
@@ -285,6 +295,7 @@ class Participant::Impl {
   dds::Publisher* publisher_ = nullptr;
   dds::Subscriber* subscriber_ = nullptr;
   std::optional<Topics> topics_;
+  std::string likely_refusal_;
   Guid guid_;
 };
 

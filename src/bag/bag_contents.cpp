@@ -1,0 +1,46 @@
+#include "bag/bag_contents.h"
+
+#include <algorithm>
+
+namespace culprit::bag {
+
+std::size_t BagContents::place_of(BagTopic topic) {
+  const auto [place, is_new] = places_.try_emplace(topic.name, topics_.size());
+  if (is_new) topics_.push_back(std::move(topic));
+  return place->second;
+}
+
+void BagContents::define(std::string_view type, std::string_view text) {
+  constexpr std::size_t kMostBytes = std::size_t{64} << 20;  // of all definitions
+  if (text.size() > kMostBytes - definition_bytes_) return;
+  const bool is_new = definitions_.try_emplace(std::string(type), text).second;
+  if (is_new) definition_bytes_ += text.size();
+}
+
+const std::string* BagContents::definition_of(const std::string& type) const {
+  const auto found = definitions_.find(type);
+  return found == definitions_.end() ? nullptr : &found->second;
+}
+
+void BagContents::lose(std::string what) {
+  constexpr std::size_t kMostLines = 20;
+  if (losses_.size() < kMostLines) {
+    losses_.push_back(std::move(what));
+  } else {
+    ++more_losses_;
+  }
+}
+
+std::vector<std::string> BagContents::losses() const {
+  std::vector<std::string> all = losses_;
+  if (more_losses_ > 0) all.push_back("and " + std::to_string(more_losses_) + " more like these");
+  std::vector<std::string> counted;
+  for (const auto& [why, count] : lost_messages_)
+    counted.push_back(std::to_string(count) + (count == 1 ? " message " : " messages ") +
+                      std::string(why));
+  std::sort(counted.begin(), counted.end());
+  all.insert(all.end(), counted.begin(), counted.end());
+  return all;
+}
+
+}  // namespace culprit::bag

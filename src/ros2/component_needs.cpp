@@ -1,0 +1,44 @@
+#include "ros2/component_needs.h"
+
+namespace culprit::ros2 {
+namespace {
+
+void add(const Adaptation& adaptation, ComponentNeeds& needs) {
+  switch (adaptation.type) {
+    case AdaptationType::kSetParameter:
+    case AdaptationType::kIncreaseParameter:
+    case AdaptationType::kDecreaseParameter:
+    case AdaptationType::kChangeCommunication:
+      needs.sets_parameters = true;
+      return;
+    case AdaptationType::kActivate:
+    case AdaptationType::kDeactivate:
+    case AdaptationType::kRestart:
+    case AdaptationType::kRedeploy:
+    case AdaptationType::kStart:
+      needs.changes_lifecycle = true;
+      return;
+    case AdaptationType::kChangeMode:
+      needs.changes_modes = true;
+      return;
+    case AdaptationType::kCall:
+      needs.routines.push_back(adaptation.subject);
+      return;
+    case AdaptationType::kStop:
+      return;
+  }
+}
+
+}  // namespace
+
+ComponentNeeds needs_of(ComponentId component, const RuleSet& rules) {
+  ComponentNeeds needs;
+  for (const Strategy& strategy : rules.strategies) {
+    for (const Adaptation& adaptation : strategy.adaptations) {
+      if (adaptation.component == component) add(adaptation, needs);
+    }
+  }
+  return needs;
+}
+
+}  // namespace culprit::ros2

@@ -1,0 +1,22 @@
+// What a rule file asks of one component's node beyond looking at it: only for that are clients
+// made that could change something.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "language/rule_set.h"
+
+namespace culprit::ros2 {
+
+struct ComponentNeeds {
+  bool changes_lifecycle =
+      false;                     // change_state; also of a node that is brought back after a start
+  bool sets_parameters = false;  // set_parameters
+  bool changes_modes = false;    // change_mode, get_mode
+  std::vector<std::string> routines{};  // Trigger services, as the rules name them
+};
+
+ComponentNeeds needs_of(ComponentId component, const RuleSet& rules);
+
+}  // namespace culprit::ros2

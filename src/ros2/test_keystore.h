@@ -1,0 +1,28 @@
+// A keystore for tests, as `ros2 security` lays one out, made with openssl.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace culprit::ros2 {
+
+class TestKeystore {
+ public:
+  // Without enclaves. Gone with the object.
+  TestKeystore();
+  ~TestKeystore();
+  TestKeystore(const TestKeystore&) = delete;
+
+  // Makes the keys of an enclave ("/culprit") whose members may do what the permissions say.
+  void add(const std::string& enclave, const std::string& permissions);
+  // Permissions to say and hear everything.
+  static std::string everything(const std::string& enclave);
+
+  std::string path() const { return folder_.string(); }
+  std::filesystem::path file(const std::string& enclave, const std::string& name) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace culprit::ros2
