@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLongest = 86400;  // seconds
 
-std::string to_text(const Intensity& intensity) {
+std::string intensity_text(const Intensity& intensity) {
   if (intensity.most == 0) return "none";
   return std::to_string(intensity.most) + "/" + to_string(intensity.period);
 }
@@ -39,9 +39,9 @@ Expected<Intensity> parse_intensity(const std::string& option, const std::string
 GovernorOptions::GovernorOptions() {
   const auto recommended = Governor::Options::recommended();
   quiet_seconds = seconds(recommended.quiet_at_start);
-  overall = to_text(recommended.limits.overall);
-  per_kind = to_text(recommended.limits.per_kind);
-  per_component = to_text(recommended.limits.per_component);
+  overall = intensity_text(recommended.limits.overall);
+  per_kind = intensity_text(recommended.limits.per_kind);
+  per_component = intensity_text(recommended.limits.per_component);
   backoff_seconds = seconds(recommended.limits.backoff.first);
   backoff_most_seconds = seconds(recommended.limits.backoff.longest);
   healthy_seconds = seconds(recommended.limits.backoff.healthy);
@@ -76,6 +76,10 @@ void GovernorOptions::add_to(CLI::App& command) {
       ->check(CLI::Range(0, 100))
       ->capture_default_str()
       ->group(kGroup);
+  command
+      .add_flag("--no-evidence", no_evidence,
+                "For the silence of others, also redeploy what runs and publishes")
+      ->group(kGroup);
 }
 
 Expected<Governor::Options> GovernorOptions::options() const {
@@ -98,6 +102,7 @@ Expected<Governor::Options> GovernorOptions::options() const {
   out.limits.backoff = {from_seconds(backoff_seconds), from_seconds(backoff_most_seconds),
                         from_seconds(healthy_seconds)};
   out.storm.share = storm_percent / 100.0;
+  out.needs_evidence = !no_evidence;
   return out;
 }
 
@@ -110,7 +115,8 @@ nlohmann::ordered_json GovernorOptions::to_json() const {
           {"backoff", backoff_seconds},
           {"backoff_most", backoff_most_seconds},
           {"healthy", healthy_seconds},
-          {"storm", storm_percent}};
+          {"storm", storm_percent},
+          {"no_evidence", no_evidence}};
 }
 
 GovernorOptions GovernorOptions::from_json(const nlohmann::ordered_json& json) {
@@ -122,6 +128,7 @@ GovernorOptions GovernorOptions::from_json(const nlohmann::ordered_json& json) {
     value = std::clamp(journal::number_of(json, key, value), 0.0, kLongest);
   };
   options.approve = journal::flag_of(json, "approve");
+  options.no_evidence = journal::flag_of(json, "no_evidence");
   time("quiet", options.quiet_seconds);
   intensity("intensity", options.overall);
   intensity("intensity_kind", options.per_kind);

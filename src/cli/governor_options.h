@@ -20,6 +20,7 @@ struct GovernorOptions {
   double backoff_most_seconds = 0;
   double healthy_seconds = 0;
   int storm_percent = 0;
+  bool no_evidence = false;
 
   GovernorOptions();  // as recommended
 

@@ -7,14 +7,14 @@
 namespace culprit::cli {
 namespace {
 
-constexpr std::uint8_t kOk = 0;
+constexpr std::uint8_t kWell = 0;
 constexpr std::uint8_t kWarn = 1;
 constexpr std::uint8_t kError = 2;
 
 ros2::Health of_rule(RuleId id, const Knowledge& knowledge) {
   const Rule& rule = knowledge.rules[id];
   const RuleState& state = knowledge.states[id];
-  ros2::Health health{"culprit: " + rule.name, kOk, "quiet", {}};
+  ros2::Health health{"culprit: " + rule.name, kWell, "quiet", {}};
   health.values.emplace_back("criticality", std::string(to_string(rule.policies.criticality)));
   switch (state.phase) {
     case RulePhase::kQuiet:
@@ -40,7 +40,7 @@ ros2::Health of_rule(RuleId id, const Knowledge& knowledge) {
 }  // namespace
 
 std::vector<ros2::Health> health(const Knowledge& knowledge) {
-  std::vector<ros2::Health> all{{"culprit", kOk, "all rules are quiet", {}}};
+  std::vector<ros2::Health> all{{"culprit", kWell, "all rules are quiet", {}}};
   int failing = 0;
   int exhausted = 0;
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {

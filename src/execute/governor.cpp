@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "execute/evidence.h"
 #include "language/evaluate.h"
 
 namespace culprit {
@@ -38,6 +39,7 @@ Governor::Options Governor::Options::recommended() {
   options.limits.backoff = {1s, 60s, 60s};
   options.limits.quiet_after_launch = 1s;
   options.storm.share = 0.6;
+  options.needs_evidence = true;
   return options;
 }
 
@@ -200,7 +202,15 @@ std::optional<Governor::Held> Governor::restraint_on_all(Time now) const {
 std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) const {
   if (auto held = restraint_by_person(id)) return held;
   if (auto held = doubt_of_identity(knowledge_.rules[id])) return held;
+  if (auto held = lack_of_evidence(knowledge_.rules[id], now)) return held;
   return limits_.on(id, now);
+}
+
+std::optional<Governor::Held> Governor::lack_of_evidence(const Strategy& strategy, Time now) const {
+  if (!options_.needs_evidence) return std::nullopt;
+  auto reason = contradiction(strategy, knowledge_, now);
+  if (!reason) return std::nullopt;
+  return Held{Restraint::kEvidence, std::move(*reason), kNever};
 }
 
 std::optional<Governor::Held> Governor::restraint_by_person(StrategyId id) const {

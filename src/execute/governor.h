@@ -33,6 +33,7 @@ class Governor {
     Duration quiet_at_start{};  // nothing is begun for so long
     Limits::Options limits{};
     StormWatch::Options storm{};
+    bool needs_evidence = false;  // before a process is ended (evidence.h)
 
     // Nothing is limited unless it is asked for: a study measures the planner. This is what a
     // robot is run with; why these numbers, says docs/governor.md.
@@ -101,6 +102,7 @@ class Governor {
   std::optional<Held> restraint_on_all(Time now) const;
   std::optional<Held> restraint_on(StrategyId strategy, Time now) const;
   std::optional<Held> restraint_by_person(StrategyId strategy) const;
+  std::optional<Held> lack_of_evidence(const Strategy& strategy, Time now) const;
   // What no person can order either.
   std::optional<Held> interlock() const;
   std::optional<Held> doubt_of_identity(const Strategy& strategy) const;

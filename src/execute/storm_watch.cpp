@@ -31,10 +31,14 @@ bool StormWatch::is_much(std::size_t components) const {
 std::optional<StormWatch::Storm> StormWatch::look() const {
   const std::size_t all = knowledge_.rules.components.size();
   std::size_t unseen = 0;
+  std::size_t out_of_reach = 0;
   for (std::size_t c = 0; c < all; ++c) {
     const ComponentState& state = knowledge_.components[ComponentId(c)];
     const bool runs = state.pid != 0 && state.process == ProcessState::kRunning;
-    if (state.alive == false && !state.in_graph && state.node_seen != kLongAgo && runs) ++unseen;
+    if (state.alive != false || state.node_seen == kLongAgo) continue;
+    if (!state.in_graph && runs) ++unseen;
+    // Its lease may say for long that it is there.
+    if (state.known_pid() == 0) ++out_of_reach;
   }
   const auto count = [all](std::size_t some) {
     return std::to_string(some) + " of " + std::to_string(all) + " components";
@@ -42,6 +46,11 @@ std::optional<StormWatch::Storm> StormWatch::look() const {
   if (is_much(unseen)) {
     return Storm{Restraint::kGraphInDoubt,
                  count(unseen) + " left the graph while their processes run; is it the network?"};
+  }
+  if (is_much(out_of_reach)) {
+    return Storm{Restraint::kGraphInDoubt, count(out_of_reach) +
+                                               " are on another computer and do not answer; is it "
+                                               "the network?"};
   }
   if (knowledge_.states.active().size() < static_cast<std::size_t>(options_.least)) return {};
   const std::size_t ill = ill_roots();

@@ -2,8 +2,8 @@
 //
 // A storm: components that nothing upstream explains are ill, many of them (NodeHealthCheck's
 // minHealthy, with the dependency graph taken into account: a dead camera and all that needs it is
-// no storm). A graph in doubt: nodes are gone from the graph whose processes run: more likely our
-// own network is ill than all of them.
+// no storm). A graph in doubt: nodes are gone from the graph whose processes run, or those of
+// another computer do not answer: more likely the network is ill than all of them.
 #pragma once
 
 #include <optional>

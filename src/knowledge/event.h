@@ -174,7 +174,8 @@ enum class Restraint : std::uint8_t {
   kComponentIntensity,  // too many strategies lately at this component
   kClassIntensity,      // too many strategies of this kind lately
   kBackoff,             // it was restarted a short while ago
-  kIdentity             // nobody knows for sure which process it would hit
+  kIdentity,            // nobody knows for sure which process it would hit
+  kEvidence             // the process that it would end runs and publishes
 };
 
 // A strategy was chosen and is not begun. Told again only when the reason is another one.

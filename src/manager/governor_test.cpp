@@ -172,6 +172,20 @@ TEST(Storm, WhenMostIsIllAtOnceNothingIsDoneUntilItIsOver) {
   for (const char* c : {"b", "c", "d"}) EXPECT_TRUE(robot.works(c)) << c << transcript(robot);
 }
 
+TEST(Storm, AnotherComputerThatDoesNotAnswerIsNotFiveDeadNodes) {
+  TestRobot robot = five(true);
+  for (std::size_t c = 0; c < 5; ++c) {
+    robot.tell(NodeAppeared{"/" + std::string(1, "abcde"[c]), 0});  // of no process of this one
+    robot.tell(ProcessSeen{ComponentId(c), ProcessState::kRunning, 0, ""});
+  }
+  for (std::size_t i = 0; i < 15; ++i) robot.tell(Probed{ComponentId(i % 5), false});
+  robot["a"].fault = "redeploy";
+  robot.run_for(20s);
+  EXPECT_EQ(robot.count("5 of 5 components are on another computer and do not answer"), 1u)
+      << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+}
+
 TEST(Storm, OneCauseUpstreamOfAllIsNone) {
   TestRobot robot = five(true);
   robot["a"].fault = "redeploy";
@@ -203,6 +217,80 @@ TEST(Identity, NothingIsDoneToANameThatSeveralNodesHave) {
       << transcript(robot);
   EXPECT_TRUE(robot.asked.empty());
   robot.tell(NamesakesSeen{"/camera", 0});
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+Governor::Options with_evidence() {
+  Governor::Options options;
+  options.needs_evidence = true;
+  return options;
+}
+
+// A camera, and a fusion that needs it. What is done about the fusion's silence is done to the
+// camera.
+TestRobot camera_and_fusion(const std::string& trigger, const Governor::Options& governor) {
+  Manager::Options options;
+  options.governor = governor;
+  TestRobot robot(
+      "COMPONENT camera NODE /camera LAUNCH \"camera\"\n"
+      "COMPONENT fusion NODE /fusion LAUNCH \"fusion\"\n"
+      "RULE Fused\n POLICIES ERROR\n TRIGGER " +
+          trigger +
+          "\n  STRATEGY redeploy 90 10\n   ADAPTATION camera redeploy 2\n"
+          "RULE Watched\n POLICIES ERROR\n TRIGGER age(/rgb) > 1h\n"
+          "  STRATEGY no 1 1\n   ADAPTATION fusion restart 1\n",
+      std::make_unique<BayesPlanner>(), options);
+  robot.add("camera", {}, "/rgb");
+  robot.add("fusion", {"camera"}, "/fused");
+  robot.discover();
+  robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/rgb"});
+  robot.tell(EndpointAppeared{"/fusion", EndpointKind::kPublisher, "/fused"});
+  robot.run_for(2s);
+  return robot;
+}
+
+TEST(Evidence, WhatRunsAndPublishesIsNotEndedBecauseSomethingElseIsSilent) {
+  TestRobot robot = camera_and_fusion("age(/fused) > 300ms", with_evidence());
+  robot["fusion"].fault = "a person";
+  robot.run_for(20s);
+  EXPECT_FALSE(robot.was_asked("camera: ")) << transcript(robot);
+  EXPECT_EQ(robot.count("Fused.redeploy is held back: camera runs and publishes /rgb; what is "
+                        "silent is not its"),
+            1u)
+      << transcript(robot);
+  robot.order({1, "Ann", "", RunStrategy{StrategyId(0)}});
+  robot.run_for(2s);
+  EXPECT_TRUE(robot.was_asked("camera: stop process")) << "a person may know better";
+}
+
+TEST(Evidence, ItIsEndedOnceItIsSilentItself) {
+  TestRobot robot = camera_and_fusion("age(/fused) > 300ms", with_evidence());
+  robot["camera"].fault = "redeploy";
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("fusion")) << transcript(robot);
+}
+
+TEST(Evidence, AProcessThatIsGoneOrStoppedNeedsNoMore) {
+  TestRobot robot = camera_and_fusion("age(/fused) > 300ms", with_evidence());
+  robot.kill("camera");
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("fusion")) << transcript(robot);
+  robot.stop("camera");
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("fusion")) << transcript(robot);
+}
+
+TEST(Evidence, ABadValueIsEnough) {
+  TestRobot robot = camera_and_fusion("quality < 0.5 && age(/fused) < 1s", with_evidence());
+  robot.signal("quality", Value(0.1));
+  robot.run_for(2s);
+  EXPECT_TRUE(robot.was_asked("camera: stop process")) << transcript(robot);
+}
+
+TEST(Evidence, ItsOwnSilenceIsEnough) {
+  TestRobot robot = one_camera(with_evidence());
+  robot["camera"].fault = "redeploy";
   robot.run_for(5s);
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
 }

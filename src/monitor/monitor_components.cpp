@@ -3,7 +3,11 @@
 
 namespace culprit {
 
+namespace {
+
 using Kind = Input::Kind;
+
+}  // namespace
 
 void Monitor::on(Time at, const NodeAppeared& seen) {
   knowledge_.graph.node_appeared(seen.node);

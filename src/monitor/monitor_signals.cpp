@@ -7,7 +7,12 @@
 
 namespace culprit {
 
+namespace {
+
 using Kind = Input::Kind;
+
+}  // namespace
+
 using monitor::smoothed;
 using monitor::usual_latency;
 

@@ -27,7 +27,7 @@ std::string label(std::string_view name, std::string_view value) {
 
 std::string of_rule(RuleId id, const RuleSet& rules) {
   return label("rule", rules[id].name) + "," +
-         label("criticality", to_string(rules[id].policies.criticality));
+         label("criticality", culprit::to_string(rules[id].policies.criticality));
 }
 
 std::string of_strategy(StrategyId id, const RuleSet& rules, std::string_view outcome) {
@@ -38,9 +38,10 @@ std::string of_strategy(StrategyId id, const RuleSet& rules, std::string_view ou
 
 // What held an action back (knowledge/event.h).
 std::string_view word_of(Restraint restraint) {
-  constexpr std::string_view kWords[] = {
-      "paused",   "quiet_period", "storm",     "graph_in_doubt", "interlock", "overall", "approval",
-      "silenced", "refused",      "component", "class",          "backoff",   "identity"};
+  constexpr std::string_view kWords[] = {"paused",    "quiet_period", "storm",    "graph_in_doubt",
+                                         "interlock", "overall",      "approval", "silenced",
+                                         "refused",   "component",    "class",    "backoff",
+                                         "identity",  "evidence"};
   return kWords[static_cast<std::size_t>(restraint)];
 }
 
@@ -61,7 +62,7 @@ void Metrics::watch(const Manager& manager) {
   }
   for (const std::string_view result : kPlanResults)
     counts_.plans.try_emplace(label("result", result), 0);
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(Restraint::kIdentity); ++i)
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(Restraint::kEvidence); ++i)
     counts_.holds.try_emplace(label("restraint", word_of(static_cast<Restraint>(i))), 0);
   for (const char* result : {"accepted", "refused"})
     counts_.orders.try_emplace(label("result", result), 0);
@@ -124,11 +125,11 @@ void Metrics::look(const Manager& manager, Counts& counts) {
   counts.open.clear();
   for (const Criticality c :
        {Criticality::kNonCritical, Criticality::kWarning, Criticality::kError})
-    counts.open[label("criticality", to_string(c))] = 0;
+    counts.open[label("criticality", culprit::to_string(c))] = 0;
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
     if (knowledge.states[RuleId(r)].phase == RulePhase::kQuiet) continue;
     const Criticality c = knowledge.rules.rules[r].policies.criticality;
-    ++counts.open[label("criticality", to_string(c))];
+    ++counts.open[label("criticality", culprit::to_string(c))];
   }
   counts.components.clear();
   for (const std::string_view word : kHealthWords) counts.components[label("health", word)] = 0;

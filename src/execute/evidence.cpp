@@ -1,0 +1,73 @@
+#include "execute/evidence.h"
+
+#include <algorithm>
+
+namespace culprit {
+namespace {
+
+// What is silent, if the rule is about nothing but who is there and who is heard.
+std::optional<std::vector<TopicId>> silent_topics(const Rule& rule, const RuleSet& rules) {
+  std::vector<TopicId> topics;
+  for (const InputId id : rule.inputs) {
+    const Input& input = rules[id];
+    switch (input.kind) {
+      case Input::Kind::kRate:
+      case Input::Kind::kAge:
+      case Input::Kind::kPhi:
+        topics.push_back(input.topic);
+        break;
+      case Input::Kind::kAlive:
+        break;
+      default:
+        return std::nullopt;
+    }
+  }
+  return topics;
+}
+
+bool is_at_work(const ComponentState& state) {
+  return state.known_pid() != 0 && state.process == ProcessState::kRunning && state.in_graph &&
+         state.alive.value_or(false);
+}
+
+// A topic that nobody else publishes, and that came when it was due.
+std::optional<TopicId> heard_topic(ComponentId component, const Knowledge& knowledge, Time now) {
+  constexpr Duration kSlack = std::chrono::milliseconds(100);
+  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
+    const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(TopicId(t));
+    if (!rhythm.last || rhythm.interval <= Duration::zero()) continue;
+    if (later(*rhythm.last, 2 * rhythm.interval + kSlack) < now) continue;
+    const std::string& name = knowledge.rules.topics[t].name;
+    if (knowledge.graph.publishes(component, name) && knowledge.graph.publisher_count(name) == 1)
+      return TopicId(t);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> contradiction(const Strategy& strategy, const Knowledge& knowledge,
+                                         Time now) {
+  const RuleSet& rules = knowledge.rules;
+  const auto silent = silent_topics(rules[strategy.rule], rules);
+  if (!silent || strategy.is_last_resort) return std::nullopt;
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    const ComponentId component = adaptation.component;
+    if (adaptation.type != AdaptationType::kRedeploy ||
+        !is_at_work(knowledge.components[component]))
+      continue;
+    // Its own silence, or that of nobody knows whom, speaks against it.
+    const bool is_suspect = std::any_of(silent->begin(), silent->end(), [&](TopicId topic) {
+      const std::string& name = rules[topic].name;
+      return knowledge.graph.publishes(component, name) ||
+             knowledge.graph.publisher_count(name) == 0;
+    });
+    const auto heard = is_suspect ? std::nullopt : heard_topic(component, knowledge, now);
+    if (heard)
+      return rules[component].name + " runs and publishes " + rules[*heard].name +
+             "; what is silent is not its";
+  }
+  return std::nullopt;
+}
+
+}  // namespace culprit

@@ -1,0 +1,24 @@
+// Does what is known agree with ending a component's process? (docs/governor.md, "Evidence")
+//
+// There are three witnesses: the operating system about the process, the graph about the node, and
+// the component's own topics. That a process runs proves little by itself, for it may be stuck; a
+// process that runs, whose node is there and whose topics come, is at work, and that something else
+// fell silent is no reason to end it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+// Why a component that the strategy redeploys is not what is broken; nothing if nothing says so.
+//
+// Only silence needs agreement: a rule whose trigger reads a value (a quality, a diagnostic, a
+// parameter) has seen for itself that something works badly, and names who is to be redeployed for
+// it. Nor does a last resort, or `stop`, accuse anybody: it is what is wanted then.
+std::optional<std::string> contradiction(const Strategy& strategy, const Knowledge& knowledge,
+                                         Time now);
+
+}  // namespace culprit
