@@ -73,10 +73,9 @@ Recorder::~Recorder() { finish(); }
 Expected<void> Recorder::end() {
   {
     const std::lock_guard lock(mutex_);
-    Pending pending;
+    Pending& pending = queue_.next();
     pending.wall = options_.wall_clock();
     pending.is_end = true;
-    queue_.push_back(std::move(pending));
   }
   finish();
   if (!last_error_) return {};
@@ -94,39 +93,62 @@ void Recorder::finish() {
   thread_.join();
 }
 
+Recorder::Pending& Recorder::Queue::next() {
+  if (used == places.size()) places.emplace_back();
+  return places[used++];
+}
+
+void Recorder::Queue::clear() {
+  constexpr std::size_t kKept = 64;
+  for (std::size_t i = 0; i < used; ++i) {
+    places[i].observations.clear();
+    places[i].decided.reset();
+    places[i].is_end = false;
+  }
+  if (places.size() > kKept) places.resize(kKept);
+  used = 0;
+}
+
 void Recorder::stepped(Time now, std::vector<Observation>& observations,
                        std::span<const Command> commands, std::span<const Event> events) {
+  std::unique_ptr<const Decided> decision;
+  bool wait = false;
+  if (!commands.empty() || !events.empty()) {
+    decision = decision_of(commands, events);
+    wait = !is_nothing(decision->learned) ||
+           std::any_of(commands.begin(), commands.end(), changes_something) ||
+           std::any_of(events.begin(), events.end(), is_order);
+  }
   const std::int64_t wall = wall_of(now);
-  const Learned learned = events.empty() ? Learned() : changes();
-  const bool wait = !is_nothing(learned) ||
-                    std::any_of(commands.begin(), commands.end(), changes_something) ||
-                    std::any_of(events.begin(), events.end(), is_order);
   {
     const std::lock_guard lock(mutex_);
     constexpr std::size_t kMaxQueued = 1 << 17;
-    if (queued_observations_ > kMaxQueued && commands.empty() && events.empty()) {
+    if (queued_observations_ > kMaxQueued && decision == nullptr) {
       ++lost_steps_;
       return;
     }
-    // In its place at once: most steps have nothing but observations, which change hands.
-    Pending& pending = queue_.emplace_back();
+    Pending& pending = queue_.next();
     pending.now = now;
     pending.wall = wall;
     pending.observations.swap(observations);
-    if (!commands.empty()) pending.commands.assign(commands.begin(), commands.end());
-    if (!events.empty()) {
-      pending.events.assign(events.begin(), events.end());
-      pending.learned = learned;
-    }
-    if (!spare_.empty()) {
-      observations.swap(spare_.back());
-      spare_.pop_back();
-    }
+    pending.decided = std::move(decision);
     queued_observations_ += pending.observations.size();
     ++handed_over_;
     is_wanted_now_ |= wait;
   }
-  if (!wait) return;
+  if (wait) wait_until_written();
+}
+
+std::unique_ptr<const Recorder::Decided> Recorder::decision_of(std::span<const Command> commands,
+                                                               std::span<const Event> events) {
+  auto decision = std::make_unique<Decided>();
+  decision->commands.assign(commands.begin(), commands.end());
+  decision->events.assign(events.begin(), events.end());
+  if (!events.empty()) decision->learned = changes();
+  return decision;
+}
+
+void Recorder::wait_until_written() {
   work_.notify_one();
   std::unique_lock lock(mutex_);
   const std::uint64_t mine = handed_over_;
@@ -166,12 +188,12 @@ Learned Recorder::changes() {
 }
 
 void Recorder::run() {
-  std::vector<Pending> taken;
+  Queue taken;
   std::unique_lock lock(mutex_);
   while (true) {
     work_.wait_for(lock, is_failing_ ? kRetry : kPeriod,
                    [&] { return is_ending_ || (is_wanted_now_ && !is_failing_); });
-    taken.swap(queue_);
+    std::swap(taken, queue_);
     queued_observations_ = 0;
     const std::uint64_t upto = handed_over_;
     const bool is_durable = std::exchange(is_wanted_now_, false);
@@ -179,22 +201,16 @@ void Recorder::run() {
     const bool is_last = is_ending_;
     lock.unlock();
 
-    for (const Pending& pending : taken) make_rows(pending);
+    for (std::size_t i = 0; i < taken.used; ++i) make_rows(taken.places[i]);
+    taken.clear();
     close_steps();
     const auto written = write(is_durable || is_last);
     last_error_ = written ? std::nullopt : std::optional(Error{written.error()});
 
     lock.lock();
-    constexpr std::size_t kSpare = 64;
-    for (Pending& pending : taken) {
-      if (spare_.size() >= kSpare) break;
-      pending.observations.clear();
-      spare_.push_back(std::move(pending.observations));
-    }
-    taken.clear();
     written_ = upto;
     done_.notify_all();
-    if (is_last && queue_.empty()) return;
+    if (is_last && queue_.used == 0) return;
   }
 }
 
@@ -205,34 +221,43 @@ void Recorder::make_rows(const Pending& pending) {
   }
   if (steps_.empty()) steps_at_ = pending.wall;
   ByteWriter bytes(steps_);
-  encode(pending.now, pending.observations,
-         digest_of(pending.commands, pending.events, rules_, hasher_), bytes);
+  std::optional<Digest> digest;
+  if (pending.decided != nullptr)
+    digest = digest_of(pending.decided->commands, pending.decided->events, rules_, hasher_);
+  encode(pending.now, pending.observations, digest, bytes);
 
   for (const Observation& observation : pending.observations) {
-    const auto* reply = std::get_if<Reply>(&observation.what);
-    if (reply == nullptr) continue;
-    const auto asked = asked_.find(reply->command.number);
-    if (asked == asked_.end()) continue;
-    const std::string_view outcome = to_string(reply->outcome);
-    add(kind::kOutcome, pending.wall,
-        {{"command", reply->command.number},
-         {"outcome", outcome},
-         {"reason", reply->text},
-         {"text", asked->second + ": " + std::string(outcome) +
-                      (reply->text.empty() ? "" : ", " + reply->text)}});
-    asked_.erase(asked);
+    if (const auto* reply = std::get_if<Reply>(&observation.what))
+      make_outcome(pending.wall, *reply);
   }
-  for (const Event& event : pending.events) add(kind::kEvent, pending.wall, to_json(event, rules_));
-  for (const Command& command : pending.commands) {
+  if (pending.decided != nullptr) make_decision(pending.wall, *pending.decided);
+  constexpr std::size_t kLongRow = 1 << 16;
+  if (steps_.size() > kLongRow) close_steps();
+}
+
+void Recorder::make_outcome(std::int64_t wall, const Reply& reply) {
+  const auto asked = asked_.find(reply.command.number);
+  if (asked == asked_.end()) return;
+  const std::string_view outcome = to_string(reply.outcome);
+  add(kind::kOutcome, wall,
+      {{"command", reply.command.number},
+       {"outcome", outcome},
+       {"reason", reply.text},
+       {"text", asked->second + ": " + std::string(outcome) +
+                    (reply.text.empty() ? "" : ", " + reply.text)}});
+  asked_.erase(asked);
+}
+
+void Recorder::make_decision(std::int64_t wall, const Decided& decision) {
+  for (const Event& event : decision.events) add(kind::kEvent, wall, to_json(event, rules_));
+  for (const Command& command : decision.commands) {
     if (is_read(command)) continue;
     const Json body = to_json(command, rules_);
     asked_[command.id.number] = text_of(body, "text");
-    add(kind::kIntent, pending.wall, body);
+    add(kind::kIntent, wall, body);
   }
-  replace(unsaved_.learned, pending.learned);
-  replace(known_, pending.learned);
-  constexpr std::size_t kLongRow = 1 << 16;
-  if (steps_.size() > kLongRow) close_steps();
+  replace(unsaved_.learned, decision.learned);
+  replace(known_, decision.learned);
 }
 
 void Recorder::close_steps() {

@@ -12,6 +12,7 @@
 
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -64,19 +65,37 @@ class Recorder {
   Expected<void> end();
 
  private:
-  struct Pending {
-    Time now{};
-    std::int64_t wall = 0;
-    std::vector<Observation> observations;
+  // What few steps have beside observations.
+  struct Decided {
     std::vector<Command> commands;
     std::vector<Event> events;
     Learned learned;
+  };
+  // One line of the cache: between two steps of a robot at rest, others use the cache, and each
+  // line that has to be fetched anew is felt in what a step takes.
+  struct alignas(64) Pending {
+    Time now{};
+    std::int64_t wall = 0;
+    std::vector<Observation> observations;
+    std::unique_ptr<const Decided> decided;
     bool is_end = false;
   };
+  // Places are used again with the memory that their observations had.
+  struct Queue {
+    std::vector<Pending> places;
+    std::size_t used = 0;
+    Pending& next();
+    void clear();
+  };
 
+  std::unique_ptr<const Decided> decision_of(std::span<const Command> commands,
+                                             std::span<const Event> events);
+  void wait_until_written();
   Learned changes();
   void run();
   void make_rows(const Pending& pending);
+  void make_decision(std::int64_t wall, const Decided& decision);
+  void make_outcome(std::int64_t wall, const Reply& reply);
   void close_steps();
   void add(std::string_view kind, std::int64_t at, const Json& body);
   Expected<void> write(bool is_durable);
@@ -93,19 +112,20 @@ class Recorder {
   // Of the manager's thread.
   std::vector<Belief> beliefs_;  // as written last
   std::vector<std::vector<Couplings::Learned>> couplings_;
-  std::int64_t wall_offset_ = 0;
-  std::uint32_t since_clock_ = 0;
 
+  // All that a step without decisions touches, side by side; the first two belong to the manager's
+  // thread, what follows the mutex to both.
+  alignas(64) std::int64_t wall_offset_ = 0;
+  std::uint32_t since_clock_ = 0;
   std::mutex mutex_;
+  bool is_wanted_now_ = false;
+  Queue queue_;
+  std::size_t queued_observations_ = 0;
+  std::uint64_t handed_over_ = 0;
+  std::uint64_t lost_steps_ = 0;
+  std::uint64_t written_ = 0;
   std::condition_variable work_;
   std::condition_variable done_;
-  std::vector<Pending> queue_;
-  std::size_t queued_observations_ = 0;
-  std::uint64_t lost_steps_ = 0;
-  std::vector<std::vector<Observation>> spare_;
-  std::uint64_t handed_over_ = 0;
-  std::uint64_t written_ = 0;
-  bool is_wanted_now_ = false;
   bool is_failing_ = false;
   bool is_ending_ = false;
 
