@@ -63,7 +63,7 @@ Scenario shrink(Scenario scenario) {
 }
 
 std::string report(const Scenario& smallest) {
-  const Outcome outcome = run(smallest);
+  const RunOutcome outcome = run(smallest);
   std::string text;
   for (const std::string& line : outcome.timeline) text += line + "\n";
   char at[32];

@@ -54,7 +54,7 @@ class Run {
     begin_manager();
   }
 
-  Outcome go() {
+  RunOutcome go() {
     std::size_t next = 0;
     while (robot_.now() < kLatest && !invariants_.violation()) {
       // In the world's order; the manager's clock may be ahead of it.
@@ -251,11 +251,11 @@ class Run {
   std::multimap<Time, std::variant<Resume, Approve, Refuse>> due_;
   Time calm_since_{};
   bool was_refused_ = false;
-  Outcome outcome_;
+  RunOutcome outcome_;
 };
 
 }  // namespace
 
-Outcome run(const Scenario& scenario) { return Run(scenario).go(); }
+RunOutcome run(const Scenario& scenario) { return Run(scenario).go(); }
 
 }  // namespace culprit::torture

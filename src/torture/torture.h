@@ -11,7 +11,7 @@
 
 namespace culprit::torture {
 
-struct Outcome {
+struct RunOutcome {
   std::optional<Violation> violation;
   std::vector<std::string> timeline;  // one line for each thing that happened
   std::uint64_t steps = 0;
@@ -21,7 +21,7 @@ struct Outcome {
 // - every part works, or something that was said excuses it: a rule is exhausted, a storm, a
 //   silence, a pause, a question that nobody answers;
 // - the same observations give the same commands and events again.
-Outcome run(const Scenario& scenario);
+RunOutcome run(const Scenario& scenario);
 
 // A part of `scenario` that is violated as well, with as little in it as can be found by leaving
 // out one thing after the other. @pre it is violated

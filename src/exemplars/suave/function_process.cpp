@@ -5,7 +5,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kTick = 100ms;   // of robot time
 constexpr Duration kComingUp = 2s;  // of the model's node; the process has come up already
 
 std::string node_of(Function function) {
@@ -52,7 +51,8 @@ Expected<void> FunctionProcess::open(ros2::Context& context) {
   node_->launch();
   world_.run(later(world_.now(), kComingUp));
   if (auto declared = declare_parameters(); !declared) return declared;
-  pace_.emplace(context.executor(), world_, options_, kTick, [this] { begin_if_ready(); });
+  pace_.emplace(context.executor(), world_, options_, PacedWorld::kTick,
+                [this] { begin_if_ready(); });
   tasks_.emplace(context.executor());
   tasks_->post([this] { managed_->trigger(ros2::TransitionId::kConfigure); });
   return {};

@@ -8,10 +8,9 @@ namespace {
 using namespace std::chrono_literals;
 namespace srv = ros2::srv;
 
-constexpr Duration kTick = 100ms;      // of robot time
-constexpr Duration kComingUp = 60s;    // of the others
-constexpr Duration kAskAgain = 100ms;  // whether a mode is known by now
-constexpr Duration kPatience = 5s;
+constexpr Duration kOthersComingUp = 60s;  // of the others
+constexpr Duration kAskAgain = 100ms;      // whether a mode is known by now
+constexpr Duration kModePatience = 5s;
 
 }  // namespace
 
@@ -38,7 +37,7 @@ Expected<void> MissionProcess::open(ros2::Context& context) {
   if (!start) return Error{start.error()};
   start_ = std::move(*start);
   tasks_.emplace(context.executor());
-  pace_.emplace(context.executor(), world_, options_, kTick);
+  pace_.emplace(context.executor(), world_, options_, PacedWorld::kTick);
   for (const char* system : {model::systems::kSearch, model::systems::kFollow}) {
     if (auto opened = open_modes(system); !opened) return opened;
     wait_for(system);
@@ -77,7 +76,7 @@ Expected<void> MissionProcess::open_modes(const char* system) {
 // A mode is known when the mode manager is there and has heard of the node.
 void MissionProcess::wait_for(const std::string& system) {
   modes_.at(system)->probe()->call(
-      ros2::encode(srv::GetMode::Request{}), ros2::Repeat::kUntilAnswered, kComingUp,
+      ros2::encode(srv::GetMode::Request{}), ros2::Repeat::kUntilAnswered, kOthersComingUp,
       [this, system](const ros2::CallResult& result) {
         const auto response = result.outcome == ros2::CallOutcome::kAnswered
                                   ? ros2::decode<srv::GetMode::Response>(result.reply)
@@ -96,7 +95,7 @@ void MissionProcess::on_mode(const std::string& system, const std::string& mode)
   is_ready_[system] = true;
   if (is_ready_.size() < modes_.size() || has_begun_) return;
   has_begun_ = true;
-  start_->call({}, ros2::Repeat::kUntilAnswered, kComingUp, [this](const auto& answer) {
+  start_->call({}, ros2::Repeat::kUntilAnswered, kOthersComingUp, [this](const auto& answer) {
     if (answer.response && answer.response->success) begin();
   });
 }
@@ -114,7 +113,7 @@ void MissionProcess::begin() {
 
 void MissionProcess::change_mode(const char* system, const char* mode) {
   modes_.at(system)->call(
-      ros2::encode(srv::ChangeMode::Request{mode}), ros2::Repeat::kNever, kPatience,
+      ros2::encode(srv::ChangeMode::Request{mode}), ros2::Repeat::kNever, kModePatience,
       [this, system = std::string(system)](const ros2::CallResult& result) {
         if (result.outcome == ros2::CallOutcome::kAnswered) return;
         node_->log(ros2::Severity::kError, "the mode of " + system + " was not changed");

@@ -12,6 +12,8 @@ namespace culprit::suave {
 
 class PacedWorld {
  public:
+  static constexpr Duration kTick = std::chrono::milliseconds(100);  // of robot time, for most
+
   // From `world.now()` on. Calls `after` each time that the world was brought up to date, every
   // `tick` of robot time. All must outlive it.
   PacedWorld(

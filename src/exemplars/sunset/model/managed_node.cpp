@@ -17,6 +17,15 @@ simulation::Topic<Message> topic(simulation::World& world, std::string_view name
 
 }  // namespace
 
+simulation::NodeTraits processing_traits(const Profile& profile) {
+  simulation::NodeTraits traits;
+  traits.start = profile.start;
+  traits.configure = profile.configure;
+  traits.activation_delay = profile.processing_activation;
+  traits.end = profile.end;
+  return traits;
+}
+
 Topics::Topics(simulation::World& world)
     : rgb_raw(topic<Frame>(world, topics::kRgbRaw, kPictures)),
       depth_raw(topic<Frame>(world, topics::kDepthRaw, kPictures)),

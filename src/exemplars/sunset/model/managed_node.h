@@ -29,6 +29,9 @@ struct Topics {
   simulation::Topic<Heartbeat> diagnostics;
 };
 
+// How long the fusion and the segmentation take to change their states.
+simulation::NodeTraits processing_traits(const Profile& profile);
+
 class ManagedNode : public simulation::Node {
  public:
   struct Faults {

@@ -3,12 +3,9 @@
 namespace culprit::sunset::model {
 namespace {
 
-simulation::NodeTraits processing(const Profile& profile) {
-  simulation::NodeTraits traits;
-  traits.start = profile.start;
-  traits.configure = profile.configure + profile.model_loading;
-  traits.activation_delay = profile.processing_activation;
-  traits.end = profile.end;
+simulation::NodeTraits segmenting_traits(const Profile& profile) {
+  simulation::NodeTraits traits = processing_traits(profile);
+  traits.configure += profile.model_loading;
   return traits;
 }
 
@@ -16,7 +13,7 @@ simulation::NodeTraits processing(const Profile& profile) {
 
 Segmentation::Segmentation(simulation::World& world, Topics& topics, const Profile& profile)
     : ManagedNode(world, topics, Member::kSegmentation, profile,
-                  {{"gpu_failure"}, {"cuda_out_of_memory"}}, processing(profile)),
+                  {{"gpu_failure"}, {"cuda_out_of_memory"}}, segmenting_traits(profile)),
       entropy_(world.random("entropy")),
       segmented_(*this, topics.segmentation),
       fused_(*this, topics.sensors_fused, [this](const Frame& frame) { on_frame(frame); }) {

@@ -5,22 +5,13 @@ namespace {
 
 constexpr Duration kTolerance = std::chrono::milliseconds(10);  // delta_t_threshold
 
-simulation::NodeTraits processing(const Profile& profile) {
-  simulation::NodeTraits traits;
-  traits.start = profile.start;
-  traits.configure = profile.configure;
-  traits.activation_delay = profile.processing_activation;
-  traits.end = profile.end;
-  return traits;
-}
-
 bool is_enhanced(std::string_view topic) { return topic.ends_with("rgb_enhanced"); }
 
 }  // namespace
 
 SensorFusion::SensorFusion(simulation::World& world, Topics& topics, const Profile& profile)
     : ManagedNode(world, topics, Member::kSensorFusion, profile,
-                  {{"memory_leakage"}, {"sync_issue"}}, processing(profile)),
+                  {{"memory_leakage"}, {"sync_issue"}}, processing_traits(profile)),
       topics_(topics),
       buffer_(profile.fusion_keeps),
       fused_(*this, topics.sensors_fused),
