@@ -13,6 +13,7 @@
 
 #include "ros2/discovery_info.h"
 #include "ros2/graph.h"
+#include "ros2/manager_lease.h"
 
 namespace {
 
@@ -87,13 +88,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.listener = [&](const GraphChange& change) { books.enter(change); };
   options.limits = kLimits;
   Graph graph(options);
+  ManagerLease lease({"robot", 1'000'000, 1});
   while (size >= 4) {
     const std::uint8_t kind = data[0], participant = data[1], entity = data[2];
     const std::size_t length = std::min<std::size_t>(data[3], size - 4);
     const ByteView bytes(data + 4, length);
     const std::string text(bytes.begin(), bytes.end());
     const Guid guid = guid_of(participant, entity);
-    switch (kind % 6) {
+    switch (kind % 7) {
       case 0:
         graph.apply(ParticipantInfo{.guid = guid_of(participant, 0), .host = text});
         break;
@@ -112,10 +114,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 5:
         apply_info(graph, participant, bytes);
         break;
+      case 6:
+        lease.apply(EndpointInfo{
+            .guid = guid, .topic = ManagerLease::kTopic, .type = "", .user_data = text});
+        break;
     }
     data += 4 + length;
     size -= 4 + length;
   }
   books.compare(graph);
+  (void)lease.elder();
   return 0;
 }

@@ -43,13 +43,14 @@ Progress::Progress(std::uint64_t done, std::uint64_t total)
       is_terminal_(isatty(STDERR_FILENO) != 0),
       is_shown_(total > 0 && (is_terminal_ || environment(kProgressVariable) == "lines")) {}
 
-Progress::~Progress() {
+void Progress::end() {
   if (is_shown_ && is_terminal_) fmt::print(stderr, "\r\033[K");
+  is_shown_ = false;
 }
 
 void Progress::show(std::uint64_t done) {
   const auto now = Clock::now();
-  if (!is_shown_ || now < next_) return;
+  if (!is_shown_ || (now < next_ && done < total_)) return;
   next_ = now + kPause;
   const std::string line = progress_line(done, total_, done_before_, now - begin_);
   fmt::print(stderr, "{}{}{}", is_terminal_ ? "\r\033[K" : "", line, is_terminal_ ? "" : "\n");

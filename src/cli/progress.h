@@ -15,17 +15,18 @@ std::string progress_line(std::uint64_t done, std::uint64_t total, std::uint64_t
 // "lines" in this variable of the environment: progress is told where there is no terminal, too.
 inline constexpr const char* kProgressVariable = "CULPRIT_PROGRESS";
 
-// Draws the line on the standard error stream a few times a second: over and over on a terminal,
-// line by line for programs that ask for it.
+// Draws the line on the standard error stream a few times a second, and when all is done: over and
+// over on a terminal, line by line for programs that ask for it.
 class Progress {
  public:
   // `done` of `total` were done before.
   Progress(std::uint64_t done, std::uint64_t total);
-  ~Progress();  // clears the line
+  ~Progress() { end(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   void show(std::uint64_t done);
+  void end();  // clears the line, before others write
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -33,7 +34,7 @@ class Progress {
   const std::uint64_t done_before_;
   const std::uint64_t total_;
   const bool is_terminal_;
-  const bool is_shown_;
+  bool is_shown_;
   const Clock::time_point begin_ = Clock::now();
   Clock::time_point next_ = begin_;
 };

@@ -113,12 +113,15 @@ std::string command_of(const StudyOptions& options) {
                                options.seed);
 }
 
-Expected<std::vector<study::LearningCurve>> learn(const StudyOptions& options) {
+// `progress` has what comes before it behind it.
+Expected<std::vector<study::LearningCurve>> learn(const StudyOptions& options, Progress& progress,
+                                                  std::uint64_t before) {
   auto study = study::SunsetStudy::make(
       {{{}, "paper", profiles_of(options).front(), study::Probabilities::kMisspecified}},
       options.seed);
   if (!study) return Error{study.error()};
-  return study->learn(options.runs, options.repetitions);
+  return study->learn(options.runs, options.repetitions,
+                      [&](std::uint64_t done) { progress.show(before + done); });
 }
 
 // Of the paper's full configuration, or of the first row if it has no such.
@@ -142,14 +145,19 @@ std::vector<study::Timeline> timelines(const study::SunsetStudy& study,
 
 int run_campaign(const study::SunsetStudy& study, const study::Campaign& campaign,
                  const StudyOptions& options) {
-  auto result = run_whole(campaign, options.jobs, [&](study::RunId id) { return study.run(id); });
+  const std::uint64_t learned =
+      options.has_learning() ? std::uint64_t{options.runs} * options.repetitions : 0;
+  Progress progress(0, campaign.size() + learned);
+  auto result =
+      run_whole(campaign, options.jobs, progress, [&](study::RunId id) { return study.run(id); });
   if (!result) return kFailed;
   study::Findings findings{std::move(*result), {}, timelines(study, campaign, options)};
   if (options.has_learning()) {
-    auto curves = learn(options);
+    auto curves = learn(options, progress, campaign.size());
     if (!curves) return fail(curves.error(), kUsage);
     findings.learning = std::move(*curves);
   }
+  progress.end();
   const auto written = write(findings, options.output);
   return written ? kOk : fail(written.error(), kFailed);
 }

@@ -93,7 +93,7 @@ TEST_F(StudyCommand, GivesTheSameBytesWithAnyNumberOfJobs) {
   ASSERT_EQ(run_small({"--jobs", "5", "--json"}), kOk);
   EXPECT_EQ(said, one);
   ASSERT_EQ(run_small({"--jobs", "5", "--json", "--seed", "2"}), kOk);
-  EXPECT_NE(said, one);
+  EXPECT_NE(nlohmann::json::parse(said)["rows"], nlohmann::json::parse(one)["rows"]);
 }
 
 TEST_F(StudyCommand, ShardsMergeToTheSameBytes) {

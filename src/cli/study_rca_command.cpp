@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/progress.h"
 #include "language/text_file.h"
 #include "study/rca/learning_report.h"
 #include "study/rca/repair_process.h"
@@ -49,11 +50,6 @@ struct RcaOptions {
 
   Times times() const { return timing ? Times::kShown : Times::kLeftOut; }
 };
-
-int fail(const std::string& what, int code) {
-  fmt::print(stderr, "culprit: {}\n", what);
-  return code;
-}
 
 // Of one file, or of every combination of what was asked for.
 Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
@@ -95,12 +91,13 @@ Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
   campaign.objective = *parse_objective(options.objective);
   campaign.episodes = options.episodes;
   campaign.seed = options.seed;
+  campaign.version = options.version;
   return campaign;
 }
 
 std::string in_format(const RcaOptions& options, const RcaCampaign& campaign,
                       const std::vector<RcaRow>& rows) {
-  if (options.format == "json") return study::rca::rca_json(rows, options.times());
+  if (options.format == "json") return study::rca::rca_json(campaign, rows, options.times());
   if (options.format == "csv") return study::rca::rca_csv(rows, options.times());
   const study::Table table = study::rca::rca_table(campaign, rows, options.times());
   if (options.format == "markdown") return study::markdown(table);
@@ -154,8 +151,14 @@ int study_rca(const RcaOptions& options) {
     return kOk;
   }
   const StopSignals signals;
-  const auto rows =
-      study::rca::run_campaign(*campaign, options.jobs, [&] { return signals.stopped().load(); });
+  std::optional<Progress> progress;
+  const auto rows = study::rca::run_campaign(*campaign, options.jobs,
+                                             [&](std::uint64_t done, std::uint64_t total) {
+                                               if (!progress) progress.emplace(0, total);
+                                               progress->show(done);
+                                               return !signals.stopped();
+                                             });
+  progress.reset();
   if (!rows) return fail("interrupted; nothing is written", kFailed);
   const auto written = write_text(options.output, in_format(options, *campaign, *rows));
   return written ? kOk : fail(written.error(), kFailed);

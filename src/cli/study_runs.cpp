@@ -8,9 +8,4 @@ void ShardOptions::add_to(CLI::App& command) {
                      "Keep each run there as it ends, and go on from there if interrupted");
 }
 
-int fail(const std::string& what, int code) {
-  fmt::print(stderr, "culprit: {}\n", what);
-  return code;
-}
-
 }  // namespace culprit::cli

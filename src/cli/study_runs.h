@@ -28,33 +28,32 @@ struct ShardOptions {
   void add_to(CLI::App& command);
 };
 
-// Says on the standard error what went wrong, and gives `code`.
-int fail(const std::string& what, int code);
-
 // The runs from `done` to `total`, in order; `take` gets each and says whether it was kept.
 template <class Play, class Take>
 void work_off(std::uint64_t done, std::uint64_t total, unsigned jobs, const StopSignals& signals,
-              Play play, Take take) {
-  Progress progress(done, total);
+              Progress& progress, Play play, Take take) {
   study::work_in_order(done, total, jobs, play, [&](std::uint64_t i, auto run) {
     progress.show(i + 1);
     return take(std::move(run)) && !signals.stopped();
   });
 }
 
-// The whole campaign; nothing if it was interrupted, which is said.
+// The whole campaign; nothing if it was interrupted, which is said. It is what `progress` begins
+// with.
 template <class C, class Play>
 std::optional<typename study::ShardKind<C>::Result> run_whole(const C& campaign, unsigned jobs,
-                                                              Play play) {
+                                                              Progress& progress, Play play) {
   const StopSignals signals;
   typename study::ShardKind<C>::Fold fold(campaign);
   work_off(
-      0, campaign.size(), jobs, signals, [&](std::uint64_t i) { return play(campaign[i]); },
+      0, campaign.size(), jobs, signals, progress,
+      [&](std::uint64_t i) { return play(campaign[i]); },
       [&](typename study::ShardKind<C>::Run run) {
         fold.add(std::move(run));
         return true;
       });
   if (fold.is_complete()) return std::move(fold).result();
+  progress.end();
   fail("interrupted; with --shard-file the same command could go on", kFailed);
   return std::nullopt;
 }
@@ -75,14 +74,16 @@ int fill_shard(const C& campaign, const ShardOptions& options, unsigned jobs, Pl
     fmt::print(stderr, "culprit: {} of {} runs are there already\n", writer->done(),
                writer->size());
   std::string trouble;
+  Progress progress(writer->done(), writer->size());
   work_off(
-      writer->done(), writer->size(), jobs, signals,
+      writer->done(), writer->size(), jobs, signals, progress,
       [&](std::uint64_t i) { return play(campaign[study::campaign_index(*shard, i)]); },
       [&](const Run& run) {
         const auto appended = writer->append(run);
         if (!appended) trouble = appended.error();
         return appended.has_value();
       });
+  progress.end();
   if (!trouble.empty()) return fail(trouble, kFailed);
   if (!writer->is_complete())
     return fail(fmt::format("interrupted after {} of {} runs; the same command goes on from there",

@@ -65,7 +65,9 @@ int study_suave(const SuaveOptions& options) {
   if (!campaign) return fail(campaign.error(), kUsage);
   const auto play = [&](study::RunId id) { return study::play(*campaign, id); };
   if (options.shard.is_sharded()) return fill_shard(*campaign, options.shard, options.jobs, play);
-  const auto result = run_whole(*campaign, options.jobs, play);
+  Progress progress(0, campaign->size());
+  const auto result = run_whole(*campaign, options.jobs, progress, play);
+  progress.end();
   if (!result) return kFailed;
   const auto written = write(*result, options.output);
   return written ? kOk : fail(written.error(), kFailed);

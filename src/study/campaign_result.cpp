@@ -1,7 +1,10 @@
 #include "study/campaign_result.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
+
+#include "study/pareto.h"
 
 namespace culprit::study {
 
@@ -21,6 +24,25 @@ const Row* CampaignResult::find(const Configuration& configuration) const {
     return candidate.configuration == configuration;
   });
   return row == rows.end() ? nullptr : &*row;
+}
+
+std::vector<std::optional<bool>> on_front(const CampaignResult& result) {
+  std::map<std::pair<std::string, Probabilities>, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < result.rows.size(); ++i) {
+    const Configuration& row = result.rows[i].configuration;
+    if (row.planner != "oracle") groups[{row.profile, row.probabilities}].push_back(i);
+  }
+  std::vector<std::optional<bool>> is_on(result.rows.size());
+  for (const auto& [of, members] : groups) {
+    std::vector<std::vector<double>> costs;
+    for (const std::size_t i : members) {
+      auto& own = costs.emplace_back();
+      for (const Metric metric : kHonestCosts) own.push_back(result.rows[i][metric].mean());
+    }
+    const std::vector<bool> front = pareto_front(costs);
+    for (std::size_t m = 0; m < members.size(); ++m) is_on[members[m]] = front[m];
+  }
+  return is_on;
 }
 
 CampaignFold::CampaignFold(Campaign campaign) {

@@ -59,6 +59,10 @@ struct CampaignResult {
   const Row* find(const Configuration& configuration) const;
 };
 
+// Which rows no other beats in the means of all honest costs, among those of the same profile and
+// probabilities (study/pareto.h). Nothing for the oracle, which is a bound and no planner.
+std::vector<std::optional<bool>> on_front(const CampaignResult& result);
+
 // Folds runs into a result.
 class CampaignFold {
  public:

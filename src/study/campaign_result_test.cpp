@@ -1,5 +1,7 @@
 #include "study/campaign_result.h"
 
+#include <tuple>
+
 #include <gtest/gtest.h>
 
 #include "study/test_findings.h"
@@ -85,6 +87,35 @@ TEST(CampaignFold, FindsRowsByTheirConfiguration) {
   const CampaignResult result = synthetic_result(3);
   EXPECT_EQ(result.find(result.campaign.rows[8]), &result.rows[8]);
   EXPECT_EQ(result.find({{true, true, true}, "bayes", "paper", Probabilities::kIdeal}), nullptr);
+}
+
+// Each with so much downtime and so many wrong components.
+CampaignResult measured(const std::vector<std::tuple<Configuration, double, int>>& rows) {
+  Campaign campaign;
+  for (const auto& row : rows) campaign.rows.push_back(std::get<Configuration>(row));
+  campaign.runs = 1;
+  CampaignFold fold(campaign);
+  for (const auto& row : rows) {
+    RunMetrics run;
+    run.honest.downtime_s = std::get<double>(row);
+    run.honest.wrong_component = std::get<int>(row);
+    fold.add(run);
+  }
+  return std::move(fold).result();
+}
+
+TEST(OnFront, ComparesPlannersThatPlayTheSame) {
+  const CampaignResult result = measured({{{{}, "paper", "paper"}, 6, 1},
+                                          {{{}, "bayes", "paper"}, 6, 0},
+                                          {{{}, "bayes:downtime", "paper"}, 5, 2},
+                                          {{{}, "oracle", "paper"}, 0, 0},
+                                          {{{}, "paper", "paper:age"}, 1, 1}});
+  const auto front = on_front(result);
+  EXPECT_EQ(front[0], false) << "bayes is as good in the one and better in the other";
+  EXPECT_EQ(front[1], true);
+  EXPECT_EQ(front[2], true);
+  EXPECT_EQ(front[3], std::nullopt) << "nobody can be an oracle";
+  EXPECT_EQ(front[4], true) << "it sees more";
 }
 
 }  // namespace

@@ -2,6 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "exemplars/sunset/scenario.h"
+#include "study/shards/run_record.h"
+#include "study/shards/shard_kind.h"
+
 namespace culprit::study {
 namespace {
 
@@ -17,7 +21,7 @@ std::string_view honest_key(Metric metric) {
   return metric == Metric::kHonestDowntime ? traits(Metric::kDowntime).key : traits(metric).key;
 }
 
-Json row_json(const Row& row) {
+Json row_json(const Row& row, std::optional<bool> is_on_front) {
   const Configuration& configuration = row.configuration;
   Json json = {{"dependencies", configuration.switches.dependencies},
                {"criticality", configuration.switches.criticality},
@@ -33,6 +37,7 @@ Json row_json(const Row& row) {
   for (const Metric metric : kHonestMetrics)
     honest[std::string(honest_key(metric))] = mean_sd(row[metric]);
   honest["recovery_s"]["censored"] = row[Metric::kRecovery].censored();
+  honest["on_front"] = is_on_front ? Json(*is_on_front) : Json();
   json["honest"] = std::move(honest);
   return json;
 }
@@ -48,8 +53,15 @@ Json curve_json(const LearningCurve& curve) {
 }  // namespace
 
 std::string json(const Findings& findings) {
-  Json document = {{"rows", Json::array()}};
-  for (const Row& row : findings.campaign.rows) document["rows"].push_back(row_json(row));
+  Json document = {{"study", ShardKind<Campaign>::kName},
+                   {"campaign", to_json(findings.campaign.campaign)},
+                   {"scenarios", Json::array()},
+                   {"rows", Json::array()}};
+  for (const sunset::Scenario& each : sunset::scenarios())
+    document["scenarios"].push_back(each.name());
+  const auto front = on_front(findings.campaign);
+  for (std::size_t i = 0; i < front.size(); ++i)
+    document["rows"].push_back(row_json(findings.campaign.rows[i], front[i]));
   for (const LearningCurve& curve : findings.learning)
     document["learning"].push_back(curve_json(curve));
   // Names from outside may be no UTF-8; the rest of the document is not lost for that.

@@ -1,13 +1,20 @@
 // Findings as JSON, for programs.
 //
-//     {"rows": [{"dependencies": true, "criticality": true, "impact": true, "planner": "paper",
+//     {"study": "sunset", "campaign": {...}, "scenarios": ["image_degradation+...", ...],
+//      "rows": [{"dependencies": true, "criticality": true, "impact": true, "planner": "paper",
 //                "profile": "paper", "runs": 162,
 //                "ratio": {"mean": 1.01, "sd": 0.33}, "reaction_s": {...}, "downtime_s": {...},
 //                "unnecessary_redeployments": {...},
 //                "honest": {"downtime_s": {...}, "strategies_per_fault": {...},
 //                           "wrong_component": {...}, "unresolved": {...},
 //                           "recovery_s": {"mean": 4.2, "sd": 1.1, "censored": 3},
-//                           "root_cause_top1": {...}, "root_cause_exact": {...}}}]}
+//                           "root_cause_top1": {...}, "root_cause_exact": {...},
+//                           "on_front": true}}]}
+//
+// on_front: on the Pareto front of the honest costs (on_front() in campaign_result.h); null of what
+// is no planner.
+// "campaign" is as in shard files (shards/run_record.h): what single runs can be played again from.
+// Run i of each row plays the scenario i modulo their number.
 //
 // The standard deviation is the population's. Of no values, mean and sd are null. A row with
 // misspecified probabilities has "probabilities": "misspecified"; what was learned is in

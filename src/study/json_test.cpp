@@ -19,7 +19,8 @@ std::vector<std::string> keys(const Json& object) {
 TEST(StudyJson, HasTheDocumentedShape) {
   const CampaignResult result = synthetic_result(9);
   const Json document = Json::parse(json({result, {}, {}}));
-  EXPECT_EQ(keys(document), std::vector<std::string>{"rows"});
+  EXPECT_EQ(keys(document), (std::vector<std::string>{"study", "campaign", "scenarios", "rows"}));
+  EXPECT_EQ(document["study"], "sunset");
   ASSERT_EQ(document["rows"].size(), 9u);
   const Json& row = document["rows"][1];
   EXPECT_EQ(keys(row),
@@ -34,7 +35,8 @@ TEST(StudyJson, HasTheDocumentedShape) {
   EXPECT_EQ(keys(row["honest"]),
             (std::vector<std::string>{"downtime_s", "strategies_per_fault", "wrong_component",
                                       "unresolved", "recovery_s", "root_cause_top1",
-                                      "root_cause_exact"}));
+                                      "root_cause_exact", "on_front"}));
+  EXPECT_TRUE(row["honest"]["on_front"].is_boolean());
   EXPECT_EQ(document["rows"][8]["probabilities"], "misspecified");
 }
 

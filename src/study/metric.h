@@ -30,6 +30,10 @@ inline constexpr std::array kHonestMetrics = {Metric::kHonestDowntime,  Metric::
                                               Metric::kWrongComponent,  Metric::kUnresolved,
                                               Metric::kRecovery,        Metric::kTopCauseRight,
                                               Metric::kExactCausesRight};
+// Of these the honest ones that are costs of managing: what the Pareto front is of.
+inline constexpr std::array kHonestCosts = {Metric::kHonestDowntime, Metric::kStrategiesPerFault,
+                                            Metric::kWrongComponent, Metric::kUnresolved,
+                                            Metric::kRecovery};
 inline constexpr std::size_t kMetricCount = kPublishedMetrics.size() + kHonestMetrics.size();
 
 enum class Better : std::uint8_t { kHigher, kLower };

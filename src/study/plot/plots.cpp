@@ -1,9 +1,9 @@
 #include "study/plot/plots.h"
 
 #include <algorithm>
-#include <fstream>
 #include <system_error>
 
+#include "language/text_file.h"
 #include "study/markup.h"
 #include "study/plot/distribution_plot.h"
 #include "study/plot/learning_plot.h"
@@ -55,10 +55,7 @@ Expected<void> write_plots(const Findings& findings, const std::filesystem::path
   const std::string style = plot_style(Surroundings::kLight);
   for (const NamedPlot& plot : plots(findings)) {
     const std::filesystem::path path = folder / (plot.id + ".svg");
-    std::ofstream file(path, std::ios::binary);
-    file << plot.svg.file(style);
-    file.close();
-    if (!file) return Error{path.string() + ": cannot be written"};
+    if (const auto written = write_text(path, plot.svg.file(style)); !written) return written;
   }
   return {};
 }

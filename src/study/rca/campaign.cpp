@@ -34,12 +34,32 @@ Costs costs_of(const RcaCampaign& campaign, const RcaScenario& scenario) {
   return costs;
 }
 
-// Of the rows of one setting, which begin at `first`. Where a robot is too large there is none.
-bool find_regrets(const RcaCampaign& campaign, unsigned jobs,
-                  const std::function<bool()>& is_stopped, std::span<RcaRow> rows) {
+// Counts what is done of all that a campaign is.
+class Count {
+ public:
+  Count(std::uint64_t total, const GoOn& go_on) : total_(total), go_on_(go_on) {}
+
+  bool next() {
+    ++done_;
+    return !go_on_ || go_on_(done_, total_);
+  }
+
+ private:
+  std::uint64_t done_ = 0;
+  const std::uint64_t total_;
+  const GoOn& go_on_;
+};
+
+// A scenario from a file has one robot, whatever the episode's luck is.
+std::uint64_t robots_of(const RcaCampaign& campaign) {
+  return campaign.scenario ? 1 : campaign.episodes;
+}
+
+// Of the rows of one setting. Where a robot is too large there is none.
+bool find_regrets(const RcaCampaign& campaign, unsigned jobs, Count& count,
+                  std::span<RcaRow> rows) {
   const RcaSetting& setting = rows.front().setting;
-  // A scenario from a file has one robot, whatever the episode's luck is.
-  const std::uint64_t robots = campaign.scenario ? 1 : campaign.episodes;
+  const std::uint64_t robots = robots_of(campaign);
   Costs sum{0, std::vector<double>(rows.size(), 0)};
   std::uint64_t done = 0;
   work_in_order(
@@ -50,7 +70,7 @@ bool find_regrets(const RcaCampaign& campaign, unsigned jobs,
         return costs_of(campaign, scenario);
       },
       [&](std::uint64_t, const std::optional<Costs>& costs) {
-        if (is_stopped && is_stopped()) return false;
+        if (!count.next()) return false;
         ++done;
         if (!costs) return true;
         sum.optimum += costs->optimum;
@@ -118,6 +138,15 @@ RcaScenario scenario_of(const RcaCampaign& campaign, const RcaSetting& setting,
   return scenario;
 }
 
+Expected<SingleRun> single_run(const RcaCampaign& campaign, RunId id) {
+  const RcaSetting& setting = campaign.settings[id.row / campaign.planners.size()];
+  const std::string& planner = campaign.planners[id.row % campaign.planners.size()];
+  const RcaScenario scenario = scenario_of(campaign, setting, id.run);
+  auto made = make_planner(planner, campaign.objective, scenario);
+  if (!made) return Error{made.error()};
+  return single_run(scenario, std::move(*made));
+}
+
 bool has_optimum(const RcaCampaign& campaign) {
   if (campaign.scenario) return RepairProcess::is_small(*campaign.scenario);
   return std::all_of(campaign.settings.begin(), campaign.settings.end(), [](const RcaSetting& s) {
@@ -143,7 +172,7 @@ RcaSetting setting_of(const RcaScenario& scenario) {
 }
 
 std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, unsigned jobs,
-                                                const std::function<bool()>& is_stopped) {
+                                                const GoOn& go_on) {
   std::vector<RcaRow> rows;
   for (const RcaSetting& setting : campaign.settings) {
     for (const std::string& planner : campaign.planners) {
@@ -153,6 +182,7 @@ std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, uns
     }
   }
   const std::uint64_t size = std::uint64_t{campaign.episodes} * rows.size();
+  Count count(size + robots_of(campaign) * campaign.settings.size(), go_on);
   std::uint64_t played = 0;
   work_in_order(
       0, size, jobs,
@@ -165,12 +195,12 @@ std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, uns
       [&](std::uint64_t i, const EpisodeResult& result) {
         rows[i / campaign.episodes].add(result);
         ++played;
-        return !is_stopped || !is_stopped();
+        return count.next();
       });
   if (played < size) return std::nullopt;
   for (std::size_t first = 0; first < rows.size(); first += campaign.planners.size()) {
     const auto of_setting = std::span(rows).subspan(first, campaign.planners.size());
-    if (!find_regrets(campaign, jobs, is_stopped, of_setting)) return std::nullopt;
+    if (!find_regrets(campaign, jobs, count, of_setting)) return std::nullopt;
   }
   return rows;
 }

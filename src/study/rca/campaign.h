@@ -8,6 +8,7 @@
 
 #include "language/expected.h"
 #include "plan/bayes/objective.h"
+#include "study/campaign.h"
 #include "study/rca/episode.h"
 #include "study/rca/generator.h"
 #include "study/statistics/moments.h"
@@ -27,6 +28,10 @@ struct RcaCampaign {
   // Instead of random ones: its settings are what setting_of() says, and each episode has other
   // luck.
   std::optional<RcaScenario> scenario;
+  std::string version;  // of culprit
+
+  // The rows: each planner in each setting.
+  std::size_t rows() const { return settings.size() * planners.size(); }
 };
 
 // Of one planner in one setting: shares and means over the episodes.
@@ -56,16 +61,23 @@ struct RcaRow {
 Expected<std::unique_ptr<const Planner>> make_planner(const std::string& name, Objective objective,
                                                       const RcaScenario& scenario);
 
+// Told how many pieces of work are done of how many; says whether to go on. Null: go on.
+using GoOn = std::function<bool(std::uint64_t done, std::uint64_t total)>;
+
 // Row by row, setting by setting. The result depends on nothing but the campaign, apart from the
-// time that planning took. `is_stopped` is asked after each episode (null: never stopped); where it
-// stopped nothing is given.
+// time that planning took. `go_on` is asked after each episode, and after each robot of which the
+// optimum was worked out; where it said no, nothing is given.
 // @pre the planners exist
 std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, unsigned jobs,
-                                                const std::function<bool()>& is_stopped);
+                                                const GoOn& go_on);
 
 // The scenario of an episode: the same for every planner.
 RcaScenario scenario_of(const RcaCampaign& campaign, const RcaSetting& setting,
                         std::uint32_t episode);
+
+// An episode again, to look at moment by moment. `id` is of rows() and the episodes. Errors: those
+// of make_planner().
+Expected<SingleRun> single_run(const RcaCampaign& campaign, RunId id);
 
 // Are all its robots small enough for the optimum?
 bool has_optimum(const RcaCampaign& campaign);

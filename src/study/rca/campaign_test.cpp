@@ -24,7 +24,24 @@ TEST(RcaCampaign, IsTheSameWithAnyNumberOfThreads) {
   const auto one = run_campaign(small_campaign(), 1, nullptr);
   const auto four = run_campaign(small_campaign(), 4, nullptr);
   ASSERT_TRUE(one && four);
-  EXPECT_EQ(rca_json(*one, Times::kLeftOut), rca_json(*four, Times::kLeftOut));
+  EXPECT_EQ(rca_json(small_campaign(), *one, Times::kLeftOut),
+            rca_json(small_campaign(), *four, Times::kLeftOut));
+}
+
+TEST(RcaCampaign, TellsHowFarItIsAndStopsWhenItIsTold) {
+  const RcaCampaign campaign = small_campaign();
+  std::vector<std::uint64_t> told;
+  const std::uint64_t all =
+      3 * campaign.rows() + 3;  // episodes, and robots with an optimum or none
+  ASSERT_TRUE(run_campaign(campaign, 2, [&](std::uint64_t done, std::uint64_t total) {
+    told.push_back(done);
+    return total == all;
+  }));
+  ASSERT_EQ(told.size(), all);
+  EXPECT_EQ(told.front(), 1u);
+  EXPECT_EQ(told.back(), all);
+  EXPECT_FALSE(
+      run_campaign(campaign, 2, [](std::uint64_t done, std::uint64_t) { return done < 5; }));
 }
 
 TEST(RcaCampaign, HasARowForEachPlannerAndSetting) {

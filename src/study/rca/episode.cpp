@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <functional>
 #include <map>
 #include <set>
 
@@ -138,12 +137,9 @@ class Clock {
   Time last_change_{};
 };
 
-using Told = std::function<void(Time, const std::string&)>;
-
-// `told` may be null.
-EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner,
-                   const Told& told) {
-  const RuleSet rules = rules_of(scenario);
+// `telling` may be null.
+EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
+                   std::unique_ptr<const Planner> planner, SingleRun* telling) {
   EpisodeResult result;
   RcaRobot robot(scenario, rules);
   Clock clock(scenario, robot.plant());
@@ -155,8 +151,8 @@ EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> p
   Runtime runtime(manager, robot);
   runtime.on_events = [&](std::span<const Event> events) {
     judge.see(events);
-    if (!told) return;
-    for (const Event& event : events) told(event.at, describe(event, rules));
+    if (telling != nullptr)
+      telling->events.insert(telling->events.end(), events.begin(), events.end());
   };
   runtime.run(robot.is_over(), Time(from_seconds(scenario.horizon_s)));
 
@@ -169,23 +165,41 @@ EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> p
   const Time end = result.is_recovered ? clock.last_change() : robot.now();
   result.recovery_s = std::max(0.0, seconds(end.time_since_epoch()) - first_s);
   result.downtime_s = clock.downtime_s(robot.now());
+  if (telling != nullptr) telling->end_s = seconds(robot.now().time_since_epoch());
   return result;
 }
 
 }  // namespace
 
 EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner) {
-  return play(scenario, std::move(planner), nullptr);
+  return play(scenario, rules_of(scenario), std::move(planner), nullptr);
+}
+
+SingleRun single_run(const RcaScenario& scenario, std::unique_ptr<const Planner> planner) {
+  SingleRun run;
+  run.rules = rules_of(scenario);
+  for (const InjectedFault& fault : scenario.faults) {
+    const std::string& component = scenario.components[fault.component].name;
+    run.incidents.push_back({fault.at_s, Happening::kFault, component,
+                             fmt::format("fault: {} {}", component, to_string(fault.kind))});
+  }
+  std::stable_sort(
+      run.incidents.begin(), run.incidents.end(),
+      [](const TimelineEntry& a, const TimelineEntry& b) { return a.time_s < b.time_s; });
+  play(scenario, run.rules, std::move(planner), &run);
+  return run;
 }
 
 std::string tell(const RcaScenario& scenario, std::unique_ptr<const Planner> planner) {
+  const SingleRun run = single_run(scenario, std::move(planner));
   std::string text;
-  for (const InjectedFault& fault : scenario.faults)
-    text += fmt::format("{:9.3f}  fault: {} {}\n", fault.at_s,
-                        scenario.components[fault.component].name, to_string(fault.kind));
-  play(scenario, std::move(planner), [&](Time at, const std::string& what) {
-    if (!what.empty()) text += fmt::format("{:9.3f}  {}\n", seconds(at.time_since_epoch()), what);
-  });
+  for (const TimelineEntry& fault : run.incidents)
+    text += fmt::format("{:9.3f}  {}\n", fault.time_s, fault.text);
+  for (const Event& event : run.events) {
+    const std::string what = describe(event, run.rules);
+    if (!what.empty())
+      text += fmt::format("{:9.3f}  {}\n", seconds(event.at.time_since_epoch()), what);
+  }
   return text;
 }
 

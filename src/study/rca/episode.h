@@ -8,6 +8,7 @@
 
 #include "plan/planner.h"
 #include "study/rca/scenario.h"
+#include "study/single_run.h"
 
 namespace culprit::study::rca {
 
@@ -33,10 +34,11 @@ struct EpisodeResult {
   double planning_us = 0;  // wall time in all plans
 };
 
-// What happened, line by line, with the faults.
-std::string tell(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);
-
 // `planner` decides. The same scenario and planner, the same result but for `planning_us`.
 EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);
+
+// The same, to look at moment by moment; and line by line, with the faults.
+SingleRun single_run(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);
+std::string tell(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);
 
 }  // namespace culprit::study::rca

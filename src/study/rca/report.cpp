@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "study/pareto.h"
+#include "study/rca/campaign_json.h"
 #include "study/statistics/welch.h"
 #include "study/tables/columns.h"
 
@@ -21,8 +23,29 @@ std::optional<double> plan_us(const RcaRow& row, Times times) {
   return row.planning_us / static_cast<double>(row.plans);
 }
 
+// By row, whether no other planner beats it in the same setting. Nothing of the optimum: it is a
+// bound.
+std::vector<std::optional<bool>> on_front(const std::vector<RcaRow>& rows) {
+  std::vector<std::optional<bool>> is_on(rows.size());
+  for (const RcaRow& first : rows) {
+    std::vector<std::size_t> members;
+    std::vector<std::vector<double>> costs;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const RcaRow& row = rows[i];
+      if (row.planner == "optimum" || !(row.setting == first.setting)) continue;
+      members.push_back(i);
+      costs.push_back({-row.exact.mean(), row.strategies_per_fault.mean(),
+                       row.wrong_component.mean(), row.unnecessary.mean(), row.downtime_s.mean(),
+                       row.recovery_s.mean(), row.unresolved.mean()});
+    }
+    const std::vector<bool> front = pareto_front(costs);
+    for (std::size_t m = 0; m < members.size(); ++m) is_on[members[m]] = front[m];
+  }
+  return is_on;
+}
+
 // All that is told of a row, in the order of its telling.
-Json figures(const RcaRow& row, Times times) {
+Json figures(const RcaRow& row, std::optional<bool> is_on_front, Times times) {
   const auto optional = [](std::optional<double> value) { return value ? Json(*value) : Json(); };
   return {{"planner", row.planner},
           {"components", row.setting.components},
@@ -40,7 +63,8 @@ Json figures(const RcaRow& row, Times times) {
           {"recovery_s", row.recovery_s.mean()},
           {"unresolved", row.unresolved.mean()},
           {"regret", optional(row.regret)},
-          {"plan_us", optional(plan_us(row, times))}};
+          {"plan_us", optional(plan_us(row, times))},
+          {"on_front", is_on_front ? Json(*is_on_front) : Json()}};
 }
 
 std::string percent(std::optional<double> share) { return share ? number(100 * *share, 1) : "–"; }
@@ -84,11 +108,14 @@ Table rca_table(const RcaCampaign& campaign, const std::vector<RcaRow>& rows, Ti
                {"", "downtime [s]"},
                {"", "recovery [s]"},
                {"", "unresolved"},
-               {"", "regret [%]"}},
+               {"", "regret [%]"},
+               {"", "on the front", "", "", Align::kCentre}},
               {},
               {}};
   if (times == Times::kShown) table.columns.push_back({"", "plan [us]"});
-  for (const RcaRow& row : rows) {
+  const auto front = on_front(rows);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const RcaRow& row = rows[i];
     std::vector<Cell> cells = {{row.planner},
                                {std::to_string(row.setting.components)},
                                {std::to_string(row.setting.faults)},
@@ -103,7 +130,10 @@ Table rca_table(const RcaCampaign& campaign, const std::vector<RcaRow>& rows, Ti
                                {number(row.downtime_s.mean())},
                                {number(row.recovery_s.mean())},
                                {number(row.unresolved.mean())},
-                               {percent(row.regret)}};
+                               {percent(row.regret)},
+                               {!front[i]   ? ""
+                                : *front[i] ? "✓"
+                                            : "–"}};
     if (times == Times::kShown) {
       const auto us = plan_us(row, times);
       cells.push_back({us ? number(*us, 1) : "–"});
@@ -114,14 +144,18 @@ Table rca_table(const RcaCampaign& campaign, const std::vector<RcaRow>& rows, Ti
                       row.censored, row.episodes, row.planner));
     table.rows.push_back(std::move(cells));
   }
+  table.notes.push_back(
+      "On the (Pareto) front: no other planner is as good in the exact set, adaptations, downtime, "
+      "recovery and what is unresolved, and better in one of them.");
   add_tests(rows, table);
   return table;
 }
 
 std::string rca_csv(const std::vector<RcaRow>& rows, Times times) {
   std::string out;
-  for (const RcaRow& row : rows) {
-    const Json all = figures(row, times);
+  const auto front = on_front(rows);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Json all = figures(rows[i], front[i], times);
     std::string head;
     std::string line;
     for (const auto& [key, value] : all.items()) {
@@ -136,9 +170,11 @@ std::string rca_csv(const std::vector<RcaRow>& rows, Times times) {
   return out;
 }
 
-std::string rca_json(const std::vector<RcaRow>& rows, Times times) {
-  Json document = {{"rows", Json::array()}};
-  for (const RcaRow& row : rows) document["rows"].push_back(figures(row, times));
+std::string rca_json(const RcaCampaign& campaign, const std::vector<RcaRow>& rows, Times times) {
+  Json document = {{"study", kStudyName}, {"campaign", to_json(campaign)}, {"rows", Json::array()}};
+  const auto front = on_front(rows);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    document["rows"].push_back(figures(rows[i], front[i], times));
   return document.dump(2) + "\n";
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
 #include "study/ordered_work.h"
 
 namespace culprit::study {
@@ -44,9 +46,15 @@ SuaveRow fold(const std::string& manager, const suave::model::MissionPlan& plan,
   return row;
 }
 
-SuaveRun play(const SuaveCampaign& campaign, RunId id, Track* track) {
+SuaveRun play(const SuaveCampaign& campaign, RunId id, SuaveTelling* telling) {
   return play_suave(campaign.managers[id.row], *campaign.generation, *campaign.plan,
-                    campaign.vehicle, simulation::mix(campaign.seed) + id.run, track);
+                    campaign.vehicle, simulation::mix(campaign.seed) + id.run, telling);
+}
+
+std::string describe(const simulation::Fault& fault) {
+  if (std::holds_alternative<simulation::Killed>(fault.what)) return fault.node + " is killed";
+  if (std::holds_alternative<simulation::Hung>(fault.what)) return fault.node + " hangs";
+  return fault.node + " has a fault";
 }
 
 }  // namespace
@@ -93,10 +101,35 @@ SuaveResult run_campaign(const SuaveCampaign& campaign, unsigned jobs) {
 }
 
 std::vector<Track> first_tracks(const SuaveCampaign& campaign) {
-  std::vector<Track> tracks(campaign.managers.size());
-  for (std::uint32_t row = 0; row < tracks.size(); ++row)
-    (void)play(campaign, RunId{row, 0}, &tracks[row]);
+  std::vector<Track> tracks;
+  for (std::uint32_t row = 0; row < campaign.managers.size(); ++row) {
+    SuaveTelling telling;
+    (void)play(campaign, RunId{row, 0}, &telling);
+    tracks.push_back(std::move(telling.track));
+  }
   return tracks;
+}
+
+SingleRun single_run(const SuaveCampaign& campaign, RunId id) {
+  SuaveTelling telling;
+  (void)play(campaign, id, &telling);
+  const double begin_s = seconds(telling.begin.time_since_epoch());
+  SingleRun run;
+  run.scenario =
+      fmt::format("the {} mission, which begins at {:.1f} s", campaign.plan->name, begin_s);
+  run.is_told = campaign.managers[id.row] == kCulprit;
+  run.rules = rules_for(*campaign.plan);
+  for (const simulation::Fault& fault : campaign.plan->faults)
+    run.incidents.push_back(
+        {begin_s + seconds(fault.at.time_since_epoch()), Happening::kFault, "", describe(fault)});
+  for (const TrackMark& mark : telling.track.marks)
+    run.incidents.push_back({begin_s + mark.time_s, mark.kind, "", mark.what});
+  std::stable_sort(
+      run.incidents.begin(), run.incidents.end(),
+      [](const TimelineEntry& a, const TimelineEntry& b) { return a.time_s < b.time_s; });
+  run.events = std::move(telling.events);
+  run.end_s = seconds(telling.end.time_since_epoch());
+  return run;
 }
 
 }  // namespace culprit::study

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "study/campaign.h"
+#include "study/single_run.h"
 #include "study/statistics/moments.h"
 #include "study/suave/run.h"
 
@@ -94,5 +95,9 @@ SuaveResult run_campaign(const SuaveCampaign& campaign, unsigned jobs);
 
 // The first run of each manager again, with its track.
 std::vector<Track> first_tracks(const SuaveCampaign& campaign);
+
+// A run again, to look at moment by moment. Managers of others tell nothing of themselves; what the
+// vehicle does and what goes wrong is told of all.
+SingleRun single_run(const SuaveCampaign& campaign, RunId id);
 
 }  // namespace culprit::study

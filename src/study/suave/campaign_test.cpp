@@ -99,7 +99,8 @@ TEST(SuaveCampaign, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(once, suave_json(run_campaign(small, 3)));
   SuaveCampaign other = small;
   other.seed = 2;
-  EXPECT_NE(once, suave_json(run_campaign(other, 1)));
+  const auto rows = [](const std::string& text) { return nlohmann::json::parse(text)["rows"]; };
+  EXPECT_NE(rows(once), rows(suave_json(run_campaign(other, 1))));
 }
 
 TEST(SuaveCampaign, LeavesOutTheLongestSearchesOfItsOwnManagerOnly) {
@@ -161,16 +162,16 @@ TEST(SuaveReport, HasARowForEachManagerAndTestsAgainstEach) {
 TEST(SuaveTracks, AreWrittenDownWithoutChangingTheRun) {
   const SuaveCampaign extended = campaign("extended", {"culprit"}, 1);
   const std::uint64_t seed = simulation::mix(extended.seed);
-  Track track;
+  SuaveTelling telling;
   const SuaveRun with =
-      play_suave("culprit", *extended.generation, *extended.plan, extended.vehicle, seed, &track);
+      play_suave("culprit", *extended.generation, *extended.plan, extended.vehicle, seed, &telling);
   const SuaveRun without =
       play_suave("culprit", *extended.generation, *extended.plan, extended.vehicle, seed);
   EXPECT_EQ(with.found_s, without.found_s);
   EXPECT_EQ(with.whole_distance_m, without.whole_distance_m);
-  EXPECT_GE(track.points.size(), 299u);
+  EXPECT_GE(telling.track.points.size(), 299u);
   std::vector<std::string> happened;
-  for (const TrackMark& mark : track.marks) happened.push_back(mark.what);
+  for (const TrackMark& mark : telling.track.marks) happened.push_back(mark.what);
   for (const char* wanted : {"thruster 1 fails", "thruster 1 is recovered", "the pipeline is found",
                              "it inspects", "it leaves for the charging station"})
     EXPECT_THAT(happened, testing::Contains(wanted));

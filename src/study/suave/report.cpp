@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "study/shards/shard_kind.h"
+#include "study/shards/suave_record.h"
 #include "study/statistics/welch.h"
 #include "study/suave/published.h"
 #include "study/tables/columns.h"
@@ -217,7 +219,10 @@ std::vector<Table> suave_tables(const SuaveResult& result) {
 }
 
 std::string suave_json(const SuaveResult& result) {
-  Json document = {{"rows", Json::array()}, {"tests", Json::array()}};
+  Json document = {{"study", ShardKind<SuaveCampaign>::kName},
+                   {"campaign", to_json(result.campaign)},
+                   {"rows", Json::array()},
+                   {"tests", Json::array()}};
   for (const SuaveRow& row : result.rows) document["rows"].push_back(json(row, result.campaign));
   for (const Test& test : tests(result.rows)) {
     document["tests"].push_back({{"first", test.baseline},

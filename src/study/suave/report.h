@@ -1,6 +1,7 @@
 // What a campaign over SUAVE found: tables, ours beside the paper's, and JSON.
 //
-//     {"rows": [{"manager": "bt", "mission": "standard", "runs": 100, "outliers": 0,
+//     {"study": "suave", "campaign": {...},
+//      "rows": [{"manager": "bt", "mission": "standard", "runs": 100, "outliers": 0,
 //                "search_time_s": {"mean": 84.1, "sd": 26.4}, "distance_m": {...},
 //                "reaction_s": {"visibility": {"mean", "sd", "count"}, "thruster": {...},
 //                               "battery": {...}},
@@ -12,8 +13,8 @@
 //      "tests": [{"first": "bt", "second": "culprit", "metric": "distance_m", "t", "degrees", "p",
 //                 "difference"}]}
 //
-// Standard deviations are those of a sample. Of no values mean and sd are null; "published" is null
-// where the paper has no such row.
+// "campaign" is as in shard files (shards/suave_record.h). Standard deviations are those of a
+// sample. Of no values mean and sd are null; "published" is null where the paper has no such row.
 #pragma once
 
 #include <string>

@@ -22,12 +22,6 @@ constexpr double kWorthwhileMetres = 10;
 // The rules are the project's own, and a test checks them.
 RuleSet checked(const char* name, const char* text) { return *check(Source(name, text)).rules; }
 
-const RuleSet& rules_for(const suave::model::MissionPlan& plan) {
-  static const RuleSet kStandard = checked("suave.rules", kSuaveRules);
-  static const RuleSet kExtended = checked("suave-extended.rules", kSuaveExtendedRules);
-  return plan.needs_battery ? kExtended : kStandard;
-}
-
 const SuaveBaseline* find_baseline(const std::string& name) {
   const auto all = suave_baselines();
   const auto found = std::find_if(all.begin(), all.end(),
@@ -35,10 +29,16 @@ const SuaveBaseline* find_baseline(const std::string& name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-// Runs until the mission is over.
-void run_mission(SuaveModel& model, const RuleSet& names, ManagingSystem& manager) {
+// Runs until the mission is over. `telling` may be null.
+void run_mission(SuaveModel& model, const RuleSet& names, ManagingSystem& manager,
+                 SuaveTelling* telling) {
   simulation::SimulatedRobot robot(names, model.world());
   Runtime runtime(manager, robot);
+  if (telling != nullptr) {
+    runtime.on_events = [telling](std::span<const Event> events) {
+      telling->events.insert(telling->events.end(), events.begin(), events.end());
+    };
+  }
   std::atomic<bool> is_over = false;
   model.mission().on_end = [&] { is_over = true; };
   runtime.run(is_over, model.latest_end());
@@ -64,6 +64,12 @@ SuaveRun measure(SuaveModel& model) {
 
 }  // namespace
 
+const RuleSet& rules_for(const suave::model::MissionPlan& plan) {
+  static const RuleSet kStandard = checked("suave.rules", kSuaveRules);
+  static const RuleSet kExtended = checked("suave-extended.rules", kSuaveExtendedRules);
+  return plan.needs_battery ? kExtended : kStandard;
+}
+
 std::vector<SuaveContender> suave_contenders() {
   std::vector<SuaveContender> contenders;
   for (const SuaveBaseline& each : suave_baselines())
@@ -74,22 +80,27 @@ std::vector<SuaveContender> suave_contenders() {
 
 SuaveRun play_suave(const std::string& manager, const suave::model::Generation& generation,
                     const suave::model::MissionPlan& plan,
-                    const suave::model::VehicleTraits& vehicle, std::uint64_t seed, Track* track) {
+                    const suave::model::VehicleTraits& vehicle, std::uint64_t seed,
+                    SuaveTelling* telling) {
   const SuaveBaseline* baseline = find_baseline(manager);
   const auto leader = baseline != nullptr ? baseline->leader : suave::model::Leader::kMission;
   SuaveModel model({generation, plan, leader, vehicle}, seed);
   std::optional<TrackRecorder> recorder;
-  if (track != nullptr) {
-    track->manager = manager;
-    recorder.emplace(model, *track);
+  if (telling != nullptr) {
+    telling->track.manager = manager;
+    recorder.emplace(model, telling->track);
   }
   if (baseline != nullptr) {
     const auto system = baseline->make({generation, plan.needs_battery, seed});
-    run_mission(model, suave_names(), *system);
+    run_mission(model, suave_names(), *system, telling);
   } else {
     Manager::Options options;
     Manager system(rules_for(plan), std::make_unique<PaperPlanner>(PaperSwitches{}), options);
-    run_mission(model, rules_for(plan), system);
+    run_mission(model, rules_for(plan), system, telling);
+  }
+  if (telling != nullptr) {
+    telling->begin = model.guided();
+    telling->end = model.world().now();
   }
   return measure(model);
 }

@@ -28,6 +28,14 @@ struct SuaveRun {
   bool operator==(const SuaveRun&) const = default;
 };
 
+// All that happened in a mission.
+struct SuaveTelling {
+  Track track;
+  std::vector<Event> events;  // that the manager told; those of others tell nothing
+  Time begin;                 // of the mission, since the robot was started
+  Time end;
+};
+
 inline constexpr const char* kCulprit = "culprit";
 
 // Who manages: the baselines (managers/suave_manager.h), and culprit.
@@ -37,11 +45,14 @@ struct SuaveContender {
 };
 std::vector<SuaveContender> suave_contenders();
 
-// Plays a mission. `manager` is a contender's name. The same seed, the same run, whether its track
-// is written down or not.
+// The rules that culprit has in such a mission.
+const RuleSet& rules_for(const suave::model::MissionPlan& plan);
+
+// Plays a mission. `manager` is a contender's name. The same seed, the same run, whether it is
+// written down or not.
 SuaveRun play_suave(const std::string& manager, const suave::model::Generation& generation,
                     const suave::model::MissionPlan& plan,
                     const suave::model::VehicleTraits& vehicle, std::uint64_t seed,
-                    Track* track = nullptr);
+                    SuaveTelling* telling = nullptr);
 
 }  // namespace culprit::study

@@ -19,17 +19,18 @@ void TrackRecorder::sample() {
   model_.world().after(std::chrono::seconds(1), [this] { sample(); });
 }
 
-void TrackRecorder::mark(std::string what) {
+void TrackRecorder::mark(Happening kind, std::string what) {
   const Time now = model_.world().now();
   if (now < model_.guided()) return;
   track_.marks.push_back(
-      {seconds(now - model_.guided()), model_.vehicle().position(), std::move(what)});
+      {seconds(now - model_.guided()), model_.vehicle().position(), kind, std::move(what)});
 }
 
 void TrackRecorder::on_field(const simulation::TopicBase& topic, const std::string&,
                              const Value& value) {
-  if (topic.name() == "/pipeline/detected" && value == Value(true)) mark("the pipeline is found");
-  if (topic.name() == "/pipeline/inspected") mark("all of it is inspected");
+  if (topic.name() == "/pipeline/detected" && value == Value(true))
+    mark(Happening::kNote, "the pipeline is found");
+  if (topic.name() == "/pipeline/inspected") mark(Happening::kNote, "all of it is inspected");
 }
 
 void TrackRecorder::on_diagnostic(std::string_view, std::string_view key, const Value& value) {
@@ -37,10 +38,10 @@ void TrackRecorder::on_diagnostic(std::string_view, std::string_view key, const 
   const std::string thruster(key.substr(diagnostics::kThrusterKey.size()));
   if (value == Value(std::string(diagnostics::kError))) {
     has_failed_[thruster] = true;
-    mark("thruster " + thruster + " fails");
+    mark(Happening::kFault, "thruster " + thruster + " fails");
   } else if (value == Value(std::string(diagnostics::kRecovered)) && has_failed_[thruster]) {
     has_failed_[thruster] = false;
-    mark("thruster " + thruster + " is recovered");
+    mark(Happening::kNote, "thruster " + thruster + " is recovered");
   }
 }
 
@@ -48,13 +49,13 @@ void TrackRecorder::on_parameter(const simulation::Node&, const std::string& nam
                                  const Value& value) {
   if (name != kAltitude || value == altitude_) return;
   altitude_ = value;
-  mark(fmt::format("it searches at {:.0f} m", std::get<double>(value)));
+  mark(Happening::kNote, fmt::format("it searches at {:.0f} m", std::get<double>(value)));
 }
 
 void TrackRecorder::on_lifecycle(const simulation::Node& node) {
   if (!node.is_active()) return;
-  if (node.name() == nodes::kFollow) mark("it inspects");
-  if (node.name() == nodes::kRecharge) mark("it leaves for the charging station");
+  if (node.name() == nodes::kFollow) mark(Happening::kNote, "it inspects");
+  if (node.name() == nodes::kRecharge) mark(Happening::kNote, "it leaves for the charging station");
 }
 
 }  // namespace culprit::study

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "exemplars/suave/model/suave_model.h"
+#include "study/timeline.h"
 
 namespace culprit::study {
 
 struct TrackMark {
   double time_s = 0;  // since the mission began
   suave::model::Position at;
+  Happening kind = Happening::kNote;  // or kFault
   std::string what;
 };
 
@@ -36,7 +38,7 @@ class TrackRecorder : private simulation::Watcher {
                     const Value& value) override;
   void on_lifecycle(const simulation::Node& node) override;
   void sample();
-  void mark(std::string what);
+  void mark(Happening kind, std::string what);
 
   suave::model::SuaveModel& model_;
   Track& track_;

@@ -36,8 +36,9 @@ std::vector<Learner> learners(const RuleSet& rules, std::uint32_t experiments) {
 
 // The true rate of a strategy is how often it ended a fault, of all the times that it was executed:
 // what comes first meets other faults than what comes second.
-std::vector<LearningCurve> SunsetStudy::learn(std::uint32_t experiments,
-                                              std::uint32_t repetitions) const {
+std::vector<LearningCurve> SunsetStudy::learn(
+    std::uint32_t experiments, std::uint32_t repetitions,
+    const std::function<void(std::uint64_t)>& told) const {
   const Setting& setting = settings_.front();
   RuleSet rules = *setting.rules;
   for (Strategy& strategy : rules.strategies) strategy.confidence = published::kLearning.confidence;
@@ -57,6 +58,7 @@ std::vector<LearningCurve> SunsetStudy::learn(std::uint32_t experiments,
           static_cast<std::size_t>(order.below(static_cast<int>(scenarios.size())));
       const SunsetRun run = study::play(model, rules, manager, scenarios[scenario]);
       beliefs = manager.knowledge().beliefs;
+      if (told) told(std::uint64_t{repetition} * experiments + experiment + 1);
       for (Learner& learner : all) {
         learner.curve.learned[experiment].add(beliefs[learner.strategy].mean().value);
         for (const SunsetRun::Choice& choice : run.choices) {

@@ -83,6 +83,19 @@ std::string component_of(sunset::Member member, const RuleSet& rules) {
   return found == rules.components.end() ? node : found->name;
 }
 
+double seconds_of(Time t) { return seconds(t.time_since_epoch()); }
+
+std::vector<TimelineEntry> injected(const SunsetRun& run, const RuleSet& rules) {
+  std::vector<TimelineEntry> entries;
+  for (const auto& injection : run.injections) {
+    std::string component = component_of(injection.fault->member, rules);
+    std::string text = "fault: " + std::string(injection.fault->name) + " of " + component;
+    entries.push_back(
+        {seconds_of(injection.at), Happening::kFault, std::move(component), std::move(text)});
+  }
+  return entries;
+}
+
 }  // namespace
 
 std::vector<std::string_view> sunset_planners() {
@@ -173,22 +186,23 @@ RunMetrics SunsetStudy::run(RunId id) const {
   return measure(play(id), *setting.rules, on.dependencies && !on.criticality && !on.impact);
 }
 
+SingleRun SunsetStudy::single_run(RunId id) const {
+  const RuleSet& rules = this->rules(id.row);
+  SunsetRun run = play(id);
+  return {run.scenario.name(), rules, injected(run, rules), std::move(run.events),
+          seconds_of(run.end)};
+}
+
 Timeline SunsetStudy::explain(RunId id) const {
   const Setting& setting = settings_[id.row];
   const RuleSet& rules = *setting.rules;
   const SunsetRun run = play(id);
-  Timeline timeline{setting.configuration, id.run, run.scenario.name(), {}};
-  const auto at = [](Time t) { return seconds(t.time_since_epoch()); };
-  for (const auto& injection : run.injections) {
-    timeline.entries.push_back({at(injection.at), Happening::kFault,
-                                component_of(injection.fault->member, rules),
-                                "fault: " + std::string(injection.fault->name)});
-  }
+  Timeline timeline{setting.configuration, id.run, run.scenario.name(), injected(run, rules)};
   for (const Event& event : run.events) {
     std::string text = describe(event, rules);
     if (!text.empty())
       timeline.entries.push_back(
-          {at(event.at), kind_of(event), component_of(event, rules), std::move(text)});
+          {seconds_of(event.at), kind_of(event), component_of(event, rules), std::move(text)});
   }
   std::stable_sort(
       timeline.entries.begin(), timeline.entries.end(),

@@ -6,6 +6,7 @@
 // anew in each, so that configurations are independent groups, as the statistics take them to be.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "manager/manager.h"
 #include "study/campaign.h"
 #include "study/learning.h"
+#include "study/single_run.h"
 #include "study/sunset/run.h"
 #include "study/timeline.h"
 
@@ -33,12 +35,15 @@ class SunsetStudy {
   SunsetRun play(RunId id) const;
   const RuleSet& rules(std::uint32_t row) const { return *settings_[row].rules; }
 
-  // The same run, told.
+  // The same run, to look at moment by moment; and told in sentences.
+  SingleRun single_run(RunId id) const;
   Timeline explain(RunId id) const;
 
   // `experiments` runs after each other with beliefs that are carried on, `repetitions` times: what
   // row 0 learns. A curve for each strategy of F1 and F4 (rules RGBDead and SegmentationBad).
-  std::vector<LearningCurve> learn(std::uint32_t experiments, std::uint32_t repetitions) const;
+  // `told` is told how many are done of all (null: nobody is).
+  std::vector<LearningCurve> learn(std::uint32_t experiments, std::uint32_t repetitions,
+                                   const std::function<void(std::uint64_t done)>& told) const;
 
  private:
   // What all runs of a row have in common.

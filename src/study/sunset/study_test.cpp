@@ -4,7 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exemplars/sunset/model/sunset_model.h"
+#include "language/checker.h"
 #include "language/text_file.h"
+#include "manager/runtime.h"
+#include "plan/bayes/bayes_planner.h"
+#include "simulation/simulated_robot.h"
 #include "study/campaign_result.h"
 #include "study/sunset/detectors.h"
 
@@ -28,6 +33,7 @@ TEST(SunsetClaims, BalancedIsBetterThanThePapersFullConfigurationInEveryHonestMe
                               Metric::kWrongComponent, Metric::kRecovery})
     EXPECT_LT(result.rows[1][metric].mean(), result.rows[0][metric].mean()) << traits(metric).key;
   EXPECT_LE(result.rows[1][Metric::kUnresolved].mean(), result.rows[0][Metric::kUnresolved].mean());
+  EXPECT_EQ(on_front(result), (std::vector<std::optional<bool>>{false, true}));
 }
 
 // Its nearest among the paper's configurations is the one that ignores impact.
@@ -52,6 +58,39 @@ TEST(SunsetClaims, AnOracleIsABoundAndAgesComeNearIt) {
     EXPECT_LT(oracle[Metric::kHonestDowntime].mean(), 0.5);
     EXPECT_LT(bayes[Metric::kHonestDowntime].mean(), 1.5);
     EXPECT_EQ(bayes[Metric::kWrongComponent].mean(), 0);
+  }
+}
+
+// What is seen of a robot that nothing happens to, by all rules together.
+int failures_in_an_hour(const std::string& profile, const std::string& text) {
+  const RuleSet rules = *check(Source("study.rules", text)).rules;
+  sunset::model::SunsetModel model(**sunset::model::find_profile(profile), 1);
+  const Time begin{model.profile().manager_start};
+  model.world().run(begin);
+  Manager::Options options;
+  options.start = begin;
+  Manager manager(rules, std::make_unique<BayesPlanner>(), options);
+  simulation::SimulatedRobot robot(rules, model.world());
+  Runtime runtime(manager, robot);
+  int failures = 0;
+  runtime.on_events = [&](std::span<const Event> events) {
+    for (const Event& event : events)
+      failures += std::holds_alternative<FailureDetected>(event.what) ? 1 : 0;
+  };
+  const std::atomic<bool> never = false;
+  const Time end = later(begin, std::chrono::hours(1));
+  runtime.run(never, end);
+  const auto& last = manager.knowledge().signals.rhythm(TopicId(0)).last;
+  EXPECT_TRUE(last && *last > end - std::chrono::seconds(1)) << "it still runs";
+  return failures;
+}
+
+TEST(Detectors, RaiseNoFalseAlarmInAnHour) {
+  const auto text = read_text("rules/sunset.rules");
+  ASSERT_TRUE(text) << text.error();
+  for (const char* profile : {"live", "paper"}) {
+    EXPECT_EQ(failures_in_an_hour(profile, *text), 0) << profile;
+    EXPECT_EQ(failures_in_an_hour(profile, with_phi(*text)), 0) << profile;
   }
 }
 

@@ -79,7 +79,7 @@ char letter(Align align) {
   return align == Align::kLeft ? 'l' : align == Align::kCentre ? 'c' : 'r';
 }
 
-std::string group_head(const Table& table) {
+std::string group_heads(const Table& table) {
   std::string heads;
   std::string rules;
   for (const HeadSpan& span : head_spans(table)) {
@@ -107,7 +107,7 @@ std::string latex(const Table& table) {
       "% needs \\usepackage{amsmath,amssymb,booktabs} and \\usepackage[table]{xcolor}\n";
   out += "\\begin{table}[ht]\n\\centering\n\\caption{" + escaped(table.caption) + "}\n";
   out += "\\label{tab:" + table.id + "}\n\\begin{tabular}{" + letters + "}\n\\toprule\n";
-  if (has_groups(table)) out += group_head(table);
+  if (has_groups(table)) out += group_heads(table);
   out += titles + " \\\\\n\\midrule\n";
   for (const auto& row : table.rows) {
     for (std::size_t i = 0; i < row.size(); ++i) out += (i > 0 ? " & " : "") + cell_text(row[i]);

@@ -84,17 +84,23 @@ Table results_table(const CampaignResult& result) {
 
 Table honest_table(const CampaignResult& result) {
   Table table = interval_table(result, "honest", "Honest metrics",
-                               {Metric::kHonestDowntime, Metric::kStrategiesPerFault,
-                                Metric::kWrongComponent, Metric::kUnresolved, Metric::kRecovery});
+                               {kHonestCosts.begin(), kHonestCosts.end()});
   table.columns.push_back({"", "not recovered"});
+  table.columns.push_back({"", "on the front", "", "", Align::kCentre});
+  const auto front = on_front(result);
   for (std::size_t i = 0; i < result.rows.size(); ++i) {
     const Row& row = result.rows[i];
     table.rows[i].push_back({fmt::format("{} of {}", row[Metric::kRecovery].censored(), row.runs)});
+    table.rows[i].push_back({!front[i] ? "" : *front[i] ? "✓" : "–"});
   }
   table.notes.push_back(
       "A run that did not recover counts with all the time that it was watched, so its mean time "
       "to "
       "recovery is a lower bound.");
+  table.notes.push_back(
+      "On the (Pareto) front: no other row of the same profile and probabilities has means as low "
+      "in "
+      "all five, and a lower one.");
   return table;
 }
 
