@@ -106,9 +106,10 @@ TEST_F(Routes, AreAllInTheOpenApiDocument) {
   for (const auto& [path_told, calls] : document["paths"].items()) {
     for (const auto& [method, call] : calls.items()) told.insert(method + " " + path_told);
   }
-  // Of the server itself (server.cpp), and of the commands (cli/what_if_route.cpp).
+  // Of the server itself (server.cpp), and of the commands (cli/what_if_route.cpp,
+  // cli/single_run_route.cpp).
   std::set<std::string> served{"get /api/about", "get /api/openapi.json", "get /api/stream",
-                               "post /api/what-if"};
+                               "post /api/what-if", "post /api/studies/run"};
   for (const Route& route : all)
     served.insert(std::string(to_string(route.method)) + " " + route.path);
   EXPECT_EQ(told, served);
@@ -119,7 +120,9 @@ TEST_F(Routes, TakeTheExamplesOfTheOpenApiDocument) {
   const Json document = openapi();
   for (const auto& [path_told, calls] : document["paths"].items()) {
     for (const auto& [method, call] : calls.items()) {
-      const bool is_of_the_commands = path_told == "/api/what-if";  // cli/what_if_route_test.cpp
+      // cli/what_if_route_test.cpp, cli/single_run_route_test.cpp
+      const bool is_of_the_commands =
+          path_told == "/api/what-if" || path_told == "/api/studies/run";
       if (!call.contains("requestBody") || is_of_the_commands) continue;
       const Json& example = call["requestBody"]["content"]["application/json"]["example"];
       const Answer answer = ask(method + " " + path_told, example);

@@ -7,9 +7,9 @@ import { beta, density } from './beta'
 import { download } from './download'
 import { act } from './faults'
 import { order } from './order'
-import { can, robot, state } from './store'
+import { can, events, robot, state } from './store'
 import { colour, isDark } from './theme'
-import type { Strategy } from './types'
+import type { ManagerEvent, Strategy } from './types'
 
 interface Entry {
   rule: string
@@ -64,6 +64,33 @@ function Density({ entry }: { entry: Entry }) {
       </figcaption>
       <div ref={place} />
     </figure>
+  )
+}
+
+const kOutcomes: Record<string, string> = {
+  resolved: '✓ helped',
+  no_help: '✕ did not help',
+  failed: '✕ could not be carried out',
+  abandoned: '– was abandoned, which proves nothing',
+}
+const kMostOutcomes = 50
+
+// What came of it each time, newest first.
+function Outcomes({ entry }: { entry: Entry }) {
+  const mine = (e: ManagerEvent) => e.rule === entry.rule && e.strategy === entry.strategy.name && !!kOutcomes[e.kind]
+  const list = events.value.filter(mine).slice(-kMostOutcomes).reverse()
+  return (
+    <section aria-label="Outcomes">
+      <h3>What came of it</h3>
+      {list.length === 0 && <p class="muted">It was not tried since culprit began to watch.</p>}
+      <ol>
+        {list.map((e) => (
+          <li key={e.number}>
+            <span class="number">{e.t.toFixed(2)} s</span> {kOutcomes[e.kind]}
+          </li>
+        ))}
+      </ol>
+    </section>
   )
 }
 
@@ -162,7 +189,12 @@ export function BeliefsPage() {
             })}
           </tbody>
         </table>
-        {list[chosen] && <Density entry={list[chosen]} />}
+        {list[chosen] && (
+          <div>
+            <Density entry={list[chosen]} />
+            <Outcomes entry={list[chosen]} />
+          </div>
+        )}
       </div>
     </main>
   )

@@ -70,7 +70,7 @@ function Silences() {
     >
       <h3>Leave alone</h3>
       <div class="row">
-        <label class="field">
+        <label class="field wider">
           <span>what</span>
           <select value={chosen} onChange={(e) => choose(e.currentTarget.value)}>
             {options.map((o) => (

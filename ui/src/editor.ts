@@ -1,6 +1,6 @@
 // The text editor of rule files: CodeMirror, with what culprit's language server knows.
 import { autocompletion, type CompletionContext, type CompletionResult } from '@codemirror/autocomplete'
-import { defaultKeymap, history, historyKeymap, indentWithTab } from '@codemirror/commands'
+import { defaultKeymap, history, historyKeymap } from '@codemirror/commands'
 import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language'
 import { type Diagnostic, lintGutter, linter } from '@codemirror/lint'
 import { EditorState, type Text } from '@codemirror/state'
@@ -51,6 +51,7 @@ const colours = HighlightStyle.define([
 
 const theme = EditorView.theme({
   '&': { height: '100%', backgroundColor: 'var(--surface)', color: 'var(--text)', fontSize: '14px' },
+  '&:focus-within': { outline: '3px solid var(--accent)', outlineOffset: '-3px' },
   '.cm-gutters': { backgroundColor: 'var(--raised)', color: 'var(--muted)', borderRight: '1px solid var(--faint)' },
   '.cm-activeLine': { backgroundColor: 'var(--raised)' },
   '.cm-cursor': { borderLeftColor: 'var(--text)' },
@@ -186,7 +187,7 @@ export function makeEditor(
         check,
         autocompletion({ override: [complete] }),
         hover,
-        keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),
+        keymap.of([...defaultKeymap, ...historyKeymap]), // the Tab key leaves, as everywhere
         EditorView.contentAttributes.of({ 'aria-label': 'Rule file' }),
         EditorView.updateListener.of((update) => {
           if (update.docChanged) onText(update.state.doc.toString())

@@ -1,7 +1,7 @@
 // Why: for each failure who is suspected, what was weighed and why not the others, and what happens
 // next.
-import { culprits, isLive, moment, now, robot, rulesByComponent, selected, situation, state, stateOfComponent } from './store'
-import type { Failure } from './store'
+import type { Failure, View } from './history'
+import { culprits, isLive, live, now, robot, rulesByComponent, selected, situation, state, stateOfComponent } from './store'
 import type { Candidate, ComponentState, Criticality } from './types'
 
 export const kSigns: Record<string, string> = {
@@ -21,15 +21,15 @@ export const kWords: Record<Criticality, string> = {
 const listed = (words: string[]) =>
   words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} and ${words[words.length - 1]}`
 
-function Headline() {
-  const failures = situation.value.failures
+function Headline({ view }: { view: View }) {
+  const failures = view.situation.value.failures
   if (failures.length === 0)
     return (
       <p class="headline well">
         <b>✓ All is well.</b> No rule sees a failure.
       </p>
     )
-  const blamed = [...culprits.value.keys()]
+  const blamed = [...view.culprits.value.keys()]
   const exhausted = failures.filter((f) => f.phase === 'exhausted')
   return (
     <p class="headline sick">
@@ -107,12 +107,12 @@ function Candidates({ list, chosen }: { list: Candidate[]; chosen?: string | nul
 function Next({ failure }: { failure: Failure }) {
   if (!isLive.value) return null
   const place = robot.value?.rules.findIndex((r) => r.name === failure.rule) ?? -1
-  const live = state.value?.rules[place]
-  if (!live) return null
+  const rule = state.value?.rules[place]
+  if (!rule) return null
   const t = now.value
   const left = (at: number | null | undefined) => (at ? Math.max(0, at - t).toFixed(1) : null)
-  if (live.attempt) {
-    const { stage, strategy, deadline } = live.attempt
+  if (rule.attempt) {
+    const { stage, strategy, deadline } = rule.attempt
     if (stage === 'adapting') return <p class="next">Now: {strategy} is being carried out.</p>
     if (stage === 'undoing') return <p class="next">Now: what {strategy} changed is being undone.</p>
     return (
@@ -122,20 +122,20 @@ function Next({ failure }: { failure: Failure }) {
       </p>
     )
   }
-  if (live.settling)
+  if (rule.settling)
     return (
       <p class="next">
-        Now: it is expected to go away with {live.settling.with}, within {left(live.settling.until)} s.
+        Now: it is expected to go away with {rule.settling.with}, within {left(rule.settling.until)} s.
       </p>
     )
-  if (live.retry_at) return <p class="next">Next: tried anew in {left(live.retry_at)} s.</p>
+  if (rule.retry_at) return <p class="next">Next: tried anew in {left(rule.retry_at)} s.</p>
   if (failure.phase === 'exhausted') return <p class="next">Nothing more will be tried.</p>
   return <p class="next">Now: it waits.</p>
 }
 
-function FailureCard({ failure }: { failure: Failure }) {
+function FailureCard({ failure, view }: { failure: Failure; view: View }) {
   const decision = failure.decision
-  const since = (moment.value ?? now.value) - failure.since
+  const since = (view.moment.value ?? view.newest.value) - failure.since
   return (
     <article class={`failure ${failure.criticality}`}>
       <h3>
@@ -146,7 +146,7 @@ function FailureCard({ failure }: { failure: Failure }) {
         </small>
       </h3>
       {decision && <p>{decision.text}.</p>}
-      <Next failure={failure} />
+      {view === live && <Next failure={failure} />}
       <Suspects failure={failure} />
       <Candidates
         list={decision?.candidates ?? []}
@@ -156,12 +156,12 @@ function FailureCard({ failure }: { failure: Failure }) {
   )
 }
 
-function describeComponent(live: ComponentState | undefined): string {
-  if (!live) return 'unknown'
-  const parts = [live.alive === null ? 'not seen yet' : live.alive ? 'alive' : 'not alive']
-  if (live.lifecycle) parts.push(live.lifecycle)
-  if (live.adapting) parts.push(`being adapted (${live.adapting})`)
-  if (live.remark) parts.push(live.remark)
+function describeComponent(known: ComponentState | undefined): string {
+  if (!known) return 'unknown'
+  const parts = [known.alive === null ? 'not seen yet' : known.alive ? 'alive' : 'not alive']
+  if (known.lifecycle) parts.push(known.lifecycle)
+  if (known.adapting) parts.push(`being adapted (${known.adapting})`)
+  if (known.remark) parts.push(known.remark)
   return parts.join(', ')
 }
 
@@ -202,16 +202,16 @@ export function Components() {
   )
 }
 
-export function Explanation() {
-  const wanted = selected.value
+export function Explanation({ view }: { view: View }) {
+  const wanted = view === live ? selected.value : null
   const rules = robot.value?.rules ?? []
-  const failures = situation.value.failures.filter(
+  const failures = view.situation.value.failures.filter(
     (f) => !wanted || rules.find((r) => r.name === f.rule)?.components.includes(wanted)
   )
   return (
     <section class="explanation" aria-label="Explanation">
       <div aria-live="polite">
-        <Headline />
+        <Headline view={view} />
       </div>
       {wanted && (
         <p class="muted">
@@ -222,7 +222,7 @@ export function Explanation() {
         </p>
       )}
       {failures.map((failure) => (
-        <FailureCard key={failure.rule} failure={failure} />
+        <FailureCard key={failure.rule} failure={failure} view={view} />
       ))}
     </section>
   )

@@ -3,7 +3,7 @@
 import cytoscape from 'cytoscape'
 import { computed, effect, signal } from '@preact/signals'
 import { useEffect, useRef } from 'preact/hooks'
-import { layered, type Point } from './layout'
+import { kLayer, layered, type Point } from './layout'
 import { culprits, graph, health, isLive, robot, selected, situation, state, stateOfComponent, stateOfTopic } from './store'
 import { colour, isDark } from './theme'
 import type { Health } from './types'
@@ -154,6 +154,7 @@ function stylesheet(): cytoscape.StylesheetStyle[] {
         label: 'data(label)',
         'text-wrap': 'wrap',
         'text-valign': 'center',
+        'line-height': 1.2,
         'font-size': 15,
         'font-family': 'system-ui, sans-serif',
         color: colour('text'),
@@ -196,6 +197,10 @@ function stylesheet(): cytoscape.StylesheetStyle[] {
         'target-arrow-color': colour('line'),
         width: 1.5,
       },
+    },
+    {
+      selector: 'edge[?isLong]',
+      style: { 'curve-style': 'unbundled-bezier', 'control-point-distances': [90], 'control-point-weights': [0.5] },
     },
     {
       selector: 'edge[?isSilent]',
@@ -245,6 +250,7 @@ class Drawing {
           label: edgeLabel(edge.channels),
           isSilent: edge.channels.some(isSilent),
           isCascade: cascade.value.has(id),
+          isLong: this.isLong(edge),
         })
       }
     })
@@ -258,6 +264,11 @@ class Drawing {
     const told = element.data()
     if (Object.entries(data).some(([key, value]) => told[key] !== value)) element.data(data)
     return element
+  }
+
+  // A straight line would lead through the nodes of the layers between.
+  private isLong({ from, to }: { from: string; to: string }): boolean {
+    return Math.abs(this.points.get(from)!.x - this.points.get(to)!.x) > 1.5 * kLayer
   }
 
   private show(node: Graph['nodes'][number]): void {

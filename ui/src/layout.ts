@@ -6,7 +6,7 @@ export interface Point {
   y: number
 }
 
-const kLayer = 340
+export const kLayer = 340
 const kRow = 92
 const kSweeps = 4
 

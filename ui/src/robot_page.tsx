@@ -2,6 +2,7 @@ import { Approvals, Control } from './control'
 import { Components, Explanation } from './explain'
 import { Faults } from './faults'
 import { GraphView } from './graph_view'
+import { live } from './store'
 import { EventLog, Timeline } from './timeline'
 
 export function RobotPage() {
@@ -10,14 +11,14 @@ export function RobotPage() {
       <Faults />
       <div class="scene">
         <GraphView />
-        <Timeline />
+        <Timeline view={live} />
       </div>
       <aside>
         <Approvals />
-        <Explanation />
+        <Explanation view={live} />
         <Control />
         <Components />
-        <EventLog />
+        <EventLog view={live} />
       </aside>
     </main>
   )

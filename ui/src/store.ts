@@ -1,19 +1,9 @@
-// What the page knows: the documents of the stream as signals, and the situation at the moment that
-// is looked at, which may be in the past.
+// What the page knows of the robot that runs: the documents of the stream as signals, and a view of
+// what happened.
 import { batch, computed, signal } from '@preact/signals'
 import { call, follow } from './api'
-import type {
-  ComponentState,
-  ControlState,
-  Criticality,
-  Graph,
-  Health,
-  ManagerEvent,
-  Robot,
-  Rule,
-  State,
-  TopicState,
-} from './types'
+import { level, viewOf } from './history'
+import type { ComponentState, ControlState, Graph, Health, ManagerEvent, Robot, Rule, State, TopicState } from './types'
 
 export const calls = signal<Set<string>>(new Set())
 export const can = (method: string, path: string) => calls.value.has(`${method} ${path}`)
@@ -25,10 +15,7 @@ export const state = signal<State | null>(null)
 export const control = signal<ControlState | null>(null)
 export const events = signal<ManagerEvent[]>([])
 
-// Seconds since the start of the manager; null: now.
-export const moment = signal<number | null>(null)
 export const selected = signal<string | null>(null) // a component
-export const isLive = computed(() => moment.value === null)
 
 const kMostEvents = 4096
 
@@ -97,107 +84,12 @@ export const rulesByComponent = computed(() => {
   return result
 })
 
-export interface Failure {
-  rule: string
-  criticality: Criticality
-  phase: 'failing' | 'attempting' | 'exhausted'
-  since: number
-  decision?: ManagerEvent // the last about it: "decided" or "waiting"
-  tried: string[]
-  retryAt?: number
-}
-
-export interface Situation {
-  t: number
-  failures: Failure[] // most critical first
-  gone: Set<string> // components
-}
-
-const kLevels: Criticality[] = ['NON_CRITICAL', 'WARNING', 'ERROR']
-export const level = (health: Health) =>
-  health === 'EXHAUSTED' ? 3 : kLevels.indexOf(health as Criticality)
-
-// Goes through what happened up to `t`.
-export function situationAt(history: ManagerEvent[], t: number): Situation {
-  const failures = new Map<string, Failure>()
-  const gone = new Set<string>()
-  for (const event of history) {
-    if (event.t > t) break
-    const failure = event.rule ? failures.get(event.rule) : undefined
-    switch (event.kind) {
-      case 'detected':
-        failures.set(event.rule!, {
-          rule: event.rule!,
-          criticality: event.criticality!,
-          phase: 'failing',
-          since: event.t,
-          tried: [],
-        })
-        break
-      case 'resolved':
-      case 'lost_sight':
-        failures.delete(event.rule!)
-        break
-      case 'decided':
-        if (!failure) break
-        failure.decision = event
-        failure.phase = event.dry_run ? 'failing' : 'attempting'
-        break
-      case 'waiting':
-      case 'approval_asked':
-        if (failure) failure.decision = event
-        break
-      case 'abandoned':
-        if (failure) failure.phase = 'failing'
-        break
-      case 'no_help':
-        if (!failure) break
-        failure.phase = 'failing'
-        failure.tried.push(event.strategy!)
-        break
-      case 'pause':
-        if (!failure) break
-        failure.retryAt = event.retry_at ?? undefined
-        failure.tried = []
-        break
-      case 'exhausted':
-        if (failure) failure.phase = 'exhausted'
-        break
-      case 'reloaded': // what is still there is detected anew
-        failures.clear()
-        gone.clear()
-        break
-      case 'lost':
-        gone.add(event.component!)
-        break
-      case 'found':
-        gone.delete(event.component!)
-        break
-    }
-  }
-  const list = [...failures.values()]
-  list.sort((a, b) => level(b.criticality) - level(a.criticality) || a.since - b.since)
-  return { t, failures: list, gone }
-}
-
 export const now = computed(() =>
   Math.max(state.value?.t ?? 0, events.value.length ? events.value[events.value.length - 1].t : 0)
 )
-export const situation = computed(() =>
-  situationAt(events.value, moment.value === null ? Infinity : moment.value)
-)
-
-// Who is being adapted, and for what: the components that are held responsible.
-export const culprits = computed(() => {
-  const blamed = new Map<string, Failure>()
-  for (const failure of situation.value.failures) {
-    if (failure.decision?.kind !== 'decided' || failure.phase === 'exhausted') continue
-    for (const component of failure.decision.components ?? []) {
-      if (!blamed.has(component)) blamed.set(component, failure)
-    }
-  }
-  return blamed
-})
+// The robot as it runs; the moment and all that follows from it.
+export const live = viewOf(events, now, { isOver: false })
+export const { moment, isNewest: isLive, situation, culprits } = live
 
 // Health of components: as sick as the most critical failure whose strategies touch them.
 export const health = computed(() => {

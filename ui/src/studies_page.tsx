@@ -4,7 +4,8 @@ import { useEffect, useState } from 'preact/hooks'
 import { call, hasToken, Refusal, textOf } from './api'
 import { download } from './download'
 import { act, notice } from './faults'
-import { type StudyTable, studyTable } from './study_table'
+import { showRun, SingleRun } from './single_run'
+import { type StudyResult, type StudyTable, studyTable } from './study_table'
 
 interface Campaign {
   study: string | null
@@ -25,16 +26,21 @@ const kStudies: Record<string, { title: string; runs: number; unit: string }> = 
 const kPeriod = 1000 // ms, between two looks
 
 const campaign = signal<Campaign | null>(null)
-const table = signal<{ title: string; table: StudyTable } | null>(null)
+const opened = signal<{ title: string; result: StudyResult; table: StudyTable } | null>(null)
+
+function open(title: string, result: unknown): void {
+  opened.value = { title, result: result as StudyResult, table: studyTable(result) }
+  showRun(null)
+}
 
 async function look(): Promise<void> {
   const before = campaign.value?.state
   const now = await call<Campaign>('GET', '/api/studies')
   campaign.value = now.study === null ? null : now
-  const hasEnded = now.state === 'done' && (before === 'running' || !table.value)
+  const hasEnded = now.state === 'done' && (before === 'running' || !opened.value)
   if (!hasEnded) return
   const result = await call<unknown>('GET', '/api/studies/result')
-  table.value = { title: `${now.study}, ${now.runs} ${kStudies[now.study!].unit}, seed ${now.seed}`, table: studyTable(result) }
+  open(`${now.study}, ${now.runs} ${kStudies[now.study!].unit}, seed ${now.seed}`, result)
 }
 
 function Start() {
@@ -124,10 +130,10 @@ function Progress() {
 }
 
 function Open() {
-  const open = async (file: File | undefined) => {
+  const read = async (file: File | undefined) => {
     if (!file) return
     try {
-      table.value = { title: file.name, table: studyTable(JSON.parse(await file.text())) }
+      open(file.name, JSON.parse(await file.text()))
       notice.value = `Opening ${file.name}: done`
     } catch (error) {
       notice.value = `Opening ${file.name}: ${(error as Error).message}`
@@ -136,17 +142,17 @@ function Open() {
   return (
     <label class="field">
       <span>or open a result (culprit study … --json)</span>
-      <input type="file" accept=".json,application/json" onChange={(e) => void open(e.currentTarget.files?.[0])} />
+      <input type="file" accept=".json,application/json" onChange={(e) => void read(e.currentTarget.files?.[0])} />
     </label>
   )
 }
 
 function Findings() {
-  if (!table.value) return null
-  const { columns, rows } = table.value.table
+  if (!opened.value) return null
+  const { columns, rows } = opened.value.table
   return (
     <section aria-label="Findings">
-      <h2>{table.value.title}</h2>
+      <h2>{opened.value.title}</h2>
       <p class="muted">mean ± standard deviation</p>
       <div class="scrolls" tabIndex={0} role="group" aria-label="Table of findings">
         <table>
@@ -188,6 +194,7 @@ export function StudiesPage() {
       <Open />
       <Progress />
       <Findings />
+      {opened.value && <SingleRun result={opened.value.result} key={opened.value.title} />}
     </main>
   )
 }

@@ -14,6 +14,29 @@ const shown = (value: Cell): string => {
   return value === true ? 'yes' : value === false ? 'no' : value
 }
 
+export interface StudyResult {
+  study?: string
+  campaign?: { seed: number; version: string; runs?: number; episodes?: number; scenario?: { seed: number } }
+  scenarios?: string[] // run i has the one at i modulo their number
+  rows: Record<string, unknown>[]
+}
+
+// What a row is of: whoever managed, and what was special about it.
+export function rowName(row: Record<string, unknown>): string {
+  if (row.manager) return String(row.manager)
+  const parts = [String(row.planner)]
+  if (row.dependencies !== undefined) {
+    const letters = [row.dependencies && 'D', row.criticality && 'C', row.impact && 'S']
+    parts.push(letters.map((letter) => letter || '–').join(' '), `profile ${row.profile}`)
+    if (row.probabilities) parts.push(`${row.probabilities} probabilities`)
+  } else {
+    parts.push(`${row.components} components`, `${row.faults} faults`)
+    if (row.noise) parts.push(`noise ${row.noise}`)
+    if (row.cyclic) parts.push('cyclic')
+  }
+  return parts.join(', ')
+}
+
 // { mean, sd } is one cell; other objects give a column for each member.
 function flatten(row: Record<string, unknown>, prefix: string, into: Record<string, string>): void {
   for (const [key, value] of Object.entries(row)) {

@@ -1,7 +1,7 @@
 // What happened when: a lane for each rule that ever failed, bars for failures, marks for strategies
 // and outcomes; and the moment that the page looks at, which can be moved.
-import { computed, signal } from '@preact/signals'
-import { events, isLive, moment, now } from './store'
+import { useComputed } from '@preact/signals'
+import type { View } from './history'
 import type { Criticality, ManagerEvent } from './types'
 
 const kWindows: [number, string][] = [
@@ -10,7 +10,6 @@ const kWindows: [number, string][] = [
   [600, '10 min'],
   [Infinity, 'all'],
 ]
-const windowLength = signal(120)
 
 interface Bar {
   from: number
@@ -19,16 +18,22 @@ interface Bar {
   outcome: string
 }
 interface Lane {
-  rule: string
+  name: string // of the rule
   bars: Bar[]
   marks: ManagerEvent[]
 }
 
-const kMarks: Record<string, string> = { decided: '▼', no_help: '✕', pause: 'Ⅱ', exhausted: '✖' }
+const kMarks: Record<string, string> = { decided: '▼', no_help: '✕', pause: 'Ⅱ', exhausted: '✖', fault: '⚡', note: '•' }
 
-const lanes = computed((): Lane[] => {
+// What is about no rule, above the rules: only of runs that are over is it known.
+const kOwnLanes: Record<string, string> = { fault: 'faults', note: 'the robot' }
+
+function lanesOf(events: ManagerEvent[]): Lane[] {
+  const own = Object.entries(kOwnLanes)
+    .map(([kind, name]): Lane => ({ name, bars: [], marks: events.filter((e) => e.kind === kind) }))
+    .filter((lane) => lane.marks.length > 0)
   const byRule = new Map<string, Lane>()
-  for (const event of events.value) {
+  for (const event of events) {
     if (event.kind === 'reloaded') {
       for (const { bars } of byRule.values()) {
         const last = bars[bars.length - 1]
@@ -37,7 +42,7 @@ const lanes = computed((): Lane[] => {
     }
     if (!event.rule) continue
     if (event.kind === 'detected') {
-      const lane = byRule.get(event.rule) ?? { rule: event.rule, bars: [], marks: [] }
+      const lane = byRule.get(event.rule) ?? { name: event.rule, bars: [], marks: [] }
       lane.bars.push({ from: event.t, to: null, criticality: event.criticality!, outcome: 'open' })
       byRule.set(event.rule, lane)
       continue
@@ -52,31 +57,35 @@ const lanes = computed((): Lane[] => {
       lane.marks.push(event)
     }
   }
-  return [...byRule.values()]
-})
+  return [...own, ...byRule.values()]
+}
 
 const kRow = 26
 
-export function Timeline() {
-  const end = Math.max(now.value, 1)
+export function Timeline({ view }: { view: View }) {
+  const { moment, isNewest, isOver, windowLength } = view
+  const lanes = useComputed(() => lanesOf(view.events.value))
+  const end = Math.max(view.newest.value, 1)
   const begin = Math.max(0, end - windowLength.value)
   const span = end - begin
   const percent = (t: number) => `${(100 * (Math.max(begin, Math.min(end, t)) - begin)) / span}%`
   const at = moment.value ?? end
-  const visible = lanes.value.filter((l) => l.bars.some((b) => (b.to ?? end) >= begin))
+  const visible = lanes.value.filter(
+    (l) => l.bars.some((b) => (b.to ?? end) >= begin) || (l.bars.length === 0 && l.marks.some((m) => m.t >= begin))
+  )
   return (
     <section class="timeline" aria-label="Timeline">
       <div class="bar">
         <button
           type="button"
-          class={isLive.value ? 'primary' : ''}
-          aria-pressed={isLive.value}
+          class={isNewest.value ? 'primary' : ''}
+          aria-pressed={isNewest.value}
           onClick={() => (moment.value = null)}
         >
-          ● Live
+          {isOver ? 'End' : '● Live'}
         </button>
         <output class="moment">
-          {isLive.value ? `now, ${end.toFixed(1)} s` : `at ${at.toFixed(1)} s`}
+          {isNewest.value ? `${isOver ? 'the end' : 'now'}, ${end.toFixed(1)} s` : `at ${at.toFixed(1)} s`}
         </output>
         <label>
           show{' '}
@@ -93,7 +102,7 @@ export function Timeline() {
       <div class="lanes">
         <div class="names">
           {visible.map((lane) => (
-            <span title={lane.rule}>{lane.rule}</span>
+            <span title={lane.name}>{lane.name}</span>
           ))}
         </div>
         <svg class="plot" width="100%" height={Math.max(1, visible.length) * kRow} role="img"
@@ -102,12 +111,12 @@ export function Timeline() {
             <text x="8" y="18">Nothing has failed in this time.</text>
           )}
           {visible.map((lane, row) => (
-            <g key={lane.rule}>
+            <g key={lane.name}>
               {lane.bars
                 .filter((b) => (b.to ?? end) >= begin)
                 .map((b) => (
                   <svg x={percent(b.from)} y={row * kRow + 5} overflow="visible">
-                    <title>{`${lane.rule}: ${b.outcome}`}</title>
+                    <title>{`${lane.name}: ${b.outcome}`}</title>
                     <rect
                       class={`bar-${b.criticality}`}
                       width={`${(100 * ((b.to ?? end) - Math.max(begin, b.from))) / span}%`}
@@ -119,7 +128,12 @@ export function Timeline() {
               {lane.marks
                 .filter((m) => m.t >= begin)
                 .map((m) => (
-                  <text x={percent(m.t)} y={row * kRow + 18} class="mark" text-anchor="middle">
+                  <text
+                    x={percent(m.t)}
+                    y={row * kRow + 18}
+                    class="mark"
+                    text-anchor={m.kind === 'no_help' ? 'end' : 'middle' /* the next strategy may begin there */}
+                  >
                     {kMarks[m.kind]}
                     <title>{m.text}</title>
                   </text>
@@ -147,9 +161,10 @@ export function Timeline() {
   )
 }
 
-export function EventLog() {
+export function EventLog({ view }: { view: View }) {
+  const { moment } = view
   const upTo = moment.value ?? Infinity
-  const list = events.value.filter((e) => e.t <= upTo).slice(-200)
+  const list = view.events.value.filter((e) => e.t <= upTo).slice(-200)
   list.reverse()
   return (
     <section class="log" aria-label="What happened">

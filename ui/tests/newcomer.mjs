@@ -1,5 +1,5 @@
 // The first five minutes: open, see, break it, watch it heal, understand why, look back, take control.
-import { expect, isAccessible, picture, session } from './session.mjs'
+import { expect, isAccessible, isUsableByKeyboard, picture, session } from './session.mjs'
 
 await session(['demo', '--stay', '--speed', '2'], async (page) => {
   const explanation = page.getByRole('region', { name: 'Explanation' })
@@ -11,21 +11,23 @@ await session(['demo', '--stay', '--speed', '2'], async (page) => {
 
   await page.getByLabel('Break it:').selectOption('kill:camera')
   await page.getByRole('button', { name: 'Inject fault' }).click()
-  // It may be well again before one has looked: what happened stays.
+  // It may be well again before one has looked: what happened stays. On a machine that is too busy for the robot,
+  // pictures are late and more happens; a dead camera is helped by nothing but a new process.
   const log = page.getByRole('region', { name: 'What happened' })
-  await log.getByText(/^RGBDead resolved/).waitFor()
+  await log.getByText(/^RGBDead resolved by rgb_redeploy/).first().waitFor()
   await well.waitFor()
 
   // Why was that? The moment of the decision, again.
   const look = (text) => log.locator('li', { hasText: text }).first().getByRole('button').click()
-  await look('camera is held responsible')
+  await look('camera is held responsible for RGBDead: redeploy')
   await explanation.getByText('camera is held responsible').first().waitFor()
   const failure = explanation.locator('article', { hasText: 'RGBDead' })
-  await failure.getByRole('row', { name: /rgb_redeploy.*chosen|rgb_restart.*chosen/ }).waitFor()
+  await failure.getByRole('row', { name: /rgb_redeploy.*chosen/ }).waitFor()
   expect((await page.locator('output.moment').innerText()).startsWith('at '), 'no moment is shown')
   const slider = page.getByRole('slider')
   await slider.press('ArrowLeft')
-  expect((await log.getByText(/^RGBDead resolved/).count()) === 0, 'what came later is shown')
+  const newest = Number(await log.getByRole('button').first().innerText())
+  expect(newest <= Number(await slider.inputValue()), 'what came later is shown')
   await slider.press('Home')
   await well.waitFor() // as it was before it was broken
   const live = page.getByRole('button', { name: 'Live' })
@@ -40,11 +42,14 @@ await session(['demo', '--stay', '--speed', '2'], async (page) => {
   await page.getByRole('button', { name: 'Resume' }).click()
   await page.getByRole('button', { name: 'Pause' }).waitFor()
   await isAccessible(page)
+  await isUsableByKeyboard(page)
 
   await page.getByRole('link', { name: 'Beliefs' }).click()
-  const learned = page.getByRole('row', { name: /RGBDead\.rgb_re/ }).filter({ hasText: '1 outcome' })
-  await learned.first().waitFor()
+  const learned = page.getByRole('row', { name: /RGBDead\.rgb_redeploy/ }).filter({ hasText: /\d outcome/ })
+  await learned.getByRole('button').click()
+  await page.getByRole('region', { name: 'Outcomes' }).getByText('✓ helped').first().waitFor()
   await isAccessible(page)
+  await isUsableByKeyboard(page)
   await picture(page, 'beliefs')
 
   await page.getByRole('link', { name: 'Simulator' }).click()
@@ -54,5 +59,6 @@ await session(['demo', '--stay', '--speed', '2'], async (page) => {
   await plan.getByText('camera is held responsible').waitFor()
   await plan.getByText('It would be chosen if').first().waitFor()
   await isAccessible(page)
+  await isUsableByKeyboard(page)
   await picture(page, 'simulator')
 })

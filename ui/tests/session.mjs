@@ -3,12 +3,13 @@
 //     node <test>.mjs <culprit> <folder of node_modules> <folder for files>
 //
 // CULPRIT_SCREENSHOTS=<folder> also takes pictures.
-import { spawn } from 'node:child_process'
+import { execFile, spawn } from 'node:child_process'
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs'
 import { createRequire } from 'node:module'
 import { join } from 'node:path'
+import { promisify } from 'node:util'
 
-const [culprit, modules, folder] = process.argv.slice(2)
+const [program, modules, folder] = process.argv.slice(2)
 const require = createRequire(join(modules, 'package.json'))
 const { chromium } = require('playwright-core')
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8')
@@ -17,23 +18,26 @@ const kPatience = 60_000 // ms, for what a robot takes its time for
 
 export const file = (name) => join(folder, name)
 
+// Runs culprit to its end.
+export const culprit = (args) => promisify(execFile)(program, args)
+
 // Starts culprit and waits for the address that it prints.
 function serve(args) {
-  const program = spawn(culprit, args, { stdio: ['ignore', 'pipe', 'inherit'] })
+  const server = spawn(program, args, { stdio: ['ignore', 'pipe', 'inherit'] })
   let said = ''
   const address = new Promise((resolve, reject) => {
-    program.stdout.on('data', (data) => {
+    server.stdout.on('data', (data) => {
       said += data
       const match = /(http:\/\/\S+#token=\S+)/.exec(said)
       if (match) resolve(match[1])
     })
-    program.on('exit', () => reject(new Error(`culprit ended: ${said}`)))
+    server.on('exit', () => reject(new Error(`culprit ended: ${said}`)))
   })
   const end = () =>
     new Promise((resolve) => {
-      if (program.exitCode !== null) return resolve()
-      program.on('exit', resolve)
-      program.kill('SIGINT')
+      if (server.exitCode !== null) return resolve()
+      server.on('exit', resolve)
+      server.kill('SIGINT')
     })
   return { address, end, said: () => said }
 }
@@ -91,6 +95,32 @@ export async function isAccessible(page) {
     expect(serious.length === 0, `not accessible (${colorScheme}):\n${words.join('\n')}`)
   }
   await page.emulateMedia({ colorScheme: null })
+}
+
+// All that can be used can be reached by the Tab key alone, and one sees where one is.
+export async function isUsableByKeyboard(page) {
+  const kControls = 'a[href], button:enabled, select:enabled, input:enabled, summary, [tabindex="0"]'
+  await page.evaluate((controls) => {
+    document.activeElement.blur()
+    const isShown = (e) => e.checkVisibility({ visibilityProperty: true }) && !e.closest('[aria-hidden="true"]')
+    window.unreached = new Set([...document.querySelectorAll(controls)].filter(isShown))
+    window.unseen = []
+  }, kControls)
+  const most = 3 * (await page.evaluate('window.unreached.size'))
+  for (let i = 0; i < most && (await page.evaluate('window.unreached.size')) > 0; ++i) {
+    await page.keyboard.press('Tab')
+    await page.evaluate(() => {
+      let here = document.activeElement
+      while (here.shadowRoot?.activeElement) here = here.shadowRoot.activeElement
+      window.unreached.delete(here)
+      const framed = here.closest('.cm-editor') ?? here // the editor shows its focus around itself
+      if (here !== document.body && getComputedStyle(framed).outlineStyle === 'none') window.unseen.push(here.outerHTML)
+    })
+  }
+  const left = await page.evaluate('[...window.unreached].map((e) => e.outerHTML)')
+  expect(left.length === 0, `cannot be reached by keyboard:\n${left.join('\n')}`)
+  const unseen = await page.evaluate('window.unseen')
+  expect(unseen.length === 0, `one does not see the focus:\n${unseen.join('\n')}`)
 }
 
 export async function picture(page, name) {

@@ -1,6 +1,6 @@
 // A campaign that is started, watched and read; a result that is opened; and rules in one another's way, drawn.
 import { writeFileSync } from 'node:fs'
-import { expect, file, isAccessible, picture, session } from './session.mjs'
+import { culprit, expect, file, isAccessible, isUsableByKeyboard, picture, session } from './session.mjs'
 
 const kRules = `COMPONENT lamp NODE /lamp
 SIGNAL brightness TOPIC /light FIELD data
@@ -25,6 +25,7 @@ async function conflicts(page) {
   await page.getByText('TooDark, TooBright', { exact: true }).waitFor()
   expect((await page.locator('path.arc-undo').count()) === 1, 'the oscillation is not drawn')
   await isAccessible(page)
+  await isUsableByKeyboard(page)
   await picture(page, 'conflicts')
   const trigger = page.getByRole('region', { name: 'Form' }).getByLabel('trigger').last()
   await trigger.fill('brightness > 0.7')
@@ -51,6 +52,31 @@ async function campaign(page) {
   await report.close()
 }
 
+// A run of what was found, on the timeline: who was broken, what was done, and a moment of it.
+async function run(page) {
+  const single = page.getByRole('region', { name: 'Single run' })
+  await single.getByLabel('who managed').selectOption('paper, D C S, profile paper')
+  await single.getByLabel('run, from 0').fill('0')
+  await single.getByRole('button', { name: 'Play it again' }).click()
+  const timeline = single.getByRole('region', { name: 'Timeline' })
+  await timeline.getByText('faults', { exact: true }).waitFor()
+  expect((await timeline.locator('rect').count()) > 0, 'no failure is on the timeline')
+  expect((await timeline.getByText('▼').count()) > 0, 'no strategy is on the timeline')
+  const log = single.getByRole('region', { name: 'What happened' })
+  const resolved = log.locator('li', { hasText: / resolved/ })
+  expect((await resolved.count()) > 0, 'no outcome is told')
+  await log.locator('li', { hasText: 'is held responsible' }).last().getByRole('button').click()
+  await single.getByRole('region', { name: 'Explanation' }).getByRole('row', { name: /chosen/ }).first().waitFor()
+  await isAccessible(page)
+  await isUsableByKeyboard(page)
+  await picture(page, 'single-run')
+  const slider = single.getByRole('slider')
+  await slider.press('Home')
+  await single.getByText('Nothing yet.').waitFor()
+  await slider.press('End')
+  await resolved.first().waitFor()
+}
+
 async function result(page) {
   const input = page.getByLabel('or open a result')
   writeFileSync(file('result.json'), JSON.stringify({ rows: [{ planner: 'mine', wrong_component: { mean: 0.25, sd: 0.5 } }] }))
@@ -59,11 +85,30 @@ async function result(page) {
   writeFileSync(file('nonsense.json'), '{"rows": 1}')
   await input.setInputFiles(file('nonsense.json'))
   await page.getByText('it has no rows').waitFor()
+  await page.getByText('does not say which campaign').waitFor() // of the one before, which stays
+}
+
+// A file that culprit study wrote: its runs can be played, too, of a manager that tells nothing as well.
+async function opened(page) {
+  await culprit(['study', 'suave', '--managers', 'bt,culprit', '--runs', '2', '--json', '-o', file('suave.json')])
+  await page.getByLabel('or open a result').setInputFiles(file('suave.json'))
+  const single = page.getByRole('region', { name: 'Single run' })
+  await single.getByRole('button', { name: 'Play it again' }).click()
+  await single.getByText('This manager tells nothing').waitFor()
+  const log = single.getByRole('region', { name: 'What happened' })
+  await log.getByText('it inspects').waitFor()
+  await single.getByLabel('who managed').selectOption('culprit')
+  await single.getByRole('button', { name: 'Play it again' }).click()
+  await single.getByText('All is well').waitFor()
+  await log.getByText('thruster 1 fails').waitFor()
+  await log.getByText(/ resolved by /).first().waitFor()
 }
 
 process.env.XDG_STATE_HOME = file('studies') // where campaigns leave their results
 await session(['web', path], async (page) => {
   await conflicts(page)
   await campaign(page)
+  await run(page)
   await result(page)
+  await opened(page)
 })
