@@ -16,17 +16,13 @@
 #include <gtest/gtest.h>
 
 #include "cli/paths.h"
-#include "cli/play.h"
+#include "cli/test_live_sunset.h"
 #include "cli/test_program.h"
-#include "exemplars/sunset/experiment.h"
-#include "exemplars/sunset/node_process.h"
 #include "journal/json.h"
 #include "journal/reader.h"
 #include "journal/session.h"
-#include "language/checker.h"
 #include "plan/bayes/bayes_planner.h"
 #include "process/proc.h"
-#include "process/supervisor.h"
 #include "replay/replay.h"
 
 namespace culprit::cli {
@@ -40,110 +36,6 @@ int setting(const char* name, int otherwise) {
   const char* value = std::getenv(name);
   return value == nullptr ? otherwise : std::atoi(value);
 }
-
-std::set<std::string> names_in(const fs::path& folder, const std::string& beginning) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(beginning)) names.insert(name);
-  }
-  return names;
-}
-
-// What a process holds.
-struct Holdings {
-  std::size_t descriptors = 0;
-  std::size_t kilobytes = 0;  // resident
-};
-
-Holdings holdings_of(int pid) {
-  const fs::path folder = "/proc/" + std::to_string(pid);
-  Holdings holdings;
-  std::error_code gone;
-  for ([[maybe_unused]] const auto& each : fs::directory_iterator(folder / "fd", gone))
-    ++holdings.descriptors;
-  std::ifstream status(folder / "status");
-  for (std::string word; status >> word;) {
-    if (word == "VmRSS:") status >> holdings.kilobytes;
-  }
-  return holdings;
-}
-
-// The seven processes of SUNSET. They outlive whoever manages them.
-class LiveSunset {
- public:
-  explicit LiveSunset(const TestWorld& world)
-      : domain_(ros2::options_from_environment()->domain), members_(*check(members()).rules) {
-    const process::Supervisor::Options options{world.folder() / "log", {own_folder()}};
-    processes_ = std::make_unique<process::Supervisor>(members_, options, inbox_);
-    for (std::size_t c = 0; c < members_.components.size(); ++c)
-      processes_->start({}, ComponentId(c));
-    auto experiment =
-        sunset::Experiment::start({kSpeed, world.folder(), *ros2::options_from_environment()});
-    if (!experiment) throw std::runtime_error(experiment.error());
-    experiment_ = std::move(*experiment);
-  }
-  // Also those that some culprit started, which is long gone.
-  ~LiveSunset() {
-    experiment_.reset();
-    processes_->stop_all();
-    for (const sunset::Member member : sunset::kMembers) {
-      for (const int pid : processes(member)) kill(pid, SIGKILL);
-    }
-  }
-
-  std::vector<int> processes(sunset::Member member) const {
-    return sunset::processes_of(member, domain_);
-  }
-  std::string complaint() const { return experiment_->measure().complaint; }
-
-  // False if that is not so in time.
-  bool is_well_within(Duration patience) const {
-    int calm = 0;  // a robot that is only just ill does not know it yet
-    for (const Time end = live_now() + patience; live_now() < end && calm < 20;) {
-      std::this_thread::sleep_for(50ms);
-      calm = complaint().empty() ? calm + 1 : 0;
-    }
-    return calm == 20;
-  }
-
-  // A node that is just being replaced cannot be broken: then nothing is.
-  void break_something(std::mt19937& random) {
-    std::vector<std::string> faults;
-    for (const sunset::Fault& fault : sunset::faults()) {
-      if (!fault.resolved_by.empty()) faults.emplace_back(fault.name);
-    }
-    for (const sunset::Member member : sunset::kManagedMembers) {
-      for (const char* what : {"kill:", "stop:", "crash:"})
-        faults.push_back(what + std::string(name_of(member)));
-    }
-    const std::string& fault = faults[random() % faults.size()];
-    if (const sunset::Fault* known = sunset::find_fault(fault)) {
-      (void)experiment_->inject(*known);
-      return;
-    }
-    const auto play = find_play(fault);
-    for (const auto& [what, member] : play->process_faults) (void)experiment_->inject(what, member);
-  }
-
- private:
-  static constexpr double kSpeed = 1;
-
-  static Source members() {
-    std::string text;
-    for (const sunset::Member member : sunset::kMembers) {
-      const std::string name(name_of(member));
-      text += "COMPONENT " + name + " LAUNCH \"sunset-node " + name + "\"\n";
-    }
-    return Source("members.rules", text);
-  }
-
-  std::uint32_t domain_;
-  RuleSet members_;
-  Inbox inbox_;
-  std::unique_ptr<process::Supervisor> processes_;
-  std::unique_ptr<sunset::Experiment> experiment_;
-};
 
 // Each belief of the journal grows by one outcome at a time, each of which was said; what one run
 // knew at its end the next knew at its beginning; and what is believed now is the sum of it all.

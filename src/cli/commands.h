@@ -13,6 +13,9 @@ constexpr int kOk = 0;
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 
+// Says on stderr why it cannot be done. Gives `exit_code`.
+int fail(const std::string& why, int exit_code = kFailed);
+
 void add_run(CLI::App& app, const std::string& version, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_explain(CLI::App& app, int& exit_code);
@@ -32,5 +35,6 @@ void add_replay(CLI::App& app, int& exit_code);
 void add_modes(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_torture(CLI::App& app, int& exit_code);
+void add_policy(CLI::App& app, int& exit_code);
 
 }  // namespace culprit::cli

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/paths.h"
 #include "cli/test_program.h"
 
 namespace culprit::cli {
@@ -30,13 +31,6 @@ RULE DepthGone
       ADAPTATION depth redeploy 5
 )";
 
-// The process that culprit says `component` to be.
-int pid_in(const std::string& output, const std::string& component) {
-  const std::string what = component + " is there (process ";
-  const std::size_t at = output.rfind(what);
-  return at == std::string::npos ? 0 : std::atoi(output.c_str() + at + what.size());
-}
-
 struct Commands : testing::Test {
   TestProgram culprit(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "culprit");
@@ -56,6 +50,19 @@ TEST_F(Commands, VersionAndHelp) {
   EXPECT_THAT(help.output(), HasSubstr("--dry-run"));
   auto nonsense = culprit({"mend"});
   EXPECT_NE(nonsense.wait(), 0);
+}
+
+TEST_F(Commands, SayThatTheirOutputIsNotWhole) {
+  const std::string program = own_folder() / "culprit";
+  TestProgram few(world, {"sh", "-c", program + " explain R001 > /dev/full"});
+  EXPECT_EQ(few.wait(), 1);
+  EXPECT_THAT(few.output(), HasSubstr("not all of the output could be written: No space left"));
+  std::string mistakes;
+  for (int i = 0; i < 300; ++i) mistakes += "!\n";
+  const std::string check = program + " check --format json " + world.write("bad.rules", mistakes);
+  TestProgram many(world, {"sh", "-c", check + " > /dev/full"});
+  EXPECT_EQ(many.wait(), 1);
+  EXPECT_THAT(many.output(), HasSubstr("not all of the output could be written: No space left"));
 }
 
 TEST_F(Commands, CheckShowsEveryMistake) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <fstream>
 #include <numeric>
 #include <random>
 #include <unistd.h>
@@ -13,11 +12,13 @@
 #include "cli/paths.h"
 #include "cli/planner_options.h"
 #include "cli/robot_names.h"
+#include "cli/single_run_route.h"
 #include "cli/study_runner.h"
 #include "cli/suave_demo_command.h"
 #include "cli/sunset_demo.h"
 #include "cli/web_service.h"
 #include "cli/what_if_route.h"
+#include "language/text_file.h"
 #include "web/fault_routes.h"
 #include "web/live_routes.h"
 #include "web/name_routes.h"
@@ -145,6 +146,7 @@ std::vector<web::Route> web_routes(SunsetDemo& demo, web::OrderDesk& orders, web
     routes.push_back(std::move(route));
   routes.push_back(what_if_route(std::move(planner)));
   for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
+  routes.push_back(single_run_route());
   for (web::Route& route : web::fault_routes(faults_of(demo))) routes.push_back(std::move(route));
   return routes;
 }
@@ -211,10 +213,9 @@ int demo_sunset(const DemoOptions& options) {
   if (!all_healed)
     fmt::print("The logs of the nodes are in {}\n", ((*demo)->keep_state() / "log").string());
   if (!options.json.empty()) {
-    std::ofstream file(options.json);
-    file << to_json(outcomes).dump(2) << "\n";
-    if (!file) {
-      fmt::print(stderr, "culprit: cannot write {}\n", options.json);
+    const auto written = write_text(options.json, to_json(outcomes).dump(2) + "\n");
+    if (!written) {
+      fmt::print(stderr, "culprit: {}\n", written.error());
       return kFailed;
     }
   }

@@ -17,11 +17,6 @@ struct ExportOptions {
   bool as_json = false;  // the only form so far, to be asked for
 };
 
-int fail(const std::string& message) {
-  fmt::print(stderr, "culprit: {}\n", message);
-  return kFailed;
-}
-
 int export_json(const ExportOptions& options) {
   const auto text = read_text(options.file);
   if (!text) return fail(text.error());

@@ -18,11 +18,6 @@ struct FmtOptions {
   bool diff = false;
 };
 
-int fail(const std::string& message) {
-  fmt::print(stderr, "culprit: {}\n", message);
-  return kFailed;
-}
-
 int show(const FmtOptions& options, const std::string& name, const std::string& before,
          const std::string& after) {
   if (options.diff) fmt::print("{}", layout_diff(name, before, after));

@@ -17,11 +17,6 @@ struct ImportOptions {
   std::string output;
 };
 
-int fail(const std::string& message) {
-  fmt::print(stderr, "culprit: {}\n", message);
-  return kFailed;
-}
-
 // Each note once, with the first line that it is about; the output has it at every place.
 void print_summary(const ImportOptions& options, const Imported& imported) {
   fmt::print(stderr, "culprit: {}: {} rules imported, {} kept as comments, {} notes\n",

@@ -15,11 +15,6 @@ struct ModesOptions {
   bool only_checks = false;
 };
 
-int fail(const std::string& why, int code) {
-  fmt::print(stderr, "culprit: {}\n", why);
-  return code;
-}
-
 void print(const modes::Model& model) {
   for (const modes::Entity& entity : model.entities) {
     std::string names;
@@ -35,7 +30,7 @@ std::string described(const modes::Actual& actual) {
 
 int serve(const modes::Model& model, const std::string& file) {
   ros2::Executor executor;
-  if (auto stops = executor.stop_on({SIGINT, SIGTERM}); !stops) return fail(stops.error(), kFailed);
+  if (auto stops = executor.stop_on({SIGINT, SIGTERM}); !stops) return fail(stops.error());
   const auto participant = ros2::options_from_environment();
   if (!participant) return fail(participant.error(), kUsage);
   modes::ModeManager::Options options;
@@ -51,7 +46,7 @@ int serve(const modes::Model& model, const std::string& file) {
     std::fflush(stdout);
   };
   const auto manager = modes::ModeManager::create(executor, model, std::move(options));
-  if (!manager) return fail(manager.error(), kFailed);
+  if (!manager) return fail(manager.error());
   fmt::print("culprit: /__mode_manager serves {} systems and nodes; Ctrl-C ends it\n",
              model.entities.size());
   std::fflush(stdout);

@@ -9,6 +9,7 @@
 #include "cli/live_session.h"
 #include "cli/robot_names.h"
 #include "cli/role.h"
+#include "cli/rule_trust.h"
 #include "cli/run_options.h"
 #include "cli/service_manager.h"
 #include "cli/what_if_route.h"
@@ -40,7 +41,10 @@ std::string name_of(const RuleSet& rules) {
 
 Expected<LoadedRules> rules_for(const RunOptions& options, Colour colour) {
   auto loaded = read_rules(options.rules, Strictness::kLenient, colour);
-  if (!loaded || !options.improvise) return loaded;
+  if (!loaded) return loaded;
+  if (const auto trusted = trust_launches(loaded->rules, options.rules); !trusted)
+    return Error{trusted.error()};
+  if (!options.improvise) return loaded;
   return improvised(std::move(*loaded), options.rules);
 }
 

@@ -2,20 +2,16 @@
 
 #include <charconv>
 #include <cstddef>
-#include <cstdlib>
 #include <cstring>
 #include <string_view>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "cli/paths.h"
+
 namespace culprit::cli {
 namespace {
-
-std::string_view environment(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
 
 std::optional<std::int64_t> number(std::string_view text) {
   std::int64_t value = 0;
@@ -26,7 +22,7 @@ std::optional<std::int64_t> number(std::string_view text) {
 
 // Another process of the service may be meant.
 std::optional<Duration> watchdog() {
-  const std::string_view pid = environment("WATCHDOG_PID");
+  const std::string pid = environment("WATCHDOG_PID");
   if (!pid.empty() && number(pid) != std::int64_t{getpid()}) return std::nullopt;
   const auto microseconds = number(environment("WATCHDOG_USEC"));
   if (!microseconds) return std::nullopt;

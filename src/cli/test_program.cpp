@@ -52,6 +52,12 @@ std::string TestWorld::write(const std::string& name, const std::string& text) c
   return (folder_ / name).string();
 }
 
+int pid_in(const std::string& output, const std::string& component) {
+  const std::string what = component + " is there (process ";
+  const std::size_t at = output.rfind(what);
+  return at == std::string::npos ? 0 : std::atoi(output.c_str() + at + what.size());
+}
+
 TestProgram::TestProgram(const TestWorld& world, std::vector<std::string> arguments) {
   static int count = 0;
   log_ = world.folder() / (arguments.at(0) + "-" + std::to_string(++count) + ".log");
@@ -88,6 +94,28 @@ std::string TestProgram::output() const {
 
 bool TestProgram::prints(const std::string& text, Duration patience) const {
   return eventually([&] { return output().find(text) != std::string::npos; }, patience);
+}
+
+Holdings holdings_of(int pid) {
+  const std::filesystem::path folder = "/proc/" + std::to_string(pid);
+  Holdings holdings;
+  std::error_code gone;
+  for ([[maybe_unused]] const auto& each : std::filesystem::directory_iterator(folder / "fd", gone))
+    ++holdings.descriptors;
+  std::ifstream status(folder / "status");
+  for (std::string word; status >> word;) {
+    if (word == "VmRSS:") status >> holdings.kilobytes;
+  }
+  return holdings;
+}
+
+std::set<std::string> names_in(const std::filesystem::path& folder, const std::string& beginning) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(beginning)) names.insert(name);
+  }
+  return names;
 }
 
 }  // namespace culprit::cli

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ class TestWorld {
   ros2::DomainLock domain_;
   std::filesystem::path folder_;
 };
+
+// The process that culprit said last `component` to be; 0 if it did not.
+int pid_in(const std::string& output, const std::string& component);
 
 // A program of the project that runs, or has run. What is left of it is killed with the object.
 class TestProgram {
@@ -53,5 +57,15 @@ class TestProgram {
   int pid_ = 0;
   std::optional<int> exit_;
 };
+
+// What a process holds.
+struct Holdings {
+  std::size_t descriptors = 0;
+  std::size_t kilobytes = 0;  // resident
+};
+Holdings holdings_of(int pid);
+
+// Of what is in `folder`, the names that begin so.
+std::set<std::string> names_in(const std::filesystem::path& folder, const std::string& beginning);
 
 }  // namespace culprit::cli

@@ -4,6 +4,7 @@
 #include "cli/console.h"
 #include "cli/paths.h"
 #include "cli/robot_names.h"
+#include "cli/single_run_route.h"
 #include "cli/study_runner.h"
 #include "cli/web_service.h"
 #include "web/name_routes.h"
@@ -28,6 +29,7 @@ int edit(const WebCommandOptions& options) {
   StudyRunner studies(default_state_folder() / "studies");
   std::vector<web::Route> routes = web::rule_routes(desk);
   for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
+  routes.push_back(single_run_route());
   RobotNames names;
   if (options.robot) {
     for (web::Route& route :

@@ -1,0 +1,126 @@
+// culprit policy as a user runs it. What it allows on DDS is ros2/policy_test.cpp's.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/commands.h"
+#include "cli/unit_settings.h"
+#include "language/checker.h"
+
+namespace culprit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+struct PolicyCommand : testing::Test {
+  PolicyCommand() {
+    std::string name = (std::filesystem::temp_directory_path() / "culprit-policy-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    folder = name;
+    setenv("ROS_DOMAIN_ID", "42", 1);
+  }
+  ~PolicyCommand() override {
+    unsetenv("ROS_DOMAIN_ID");
+    std::filesystem::remove_all(folder);
+  }
+
+  // Gives the exit code; what was written is in `written`, what was said in `said`.
+  int run(std::vector<std::string> arguments) {
+    const std::string output = (folder / "out").string();
+    arguments.insert(arguments.end(), {"-o", output});
+    arguments.insert(arguments.begin(), "policy");
+    CLI::App app;
+    int exit_code = -1;
+    add_policy(app, exit_code);
+    std::reverse(arguments.begin(), arguments.end());
+    testing::internal::CaptureStderr();
+    app.parse(std::move(arguments));
+    said = testing::internal::GetCapturedStderr();
+    std::ifstream in(output);
+    written.assign(std::istreambuf_iterator<char>(in), {});
+    return exit_code;
+  }
+
+  std::filesystem::path folder;
+  std::string written;
+  std::string said;
+};
+
+TEST_F(PolicyCommand, WritesAPolicyOfSros2AndSaysHowItIsSigned) {
+  ASSERT_EQ(run({"rules/sunset.rules"}), kOk) << said;
+  EXPECT_THAT(written, HasSubstr("<enclave path=\"/culprit\">"));
+  EXPECT_THAT(said, HasSubstr("ros2 security create_permission KEYSTORE /culprit "));
+}
+
+TEST_F(PolicyCommand, WritesPermissionsOfTheDomainForSoManyDays) {
+  ASSERT_EQ(run({"rules/sunset.rules", "--format", "permissions", "--enclave", "/robot/culprit"}),
+            kOk)
+      << said;
+  EXPECT_THAT(written, HasSubstr("<subject_name>CN=/robot/culprit</subject_name>"));
+  EXPECT_THAT(written, HasSubstr("<domains><id>42</id></domains>"));
+  EXPECT_THAT(said, HasSubstr("openssl smime -sign -text"));
+}
+
+TEST_F(PolicyCommand, RefusesWhatIsNoEnclave) {
+  EXPECT_EQ(run({"rules/sunset.rules", "--enclave", "/a\"/><x"}), kUsage);
+  EXPECT_THAT(said, HasSubstr("is no enclave; it is a path such as /culprit"));
+  EXPECT_EQ(written, "");
+}
+
+TEST_F(PolicyCommand, ImprovisedRulesNeedMore) {
+  const std::string rules = (folder / "my.rules").string();
+  std::ofstream(rules) << "COMPONENT camera NODE /camera LAUNCH \"camera\"\n";
+  ASSERT_EQ(run({rules}), kOk);
+  EXPECT_THAT(written, Not(HasSubstr("/camera/change_state")));
+  ASSERT_EQ(run({rules, "--improvise"}), kOk);
+  EXPECT_THAT(written, HasSubstr("/camera/change_state"));
+}
+
+// The settings for rules about a camera and a base, of which each does what is said here.
+std::string settings(const std::string& camera, const std::string& base,
+                     const UnitOptions& options = {"/etc/culprit/robot.rules"}) {
+  const std::string rules =
+      "COMPONENT camera LAUNCH \"camera\"\nCOMPONENT base LAUNCH \"base\"\nRULE r\n POLICIES "
+      "ERROR\n"
+      " TRIGGER age(/rgb) > 1s\n  STRATEGY a 50 10\n   ADAPTATION camera " +
+      camera + " 1\n  STRATEGY b 50 10\n   ADAPTATION base " + base + " 1\n";
+  return unit_settings(*check(Source("test.rules", rules)).rules, options);
+}
+
+TEST(UnitSettings, SayWhatIsRun) {
+  UnitOptions options{"/home/me/100 % \"best\" for $.rules"};
+  options.environment = {{"ROS_DOMAIN_ID", "42"}, {"ROS_SECURITY_KEYSTORE", "/etc/keys"}};
+  const std::string text = settings("restart", "restart", options);
+  EXPECT_THAT(text, HasSubstr("ExecStart=\nExecStart=/usr/bin/culprit run "
+                              "\"/home/me/100 %% \\\"best\\\" for $$.rules\" --state-dir "));
+  EXPECT_THAT(text, HasSubstr("Environment=\"ROS_DOMAIN_ID=42\"\n"
+                              "Environment=\"ROS_SECURITY_KEYSTORE=/etc/keys\"\n"));
+}
+
+TEST(UnitSettings, WhatStartsNothingCanExecuteNothing) {
+  EXPECT_THAT(settings("stop", "restart"), HasSubstr("NoExecPaths=/\n"));
+  EXPECT_THAT(settings("redeploy", "restart"), Not(HasSubstr("NoExecPaths")));
+  EXPECT_THAT(settings("redeploy", "start"),
+              HasSubstr("These are started and live in this sandbox: camera, base."));
+}
+
+TEST(UnitSettings, WhatEndsNothingNeedNotBeAnybody) {
+  EXPECT_THAT(settings("restart", "restart"), HasSubstr("DynamicUser=yes"));
+  EXPECT_THAT(settings("start", "restart"), Not(HasSubstr("DynamicUser")));
+  EXPECT_THAT(settings("stop", "restart"), HasSubstr("User= has to be whoever runs them: camera."));
+}
+
+TEST(UnitSettings, OtherUsersProcessesTakeCapabilities) {
+  const UnitOptions options{"/r", NodeOwner::kOtherUsers};
+  EXPECT_THAT(settings("stop", "redeploy", options),
+              HasSubstr("\nAmbientCapabilities=CAP_KILL CAP_SYS_PTRACE\n"));
+  EXPECT_THAT(settings("restart", "restart", options),
+              HasSubstr("\nAmbientCapabilities=CAP_SYS_PTRACE\n"));
+}
+
+}  // namespace
+}  // namespace culprit::cli

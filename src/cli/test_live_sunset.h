@@ -1,0 +1,41 @@
+// For tests with a live robot that outlives whoever manages it.
+#pragma once
+
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "cli/test_program.h"
+#include "exemplars/sunset/experiment.h"
+#include "process/supervisor.h"
+
+namespace culprit::cli {
+
+// The seven processes of SUNSET, on the domain of a TestWorld.
+class LiveSunset {
+ public:
+  explicit LiveSunset(const TestWorld& world);
+  // Ends also those that some culprit started, which is long gone.
+  ~LiveSunset();
+
+  std::vector<int> processes(sunset::Member member) const;
+  // What is wrong with it just now; empty if nothing is.
+  std::string complaint() const;
+  // False if it does not get well in time.
+  bool is_well_within(Duration patience) const;
+
+  Expected<void> inject(const std::string& fault);
+  // Any fault that can be healed. A node that is just being replaced cannot be broken: then nothing
+  // is.
+  void break_something(std::mt19937& random);
+
+ private:
+  std::uint32_t domain_;
+  RuleSet members_;
+  Inbox inbox_;
+  std::unique_ptr<process::Supervisor> processes_;
+  std::unique_ptr<sunset::Experiment> experiment_;
+};
+
+}  // namespace culprit::cli

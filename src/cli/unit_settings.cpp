@@ -1,0 +1,106 @@
+#include "cli/unit_settings.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+namespace culprit::cli {
+namespace {
+
+// What the rules do to processes: names of components, each once, in file order.
+struct Processes {
+  std::vector<std::string> started;
+  std::vector<std::string> ended;
+};
+
+Processes processes_of(const RuleSet& rules) {
+  Processes processes;
+  const auto add = [&](std::vector<std::string>& names, ComponentId component) {
+    const std::string& name = rules[component].name;
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const Strategy& strategy : rules.strategies) {
+    for (const Adaptation& adaptation : strategy.adaptations) {
+      const bool redeploys = adaptation.type == AdaptationType::kRedeploy;
+      if (redeploys || adaptation.type == AdaptationType::kStart)
+        add(processes.started, adaptation.component);
+      if (redeploys || adaptation.type == AdaptationType::kStop)
+        add(processes.ended, adaptation.component);
+    }
+  }
+  return processes;
+}
+
+enum class Variables : std::uint8_t { kAreNone, kAreReplaced };
+
+// One word of a setting in which systemd replaces variables, or not (systemd.service(5)).
+std::string quoted(const std::string& text, Variables variables = Variables::kAreNone) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (c == '%' || (c == '$' && variables == Variables::kAreReplaced)) out += c;
+    out += c == '\n' ? "\\n" : std::string(1, c);
+  }
+  return out + "\"";
+}
+
+std::string start_settings(const Processes& processes) {
+  if (processes.started.empty()) {
+    return "# No program is ever started: nothing but culprit can be executed, and what reloads "
+           "it.\n"
+           "NoExecPaths=/\n"
+           "ExecPaths=/usr/bin/culprit /usr/bin/kill -/usr/lib -/usr/lib32 -/usr/lib64\n";
+  }
+  return fmt::format(
+      "# These are started and live in this sandbox: {}.\n"
+      "# What one of them needs has to be allowed here. A driver needs its device:\n"
+      "#   PrivateDevices=no\n"
+      "#   DevicePolicy=closed\n"
+      "#   DeviceAllow=/dev/video0 rw\n"
+      "# a controller real-time threads (RestrictRealtime=no), a program that compiles while it\n"
+      "# runs memory that it may execute (MemoryDenyWriteExecute=no).\n"
+      "Environment=ROS_LOG_DIR=/var/lib/culprit/ros-log\n",
+      fmt::join(processes.started, ", "));
+}
+
+std::string end_settings(const Processes& processes, NodeOwner nodes) {
+  const bool ends = !processes.ended.empty();
+  if (nodes == NodeOwner::kSameUser) {
+    if (ends)
+      return fmt::format("# These are ended, so User= has to be whoever runs them: {}.\n",
+                         fmt::join(processes.ended, ", "));
+    if (!processes.started.empty()) return "";
+    return "# No process is ever ended or started: it need not be anybody.\n"
+           "User=\n"
+           "DynamicUser=yes\n";
+  }
+  const std::string capabilities = ends ? "CAP_KILL CAP_SYS_PTRACE" : "CAP_SYS_PTRACE";
+  return fmt::format(
+      "# Which process of another user is behind a node is seen with CAP_SYS_PTRACE only{}.\n"
+      "CapabilityBoundingSet={}\n"
+      "AmbientCapabilities={}\n",
+      ends
+          ? fmt::format("; it is\n# ended with CAP_KILL only: {}", fmt::join(processes.ended, ", "))
+          : "",
+      capabilities, capabilities);
+}
+
+}  // namespace
+
+std::string unit_settings(const RuleSet& rules, const UnitOptions& options) {
+  const Processes processes = processes_of(rules);
+  std::string text = fmt::format(
+      "# What the rules below need; for /etc/systemd/system/culprit.service.d/rules.conf\n"
+      "[Service]\n"
+      "ExecStart=\n"
+      "ExecStart=/usr/bin/culprit run {} --state-dir /var/lib/culprit\n",
+      quoted(options.rules, Variables::kAreReplaced));
+  for (const auto& [name, value] : options.environment)
+    text += fmt::format("Environment={}\n", quoted(name + "=" + value));
+  text += "\n" + start_settings(processes);
+  const std::string more = end_settings(processes, options.nodes);
+  return more.empty() ? text : text + "\n" + more;
+}
+
+}  // namespace culprit::cli
