@@ -24,12 +24,16 @@ target_compile_options(culprit_test_options INTERFACE -O0)
 
 # The main function of all tests, and what nearly every test includes, parsed once: a third of the time of a build.
 if(CULPRIT_TESTS)
+  add_custom_target(offline_tests) # those that start no processes of a robot
   add_library(culprit_test_main OBJECT ${CMAKE_CURRENT_LIST_DIR}/test_main.cpp)
   target_precompile_headers(culprit_test_main PRIVATE <algorithm> <chrono> <filesystem> <fstream> <functional> <map>
                                                          <memory> <optional> <set> <span> <string> <variant> <vector>
                                                          <gmock/gmock.h> <gtest/gtest.h> <rapidcheck/gtest.h>)
   target_link_libraries(culprit_test_main PRIVATE GTest::gtest GTest::gmock rapidcheck culprit_test_options)
 endif()
+
+# Where CMAKE_UNITY_BUILD is set, a folder's files are compiled several at a time, but for these: their files are variants of one thing and call their parts by the same names.
+set(culprit_folders_of_variants study exemplars)
 
 # culprit_library(<folder> [USES <folder>...] [PACKAGES <target>...]
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL]
@@ -57,6 +61,9 @@ function(culprit_library folder)
 
   if(sources)
     add_library(${folder} STATIC ${sources})
+    if(folder IN_LIST culprit_folders_of_variants)
+      set_target_properties(${folder} PROPERTIES UNITY_BUILD OFF)
+    endif()
     set(scope PUBLIC)
   else()
     add_library(${folder} INTERFACE)
@@ -108,11 +115,16 @@ function(culprit_test name)
   cmake_parse_arguments(ARG "SERIAL" "" "SOURCES;USES;PACKAGES;LABELS;CASES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_precompile_headers(${name} REUSE_FROM culprit_test_main)
+  # Tests call what is theirs alone by the same names.
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PACKAGES} culprit_test_main GTest::gtest GTest::gmock
                                         rapidcheck culprit_test_options)
   set(properties TIMEOUT 300)
   if(ARG_SERIAL)
     list(APPEND properties RUN_SERIAL TRUE)
+  endif()
+  if(NOT "live" IN_LIST ARG_LABELS)
+    add_dependencies(offline_tests ${name})
   endif()
   if(ARG_LABELS)
     list(APPEND properties LABELS "${ARG_LABELS}")
