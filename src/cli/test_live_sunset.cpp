@@ -40,6 +40,7 @@ LiveSunset::LiveSunset(const TestWorld& world)
 }
 
 LiveSunset::~LiveSunset() {
+  slow_ = {};
   experiment_.reset();
   processes_->stop_all();
   for (const sunset::Member member : sunset::kMembers) {
@@ -72,6 +73,21 @@ Expected<void> LiveSunset::inject(const std::string& fault) {
   return {};
 }
 
+void LiveSunset::slow_down(sunset::Member member) {
+  const std::vector<int> all = processes(member);
+  slow_ = std::jthread([all](const std::stop_token& stop) {
+    const auto tell = [&](int signal) {
+      for (const int pid : all) kill(pid, signal);
+    };
+    for (const Time end = live_now() + 3s; live_now() < end && !stop.stop_requested();) {
+      tell(SIGSTOP);
+      std::this_thread::sleep_for(400ms);
+      tell(SIGCONT);
+      std::this_thread::sleep_for(100ms);
+    }
+  });
+}
+
 void LiveSunset::break_something(std::mt19937& random) {
   std::vector<std::string> faults;
   for (const sunset::Fault& fault : sunset::faults()) {
@@ -81,7 +97,13 @@ void LiveSunset::break_something(std::mt19937& random) {
     for (const char* what : {"kill:", "stop:", "crash:"})
       faults.push_back(what + std::string(name_of(member)));
   }
-  (void)inject(faults[random() % faults.size()]);
+  const std::size_t members = std::size(sunset::kManagedMembers);
+  const std::size_t choice = random() % (faults.size() + members);
+  if (choice < faults.size()) {
+    (void)inject(faults[choice]);
+  } else {
+    slow_down(sunset::kManagedMembers[choice - faults.size()]);
+  }
 }
 
 }  // namespace culprit::cli

@@ -4,6 +4,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "cli/test_program.h"
@@ -26,8 +27,10 @@ class LiveSunset {
   bool is_well_within(Duration patience) const;
 
   Expected<void> inject(const std::string& fault);
-  // Any fault that can be healed. A node that is just being replaced cannot be broken: then nothing
-  // is.
+  // For three seconds the node gets a fifth of the time only, in pieces.
+  void slow_down(sunset::Member member);
+  // Any fault that can be healed, or a node is slow for a while. A node that is just being replaced
+  // cannot be broken: then nothing is.
   void break_something(std::mt19937& random);
 
  private:
@@ -36,6 +39,7 @@ class LiveSunset {
   Inbox inbox_;
   std::unique_ptr<process::Supervisor> processes_;
   std::unique_ptr<sunset::Experiment> experiment_;
+  std::jthread slow_;
 };
 
 }  // namespace culprit::cli
