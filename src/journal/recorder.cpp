@@ -71,6 +71,7 @@ Recorder::Recorder(std::optional<Writer> writer, Options options, const Session&
 Recorder::~Recorder() { finish(); }
 
 Expected<void> Recorder::end() {
+  hand_over(false);
   {
     const std::lock_guard lock(mutex_);
     Pending& pending = queue_.next();
@@ -85,6 +86,7 @@ Expected<void> Recorder::end() {
 
 void Recorder::finish() {
   if (!thread_.joinable()) return;
+  hand_over(false);
   {
     const std::lock_guard lock(mutex_);
     is_ending_ = true;
@@ -99,44 +101,48 @@ Recorder::Pending& Recorder::Queue::next() {
 }
 
 void Recorder::Queue::clear() {
-  constexpr std::size_t kKept = 64;
+  constexpr std::size_t kSpare = 64;
   for (std::size_t i = 0; i < used; ++i) {
     places[i].observations.clear();
     places[i].decided.reset();
     places[i].is_end = false;
   }
-  if (places.size() > kKept) places.resize(kKept);
+  if (places.size() > kSpare) places.resize(kSpare);
   used = 0;
 }
 
-void Recorder::stepped(Time now, std::vector<Observation>& observations,
-                       std::span<const Command> commands, std::span<const Event> events) {
-  std::unique_ptr<const Decided> decision;
+void Recorder::hand_over(Pending& step, std::span<const Command> commands,
+                         std::span<const Event> events) {
   bool wait = false;
   if (!commands.empty() || !events.empty()) {
-    decision = decision_of(commands, events);
-    wait = !is_nothing(decision->learned) ||
+    step.decided = decision_of(commands, events);
+    wait = !is_nothing(step.decided->learned) ||
            std::any_of(commands.begin(), commands.end(), changes_something) ||
            std::any_of(events.begin(), events.end(), is_order);
   }
-  const std::int64_t wall = wall_of(now);
-  {
-    const std::lock_guard lock(mutex_);
-    constexpr std::size_t kMaxQueued = 1 << 17;
-    if (queued_observations_ > kMaxQueued && decision == nullptr) {
-      ++lost_steps_;
-      return;
-    }
-    Pending& pending = queue_.next();
-    pending.now = now;
-    pending.wall = wall;
-    pending.observations.swap(observations);
-    pending.decided = std::move(decision);
-    queued_observations_ += pending.observations.size();
-    ++handed_over_;
-    is_wanted_now_ |= wait;
-  }
+  hand_over(wait);
   if (wait) wait_until_written();
+}
+
+void Recorder::hand_over(bool is_wanted_now) {
+  constexpr std::size_t kMaxQueued = 1 << 17;
+  if (kept_ == 0) return;
+  const auto kept = std::span(places_).first(std::exchange(kept_, 0));
+  const std::int64_t wall_offset =
+      options_.wall_clock() - kept.back().now.time_since_epoch().count();
+  const std::lock_guard lock(mutex_);
+  for (Pending& step : kept) {
+    if (queued_observations_ > kMaxQueued && step.decided == nullptr) {
+      ++lost_steps_;
+      step.observations.clear();
+      continue;
+    }
+    step.wall = step.now.time_since_epoch().count() + wall_offset;
+    queued_observations_ += step.observations.size();
+    std::swap(queue_.next(), step);
+    ++handed_over_;
+  }
+  is_wanted_now_ |= is_wanted_now;
 }
 
 std::unique_ptr<const Recorder::Decided> Recorder::decision_of(std::span<const Command> commands,
@@ -153,14 +159,6 @@ void Recorder::wait_until_written() {
   std::unique_lock lock(mutex_);
   const std::uint64_t mine = handed_over_;
   done_.wait_for(lock, kPatience, [&] { return written_ >= mine || is_failing_; });
-}
-
-// The clock of the wall is read now and then only: it costs as much as a small step.
-std::int64_t Recorder::wall_of(Time now) {
-  constexpr std::uint32_t kEvery = 64;
-  const std::int64_t robot = now.time_since_epoch().count();
-  if (since_clock_++ % kEvery == 0) wall_offset_ = options_.wall_clock() - robot;
-  return robot + wall_offset_;
 }
 
 Learned Recorder::changes() {

@@ -1,15 +1,16 @@
 // Writes down what the manager is stepped with and what it does, while it runs.
 //
-// The manager's thread hands over each step and goes on; a thread of the recorder's own turns it
-// into rows and writes them several times a second. Only a step that asks for changes on the robot,
-// that learned something or took an order waits: its rows are on the disk before anything is asked
-// for or said.
+// The manager's thread keeps the steps that decide nothing, hands them over several at a time and
+// goes on; a thread of the recorder's own turns them into rows and writes them several times a
+// second. Only a step that asks for changes on the robot, that learned something or took an order
+// waits: its rows are on the disk before anything is asked for or said.
 //
 // If the file cannot be written, nothing waits for it: the robot is managed all the same. Rows are
 // kept and written as soon as it is possible again. If they become too many, the oldest `steps` go
 // first, then the oldest others, and a `gap` row says how many.
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -34,6 +35,9 @@ std::optional<Digest> digest_of(std::span<const Command> commands, std::span<con
 class Recorder {
  public:
   static constexpr Duration kPeriod = std::chrono::milliseconds(200);  // between two writes
+  // How long, and how many, steps that decide nothing are kept before they are handed over.
+  static constexpr Duration kKept = std::chrono::milliseconds(100);
+  static constexpr std::size_t kMaxKept = 16;
   static constexpr Duration kRetry = std::chrono::seconds(1);
   // How long an action waits for a disk that does not answer.
   static constexpr Duration kPatience = std::chrono::seconds(2);
@@ -58,7 +62,15 @@ class Recorder {
 
   // After each step and before its commands go out, by one thread. Takes the observations.
   void stepped(Time now, std::vector<Observation>& observations, std::span<const Command> commands,
-               std::span<const Event> events);
+               std::span<const Event> events) {
+    // Here for what a step that decides nothing costs: between two steps others use the cache.
+    Pending& place = places_[kept_++];
+    place.now = now;
+    place.observations.swap(observations);
+    const bool decides = !commands.empty() || !events.empty();
+    if (decides || kept_ == kMaxKept || now - places_.front().now >= kKept)
+      hand_over(place, commands, events);
+  }
 
   // culprit was asked to stop: writes what is waiting. An error says what is lost. No step after
   // it.
@@ -88,6 +100,9 @@ class Recorder {
     void clear();
   };
 
+  // What is kept, the last of which is `step`.
+  void hand_over(Pending& step, std::span<const Command> commands, std::span<const Event> events);
+  void hand_over(bool is_wanted_now);
   std::unique_ptr<const Decided> decision_of(std::span<const Command> commands,
                                              std::span<const Event> events);
   void wait_until_written();
@@ -103,7 +118,6 @@ class Recorder {
   void finish();
   Expected<void> failed(Error error);
   void bound_unsaved();
-  std::int64_t wall_of(Time now);
 
   Options options_;
   const Knowledge& knowledge_;
@@ -113,11 +127,12 @@ class Recorder {
   std::vector<Belief> beliefs_;  // as written last
   std::vector<std::vector<Couplings::Learned>> couplings_;
 
-  // All that a step without decisions touches, side by side; the first two belong to the manager's
-  // thread, what follows the mutex to both.
-  alignas(64) std::int64_t wall_offset_ = 0;
-  std::uint32_t since_clock_ = 0;
-  std::mutex mutex_;
+  // All that a step without decisions touches, side by side.
+  alignas(64) std::size_t kept_ = 0;
+  std::array<Pending, kMaxKept> places_;
+
+  // Of both threads, under the mutex.
+  alignas(64) std::mutex mutex_;
   bool is_wanted_now_ = false;
   Queue queue_;
   std::size_t queued_observations_ = 0;
