@@ -209,7 +209,25 @@ void Analyzer::judge(RuleId id, Time now) {
   attempt.deadline = later(later(attempt.effective, impact), knowledge_.signals.latency(id));
   if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
   if (now < attempt.deadline || is_false(state.trigger)) return;
-  if (state.trigger.known || now >= later(attempt.deadline, kLostAfter)) fail(id, now);
+  if (state.trigger.known || now >= later(attempt.deadline, kLostAfter) ||
+      holds_up_more_critical(attempt.strategy))
+    fail(id, now);
+}
+
+bool Analyzer::holds_up_more_critical(StrategyId strategy) const {
+  const auto& adapted = knowledge_.rules[strategy].components;
+  const syntax::Criticality level = criticality(knowledge_.rules[strategy].rule);
+  const auto adapts_it_too = [&](StrategyId other) {
+    const auto& components = knowledge_.rules[other].components;
+    return std::find_first_of(components.begin(), components.end(), adapted.begin(),
+                              adapted.end()) != components.end();
+  };
+  const auto& active = knowledge_.states.active();
+  return std::any_of(active.begin(), active.end(), [&](RuleId id) {
+    const auto& strategies = knowledge_.rules[id].strategies;
+    return criticality(id) > level && knowledge_.states[id].phase == RulePhase::kFailing &&
+           std::any_of(strategies.begin(), strategies.end(), adapts_it_too);
+  });
 }
 
 void Analyzer::end_attempt(RuleId id, Time now) {
@@ -329,7 +347,8 @@ void Analyzer::schedule(RuleId id, Time now) {
   if (state.phase == RulePhase::kFailing) want(state.retry_at);
   if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
     want(state.attempt->deadline);
-    if (!state.trigger.known) want(later(state.attempt->deadline, kLostAfter));
+    // Until nobody waits any longer; a more critical failure may come before.
+    if (!state.trigger.known) want(later(now, knowledge_.rules.cycle));
   }
   const auto window = static_cast<int>(state.history.size());
   if (window > 0 && state.true_in_history != (is_true(state.trigger) ? window : 0)) {

@@ -90,6 +90,11 @@ class Analyzer {
   void exhaust_if_spent(RuleId id, Time now);
   void exhaust(RuleId id, Time now);
   bool can_have_caused(RuleId id) const;
+  // Is there a more critical failure for which the same component would be adapted?
+  bool holds_up_more_critical(StrategyId strategy) const;
+  syntax::Criticality criticality(RuleId id) const {
+    return knowledge_.rules[id].policies.criticality;
+  }
   void schedule(RuleId id, Time now);
 
   Knowledge& knowledge_;

@@ -48,8 +48,9 @@ Duration CouplingWatch::delay(RuleId cause, RuleId effect) const {
 }
 
 // What depends on these components is given the time to show that it is well, now that the failure
-// `cause` is gone. Not what is no effect of it: it was detected long before it, or only after
-// things had `changed` (and, if that may have come `on_its_way`, later than so after the cause).
+// `cause` is gone. Not what is no effect of it: it is more critical, was detected long before it,
+// or only after things had `changed` (and, if that may have come `on_its_way`, later than so after
+// the cause).
 void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed,
                            std::optional<Cycles> on_its_way, Time now) {
   std::vector<bool> is_downstream(knowledge_.rules.components.size(), false);
@@ -59,9 +60,11 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
   }
   const Duration slack = std::max(knowledge_.signals.latency(cause), knowledge_.rules.cycle);
   const Time begun = knowledge_.states[cause].first_detected();
+  const auto criticality = knowledge_.rules[cause].policies.criticality;
   for (const RuleId effect : knowledge_.states.active()) {
     RuleState& state = knowledge_.states.state(effect);
     if (effect == cause || state.attempt) continue;
+    if (knowledge_.rules[effect].policies.criticality > criticality) continue;
     const bool may_be_on_its_way =
         on_its_way && state.first_detected() <=
                           later(begun, duration_of(*on_its_way, knowledge_.rules) + held(effect));
