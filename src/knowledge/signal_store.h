@@ -55,10 +55,12 @@ class SignalStore {
   bool is_unusual(InputId id) const { return is_unusual_[id.index]; }
   void set_unusual(InputId id, bool unusual) { is_unusual_[id.index] = unusual; }
 
-  // When a topic was heard last, and how long it usually is silent in between.
+  // When a topic was heard last, how often it is on average, and how long it usually is silent in
+  // between: longer, if it comes in bursts. Zero: not known yet.
   struct Rhythm {
     std::optional<Time> last;
-    Duration interval{};  // zero: not known yet
+    Duration interval{};
+    Duration silence{};
   };
   const Rhythm& rhythm(TopicId id) const { return rhythms_[id.index]; }
   void set_rhythm(TopicId id, Rhythm rhythm) { rhythms_[id.index] = rhythm; }

@@ -16,6 +16,14 @@ inline Duration smoothed(Duration before, Duration now) {
   return before == Duration::zero() ? now : before + (now - before) / 8;
 }
 
+// How long it is usually silent in between: what comes in bursts pauses longer than it does on
+// average. A longer pause counts at once, but no outage is taken for a pause; a shorter one counts
+// for an eighth.
+inline Duration usual_silence(Duration before, Duration now) {
+  return now > before && before > Duration::zero() ? std::min(now, 2 * before)
+                                                   : smoothed(before, now);
+}
+
 inline Duration usual_latency(Duration interval) { return std::min(2 * interval, kLongestLatency); }
 
 }  // namespace culprit::monitor

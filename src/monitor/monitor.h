@@ -47,7 +47,6 @@ class Monitor {
   struct Topic {
     std::optional<Time> first;
     std::optional<Time> last;
-    Duration interval{};
     monitor::PhiAccrual phi;
     std::vector<InputId> inputs;
     bool needs_phi = false;

@@ -166,6 +166,19 @@ TEST(Monitor, CountsWhatWasLostOnTheWay) {
   EXPECT_NEAR(watched.knowledge.signals[InputId(0)].d, 10, 2.1);
 }
 
+TEST(Monitor, KnowsHowLongATopicThatComesInBurstsIsSilent) {
+  Watched watched(rule("age(/t) > 1s"));
+  const auto rhythm = [&] { return watched.knowledge.signals.rhythm(TopicId(0)); };
+  for (int i = 0; i < 50; ++i) {
+    watched.observe(100ms * i, SampleArrived{TopicId(0), 1});
+    watched.observe(100ms * i + 1ms, SampleArrived{TopicId(0), 1});
+  }
+  EXPECT_LT(rhythm().interval, 60ms);
+  EXPECT_GT(rhythm().silence, 85ms);
+  watched.observe(60s, SampleArrived{TopicId(0), 1});
+  EXPECT_LT(rhythm().silence, 200ms) << "an outage is no pause";
+}
+
 TEST(Monitor, ReadsDiagnosticsAsTheTypeThatTheRulesNeed) {
   Watched watched(rule("flag && number > 1 && text == \"1.50\""));
   const auto read = [&](std::size_t s) {

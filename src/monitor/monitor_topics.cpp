@@ -15,20 +15,25 @@ using Kind = Input::Kind;
 
 using monitor::smoothed;
 using monitor::usual_latency;
+using monitor::usual_silence;
 
 void Monitor::on(Time at, const SampleArrived& seen) {
   Topic& topic = topics_[seen.topic.index];
   if (!topic.first) topic.first = at;
-  if (topic.last)
-    topic.interval = smoothed(topic.interval, (at - *topic.last) / std::max(1u, seen.published));
-  topic.last = at;
-  knowledge_.signals.set_rhythm(seen.topic, {at, topic.interval});
+  SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(seen.topic);
+  if (rhythm.last) {
+    const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
+    rhythm.interval = smoothed(rhythm.interval, interval);
+    rhythm.silence = usual_silence(rhythm.silence, interval);
+  }
+  rhythm.last = topic.last = at;
+  knowledge_.signals.set_rhythm(seen.topic, rhythm);
   if (topic.needs_phi) topic.phi.add(at, seen.published);
   for (const InputId id : topic.inputs) {
     const Input& input = knowledge_.rules[id];
     if (input.kind == Kind::kRate) derived_[id.index].count.add(at, seen.published);
     knowledge_.signals.set_latency(
-        id, input.kind == Kind::kRate ? input.window : usual_latency(topic.interval));
+        id, input.kind == Kind::kRate ? input.window : usual_latency(rhythm.interval));
     update(id, at);
   }
 }

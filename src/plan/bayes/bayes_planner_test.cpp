@@ -94,14 +94,14 @@ TEST(BayesPlanner, WaitsWhileAnUpstreamComponentIsSuspect) {
   text.replace(text.find("x > 1"), 5, "age(/out) > 2s");
   Scene scene(text);
   scene.link("a", "b").fail("B", 9900ms);  // 100 ms ago
-  scene->signals.set_rhythm(TopicId(0), {scene->now - 250ms, 100ms});
+  scene->signals.set_rhythm(TopicId(0), {scene->now - 250ms, 100ms, 100ms});
   EXPECT_EQ(scene.plan(kFewRedeployments), "");
   EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kSuspect);
   EXPECT_EQ(scene.candidate("B.restart").because, scene.rule("A"));
   EXPECT_FALSE(scene.verdict("B").is_spent);
-  scene->signals.set_rhythm(TopicId(0), {scene->now - 50ms, 100ms});
+  scene->signals.set_rhythm(TopicId(0), {scene->now - 50ms, 100ms, 100ms});
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "it spoke";
-  scene->signals.set_rhythm(TopicId(0), {scene->now - 1500ms, 100ms});
+  scene->signals.set_rhythm(TopicId(0), {scene->now - 1500ms, 100ms, 100ms});
   scene->now += 1s;
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "nobody waits for ever";
 }

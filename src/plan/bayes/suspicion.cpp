@@ -17,8 +17,8 @@ bool is_unusual(InputId id, const Knowledge& knowledge) {
 bool is_silent(const Input& input, const Knowledge& knowledge) {
   if (!watches_a_topic(input)) return false;
   const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
-  return rhythm.last && rhythm.interval > Duration::zero() &&
-         knowledge.now > later(*rhythm.last, kSuspiciousIntervals * rhythm.interval);
+  return rhythm.last && rhythm.silence > Duration::zero() &&
+         knowledge.now > later(*rhythm.last, kSuspiciousSilences * rhythm.silence);
 }
 
 // With HOLD one reading proves little.

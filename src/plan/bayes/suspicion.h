@@ -9,8 +9,8 @@
 
 namespace culprit::plan {
 
-// A topic is suspicious when it is silent for so many of its usual intervals.
-inline constexpr int kSuspiciousIntervals = 2;
+// A topic is suspicious when it is silent for so many times as long as it usually is.
+inline constexpr int kSuspiciousSilences = 2;
 // A failure waits for verdicts on others no longer than so many cycles after its detection, or so
 // many times the latency of the signals of suspicious rules if that is longer.
 inline constexpr Cycles kLongestWait{5};
