@@ -232,10 +232,10 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
   command
       ->add_option("--detectors", options->detectors,
                    "How outages are seen: own (the profile's: SUNSET's monitoring as in the paper; "
-                   "of live, age), age (three messages missed) or phi (a silence out of its "
-                   "rhythm); several, one after the other")
+                   "of live, age), age (three messages missed), phi (a silence out of its "
+                   "rhythm) or known (the fault at once: a bound); several, one after the other")
       ->delimiter(',')
-      ->check(CLI::IsMember({"own", "age", "phi"}))
+      ->check(CLI::IsMember({"own", "age", "phi", "known"}))
       ->capture_default_str();
   command->add_option("--runs", options->runs, "Of each configuration")
       ->check(CLI::Range(1U, 1'000'000'000U))

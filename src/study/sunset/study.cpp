@@ -24,6 +24,7 @@ std::string rules_of(const std::string& planner, const sunset::model::Profile& p
   if (planner == "reference") return kReferenceRules;
   if (planner == "oracle") return kOracleRules;
   if (detectors == Detectors::kPhi) return with_phi(kLiveRules);
+  if (detectors == Detectors::kKnown) return with_faults_known(kLiveRules);
   return detectors == Detectors::kAge || !profile.has_blackboard ? kLiveRules : kStudyRules;
 }
 

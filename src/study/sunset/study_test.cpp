@@ -45,7 +45,7 @@ TEST(SunsetClaims, TheDowntimeObjectiveHasTheLowestDowntime) {
             result.rows[0][Metric::kStrategiesPerFault].mean());
 }
 
-TEST(SunsetClaims, AnOracleIsABoundAndAgesComeNearIt) {
+TEST(SunsetClaims, AnOracleIsABound) {
   for (const char* profile : {"live", "live:phi"}) {
     SCOPED_TRACE(profile);
     const CampaignResult result =
@@ -58,6 +58,24 @@ TEST(SunsetClaims, AnOracleIsABoundAndAgesComeNearIt) {
     EXPECT_LT(oracle[Metric::kHonestDowntime].mean(), 0.5);
     EXPECT_LT(bayes[Metric::kHonestDowntime].mean(), 1.5);
     EXPECT_EQ(bayes[Metric::kWrongComponent].mean(), 0);
+  }
+}
+
+// Of whoever knows at once which component is out, but not what ends it.
+TEST(SunsetClaims, AgesComeNearWhoeverKnowsEachFaultAtOnce) {
+  for (const std::string profile : {"live", "paper"}) {
+    SCOPED_TRACE(profile);
+    const CampaignResult result = played({{kFull, "oracle", profile + ":known"},
+                                          {kFull, "bayes:downtime", profile + ":known"},
+                                          {kFull, "bayes:downtime", profile + ":age"},
+                                          {kFull, "bayes:downtime", profile + ":phi"}},
+                                         54);
+    const auto downtime = [&](std::size_t row) {
+      return result.rows[row][Metric::kHonestDowntime].mean();
+    };
+    EXPECT_GT(downtime(1), downtime(0));
+    EXPECT_LT(downtime(2), 1.5 * downtime(1));
+    EXPECT_LT(downtime(3), 1.5 * downtime(1));
   }
 }
 
@@ -98,9 +116,21 @@ TEST(Detectors, AreNamedBehindTheProfile) {
   EXPECT_EQ(*parse_profile("paper"), std::pair(std::string("paper"), Detectors::kOwn));
   EXPECT_EQ(*parse_profile("head:age"), std::pair(std::string("head"), Detectors::kAge));
   EXPECT_EQ(*parse_profile("live:phi"), std::pair(std::string("live"), Detectors::kPhi));
+  EXPECT_EQ(*parse_profile("live:known"), std::pair(std::string("live"), Detectors::kKnown));
   EXPECT_EQ(parse_profile("live:eye").error(),
-            "there are no detectors 'eye'; there are own, age, phi");
+            "there are no detectors 'eye'; there are own, age, phi, known");
   EXPECT_FALSE(SunsetStudy::make({{kFull, "reference", "paper:age"}}, 1));
+}
+
+TEST(Detectors, TheFaultsTakeThePlaceOfAgesButOfAComponentThatHasNone) {
+  const auto text = read_text("rules/sunset.rules");
+  ASSERT_TRUE(text) << text.error();
+  const std::string rules = with_faults_known(*text);
+  EXPECT_THAT(rules, testing::HasSubstr("TRIGGER camera_driver_issue || hardware_disconnect\n"));
+  EXPECT_THAT(rules, testing::HasSubstr("TRIGGER sync_issue || memory_leakage\n"));
+  EXPECT_THAT(rules, testing::HasSubstr("TRIGGER cuda_out_of_memory || gpu_failure\n"));
+  EXPECT_EQ(rules.find("age("), rules.rfind("age("));  // of the depth camera
+  EXPECT_TRUE(check(Source("known.rules", rules)).rules);
 }
 
 TEST(Detectors, PhiTakesThePlaceOfEachAge) {
