@@ -83,6 +83,7 @@ class Monitor {
 
   void read_signal(SignalId signal, const Value& value, Time at);
   void update(InputId id, Time now);
+  Duration latency_of(SignalId signal) const;
   void note_reading(InputId id, const Slot& slot);
   void update_window(InputId id, Time now);
   Time next_crossing(InputId id, Time now) const;

@@ -30,9 +30,7 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
   const Slot slot = as_type(value, declared.type, text);
   for (const InputId id : state.inputs) {
     const Input& input = knowledge_.rules[id];
-    // After one reading nobody knows when the next will come.
-    const Duration latency = has_rhythm ? usual_latency(state.interval) : monitor::kLongestLatency;
-    knowledge_.signals.set_latency(id, latency + input.window);
+    knowledge_.signals.set_latency(id, latency_of(signal) + input.window);
     knowledge_.signals.set_read_at(id, at);
     if (has_rhythm && !had_rhythm) knowledge_.signals.touch(id);
     if (input.kind == Kind::kSignal) {
@@ -50,6 +48,15 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
       update_window(id, at);
     }
   }
+}
+
+Duration Monitor::latency_of(SignalId signal) const {
+  // Nodes tell at once when a parameter changes.
+  if (std::holds_alternative<ParameterId>(knowledge_.rules[signal].source))
+    return knowledge_.rules.cycle;
+  // After one reading nobody knows when the next will come.
+  const Duration interval = signals_[signal.index].interval;
+  return interval > Duration::zero() ? usual_latency(interval) : monitor::kLongestLatency;
 }
 
 // A new extreme, or nearer to a threshold than it ever was lately?

@@ -179,6 +179,15 @@ TEST(Monitor, KnowsHowLongATopicThatComesInBurstsIsSilent) {
   EXPECT_LT(rhythm().silence, 200ms) << "an outage is no pause";
 }
 
+TEST(Monitor, HearsOfAParameterAtOnceHoweverSeldomItChanges) {
+  Watched watched("COMPONENT camera NODE /camera\nSIGNAL gain PARAMETER camera gain\n" +
+                  rule("gain > 1 || other > 1"));
+  for (const SignalId signal : {SignalId(0), SignalId(1)})
+    watched.observe(100ms, SignalRead{signal, Value(2.0)});
+  EXPECT_LE(watched.knowledge.signals.latency(InputId(0)), watched.knowledge.rules.cycle);
+  EXPECT_GT(watched.knowledge.signals.latency(InputId(1)), 1s) << "nobody knows of a message";
+}
+
 TEST(Monitor, ReadsDiagnosticsAsTheTypeThatTheRulesNeed) {
   Watched watched(rule("flag && number > 1 && text == \"1.50\""));
   const auto read = [&](std::size_t s) {
