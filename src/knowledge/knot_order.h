@@ -57,8 +57,8 @@ class KnotOrder {
   }
   bool is_marked(Knot knot, Towards towards) { return marks(towards)[knot] == search_; }
 
-  std::vector<Knot> order_;         // by place
-  std::vector<std::size_t> place_;  // by knot
+  std::vector<Knot> order_;                          // by place
+  std::vector<std::size_t> place_;                   // by knot
   std::array<std::vector<std::uint32_t>, 2> marks_;  // by Towards
   std::uint32_t search_ = 0;
 };
