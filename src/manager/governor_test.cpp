@@ -25,12 +25,6 @@ TestRobot one_camera(const Governor::Options& governor, const std::string& rules
   return robot;
 }
 
-std::string transcript(const TestRobot& robot) {
-  std::string text = "\n";
-  for (const std::string& line : robot.said) text += line + "\n";
-  return text;
-}
-
 std::vector<Time> times_of_choices(const TestRobot& robot) {
   std::vector<Time> times;
   for (const Event& event : robot.events) {

@@ -146,6 +146,20 @@ void Manager::abandon_all(const std::string& reason, Time now) {
   }
 }
 
+// Whoever only waits for a verdict gives way to a more critical failure, and learns nothing.
+void Manager::make_way_for(StrategyId strategy, Time now) {
+  const RuleId rule = knowledge_.rules[strategy].rule;
+  for (const ComponentId component : knowledge_.rules[strategy].components) {
+    const Attempt* holder = knowledge_.states.reservation(component);
+    if (holder == nullptr) continue;
+    const StrategyId holding = holder->strategy;
+    knowledge_.tell(
+        now, StrategyAbandoned{holding, knowledge_.rules[component].name + " is needed for " +
+                                            knowledge_.rules[rule].name});
+    analyzer_.abandon(knowledge_.rules[holding].rule, now);
+  }
+}
+
 void Manager::plan(Time now) {
   const std::vector<RuleId> failures = analyzer_.plannable(now);
   for (const RuleId failure : failures) {
@@ -207,6 +221,7 @@ void Manager::carry_out(const Verdict& verdict, Time now) {
   const bool is_dry = autonomy_ == Autonomy::kAdvise;
   if (!is_dry && governor_.awaits_approval({strategy, verdict.candidates, verdict.suspects}, now))
     return;
+  if (!is_dry) make_way_for(strategy, now);
   knowledge_.tell(
       now, StrategyChosen{strategy, verdict.candidates, plan::explained_by(strategy, knowledge_),
                           is_dry, verdict.suspects});

@@ -70,6 +70,7 @@ class Manager : public ManagingSystem {
   void refresh_conditions(StrategyId strategy, Time now);
   void forget(std::optional<RuleId> rule);
   void abandon_all(const std::string& reason, Time now);
+  void make_way_for(StrategyId strategy, Time now);
   void plan(Time now);
   std::vector<Verdict> allowed_plan(const std::vector<RuleId>& failures, Time now);
   void begin(StrategyId strategy, Time now);

@@ -63,13 +63,6 @@ class ManagerWith : public testing::TestWithParam<PlannerFactory> {
 INSTANTIATE_TEST_SUITE_P(EachPlanner, ManagerWith, testing::Values(paper, bayes),
                          [](const auto& test) { return test.index == 0 ? "paper" : "bayes"; });
 
-std::string transcript(const TestRobot& robot) {
-  std::string out;
-  for (const std::string& line : robot.said) out += "\n  said  " + line;
-  for (const std::string& line : robot.asked) out += "\n  asked " + line;
-  return out;
-}
-
 TEST_P(ManagerWith, RestartsTheRootCauseAndNothingElse) {
   TestRobot robot = pipeline();
   robot["camera"].fault = "restart";
@@ -266,69 +259,6 @@ TEST(BayesPlanner, LeavesWhatWasRepairedUpstreamTheTimeToSettle) {
   robot.run_for(20s);
   EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
   EXPECT_FALSE(robot.was_asked("fusion:")) << transcript(robot);
-}
-
-TEST(BayesPlanner, LetsNoErrorWaitForALesserFailureToSettle) {
-  TestRobot robot(R"(
-COMPONENT camera NODE /camera
-RULE Blurred
-  POLICIES NON_CRITICAL
-  TRIGGER blur > 0.5
-    STRATEGY focus 90 10
-      ADAPTATION camera set_parameter angle 1 5
-RULE Dark
-  POLICIES ERROR
-  TRIGGER brightness < 0.5
-    STRATEGY light 90 10
-      ADAPTATION camera set_parameter on 1 5
-)");
-  robot.add("camera").parameters = {{"on", Value(std::int64_t{0})},
-                                    {"angle", Value(std::int64_t{0})}};
-  robot.discover();
-  robot.signal("blur", Value(0.0));
-  for (int i = 0; i < 3; ++i) {
-    robot.signal("brightness", Value(1.0));
-    robot.run_for(1s);  // so often it is read, and so long one would wait for a fresh reading
-  }
-  robot.signal("blur", Value(1.0));
-  robot.signal("brightness", Value(0.2));
-  robot.run_for(100ms);
-  EXPECT_EQ(robot.count("Dark waits: camera is being adapted"), 1u) << transcript(robot);
-  robot.signal("blur", Value(0.0));
-  robot.run_for(200ms);
-  EXPECT_EQ(robot.count("Blurred resolved by focus"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count("camera is held responsible for Dark"), 1u) << transcript(robot);
-}
-
-TEST(Verdicts, ThatNobodyCanGiveHoldUpNoError) {
-  TestRobot robot(R"(
-COMPONENT fusion NODE /fusion
-SIGNAL entropy DIAGNOSTIC segmentation KEY entropy STALE 500ms
-RULE Bad
-  POLICIES WARNING
-  TRIGGER entropy > 0.5
-    STRATEGY recalibrate 90 10
-      ADAPTATION fusion set_parameter offset 1 5
-RULE Dead
-  POLICIES ERROR
-  TRIGGER silence > 0.5
-    STRATEGY reset 90 10
-      ADAPTATION fusion set_parameter on 1 5
-)");
-  robot.add("fusion").parameters = {{"on", Value(std::int64_t{0})},
-                                    {"offset", Value(std::int64_t{0})}};
-  robot.discover();
-  for (int i = 0; i < 10; ++i) {
-    robot.signal("entropy", Value(i < 8 ? 0.0 : 1.0));
-    robot.signal("silence", Value(0.0));
-    robot.run_for(200ms);
-  }
-  EXPECT_EQ(robot.count("fusion is held responsible for Bad"), 1u) << transcript(robot);
-  robot.signal("silence", Value(1.0));  // so nobody hears of the entropy any longer
-  robot.run_for(3s);
-  EXPECT_EQ(robot.count("recalibrate did not resolve Bad: nobody can see"), 1u)
-      << transcript(robot);
-  EXPECT_EQ(robot.count("fusion is held responsible for Dead"), 1u) << transcript(robot);
 }
 
 // ---- Adaptations that go wrong.
@@ -612,7 +542,7 @@ RULE FusionDead
   robot.run_for(100ms);
   robot.signal("blur", Value(0.0));
   robot.run_for(1s);
-  EXPECT_EQ(robot.count("Focus resolved"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("Focus went away"), 1u) << transcript(robot);
   robot.signal("silent", Value(1.0));
   robot.run_for(2s);
   EXPECT_FALSE(robot.was_asked("fusion:")) << "the camera is still sick" << transcript(robot);

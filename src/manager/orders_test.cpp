@@ -47,12 +47,6 @@ Order order(What what, std::string reason = "") {
   return {7, "Ann", std::move(reason), std::move(what)};
 }
 
-std::string transcript(const TestRobot& robot) {
-  std::string text = "\n";
-  for (const std::string& line : robot.said) text += line + "\n";
-  return text;
-}
-
 void begin_restart(TestRobot& robot) {
   robot["camera"].fault = "restart";
   for (int ms = 0; ms < 1000 && !robot.was_asked("camera: deactivate"); ++ms) robot.run_for(1ms);

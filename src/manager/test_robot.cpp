@@ -224,4 +224,11 @@ std::size_t TestRobot::count_asked(const std::string& part) const {
                     [&](const std::string& line) { return line.find(part) != std::string::npos; }));
 }
 
+std::string transcript(const TestRobot& robot) {
+  std::string out;
+  for (const std::string& line : robot.said) out += "\n  said  " + line;
+  for (const std::string& line : robot.asked) out += "\n  asked " + line;
+  return out;
+}
+
 }  // namespace culprit::test

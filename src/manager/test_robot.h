@@ -128,4 +128,7 @@ class TestRobot {
   int last_pid_ = 100;
 };
 
+// All that was said and asked for, a line each.
+std::string transcript(const TestRobot& robot);
+
 }  // namespace culprit::test

@@ -151,6 +151,32 @@ TEST(BayesPlanner, LetsAGreaterFailureActWhileALesserOneUpstreamIsJudged) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "Dead.restart");
 }
 
+TEST(BayesPlanner, LetsAGreaterFailureHaveTheComponentOfALesserOneThatIsJudged) {
+  Scene scene(failure_of("a", "Focus", "NON_CRITICAL") + "RULE Dead\nPOLICIES ERROR\n" +
+              "TRIGGER x > 1\nSTRATEGY restart 50 10\nADAPTATION a restart 2\n");
+  scene.fail("Dead").attempt("Focus.restart");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "");
+  EXPECT_EQ(scene.candidate("Dead.restart").excluded, Condition::kAdapting);
+  scene.attempt("Focus.restart", Attempt::Stage::kWaiting);
+  EXPECT_EQ(scene.plan(kFewRedeployments), "Dead.restart");
+}
+
+TEST(BayesPlanner, DoesWhatIsSureAtOnceWhileAGreaterFailureDownstreamWaits) {
+  const auto focus = [](const char* chance) {
+    return "COMPONENT a NODE /a\nRULE Focus\nPOLICIES NON_CRITICAL\nTRIGGER x > 1\nSTRATEGY set " +
+           std::string(chance) + " 10\nADAPTATION a set_parameter p 1 2\n";
+  };
+  std::string suspect = failure_of("b", "B");
+  suspect.replace(suspect.find("x > 1"), 5, "age(/out) > 2s");
+  for (const bool is_sure : {true, false}) {
+    Scene scene(focus(is_sure ? "95" : "60") + suspect + failure_of("c", "C", "WARNING"));
+    scene.link("a", "c").link("b", "c").fail("Focus", 9900ms).fail("C", 9900ms);  // 100 ms ago
+    scene->signals.set_rhythm(TopicId(0), {scene->now - 250ms, 100ms, 100ms});
+    EXPECT_EQ(scene.plan(kBalanced), is_sure ? "Focus.set" : "");
+    EXPECT_EQ(scene.candidate("C.restart").excluded, Condition::kSuspect);
+  }
+}
+
 TEST(BayesPlanner, PrefersTheStrategyThatClearsMore) {
   // Two rules touch one component; nothing else tells them apart.
   Scene scene(failure_of("a", "A") + failure_of("b", "B") +

@@ -117,9 +117,7 @@ void PlanningStep::examine(std::size_t failure) {
     if (all[s].is_tried) {
       entry.candidate.excluded = Condition::kTried;
     } else if (all[s].invalid) {
-      entry.candidate.excluded = Condition::kInvalid;
-      entry.candidate.component = all[s].invalid->component;
-      entry.candidate.remark = all[s].invalid->reason;
+      exclude_invalid(entry, *all[s].invalid);
     } else if (all[s].is_withheld) {
       entry.candidate.excluded = Condition::kWithheld;
       entry.candidate.component = knowledge_.rules[all[s].strategy].components.front();
@@ -165,6 +163,7 @@ void PlanningStep::exclude(Entry& entry, double chance) const {
   if (watchers_ && is_newborn(rule, knowledge_) && !needs_no_verdict &&
       watchers_->are_upstream_of(rule))
     return exclude(entry, {Condition::kSuspect, likeliest_component(rule), rule});
+  if (const auto held = surroundings_.reserved(strategy)) return exclude(entry, *held);
   for (const ComponentId c : strategy.components) {
     if (const auto obstacle = surroundings_.obstacle(reach_.place_of(c), strategy, chance))
       return exclude(entry, *obstacle);
@@ -183,6 +182,15 @@ void PlanningStep::exclude(Entry& entry, const Surroundings::Obstacle& obstacle)
   entry.candidate.excluded = obstacle.condition;
   entry.candidate.component = obstacle.component;
   entry.candidate.because = obstacle.because;
+}
+
+// What makes no sense now may make sense once that is over which is being done to its component.
+void PlanningStep::exclude_invalid(Entry& entry, const Invalid& why) const {
+  const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
+  if (const auto held = surroundings_.reserved(strategy)) return exclude(entry, *held);
+  entry.candidate.excluded = Condition::kInvalid;
+  entry.candidate.component = why.component;
+  entry.candidate.remark = why.reason;
 }
 
 // A failure that others more likely explain waits for them.

@@ -36,6 +36,7 @@ class PlanningStep {
   double disruption(const Strategy& strategy) const;
   void exclude(Entry& entry, double chance) const;
   void exclude(Entry& entry, const Surroundings::Obstacle& obstacle) const;
+  void exclude_invalid(Entry& entry, const Invalid& why) const;
   void exclude_effect(Entry& entry) const;
   void select(Criticality level);
   ComponentId likeliest_component(RuleId rule) const;

@@ -65,9 +65,9 @@ Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach,
                            std::span<const RuleId> failures, std::span<const RuleId> suspicious)
     : knowledge_(knowledge),
       reach_(reach),
-      adapting_(reach.size()),
       holding_(kLevels, Marks(reach.size())),
       urgent_(kLevels, Marks(reach.size())),
+      planned_(kLevels, Marks(reach.size())),
       judged_(kLevels, Marks(reach.size())),
       pending_(kLevels, Marks(reach.size())),
       suspects_(kLevels, Marks(reach.size())),
@@ -83,14 +83,13 @@ Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach,
     const auto& attempt = knowledge.states[rule].attempt;
     if (!attempt) continue;
     const auto& adapted = knowledge.rules[attempt->strategy].components;
-    mark(adapting_, adapted, rule);
     const bool has_effect = attempt->stage == Attempt::Stage::kWaiting;
     mark_below(has_effect ? judged_ : urgent_, rule);
     for (std::size_t level = 0; level < kLevels; ++level) {
       if (!has_effect || level <= level_of(rule, knowledge)) mark(holding_[level], adapted, rule);
     }
   }
-  for (const RuleId rule : failures) mark_below(urgent_, rule);
+  for (const RuleId rule : failures) mark_below(planned_, rule);
   for (const RuleId rule : suspicious) {
     patience_ = std::max(patience_, longest_wait(rule, knowledge));
     mark_below(pending_, rule);
@@ -99,22 +98,33 @@ Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach,
   }
 }
 
+std::optional<Surroundings::Obstacle> Surroundings::reserved(const Strategy& strategy) const {
+  const Marks& marks = holding_[level_of(strategy.rule, knowledge_)];
+  for (const ComponentId c : strategy.components) {
+    const std::size_t place = reach_.place_of(c);
+    if (has(marks.bits(), place)) return Obstacle{Condition::kAdapting, c, marks.failure[place]};
+  }
+  return std::nullopt;
+}
+
 std::optional<Surroundings::Obstacle> Surroundings::obstacle(std::size_t place,
                                                              const Strategy& strategy,
                                                              double chance) const {
   const std::size_t level = level_of(strategy.rule, knowledge_);
-  if (has(adapting_.bits(), place))
-    return Obstacle{Condition::kAdapting, reach_[place], adapting_.failure[place]};
   if (auto held = found(Condition::kDownstream, reach_.upstream(place), holding_[level]))
     return held;
+  const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
   if (knowledge_.now < later(knowledge_.states[strategy.rule].failing_since, patience_)) {
     if (auto pending = found(Condition::kSuspect, reach_.upstream(place), suspects_[level]))
       return pending;
-    const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
     auto pending = in_the_way(place, pending_[level]);
     if (pending && !needs_no_verdict) return pending;
   }
   if (auto urgent = in_the_way(place, urgent_[level])) return urgent;
+  // What is sure and takes nothing down is over before they would have their turn downstream.
+  if (auto next = in_the_way(place, planned_[level])) {
+    if (!needs_no_verdict || has(planned_[level].bits(), place)) return next;
+  }
   return takes_down(strategy) ? in_the_way(place, judged_[level]) : std::nullopt;
 }
 

@@ -36,7 +36,9 @@ class Surroundings {
     ComponentId component;  // see Candidate
     std::optional<RuleId> because;
   };
-  // What stands against adapting the component at `place` by this strategy, if anything does.
+  // Who has a component of the strategy, if anybody does that need not give way to it.
+  std::optional<Obstacle> reserved(const Strategy& strategy) const;
+  // What else stands against adapting the component at `place` by this strategy, if anything does.
   // `chance` is u of the strategy (plan/bayes/remedies.h).
   std::optional<Obstacle> obstacle(std::size_t place, const Strategy& strategy,
                                    double chance) const;
@@ -65,9 +67,11 @@ class Surroundings {
 
   const Knowledge& knowledge_;
   const Reach& reach_;
-  Marks adapting_;               // reserved by attempts
-  std::vector<Marks> holding_;   // by level: reserved, and holding back what depends on it
+  // By level: reserved by attempts, and holding back what depends on it. Not by one that is less
+  // critical and only waits for its verdict: it gives way.
+  std::vector<Marks> holding_;
   std::vector<Marks> urgent_;    // by level: of more critical failures that are worked on
+  std::vector<Marks> planned_;   // by level: of those to be decided about
   std::vector<Marks> judged_;    // by level: of those whose strategy waits for its verdict
   std::vector<Marks> pending_;   // by level: of suspicious rules that are more critical
   std::vector<Marks> suspects_;  // by level: of suspicious rules at least as critical

@@ -1,0 +1,118 @@
+// The lower criticality never delays the higher.
+#include <gtest/gtest.h>
+
+#include "manager/manager.h"
+#include "manager/test_robot.h"
+#include "plan/paper_planner.h"
+
+namespace culprit::test {
+namespace {
+
+// Two failures of one component; what is done about the lesser is the adaptation `focus`.
+std::string rules(const std::string& focus) {
+  return R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Blurred
+  POLICIES NON_CRITICAL
+  TRIGGER blur > 0.5
+    STRATEGY focus 90 10
+      ADAPTATION camera )" +
+         focus + R"(
+RULE Dark
+  POLICIES ERROR
+  TRIGGER brightness < 0.5
+    STRATEGY light 90 10
+      ADAPTATION camera set_parameter on 1 5
+)";
+}
+
+// Each signal is read once a second: so long one would wait for a fresh reading.
+TestRobot camera(const std::string& focus) {
+  TestRobot robot(rules(focus));
+  robot.add("camera").parameters = {{"on", Value(std::int64_t{0})},
+                                    {"angle", Value(std::int64_t{0})}};
+  robot.discover();
+  for (int i = 0; i < 3; ++i) {
+    robot.signal("blur", Value(0.0));
+    robot.signal("brightness", Value(1.0));
+    robot.run_for(1s);
+  }
+  return robot;
+}
+
+TEST(Criticality, LetsNoErrorWaitForAVerdictOnALesserFailure) {
+  TestRobot robot = camera("set_parameter angle 1 5");
+  const StrategyId focus = robot.rules().rules[0].strategies.front();
+  const Belief before = robot.manager().knowledge().beliefs[focus];
+  robot.signal("blur", Value(1.0));
+  robot.run_for(100ms);
+  ASSERT_EQ(robot.count("set angle of camera: done"), 1u) << transcript(robot);
+  robot.signal("brightness", Value(0.2));
+  EXPECT_EQ(robot.count("Blurred.focus is left where it is: camera is needed for Dark"), 1u)
+      << transcript(robot);
+  EXPECT_EQ(robot.count("camera is held responsible for Dark"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.manager().knowledge().beliefs[focus], before) << "nobody saw whether it helped";
+  robot.run_for(100ms);
+  robot.signal("brightness", Value(1.0));
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("Dark resolved by light"), 1u) << transcript(robot);
+  robot.run_for(3s);
+  EXPECT_EQ(robot.count("camera is held responsible for Blurred"), 2u)
+      << "it is tried again" << transcript(robot);
+}
+
+TEST(Criticality, LetsAnErrorWaitUntilTheAdaptationOfALesserFailureIsDone) {
+  TestRobot robot = camera("redeploy 5");
+  robot.signal("blur", Value(1.0));
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(100ms);
+  EXPECT_EQ(robot.count("Dark waits: camera is being adapted"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("camera is held responsible for Dark"), 0u) << transcript(robot);
+}
+
+TEST(Criticality, LetsNoErrorWaitForALesserFailureToSettle) {
+  TestRobot robot = camera("redeploy 5");
+  robot.signal("blur", Value(1.0));
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(10ms);
+  robot.signal("blur", Value(0.0));
+  robot.run_for(800ms);
+  EXPECT_EQ(robot.count("Blurred resolved by focus"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("camera is held responsible for Dark"), 1u) << transcript(robot);
+}
+
+// The paper's planner leaves to a strategy what it has until the verdict.
+TEST(Criticality, LetsNoErrorWaitForAVerdictThatNobodyCanGive) {
+  TestRobot robot(R"(
+COMPONENT fusion NODE /fusion
+SIGNAL entropy DIAGNOSTIC segmentation KEY entropy STALE 500ms
+RULE Bad
+  POLICIES WARNING
+  TRIGGER entropy > 0.5
+    STRATEGY recalibrate 90 10
+      ADAPTATION fusion set_parameter offset 1 5
+RULE Dead
+  POLICIES ERROR
+  TRIGGER silence > 0.5
+    STRATEGY reset 90 10
+      ADAPTATION fusion set_parameter on 1 5
+)",
+                  std::make_unique<PaperPlanner>());
+  robot.add("fusion").parameters = {{"on", Value(std::int64_t{0})},
+                                    {"offset", Value(std::int64_t{0})}};
+  robot.discover();
+  for (int i = 0; i < 10; ++i) {
+    robot.signal("entropy", Value(i < 8 ? 0.0 : 1.0));
+    robot.signal("silence", Value(0.0));
+    robot.run_for(200ms);
+  }
+  EXPECT_EQ(robot.count("fusion is held responsible for Bad"), 1u) << transcript(robot);
+  robot.signal("silence", Value(1.0));  // so nobody hears of the entropy any longer
+  robot.run_for(3s);
+  EXPECT_EQ(robot.count("recalibrate did not resolve Bad: nobody can see"), 1u)
+      << transcript(robot);
+  EXPECT_EQ(robot.count("fusion is held responsible for Dead"), 1u) << transcript(robot);
+}
+
+}  // namespace
+}  // namespace culprit::test
