@@ -124,7 +124,9 @@ struct Chaos : testing::Test {
         std::cout << name_of(member) << ": process " << pid << ", "
                   << process::state_letter(pid).value_or('?') << "\n";
     }
-    const fs::path kept = world.folder().string() + "-chaos";
+    // The temporary folder of this process goes with it.
+    const fs::path kept =
+        fs::temp_directory_path().parent_path() / (world.folder().filename().string() + "-chaos");
     fs::copy(world.folder(), kept, fs::copy_options::recursive);
     std::cout << "kept: " << kept << "\n";
   }
@@ -217,6 +219,25 @@ TEST_F(Chaos, CulpritMayBeKilledAtAnyInstant) {
             << " KiB; a node that lived through it: " << witness_before.descriptors << ", "
             << witness_before.kilobytes << " KiB before, " << witness_after.descriptors << ", "
             << witness_after.kilobytes << " KiB after\n";
+}
+
+// A node that is inactive when it starts, was activated by a culprit that is gone, and died before
+// the next one came.
+TEST_F(Chaos, WhatDiedWhileNobodyWatchedComesBackAsItWas) {
+  LiveSunset robot(world);
+  ASSERT_TRUE(robot.is_well_within(30s)) << robot.complaint();
+  {
+    TestProgram culprit = run();
+    ASSERT_TRUE(culprit.prints("fusion is there")) << culprit.output();
+    ASSERT_TRUE(robot.inject("image_degradation"));
+    ASSERT_TRUE(culprit.prints("resolved by enhancement_activate")) << culprit.output();
+    culprit.signal(SIGKILL);
+    culprit.wait();
+  }
+  ASSERT_TRUE(robot.inject("kill:image_enhancement"));
+  TestProgram culprit = run();
+  EXPECT_TRUE(culprit.prints("redeploy image_enhancement: done")) << culprit.output();
+  EXPECT_TRUE(robot.is_well_within(30s)) << robot.complaint() << "\n" << culprit.output();
 }
 
 }  // namespace

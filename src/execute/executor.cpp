@@ -162,7 +162,7 @@ void Executor::finish_goal(Run& run, Time now) {
   }
   if (pursuit.is_reached()) {
     const bool switches = type == AdaptationType::kActivate || type == AdaptationType::kDeactivate;
-    if (switches) note_lifecycle(pursuit);
+    if (switches) note_lifecycle(pursuit, now);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
     note_mode(pursuit, now);
     ++run.goal;
@@ -192,7 +192,7 @@ bool Executor::next_undo(Run& run, Time now) {
 void Executor::finish_undo(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const bool reached = pursuit.is_reached();
-  if (reached) note_lifecycle(pursuit);
+  if (reached) note_lifecycle(pursuit, now);
   // A mode that is back by itself was set back, and that is remembered.
   if (std::holds_alternative<execute::ModeGoal>(pursuit.goal()) && pursuit.has_changed_anything())
     knowledge_.rivals.forget(pursuit.component());
@@ -215,10 +215,10 @@ void Executor::note_change(Run& run, Time now) {
 }
 
 // The component's lifecycle is now where it was brought on purpose.
-void Executor::note_lifecycle(const Pursuit& pursuit) {
+void Executor::note_lifecycle(const Pursuit& pursuit, Time now) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
   if (lifecycle != nullptr)
-    knowledge_.components[pursuit.component()].intended_lifecycle = lifecycle->target;
+    knowledge_.intend_lifecycle(pursuit.component(), lifecycle->target, now);
 }
 
 // Which mode was set, and from which: something else may set it back.

@@ -104,6 +104,11 @@ class EventWriter {
   Json operator()(const ComponentFound& e) const {
     return {{"type", "component_found"}, {"component", name(e.component)}, {"pid", e.pid}};
   }
+  Json operator()(const LifecycleIntended& e) const {
+    return {{"type", "lifecycle_intended"},
+            {"component", name(e.component)},
+            {"lifecycle", culprit::to_string(e.state)}};
+  }
   Json operator()(const RivalSeen& e) const {
     return {{"type", "rival_seen"}, {"component", name(e.component)}};
   }

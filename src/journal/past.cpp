@@ -72,6 +72,27 @@ std::optional<decltype(Event::what)> about_process(const Json& body, const RuleS
   return ComponentFound{*component, static_cast<int>(pid)};
 }
 
+std::optional<decltype(Event::what)> about_lifecycle(const Json& body, const RuleSet& rules) {
+  const auto component = find_component(rules, text_of(body, "component"));
+  const auto reading = reading_from_json(body);
+  const auto* state = std::get_if<Lifecycle>(&reading);
+  if (!component || state == nullptr) return std::nullopt;
+  return LifecycleIntended{*component, *state};
+}
+
+// Of each component only the last event of this kind counts.
+template <class What>
+bool replaces_older(const Event& event, Past& kept) {
+  const auto* newer = std::get_if<What>(&event.what);
+  if (newer == nullptr) return false;
+  std::erase_if(kept, [&](const Event& old) {
+    const auto* older = std::get_if<What>(&old.what);
+    return older != nullptr && older->component == newer->component;
+  });
+  kept.push_back(event);
+  return true;
+}
+
 bool is_over(const Silence& silence, Time began, Time now) {
   return silence.lasts && later(began, *silence.lasts) <= now;
 }
@@ -116,6 +137,7 @@ std::optional<Event> past_event(const Json& body, const RuleSet& rules) {
   std::optional<decltype(Event::what)> what;
   if (type == "order_accepted") what = about_order(body, rules);
   if (type == "component_found") what = about_process(body, rules);
+  if (type == "lifecycle_intended") what = about_lifecycle(body, rules);
   if (!what && rule) what = about_rule(type, *rule);
   if (!what && strategy) what = about_strategy(type, body, *strategy, rules);
   if (!what) return std::nullopt;
@@ -138,14 +160,9 @@ Past still_counting(const Past& past, Time now, const RuleSet& rules) {
       if (silence != nullptr && !is_over(*silence, event.at, now)) kept.push_back(event);
       continue;
     }
-    if (const auto* found = std::get_if<ComponentFound>(&event.what)) {
-      std::erase_if(kept, [&](const Event& old) {
-        const auto* other = std::get_if<ComponentFound>(&old.what);
-        return other != nullptr && other->component == found->component;
-      });
-      kept.push_back(event);
+    if (replaces_older<ComponentFound>(event, kept) ||
+        replaces_older<LifecycleIntended>(event, kept))
       continue;
-    }
     const auto rule = searched(event, rules);
     if (rule && i > open[rule->index] && is_said_again(event, kept, rules)) continue;
     const bool is_open = rule && i >= open[rule->index];

@@ -8,7 +8,7 @@
 namespace culprit::journal {
 
 // Nothing counts for longer, but silences, what was tried on failures that are still there,
-// and which processes there were.
+// and of each component its last process and its intended lifecycle.
 inline constexpr Duration kPastCounts = std::chrono::hours(1);
 
 // Of the body of an `event` row; nothing if it is of another kind, or about what `rules` does not

@@ -103,6 +103,7 @@ class Describer {
     return rules_[e.component].name + " is there" +
            (e.pid == 0 ? "" : " (process " + std::to_string(e.pid) + ")");
   }
+  std::string operator()(const LifecycleIntended&) const { return ""; }
   std::string operator()(const RivalSeen& e) const {
     return "something else sets the mode of " + rules_[e.component].name +
            " back; it is left alone";

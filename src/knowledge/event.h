@@ -142,6 +142,13 @@ struct ComponentFound {
   int pid = 0;
 };
 
+// Another state of its lifecycle is the intended one now (ComponentState::intended_lifecycle). Not
+// said to people: it is for the process of culprit that comes next.
+struct LifecycleIntended {
+  ComponentId component;
+  Lifecycle state = Lifecycle::kUnknown;
+};
+
 // Something else sets the mode back that strategies set (rivals.h). It is left alone from now on.
 struct RivalSeen {
   ComponentId component;
@@ -227,7 +234,7 @@ struct Event {
                RoundSpent, RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble,
                OrderAccepted, OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed,
                StrategyAbandoned, OrderCarriedOut, SilenceEnded, StormBegan, StormEnded,
-               LastResortReached>
+               LastResortReached, LifecycleIntended>
       what;
 };
 

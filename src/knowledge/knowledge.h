@@ -54,6 +54,9 @@ struct Knowledge {
   Time now{};                 // of the step under way
   std::vector<Event> events;  // of the step under way
 
+  // Sets ComponentState::intended_lifecycle, and tells if it is another.
+  void intend_lifecycle(ComponentId component, Lifecycle state, Time at);
+
   // When the component, or something that it depends on, last joined the graph.
   Time began(ComponentId component) const;
 

@@ -6,6 +6,8 @@
 //   StrategyFailed, RoundSpent, LastResortReached, RuleExhausted     what was tried
 //   OrderAccepted of Silence and LiftSilence                         silences
 //   ComponentFound                                                   which process it last ran in
+//   LifecycleIntended                                                what a new process of it is
+//   brought to
 //
 // Events of other kinds say nothing here.
 #pragma once

@@ -40,6 +40,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
 }
 
 void Manager::remember(const Past& past) {
+  monitor_.remember(past);
   governor_.remember(past);
   analyzer_.remember(past);
 }

@@ -12,6 +12,7 @@
 
 #include "knowledge/deadlines.h"
 #include "knowledge/knowledge.h"
+#include "knowledge/past.h"
 #include "monitor/phi_accrual.h"
 #include "monitor/sliding_count.h"
 #include "monitor/sliding_values.h"
@@ -31,6 +32,9 @@ class Monitor {
   // seen is unknown: it may still be discovered. From then on it is absent: a component that is not
   // there is not alive, a topic that never spoke is silent.
   Monitor(Knowledge& knowledge, Time start, Time settled);
+
+  // What earlier processes of culprit knew of lifecycles. Before the first observation.
+  void remember(const Past& past);
 
   // Takes in an observation as of `at`, which never goes back.
   void observe(const Observation& observation, Time at);

@@ -45,12 +45,18 @@ void Monitor::on(Time, const EndpointVanished& seen) {
   knowledge_.graph.endpoint_vanished(seen.node, seen.kind, seen.name);
 }
 
-void Monitor::on(Time, const LifecycleRead& seen) {
-  ComponentState& state = knowledge_.components[seen.component];
-  state.lifecycle = seen.state;
+void Monitor::remember(const Past& past) {
+  for (const Event& event : past) {
+    if (const auto* intended = std::get_if<LifecycleIntended>(&event.what))
+      knowledge_.components[intended->component].intended_lifecycle = intended->state;
+  }
+}
+
+void Monitor::on(Time at, const LifecycleRead& seen) {
+  knowledge_.components[seen.component].lifecycle = seen.state;
   const bool is_primary = seen.state != Lifecycle::kUnknown && seen.state != Lifecycle::kTransition;
   if (is_primary && knowledge_.states.reservation(seen.component) == nullptr)
-    state.intended_lifecycle = seen.state;
+    knowledge_.intend_lifecycle(seen.component, seen.state, at);
   for (const InputId id : component_inputs_[seen.component.index]) {
     if (knowledge_.rules[id].kind != Kind::kLifecycle) continue;
     knowledge_.signals.set(id, is_primary ? Slot::of(to_string(seen.state)) : Slot());

@@ -184,6 +184,26 @@ TEST_F(Memory, OfOrdersOutlivesARunThatDiedBeforeItsFirstStep) {
   EXPECT_TRUE(life->recovery.is_dry_run);
 }
 
+// It starts inactive, and the culprit that knew it active is gone, as is the one after that.
+TEST_F(Memory, OfLifecyclesBringsBackWhatDiedMeanwhile) {
+  robot["camera"].state_at_start = Lifecycle::kInactive;
+  robot["camera"].process = ProcessState::kGone;
+  crash();
+  robot.run_for(1s);
+  crash();
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("camera")) << transcript();
+  EXPECT_EQ(choices().size(), 1u) << transcript();
+}
+
+TEST_F(Memory, OfLifecyclesGivesWayToWhatIsSeen) {
+  robot["camera"].state = Lifecycle::kInactive;  // somebody wants that
+  crash();
+  robot.run_for(100ms);
+  EXPECT_EQ(robot.manager().knowledge().components[kCamera].intended_lifecycle,
+            Lifecycle::kInactive);
+}
+
 TEST_F(Memory, ReplaysWithTheRun) {
   robot["camera"].fault = "redeploy";
   run_until_said("restart did not resolve Silent");

@@ -87,6 +87,9 @@ struct AsJson {
   Json operator()(const ComponentFound& e) const {
     return {{"kind", "found"}, {"component", rules[e.component].name}};
   }
+  Json operator()(const LifecycleIntended& e) const {
+    return {{"kind", "lifecycle"}, {"component", rules[e.component].name}};
+  }
   Json operator()(const RivalSeen& e) const {
     return {{"kind", "rival"}, {"component", rules[e.component].name}};
   }
