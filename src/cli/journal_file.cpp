@@ -78,7 +78,10 @@ std::string log_line(const journal::Entry& entry) {
     text = fmt::format("{} with {}: went away {:g} times, stayed {:g} times",
                        journal::text_of(body, "effect"), journal::text_of(body, "cause"),
                        journal::number_of(body, "cleared"), journal::number_of(body, "stayed"));
-  return fmt::format("{:>7}  {}  {:<17}  {}", entry.id, timestamp(entry.at), what, text);
+  if (text.empty() && body.contains("lifecycle"))
+    text = fmt::format("{} is to be {}", journal::text_of(body, "component"),
+                       journal::text_of(body, "lifecycle"));
+  return fmt::format("{:>7}  {}  {:<18}  {}", entry.id, timestamp(entry.at), what, text);
 }
 
 std::int64_t wall_now() {

@@ -70,7 +70,8 @@ TEST_F(Journal, SurvivesAKillAndTellsAndReplaysWhatHappened) {
   EXPECT_EQ(second.wait(), 0);
   kill(process_that_is_there(second.output()), SIGKILL);  // culprit leaves the robot running
 
-  EXPECT_THAT(said_by({"log", "--journal", journal}), HasSubstr("CameraGone detected"));
+  EXPECT_THAT(said_by({"log", "--journal", journal}),
+              AllOf(HasSubstr("CameraGone detected"), HasSubstr("camera is to be active")));
   const std::string why = said_by({"explain", "--last", "--journal", journal});
   EXPECT_THAT(why, HasSubstr("camera_redeploy"));
   EXPECT_THAT(why, HasSubstr("What was weighed"));
