@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "plan/bayes/bayes_planner.h"
+#include "plan/bayes/side_by_side.h"
 #include "plan/bayes/suspicion.h"
 
 namespace culprit::plan {
@@ -126,6 +127,7 @@ void PlanningStep::examine(std::size_t failure) {
       entry.candidate.resolves = root * all[s].chance;
       entry.candidate.value = root * std::min(1.0, helps) * stakes_[failure];
       entry.candidate.cost = costs[next++];
+      entry.time = tries[s].time;
       entry.worth = worth(entry.candidate.value, entry.candidate.cost, index(tries[s]));
       exclude(entry, all[s].chance);
     }
@@ -139,7 +141,8 @@ std::vector<Option> PlanningStep::options(std::size_t failure,
   for (const Remedy& remedy : remedies) {
     const Strategy& strategy = knowledge_.rules[remedy.strategy];
     const Effort effort{strategy.impact, latency, redeployments(strategy), disruption(strategy)};
-    all.push_back({remedy.chance, try_cost(effort, weights_, knowledge_.rules)});
+    all.push_back({remedy.chance, try_cost(effort, weights_, knowledge_.rules),
+                   time_cost(effort, weights_, knowledge_.rules)});
   }
   return all;
 }
@@ -233,6 +236,7 @@ void PlanningStep::select(Criticality level) {
   BitRows takes(open.size(), reach_.size());
   BitRows near(open.size(), reach_.size());
   std::vector<Choice> choices;
+  std::vector<Timed> timed;
   for (std::size_t e = 0; e < open.size(); ++e) {
     for (const ComponentId c : knowledge_.rules[open[e]->candidate.strategy].components) {
       const std::size_t place = reach_.place_of(c);
@@ -242,9 +246,10 @@ void PlanningStep::select(Criticality level) {
     }
     add(near[e], takes[e]);
     choices.push_back({open[e]->failure, open[e]->worth, takes[e], near[e]});
+    timed.push_back({open[e]->failure, open[e]->candidate.cost, open[e]->time, takes[e]});
   }
   std::vector<bool> is_chosen(open.size(), false);
-  for (const std::size_t e : best_conflict_free_set(choices)) {
+  for (const std::size_t e : side_by_side(timed, best_conflict_free_set(choices))) {
     is_chosen[e] = true;
     has_choice_[open[e]->failure] = true;
     surroundings_.add(knowledge_.rules[open[e]->candidate.strategy]);

@@ -28,6 +28,7 @@ class PlanningStep {
     Candidate candidate;
     std::size_t failure = 0;  // index in failures_
     double worth = 0;
+    double time = 0;  // the part of its cost that its own time is
   };
 
   void find_stakes();

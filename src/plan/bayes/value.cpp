@@ -6,10 +6,14 @@ namespace culprit::plan {
 
 double weight(Criticality level) { return static_cast<double>(1 << static_cast<int>(level)); }
 
-double try_cost(const Effort& effort, const CostWeights& weights, const RuleSet& rules) {
+double time_cost(const Effort& effort, const CostWeights& weights, const RuleSet& rules) {
   const double cycles =
       static_cast<double>(effort.impact.count) + seconds(effort.latency) / seconds(rules.cycle);
-  return weights.time * cycles / static_cast<double>(rules.heaviest.count) + weights.attempt +
+  return weights.time * cycles / static_cast<double>(rules.heaviest.count);
+}
+
+double try_cost(const Effort& effort, const CostWeights& weights, const RuleSet& rules) {
+  return time_cost(effort, weights, rules) + weights.attempt +
          weights.redeployment * effort.redeployments + weights.disruption * effort.disruption;
 }
 

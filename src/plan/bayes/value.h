@@ -46,12 +46,14 @@ struct Effort {
   int redeployments = 0;
   double disruption = 0;  // 0..1
 };
-// c_s
+// c_s, and its first part, what the time costs
 double try_cost(const Effort& effort, const CostWeights& weights, const RuleSet& rules);
+double time_cost(const Effort& effort, const CostWeights& weights, const RuleSet& rules);
 
 struct Option {
   double chance = 0;  // u
   double cost = 0;    // c > 0
+  double time = 0;    // the part of it that its time costs
 };
 // u/c
 inline double index(const Option& option) { return option.chance / option.cost; }
