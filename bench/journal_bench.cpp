@@ -85,7 +85,6 @@ journal::Recorder::Options options_for(const File& file) {
   return options;
 }
 
-// Claim: at most 5 % on top of what a step takes the thread that steps, in real time.
 // Of steps that came first after a pause, with cold caches, and of those that came second. A median
 // of both together would lie anywhere between the two.
 struct Steps {
@@ -93,6 +92,7 @@ struct Steps {
   double typical() const { return (quantile(ns[0], 0.5) + quantile(ns[1], 0.5)) / 2; }
 };
 
+// Claim: at most 5 % on top of what a step takes the thread that steps, in real time.
 void journalling(benchmark::State& state) {
   const RuleSet rules = *check(Source("bench.rules", kRules)).rules;
   const File file("step");

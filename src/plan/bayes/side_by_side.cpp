@@ -1,6 +1,7 @@
 #include "plan/bayes/side_by_side.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 namespace culprit::plan {
