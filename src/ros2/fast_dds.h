@@ -28,8 +28,8 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include "ros2/careful_transport.h"
 #include "ros2/participant.h"
-#include "ros2/quiet_start.h"
 
 namespace culprit::ros2::fast_dds {
 
@@ -251,8 +251,8 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
   udp->maxInitialPeersRange =
       32;  // participants of one machine that are announced to, as ROS 2 Iron and newer
   out.transport().use_builtin_transports = false;
-  out.transport().user_transports.push_back(
-      std::make_shared<QuietStartDescriptor>(std::move(udp), std::move(listens)));
+  out.transport().user_transports.push_back(std::make_shared<CarefulTransportDescriptor>(
+      std::move(udp), std::move(listens), options.security.has_value()));
   return out;
 }
 

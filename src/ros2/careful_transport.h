@@ -1,13 +1,19 @@
-// Keeps a participant quiet until it can hear: a transport over another one.
+// A transport over another one, which spares a participant two faults of Fast DDS.
 //
-// Fast DDS announces a participant while its receivers are still being opened. Whoever answers at
-// once, as every peer on the same machine does, answers into the void, and repeats itself only when
-// a heartbeat comes round, 1 to 3 s later. So nothing is sent before create_participant() has
-// returned; the announcements that follow are the first ones heard.
+// It is quiet until it can hear. Fast DDS announces a participant while its receivers are still
+// being opened. Whoever answers at once, as every peer on the same machine does, answers into the
+// void, and repeats itself only when a heartbeat comes round, 1 to 3 s later. So nothing is sent
+// before create_participant() has returned; the announcements that follow are the first ones heard.
+//
+// In a secured domain it hears one datagram at a time. A goodbye goes to a participant's unicast
+// and multicast ports, each of which has a thread; Fast DDS 2.9 frees what it knows of whoever
+// leaves under a lock that both may hold (SecurityManager::remove_participant), and so frees it
+// twice.
 #pragma once
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 #include <fastdds/rtps/network/SenderResource.h>
@@ -19,11 +25,11 @@ namespace culprit::ros2::fast_dds {
 // True once the participant's receivers listen. Shared by the participant and its transport.
 using Listens = std::shared_ptr<std::atomic<bool>>;
 
-class QuietStart final : public eprosima::fastdds::rtps::ChainingTransport {
+class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport {
  public:
-  QuietStart(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
-             Listens listens)
-      : ChainingTransport(descriptor), listens_(std::move(listens)) {}
+  CarefulTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
+                   Listens listens, bool is_secured)
+      : ChainingTransport(descriptor), listens_(std::move(listens)), is_secured_(is_secured) {}
 
   eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override {
     return low_level_transport_->get_configuration();
@@ -41,24 +47,31 @@ class QuietStart final : public eprosima::fastdds::rtps::ChainingTransport {
                const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
                const eprosima::fastrtps::rtps::Locator_t& local,
                const eprosima::fastrtps::rtps::Locator_t& remote) override {
+    std::unique_lock lock(one_at_a_time_, std::defer_lock);
+    if (is_secured_) lock.lock();
     next->OnDataReceived(bytes, size, local, remote);
   }
 
  private:
   const Listens listens_;
+  const bool is_secured_;
+  std::mutex one_at_a_time_;
 };
 
-struct QuietStartDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
-  QuietStartDescriptor(
+struct CarefulTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
+  CarefulTransportDescriptor(
       std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> transport,
-      Listens flag)
-      : ChainingTransportDescriptor(std::move(transport)), listens(std::move(flag)) {}
+      Listens flag, bool secured)
+      : ChainingTransportDescriptor(std::move(transport)),
+        listens(std::move(flag)),
+        is_secured(secured) {}
 
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override {
-    return new QuietStart(*this, listens);
+    return new CarefulTransport(*this, listens, is_secured);
   }
 
   const Listens listens;
+  const bool is_secured;
 };
 
 }  // namespace culprit::ros2::fast_dds
