@@ -24,8 +24,10 @@ struct ComponentState {
   int missed_probes = 0;
   Lifecycle lifecycle = Lifecycle::kUnknown;
   // Where its lifecycle should be: where it was last while no strategy was at it, or where one
-  // brought it on purpose. A process that takes the place of another is brought there.
+  // brought it on purpose. A process that takes the place of another is brought there; the state
+  // that it comes up in is nobody's intention.
   Lifecycle intended_lifecycle = Lifecycle::kUnknown;
+  bool took_place = false;  // its process took another's place, and its lifecycle was not read yet
 
   // Does it work as a process and as a node? Nothing until something is known of it.
   std::optional<bool> alive;

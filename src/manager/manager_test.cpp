@@ -367,6 +367,27 @@ TEST_P(ManagerWith, BringsARelaunchedLifecycleNodeBackToWhereItWas) {
   EXPECT_EQ(robot.count_asked("camera: activate"), 1u);
 }
 
+// The process came anew by itself, and unconfigured: `respawn` in a launch file.
+TEST(Manager, BringsWhatSomebodyElseRelaunchedBackToWhereItWas) {
+  TestRobot robot(R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 500ms
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 2
+)");
+  robot.add("camera", {}, "/rgb").state_at_start = Lifecycle::kUnconfigured;
+  robot.discover();
+  robot.run_for(2s);
+  robot["camera"].state = Lifecycle::kUnconfigured;
+  robot["camera"].pid = 90;
+  robot.tell(NodeAppeared{"/camera", 90});
+  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kUnconfigured});
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
 TEST_P(ManagerWith, ReportsAComponentThatDiesAtEveryStart) {
   TestRobot robot = pipeline();
   robot["camera"].dies_at_start = true;

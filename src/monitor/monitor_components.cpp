@@ -53,10 +53,12 @@ void Monitor::remember(const Past& past) {
 }
 
 void Monitor::on(Time at, const LifecycleRead& seen) {
-  knowledge_.components[seen.component].lifecycle = seen.state;
+  ComponentState& state = knowledge_.components[seen.component];
+  state.lifecycle = seen.state;
   const bool is_primary = seen.state != Lifecycle::kUnknown && seen.state != Lifecycle::kTransition;
-  if (is_primary && knowledge_.states.reservation(seen.component) == nullptr)
+  if (is_primary && !state.took_place && knowledge_.states.reservation(seen.component) == nullptr)
     knowledge_.intend_lifecycle(seen.component, seen.state, at);
+  if (seen.state != Lifecycle::kUnknown) state.took_place = false;
   for (const InputId id : component_inputs_[seen.component.index]) {
     if (knowledge_.rules[id].kind != Kind::kLifecycle) continue;
     knowledge_.signals.set(id, is_primary ? Slot::of(to_string(seen.state)) : Slot());
@@ -92,6 +94,7 @@ void Monitor::forget_process(ComponentId component, Time at) {
   ComponentState& state = knowledge_.components[component];
   state.in_graph = false;
   state.node_pid = 0;
+  if (state.lifecycle != Lifecycle::kUnknown) state.took_place = true;
   on(at, LifecycleRead{component, Lifecycle::kUnknown});
   for (std::size_t p = 0; p < knowledge_.rules.parameters.size(); ++p) {
     if (knowledge_.rules.parameters[p].component != component) continue;

@@ -257,5 +257,28 @@ TEST(Monitor, ForgetsTheStateOfAProcessThatIsGone) {
   EXPECT_EQ(watched.knowledge.components[ComponentId(0)].intended_lifecycle, Lifecycle::kActive);
 }
 
+// As where `respawn` of a launch file starts a node again: it comes up unconfigured.
+TEST(Monitor, NobodyIntendedTheStateThatANewProcessComesUpIn) {
+  Watched watched(rule("!alive(c)"));
+  const auto intended = [&] {
+    return watched.knowledge.components[ComponentId(0)].intended_lifecycle;
+  };
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  watched.observe(2s, NodeVanished{"/c"});
+  watched.observe(3s, NodeAppeared{"/c", 8});
+  watched.observe(3s, LifecycleRead{ComponentId(0), Lifecycle::kUnconfigured});
+  EXPECT_EQ(intended(), Lifecycle::kActive);
+  watched.observe(4s, NodeAppeared{"/c", 9});
+  watched.observe(4s, LifecycleRead{ComponentId(0), Lifecycle::kUnconfigured});
+  EXPECT_EQ(intended(), Lifecycle::kActive) << "its end was not seen";
+  watched.observe(5s, LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  EXPECT_EQ(intended(), Lifecycle::kInactive) << "somebody configured it";
+  watched.observe(6s, NodeAppeared{"/c", 10});
+  watched.observe(6s, LifecycleRead{ComponentId(0), Lifecycle::kTransition});
+  watched.observe(6s, LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  EXPECT_EQ(intended(), Lifecycle::kActive) << "it was seen on its way";
+}
+
 }  // namespace
 }  // namespace culprit
