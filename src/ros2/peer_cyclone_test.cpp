@@ -182,7 +182,8 @@ TEST(PeerCyclone, GetsEveryFirstAnswerAlsoNextToDeadClients) {
   Robot robot(domain);
   for (int i = 0; i < 20; ++i) {
     const auto peer = start_cyclone(domain, {"call", "/robot", i % 2 == 0 ? "1" : "2"});
-    ASSERT_TRUE(peer->lines().wait_for_count(2));
+    ASSERT_TRUE(peer->lines().wait_for_count(2))
+        << i << ": " << testing::PrintToString(peer->lines().all());
     const std::string change = i % 2 == 0 ? "change 1 1" : "change 2 1";
     const std::string state = i % 2 == 0 ? "state 1 unconfigured" : "state 2 inactive";
     EXPECT_THAT(peer->lines().all(), ElementsAre(state, change)) << i;

@@ -9,7 +9,7 @@
 namespace culprit::ros2 {
 namespace {
 
-constexpr std::chrono::milliseconds kLongestWait(100);
+constexpr std::chrono::seconds kLongestWait(5);
 
 }  // namespace
 

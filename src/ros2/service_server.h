@@ -1,8 +1,9 @@
 // Offers a service to clients on Fast DDS and on Cyclone DDS at once (service_mapping.h).
 //
 // A request is handled on the executor's thread. A reply that is sent before the client's reply
-// reader has matched would be lost, so it waits for that, up to 100 ms and without holding anything
-// up, as both rmw implementations do.
+// reader has matched would be lost, so it waits for that, up to 5 s and without holding anything
+// up. Both rmw implementations wait 100 ms, for they do hold up what comes next; on a busy machine
+// that loses replies.
 #pragma once
 
 #include <deque>
