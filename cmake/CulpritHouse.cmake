@@ -25,6 +25,7 @@ target_compile_options(culprit_test_options INTERFACE -O0)
 # The main function of all tests, and what nearly every test includes, parsed once: a third of the time of a build.
 if(CULPRIT_TESTS)
   add_custom_target(offline_tests) # those that start no processes of a robot
+  add_custom_target(thread_tests) # those that the thread sanitizer is for
   add_library(culprit_test_main OBJECT ${CMAKE_CURRENT_LIST_DIR}/test_main.cpp)
   target_precompile_headers(culprit_test_main PRIVATE <algorithm> <chrono> <filesystem> <fstream> <functional> <map>
                                                          <memory> <optional> <set> <span> <string> <variant> <vector>
@@ -125,6 +126,9 @@ function(culprit_test name)
   endif()
   if(NOT "live" IN_LIST ARG_LABELS)
     add_dependencies(offline_tests ${name})
+  endif()
+  if("threads" IN_LIST ARG_LABELS)
+    add_dependencies(thread_tests ${name})
   endif()
   if(ARG_LABELS)
     list(APPEND properties LABELS "${ARG_LABELS}")
