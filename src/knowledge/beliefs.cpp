@@ -4,10 +4,20 @@
 
 namespace culprit {
 
+namespace {
+
+// 0 would stay 0 for ever.
+double pseudo_count(double count) { return count > 0 ? count : 0.5; }
+
+double faded(double count, double forgetting) {
+  constexpr double kLeast = 0.05;
+  return std::max(std::min(kLeast, count), forgetting * count);
+}
+
+}  // namespace
+
 Belief initial_belief(Probability success, double confidence) {
-  constexpr double kLeast = 0.5;
-  return {std::max(kLeast, confidence * success.value),
-          std::max(kLeast, confidence * (1 - success.value))};
+  return {pseudo_count(confidence * success.value), pseudo_count(confidence * (1 - success.value))};
 }
 
 Beliefs::Beliefs(const RuleSet& rules) {
@@ -17,10 +27,9 @@ Beliefs::Beliefs(const RuleSet& rules) {
 }
 
 void Beliefs::learn(StrategyId id, Belief outcome) {
-  constexpr double kLeast = 0.05;
   Belief& belief = beliefs_[id.index];
-  belief.alpha = std::max(kLeast, forgetting_ * belief.alpha) + outcome.alpha;
-  belief.beta = std::max(kLeast, forgetting_ * belief.beta) + outcome.beta;
+  belief.alpha = faded(belief.alpha, forgetting_) + outcome.alpha;
+  belief.beta = faded(belief.beta, forgetting_) + outcome.beta;
 }
 
 }  // namespace culprit

@@ -6,8 +6,9 @@
 // With forgetting (gamma < 1), which follows a rate that drifts, both pseudo-counts are first
 // multiplied by gamma: what happened n outcomes ago weighs gamma^n.
 //
-// Neither pseudo-count starts below 0.5, so that a designer's 100 % can still be unlearned (the
-// paper notes that its own update never converges there), nor is any forgotten to less than 0.05.
+// A pseudo-count that would start at 0 starts at 0.5 instead, so that a designer's 100 % can still
+// be unlearned (the paper notes that its own update never converges there). All others are what the
+// designer said. None is forgotten to less than 0.05, or than what it started with.
 #pragma once
 
 #include <vector>

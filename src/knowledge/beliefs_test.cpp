@@ -14,6 +14,22 @@ TEST(Beliefs, BeginWhereTheDesignerPutThem) {
   EXPECT_DOUBLE_EQ(belief.mean().value, 0.8);
 }
 
+// A low confidence is a weak belief, not another one.
+TEST(Beliefs, BeginWhereTheDesignerPutThemHoweverLittleThatWeighs) {
+  EXPECT_DOUBLE_EQ(initial_belief(percent(90), 1).mean().value, 0.9);
+  EXPECT_DOUBLE_EQ(initial_belief(percent(10), 1).mean().value, 0.1);
+  EXPECT_DOUBLE_EQ(initial_belief(percent(99), 0.5).mean().value, 0.99);
+}
+
+TEST(Beliefs, CountOneOutcomeAsOneHoweverWeakTheyAre) {
+  const Checked checked = check(Source(
+      "t", "RULE R\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY s 99 1\nADAPTATION c restart 1\n"));
+  Beliefs beliefs(*checked.rules);
+  beliefs.helped(StrategyId(0));
+  EXPECT_DOUBLE_EQ(beliefs[StrategyId(0)].alpha, 1.99);
+  EXPECT_NEAR(beliefs[StrategyId(0)].beta, 0.01, 1e-12);
+}
+
 TEST(Beliefs, CanUnlearnCertainty) {
   const Belief certain = initial_belief(percent(100), 10);
   EXPECT_LT(certain.mean().value, 1);
