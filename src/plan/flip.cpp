@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plan/ties.h"
+
 namespace culprit::plan {
 namespace {
 
@@ -46,8 +48,9 @@ std::vector<Change> FlipFinder::flips(StrategyId loser) {
   add(success_of(loser, kCertain, loser));
   add(impact(loser));
   if (now.rival) add(success_of(*now.rival, 0, loser));
-  std::stable_sort(flips.begin(), flips.end(),
-                   [&](const Change& a, const Change& b) { return size(a) < size(b); });
+  std::stable_sort(flips.begin(), flips.end(), [&](const Change& a, const Change& b) {
+    return parts(size(a)) < parts(size(b));
+  });
   add(resolved(now, loser));
   for (Change& change : circumstances(now, loser)) {
     if (wins_with(change, loser)) add(std::move(change));

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "plan/cost.h"
+#include "plan/ties.h"
 #include "plan/validity.h"
 
 namespace culprit {
@@ -45,7 +46,8 @@ void PaperPlanner::select(std::span<const RuleId> failures, Criticality level,
   std::sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
     const auto key = [&](const Candidate& c) {
       const Strategy& strategy = rules[c.strategy];
-      return std::tie(c.cost, rules[strategy.rule].name, strategy.name);
+      return std::tuple<std::int64_t, const std::string&, const std::string&>(
+          plan::parts(c.cost), rules[strategy.rule].name, strategy.name);
     };
     return key(a) < key(b);
   });

@@ -42,7 +42,7 @@ class BranchAndBound {
 
  private:
   // Decides about the failures from `group` on, given those before it.
-  void branch(std::size_t group, double worth) {
+  void branch(std::size_t group, std::int64_t worth) {
     if (worth > best_worth_) {
       best_worth_ = worth;
       best_ = taken_;
@@ -62,10 +62,10 @@ class BranchAndBound {
 
   std::span<const Choice> choices_;
   std::vector<std::vector<std::size_t>> groups_;  // by failure, the most worth first
-  std::vector<double> bounds_;                    // what the groups from here on can add at most
+  std::vector<std::int64_t> bounds_;              // what the groups from here on can add at most
   std::vector<std::size_t> taken_;
   std::vector<std::size_t> best_;
-  double best_worth_ = 0;
+  std::int64_t best_worth_ = 0;
 };
 
 class Greedy {
@@ -127,7 +127,7 @@ class Greedy {
 
   bool swap(std::size_t leaving, const std::vector<std::size_t>& shut_out) {
     std::vector<std::size_t> coming;
-    double worth = 0;
+    std::int64_t worth = 0;
     for (const std::size_t c : shut_out) {
       const bool is_free = rivals(c).size() == 1 &&  // also after other swaps
                            std::none_of(coming.begin(), coming.end(), [&](std::size_t other) {

@@ -17,7 +17,7 @@ inline constexpr std::size_t kExact = 20;
 
 struct Choice {
   std::size_t failure = 0;
-  double worth = 0;             // > 0
+  std::int64_t worth = 0;       // > 0, in parts of any unit: sums are exact
   std::span<const Word> takes;  // places
   std::span<const Word> near;   // places where no other may be taken; includes `takes`. Mutual: a
                                 // takes near b if and only if b takes near a.

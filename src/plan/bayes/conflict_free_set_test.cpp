@@ -8,7 +8,7 @@ namespace {
 
 // Choices at places of their own; which places are near which.
 struct Problem {
-  Problem(std::vector<std::pair<std::size_t, double>> failures_and_worths,
+  Problem(std::vector<std::pair<std::size_t, std::int64_t>> failures_and_worths,
           const std::vector<std::pair<std::size_t, std::size_t>>& conflicts)
       : takes(failures_and_worths.size(), failures_and_worths.size()),
         near(failures_and_worths.size(), failures_and_worths.size()) {
@@ -25,8 +25,8 @@ struct Problem {
           {failures_and_worths[c].first, failures_and_worths[c].second, takes[c], near[c]});
   }
 
-  double worth(const std::vector<std::size_t>& chosen) const {
-    double sum = 0;
+  std::int64_t worth(const std::vector<std::size_t>& chosen) const {
+    std::int64_t sum = 0;
     for (const std::size_t c : chosen) sum += choices[c].worth;
     return sum;
   }
@@ -39,8 +39,8 @@ struct Problem {
     return true;
   }
   // Every subset is tried.
-  double best_worth() const {
-    double best = 0;
+  std::int64_t best_worth() const {
+    std::int64_t best = 0;
     for (std::size_t subset = 0; subset < std::size_t{1} << choices.size(); ++subset) {
       std::vector<std::size_t> chosen;
       for (std::size_t c = 0; c < choices.size(); ++c) {
@@ -85,7 +85,7 @@ TEST(ConflictFreeSet, OfNothingIsEmpty) { EXPECT_EQ(best_conflict_free_set({}), 
 
 Problem random_problem(std::size_t most) {
   const auto count = *rc::gen::inRange<std::size_t>(1, most + 1);
-  std::vector<std::pair<std::size_t, double>> all;
+  std::vector<std::pair<std::size_t, std::int64_t>> all;
   for (std::size_t c = 0; c < count; ++c)
     all.emplace_back(*rc::gen::inRange<std::size_t>(0, count), *rc::gen::inRange(1, 1000) / 8.0);
   const auto choice = rc::gen::inRange<std::size_t>(0, count);

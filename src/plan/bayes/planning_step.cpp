@@ -8,20 +8,16 @@
 #include "plan/bayes/bayes_planner.h"
 #include "plan/bayes/side_by_side.h"
 #include "plan/bayes/suspicion.h"
+#include "plan/ties.h"
 
 namespace culprit::plan {
 namespace {
 
-// Worths are compared to so many parts of a unit: sums of the same numbers in another order are
-// equal.
-constexpr double kParts = 1e9;
-
 // What costs more than it is worth has to be done all the same, once nothing else comes first: it
 // is worth a little, by its index.
-double worth(double value, double cost, double index) {
+std::int64_t worth(double value, double cost, double index) {
   constexpr double kLittle = 1e-4;
-  return std::round(std::max(value - cost, kLittle * std::min(index, 1.0)) * kParts) / kParts +
-         1 / kParts;
+  return parts(std::max(value - cost, kLittle * std::min(index, 1.0))) + 1;
 }
 
 int redeployments(const Strategy& strategy) {
@@ -66,8 +62,8 @@ bool PlanningStep::is_before(const Entry& a, const Entry& b) const {
   const auto key = [&](const Entry& e) {
     const Strategy& strategy = knowledge_.rules[e.candidate.strategy];
     const Rule& rule = knowledge_.rules[strategy.rule];
-    return std::tuple<int, double, double, const std::string&, const std::string&>(
-        -static_cast<int>(rule.policies.criticality), -e.worth, e.candidate.cost, rule.name,
+    return std::tuple<int, std::int64_t, std::int64_t, const std::string&, const std::string&>(
+        -static_cast<int>(rule.policies.criticality), -e.worth, parts(e.candidate.cost), rule.name,
         strategy.name);
   };
   return key(a) < key(b);
@@ -98,8 +94,11 @@ void PlanningStep::examine(std::size_t failure) {
   std::vector<std::size_t> order(all.size());  // p/c index
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (index(tries[a]) != index(tries[b])) return index(tries[a]) > index(tries[b]);
-    return knowledge_.rules[all[a].strategy].name < knowledge_.rules[all[b].strategy].name;
+    const auto key = [&](std::size_t s) {
+      return std::pair<std::int64_t, const std::string&>(-parts(index(tries[s])),
+                                                         knowledge_.rules[all[s].strategy].name);
+    };
+    return key(a) < key(b);
   });
   std::vector<Option> possible;
   double helps = 0;
@@ -198,21 +197,21 @@ void PlanningStep::exclude_invalid(Entry& entry, const Invalid& why) const {
 
 // A failure that others more likely explain waits for them.
 void PlanningStep::exclude_effect(Entry& entry) const {
-  double most = 0;
+  std::int64_t most = 0;
   RuleId cause;
   // In a circle the members take turns, whoever is the likelier: what counts is what is outside.
   // But who is in a circle is only known when the failures are old enough.
   if (responsibility_.against_others(entry.failure) >= 0.5) {
     if (!is_young(failures_[entry.failure], knowledge_)) return;
     for (const std::size_t j : failures_.circles()[failures_.circle_of(entry.failure)]) {
-      if (j != entry.failure && responsibility_.of(j) > most)
-        std::tie(most, cause) = std::pair(responsibility_.of(j), failures_[j]);
+      if (j != entry.failure && parts(responsibility_.of(j)) > most)
+        std::tie(most, cause) = std::pair(parts(responsibility_.of(j)), failures_[j]);
     }
     if (most > 0) exclude(entry, {Condition::kDependency, likeliest_component(cause), cause});
     return;
   }
   responsibility_.for_each_share(entry.failure, [&](std::size_t j, double share) {
-    if (share > most) std::tie(most, cause) = std::pair(share, failures_[j]);
+    if (parts(share) > most) std::tie(most, cause) = std::pair(parts(share), failures_[j]);
   });
   exclude(entry, {Condition::kDependency, likeliest_component(cause), cause});
 }
@@ -272,7 +271,7 @@ void PlanningStep::select(Criticality level) {
 // Of the components that the rule's strategies adapt, the one that the untried ones are most likely
 // to help at.
 ComponentId PlanningStep::likeliest_component(RuleId rule) const {
-  std::pair<double, ComponentId> best{-1, {}};
+  std::pair<std::int64_t, ComponentId> best{-1, {}};
   for (const ComponentId c : knowledge_.rules[rule].components) {
     double chance = 0;
     for (const StrategyId s : knowledge_.rules[rule].strategies) {
@@ -280,10 +279,10 @@ ComponentId PlanningStep::likeliest_component(RuleId rule) const {
       if (std::binary_search(adapted.begin(), adapted.end(), c))
         chance += knowledge_.beliefs[s].mean().value;
     }
-    const bool is_better =
-        chance > best.first ||
-        (chance == best.first && knowledge_.rules[c].name < knowledge_.rules[best.second].name);
-    if (is_better) best = {chance, c};
+    const bool is_better = parts(chance) > best.first ||
+                           (parts(chance) == best.first &&
+                            knowledge_.rules[c].name < knowledge_.rules[best.second].name);
+    if (is_better) best = {parts(chance), c};
   }
   return best.second;
 }
@@ -298,8 +297,11 @@ std::vector<Suspect> PlanningStep::suspects(std::size_t failure) const {
   const std::size_t shown = std::min(all.size(), BayesPlanner::kSuspects);
   std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown), all.end(),
                     [&](const Suspect& a, const Suspect& b) {
-                      return std::tie(b.probability, knowledge_.rules[a.failure].name) <
-                             std::tie(a.probability, knowledge_.rules[b.failure].name);
+                      const auto key = [&](const Suspect& s) {
+                        return std::pair<std::int64_t, const std::string&>(
+                            -parts(s.probability), knowledge_.rules[s.failure].name);
+                      };
+                      return key(a) < key(b);
                     });
   all.resize(shown);
   for (Suspect& suspect : all) suspect.component = likeliest_component(suspect.failure);

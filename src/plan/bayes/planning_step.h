@@ -27,8 +27,8 @@ class PlanningStep {
   struct Entry {
     Candidate candidate;
     std::size_t failure = 0;  // index in failures_
-    double worth = 0;
-    double time = 0;  // the part of its cost that its own time is
+    std::int64_t worth = 0;   // plan/ties.h
+    double time = 0;          // the part of its cost that its own time is
   };
 
   void find_stakes();

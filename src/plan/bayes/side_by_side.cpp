@@ -4,13 +4,9 @@
 #include <functional>
 #include <map>
 
+#include "plan/ties.h"
+
 namespace culprit::plan {
-namespace {
-
-// Sums of the same numbers in another order are equal.
-constexpr double kLeast = 1e-9;
-
-}  // namespace
 
 std::vector<std::size_t> side_by_side(std::span<const Timed> options,
                                       std::vector<std::size_t> chosen) {
@@ -25,14 +21,14 @@ std::vector<std::size_t> side_by_side(std::span<const Timed> options,
     const Timed& first = options[best];
     const double meanwhile = first.time == longest[0] ? longest[1] : longest[0];
     const auto beyond = [&](const Timed& option) {
-      return option.cost - std::min(option.time, meanwhile);
+      return parts(option.cost - std::min(option.time, meanwhile));
     };
     const auto [begin, end] = of_failure.equal_range(first.failure);
     for (auto other = begin; other != end; ++other) {
       const Timed& option = options[other->second];
       const bool takes_the_same = std::equal(option.takes.begin(), option.takes.end(),
                                              first.takes.begin(), first.takes.end());
-      if (takes_the_same && beyond(option) < beyond(options[best]) - kLeast) best = other->second;
+      if (takes_the_same && beyond(option) < beyond(options[best])) best = other->second;
     }
   }
   return chosen;

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "plan/cost.h"
+#include "plan/ties.h"
 #include "plan/validity.h"
 
 namespace culprit::study::rca {
@@ -71,7 +72,9 @@ Verdict candidates_of(RuleId rule, const Knowledge& knowledge) {
     verdict.candidates.push_back(std::move(candidate));
   }
   std::stable_sort(verdict.candidates.begin(), verdict.candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+                   [](const Candidate& a, const Candidate& b) {
+                     return plan::parts(a.cost) < plan::parts(b.cost);
+                   });
   return verdict;
 }
 
