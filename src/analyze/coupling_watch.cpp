@@ -48,14 +48,13 @@ Duration CouplingWatch::delay(RuleId cause, RuleId effect) const {
 }
 
 // What depends on these components is given the time to show that it is well, now that the failure
-// `cause` is gone. Not what is no effect of it: it is more critical, was detected long before it,
-// or only after things had `changed` (and, if that may have come `on_its_way`, later than so after
-// the cause).
+// `cause` is gone. Not what is no effect of it: it is more critical and at the same component, was
+// detected long before it, or only after things had `changed` (and, if that may have come
+// `on_its_way`, later than so after the cause).
 void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed,
                            std::optional<Cycles> on_its_way, Time now) {
   std::vector<bool> is_downstream(knowledge_.rules.components.size(), false);
   for (const ComponentId c : repaired) {
-    is_downstream[c.index] = true;
     for (const ComponentId d : knowledge_.graph.downstream(c)) is_downstream[d.index] = true;
   }
   const Duration slack = std::max(knowledge_.signals.latency(cause), knowledge_.rules.cycle);
@@ -64,14 +63,16 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
   for (const RuleId effect : knowledge_.states.active()) {
     RuleState& state = knowledge_.states.state(effect);
     if (effect == cause || state.attempt) continue;
-    if (knowledge_.rules[effect].policies.criticality > criticality) continue;
     const bool may_be_on_its_way =
         on_its_way && state.first_detected() <=
                           later(begun, duration_of(*on_its_way, knowledge_.rules) + held(effect));
     if (state.failing_since > changed && !may_be_on_its_way) continue;
     const auto& touched = knowledge_.rules[effect].components;
-    const bool depends = std::any_of(touched.begin(), touched.end(),
-                                     [&](ComponentId c) { return is_downstream[c.index]; });
+    const bool is_lesser = knowledge_.rules[effect].policies.criticality <= criticality;
+    const bool depends = std::any_of(touched.begin(), touched.end(), [&](ComponentId c) {
+      return is_downstream[c.index] ||
+             (is_lesser && std::find(repaired.begin(), repaired.end(), c) != repaired.end());
+    });
     if (!depends || later(state.first_detected(), slack) < begun) continue;
     const Duration latency = std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle);
     const Time since = later(now, delay(cause, effect));

@@ -114,5 +114,56 @@ RULE Dead
   EXPECT_EQ(robot.count("fusion is held responsible for Dead"), 1u) << transcript(robot);
 }
 
+// A camera that nobody misses for a second, and what makes the robot blind at once.
+constexpr const char* kBlind = R"(
+COMPONENT camera       NODE /camera       LAUNCH "camera"
+COMPONENT segmentation NODE /segmentation LAUNCH "segmentation"
+RULE CameraDead
+  POLICIES WARNING FOR 1s
+  TRIGGER !alive(camera)
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 10
+RULE Blind
+  POLICIES ERROR
+  TRIGGER age(/segmentation) > 350ms
+    STRATEGY restart 60 10
+      ADAPTATION segmentation restart 3
+    STRATEGY redeploy 90 10
+      ADAPTATION segmentation redeploy 10
+)";
+
+TestRobot blind(std::unique_ptr<const Planner> planner = std::make_unique<BayesPlanner>()) {
+  TestRobot robot(kBlind, std::move(planner));
+  robot.add("camera", {}, "/rgb");
+  robot.add("segmentation", {"camera"}, "/segmentation");
+  robot.discover();
+  robot.run_for(2s);
+  return robot;
+}
+
+TEST(Criticality, OfACauseIsThatOfTheWorstFailureThatItExplains) {
+  TestRobot robot = blind();
+  robot.kill("camera");
+  robot.run_for(1100ms);
+  EXPECT_EQ(robot.count("camera is held responsible for CameraDead"), 1u) << transcript(robot);
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("segmentation:")) << "it was never ill" << transcript(robot);
+}
+
+// They take 300 ms each, and what is upstream is back before the verdict on what depends on it.
+TEST(Criticality, LetsTheDeadBeReplacedSideBySide) {
+  TestRobot robot = blind();
+  robot.kill("camera");
+  robot.kill("segmentation");
+  robot.run_for(1100ms);
+  EXPECT_TRUE(robot.was_asked("camera: start")) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("segmentation: start")) << transcript(robot);
+  robot.run_for(1s);
+  EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
+  robot.run_for(10s);
+  EXPECT_EQ(robot.count_asked(": start"), 2u) << transcript(robot);
+}
+
 }  // namespace
 }  // namespace culprit::test

@@ -116,9 +116,10 @@ RC_GTEST_PROP(Invariants, NoStrategyWorksWhereAnotherDoesOrDownstreamOfIt, ()) {
         const ComponentId taken = rules[other->strategy].components.front();
         const ComponentId own = strategy.components.front();
         RC_ASSERT(taken != own);
-        const bool stands_back =
-            other->effective != kNever &&
-            rules[id].policies.criticality < rules[strategy.rule].policies.criticality;
+        // The dead are replaced side by side. And what only waits for its verdict gives way to what
+        // is worse, by itself or by what it explains.
+        const ProcessState process = knowledge.components[own].process;
+        const bool stands_back = other->effective != kNever || process != ProcessState::kRunning;
         const auto& upstream = knowledge.graph.upstream(own);
         RC_ASSERT(stands_back ||
                   std::find(upstream.begin(), upstream.end(), taken) == upstream.end());
@@ -127,6 +128,27 @@ RC_GTEST_PROP(Invariants, NoStrategyWorksWhereAnotherDoesOrDownstreamOfIt, ()) {
   };
   break_it(robot, all);
   robot.run_for(60s);
+}
+
+// "At once" is the decision after its detection: what it does not wait for is a verdict on others,
+// what they may explain, or a more critical failure.
+RC_GTEST_PROP(Invariants, TheRepairOfWhatIsKnownToBeDeadBeginsAtOnceWhateverTheLevels, ()) {
+  const auto all = random_components();
+  TestRobot robot(rules_of(all));
+  const Knowledge& knowledge = robot.manager().knowledge();
+  set_up(robot, all);
+  robot.after_step = [&] {
+    for (const Event& event : robot.manager().events()) {
+      const auto* detected = std::get_if<FailureDetected>(&event.what);
+      if (detected == nullptr) continue;
+      const ComponentId component = robot.rules()[detected->rule].components.front();
+      if (knowledge.components[component].process != ProcessState::kGone) continue;
+      for (const std::string& line : robot.said) RC_LOG() << line << "\n";
+      RC_ASSERT(knowledge.states[detected->rule].attempt.has_value());
+    }
+  };
+  break_it(robot, all);
+  robot.run_for(3s);
 }
 
 RC_GTEST_PROP(Invariants, WhatIsDoneDoesNotDependOnTheOrderOfDeclarations, ()) {

@@ -102,9 +102,13 @@ bool Invariants::is_downstream_of_an_attempt(const Knowledge& knowledge, const S
     const bool is_lesser =
         rules_[id].policies.criticality < rules_[strategy.rule].policies.criticality;
     if (is_later) continue;
-    if (is_lesser && (!is_bayes_ || attempt->effective != kNever)) continue;
+    // With bayes, what only waits for its verdict gives way to what is worse, by itself or by what
+    // it explains.
+    if (is_bayes_ ? attempt->effective != kNever : is_lesser) continue;
     const auto& adapted = rules_[attempt->strategy].components;
     for (const ComponentId component : strategy.components) {
+      // The dead are replaced side by side.
+      if (is_bayes_ && knowledge.components[component].process != ProcessState::kRunning) continue;
       for (const ComponentId upstream : knowledge.graph.upstream(component)) {
         if (std::binary_search(adapted.begin(), adapted.end(), upstream)) return true;
       }

@@ -141,13 +141,65 @@ TEST(BayesPlanner, GivesAFailureTimeToSettleAfterItsCauseIsGone) {
 TEST(BayesPlanner, LetsALesserFailureNeverDelayAGreaterOne) {
   Scene scene(failure_of("a", "Focus", "NON_CRITICAL") + failure_of("b", "Dead"));
   scene.link("a", "b").fail("Focus").fail("Dead");
+  scene->couplings.set(scene.rule("Focus"), scene.rule("Dead"), {0, 1000});  // it explains nothing
   EXPECT_EQ(scene.plan(kFewRedeployments), "Dead.restart");
   EXPECT_EQ(scene.candidate("Focus.restart").excluded, Condition::kInTheWay);
+}
+
+// A known-dead camera and its effects, each worse than the one before.
+TEST(BayesPlanner, TreatsACauseAsTheWorstFailureThatItExplains) {
+  Scene scene(failure_of("a", "Camera", "NON_CRITICAL") + failure_of("b", "Blind", "WARNING") +
+              failure_of("c", "Lost") + failure_of("d", "Other"));
+  scene.link("a", "b").link("b", "c").fail("Camera").fail("Blind").fail("Lost").fail("Other");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "Camera.restart Other.restart");
+  EXPECT_EQ(scene.verdicts().front().rule, scene.rule("Camera")) << "and first: it explains more";
+  EXPECT_EQ(scene.candidate("Lost.restart").excluded, Condition::kDependency);
+  EXPECT_EQ(scene.candidate("Lost.restart").because, scene.rule("Camera"));
+}
+
+TEST(BayesPlanner, WaitsForTheVerdictOnALesserCauseThatIsKnownToBeDead) {
+  std::string text = failure_of("a", "Camera", "WARNING FOR 3s") + failure_of("b", "Blind");
+  text.replace(text.find("x > 1"), 5, "!alive(a)");
+  Scene scene(text);
+  scene.link("a", "b").fail("Blind", 9900ms);  // 100 ms ago
+  scene.process("a", ProcessState::kGone);
+  EXPECT_EQ(scene.plan(kFewRedeployments), "");
+  EXPECT_EQ(scene.candidate("Blind.restart").excluded, Condition::kSuspect);
+  scene->now += 2500ms;
+  EXPECT_EQ(scene.plan(kFewRedeployments), "") << "what is dead stays so, and the FOR is to come";
+  scene->now += 1s;
+  EXPECT_EQ(scene.plan(kFewRedeployments), "Blind.restart") << "nobody waits for ever";
+}
+
+TEST(BayesPlanner, ReplacesTheDeadSideBySide) {
+  Scene scene = robot();
+  scene.fail("A").fail("B").fail("C");
+  scene.process("a", ProcessState::kGone);
+  scene.process("c", ProcessState::kStopped);
+  EXPECT_EQ(scene.plan(kFewRedeployments), "A.redeploy C.redeploy");
+  EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kDependency);
+}
+
+TEST(BayesPlanner, ReplacesTheDeadDownstreamOfWhatIsBeingAdapted) {
+  Scene scene = robot();
+  scene.attempt("A.restart").fail("B").fail("C");
+  scene.process("c", ProcessState::kGone);
+  EXPECT_EQ(scene.plan(kFewRedeployments), "C.redeploy");
+}
+
+TEST(BayesPlanner, ExpectsNothingDeadToGoAwayByItself) {
+  Scene scene = robot();
+  scene.fail("B");
+  scene.process("b", ProcessState::kGone);
+  scene->states.state(scene.rule("B")).settling =
+      Settling{scene.rule("A"), scene->now, scene->now + 500ms};
+  EXPECT_EQ(scene.plan(kFewRedeployments), "B.redeploy");
 }
 
 TEST(BayesPlanner, LetsAGreaterFailureActWhileALesserOneUpstreamIsJudged) {
   Scene scene(failure_of("a", "Focus", "NON_CRITICAL") + failure_of("b", "Dead"));
   scene.link("a", "b").attempt("Focus.restart", Attempt::Stage::kWaiting).fail("Dead");
+  scene->couplings.set(scene.rule("Focus"), scene.rule("Dead"), {0, 1000});
   EXPECT_EQ(scene.plan(kFewRedeployments), "Dead.restart");
 }
 
@@ -172,6 +224,7 @@ TEST(BayesPlanner, DoesWhatIsSureAtOnceWhileAGreaterFailureDownstreamWaits) {
     Scene scene(focus(is_sure ? "95" : "60") + suspect + failure_of("c", "C", "WARNING"));
     scene.link("a", "c").link("b", "c").fail("Focus", 9900ms).fail("C", 9900ms);  // 100 ms ago
     scene->signals.set_rhythm(TopicId(0), {scene->now - 250ms, 100ms, 100ms});
+    scene->couplings.set(scene.rule("Focus"), scene.rule("C"), {0, 1000});
     EXPECT_EQ(scene.plan(kBalanced), is_sure ? "Focus.set" : "");
     EXPECT_EQ(scene.candidate("C.restart").excluded, Condition::kSuspect);
   }

@@ -1,7 +1,6 @@
 #include "plan/bayes/failures.h"
 
 #include <algorithm>
-#include <array>
 
 namespace culprit::plan {
 namespace {
@@ -41,13 +40,8 @@ Failures::Failures(const Knowledge& knowledge, const Reach& reach, const Ways& w
       circle_of_(rules_.size()) {
   const RuleSet& rules = knowledge.rules;
   BitRows touching(reach.size(), rules_.size());  // by place: which failures touch it
-  std::array<BitRows, 3> at_least{BitRows(1, rules_.size()), BitRows(1, rules_.size()),
-                                  BitRows(1, rules_.size())};  // by level: which are as critical
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     for (const ComponentId c : rules[rules_[i]].components) set(touching[reach.place_of(c)], i);
-    for (std::size_t level = 0;
-         level <= static_cast<std::size_t>(rules[rules_[i]].policies.criticality); ++level)
-      set(at_least[level][0], i);
   }
   BitRows effects(rules_.size(), rules_.size());
   for (std::size_t i = 0; i < rules_.size(); ++i) {
@@ -56,8 +50,6 @@ Failures::Failures(const Knowledge& knowledge, const Reach& reach, const Ways& w
       for_each(ways.upstream(reach.place_of(c), rules_[i]),
                [&](std::size_t place) { add(row, touching[place]); });
     }
-    const auto level = static_cast<std::size_t>(rules[rules_[i]].policies.criticality);
-    for (std::size_t w = 0; w < row.size(); ++w) row[w] &= at_least[level][0][w];
     clear(row, i);
     for_each(row, [&](std::size_t cause) { set(effects[cause], i); });
   }
@@ -91,6 +83,11 @@ void Failures::find_circles(const BitRows& effects) {
       for (const std::size_t other : circle) clear(causes_[member], other);
     }
   }
+}
+
+bool Failures::holds(RuleId rule) const {
+  const std::size_t i = index_of(rule);
+  return i < rules_.size() && rules_[i] == rule;
 }
 
 std::size_t Failures::index_of(RuleId rule) const {

@@ -1,10 +1,10 @@
 // The failures that are there now, and which may be the cause of which.
 //
 // Failure j may be the cause of failure i if a component that j touches is upstream of one that i
-// touches, by a way that i can have taken (plan/bayes/ways.h), and j is at least as critical: a
-// lesser failure is never waited for. Failures that may
-// be the causes of each other, directly or round several corners, form a circle; that needs no
-// circle in the graph, because a rule may touch several components.
+// touches, by a way that i can have taken (plan/bayes/ways.h), however critical either is: how bad
+// a cause is, its effects say (plan/bayes/levels.h). Failures that may be the causes of each other,
+// directly or round several corners, form a circle; that needs no circle in the graph, because a
+// rule may touch several components.
 //
 // They are in the order of their rules' names, so that nothing depends on the order of
 // declarations.
@@ -23,7 +23,8 @@ class Failures {
 
   std::size_t size() const { return rules_.size(); }
   RuleId operator[](std::size_t i) const { return rules_[i]; }
-  // @pre the rule is active
+  bool holds(RuleId rule) const;
+  // @pre holds(rule)
   std::size_t index_of(RuleId rule) const;
 
   // The possible causes of failure i outside its own circle.

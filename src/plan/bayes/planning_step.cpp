@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "plan/bayes/bayes_planner.h"
+#include "plan/bayes/seen_down.h"
 #include "plan/bayes/side_by_side.h"
 #include "plan/bayes/suspicion.h"
 #include "plan/ties.h"
@@ -38,7 +39,8 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
       ways_(knowledge, reach_),
       failures_(knowledge, reach_, ways_),
       responsibility_(knowledge, failures_),
-      surroundings_(knowledge, reach_, failures, suspicious_),
+      levels_(knowledge, failures_, responsibility_),
+      surroundings_(knowledge, reach_, levels_, failures, suspicious_),
       has_choice_(failures_.size(), false) {}
 
 std::vector<Verdict> PlanningStep::run() {
@@ -51,6 +53,7 @@ std::vector<Verdict> PlanningStep::run() {
   for (const RuleId rule : planned_) examine(failures_.index_of(rule));
   std::sort(entries_.begin(), entries_.end(),
             [&](const Entry& a, const Entry& b) { return is_before(a, b); });
+  revive();
   for (const Criticality level :
        {Criticality::kError, Criticality::kWarning, Criticality::kNonCritical})
     select(level);
@@ -63,7 +66,7 @@ bool PlanningStep::is_before(const Entry& a, const Entry& b) const {
     const Strategy& strategy = knowledge_.rules[e.candidate.strategy];
     const Rule& rule = knowledge_.rules[strategy.rule];
     return std::tuple<int, std::int64_t, std::int64_t, const std::string&, const std::string&>(
-        -static_cast<int>(rule.policies.criticality), -e.worth, parts(e.candidate.cost), rule.name,
+        -static_cast<int>(levels_.of(strategy.rule)), -e.worth, parts(e.candidate.cost), rule.name,
         strategy.name);
   };
   return key(a) < key(b);
@@ -157,10 +160,15 @@ double PlanningStep::disruption(const Strategy& strategy) const {
 }
 
 void PlanningStep::exclude(Entry& entry, double chance) const {
-  exclude_effect(entry);
-  if (entry.candidate.excluded) return;
   const RuleId rule = failures_[entry.failure];
   const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
+  // What is known to be dead waits for nobody but who replaces it already.
+  if (only_revives(strategy, knowledge_)) {
+    if (const auto held = surroundings_.reserved(strategy)) exclude(entry, *held);
+    return;
+  }
+  exclude_effect(entry);
+  if (entry.candidate.excluded) return;
   const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
   if (watchers_ && is_newborn(rule, knowledge_) && !needs_no_verdict &&
       watchers_->are_upstream_of(rule))
@@ -216,20 +224,49 @@ void PlanningStep::exclude_effect(Entry& entry) const {
   exclude(entry, {Condition::kDependency, likeliest_component(cause), cause});
 }
 
+// The dead are replaced side by side, whatever depends on whatever and however critical it is.
+void PlanningStep::revive() {
+  for (Entry& entry : entries_) {
+    const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
+    if (entry.candidate.excluded || !only_revives(strategy, knowledge_)) continue;
+    if (has_choice_[entry.failure]) {
+      entry.candidate.excluded = Condition::kOneEach;
+      continue;
+    }
+    for (const ComponentId c : strategy.components) {
+      if (const auto taken = surroundings_.taken(reach_.place_of(c))) exclude(entry, *taken);
+    }
+    if (!entry.candidate.excluded) choose(entry);
+  }
+}
+
+void PlanningStep::choose(const Entry& entry) {
+  has_choice_[entry.failure] = true;
+  surroundings_.add(knowledge_.rules[entry.candidate.strategy]);
+}
+
+// Does what was chosen before stand against it? Then it is excluded.
+bool PlanningStep::is_taken(Entry& entry) const {
+  if (has_choice_[entry.failure]) {
+    entry.candidate.excluded = Condition::kOneEach;
+    return true;
+  }
+  for (const ComponentId c : knowledge_.rules[entry.candidate.strategy].components) {
+    const auto conflict = surroundings_.conflict(reach_.place_of(c));
+    if (!conflict) continue;
+    exclude(entry, *conflict);
+    return true;
+  }
+  return false;
+}
+
 void PlanningStep::select(Criticality level) {
   std::vector<Entry*> open;
   for (Entry& entry : entries_) {
     const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
-    if (entry.candidate.excluded || knowledge_.rules[strategy.rule].policies.criticality != level)
-      continue;
-    for (const ComponentId c : strategy.components) {
-      const auto conflict = surroundings_.conflict(reach_.place_of(c));
-      if (conflict) {
-        exclude(entry, *conflict);
-        break;
-      }
-    }
-    if (!entry.candidate.excluded) open.push_back(&entry);
+    const bool is_next = !entry.candidate.excluded && levels_.of(strategy.rule) == level &&
+                         !only_revives(strategy, knowledge_);
+    if (is_next && !is_taken(entry)) open.push_back(&entry);
   }
 
   BitRows takes(open.size(), reach_.size());
@@ -250,21 +287,10 @@ void PlanningStep::select(Criticality level) {
   std::vector<bool> is_chosen(open.size(), false);
   for (const std::size_t e : side_by_side(timed, best_conflict_free_set(choices))) {
     is_chosen[e] = true;
-    has_choice_[open[e]->failure] = true;
-    surroundings_.add(knowledge_.rules[open[e]->candidate.strategy]);
+    choose(*open[e]);
   }
   for (std::size_t e = 0; e < open.size(); ++e) {
-    if (is_chosen[e]) continue;
-    if (has_choice_[open[e]->failure]) {
-      open[e]->candidate.excluded = Condition::kOneEach;
-      continue;
-    }
-    for (const ComponentId c : knowledge_.rules[open[e]->candidate.strategy].components) {
-      const auto conflict = surroundings_.conflict(reach_.place_of(c));
-      if (!conflict) continue;
-      exclude(*open[e], *conflict);
-      break;
-    }
+    if (!is_chosen[e]) is_taken(*open[e]);
   }
 }
 

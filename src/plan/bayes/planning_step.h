@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "plan/bayes/conflict_free_set.h"
+#include "plan/bayes/levels.h"
 #include "plan/bayes/remedies.h"
-#include "plan/bayes/responsibility.h"
 #include "plan/bayes/surroundings.h"
 #include "plan/bayes/value.h"
 #include "plan/bayes/watchers.h"
@@ -39,7 +39,10 @@ class PlanningStep {
   void exclude(Entry& entry, const Surroundings::Obstacle& obstacle) const;
   void exclude_invalid(Entry& entry, const Invalid& why) const;
   void exclude_effect(Entry& entry) const;
+  void revive();
   void select(Criticality level);
+  void choose(const Entry& entry);
+  bool is_taken(Entry& entry) const;
   ComponentId likeliest_component(RuleId rule) const;
   std::vector<Suspect> suspects(std::size_t failure) const;
   std::vector<Verdict> verdicts();
@@ -54,6 +57,7 @@ class PlanningStep {
   std::optional<Watchers> watchers_;  // while a failure is newborn
   Failures failures_;
   Responsibility responsibility_;
+  Levels levels_;
   Surroundings surroundings_;
   std::vector<double> stakes_;  // by failure: W_i + sum_k share(i -> k) W_k
   std::vector<Entry> entries_;

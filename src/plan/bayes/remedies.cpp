@@ -2,19 +2,9 @@
 
 #include <algorithm>
 
-#include "plan/bayes/responsibility.h"
+#include "plan/bayes/seen_down.h"
 
 namespace culprit::plan {
-namespace {
-
-bool replaces_what_is_down(const Strategy& strategy, const Knowledge& knowledge) {
-  return std::any_of(strategy.components.begin(), strategy.components.end(), [&](ComponentId c) {
-    return knowledge.components[c].process != ProcessState::kRunning && replaces(strategy, c);
-  });
-}
-
-}  // namespace
-
 std::vector<Remedy> remedies(RuleId rule, const Knowledge& knowledge) {
   const auto& strategies = knowledge.rules[rule].strategies;
   const RuleState& state = knowledge.states[rule];
@@ -24,7 +14,7 @@ std::vector<Remedy> remedies(RuleId rule, const Knowledge& knowledge) {
   for (std::size_t s = 0; s < strategies.size(); ++s) {
     const Strategy& strategy = knowledge.rules[strategies[s]];
     Remedy remedy{strategies[s], state.tried[s], {}, knowledge.beliefs[strategies[s]].mean().value};
-    if (is_down && !replaces_what_is_down(strategy, knowledge)) remedy.chance *= kUnlikely;
+    if (is_down && !revives(strategy, knowledge)) remedy.chance *= kUnlikely;
     if (!remedy.is_tried) remedy.invalid = invalidity(strategy, knowledge);
     remedy.is_withheld = !remedy.is_out() && !knowledge.withheld[strategies[s].index].empty();
     if (remedy.is_out()) out += std::exchange(remedy.chance, 0);

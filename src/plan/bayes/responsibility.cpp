@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plan/bayes/seen_down.h"
+
 namespace culprit::plan {
 
 double root_probability(double prior, double explained) {
@@ -28,6 +30,10 @@ Responsibility::Responsibility(const Knowledge& knowledge, const Failures& failu
 double Responsibility::share(std::size_t j, std::size_t i) const {
   if (!has(failures_.causes(i), j)) return 0;
   return (1 - root_[i]) * kappa(j, i) * root_[j] / claims_[i];
+}
+
+bool Responsibility::is_explained_by(std::size_t i, std::size_t j) const {
+  return has(failures_.causes(i), j) && root_probability(own(i), kappa(j, i)) < 0.5;
 }
 
 double Responsibility::kappa(std::size_t j, std::size_t i) const {
@@ -80,24 +86,6 @@ double Responsibility::weight(std::size_t i, const std::vector<std::size_t>& cir
     if (k != i) weight *= std::max(kLeast, kappa(i, k)) / Coupling::kUsual;
   }
   return weight;
-}
-
-bool replaces(const Strategy& strategy, ComponentId component) {
-  return std::any_of(
-      strategy.adaptations.begin(), strategy.adaptations.end(), [&](const Adaptation& a) {
-        return a.component == component &&
-               (a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart);
-      });
-}
-
-bool is_seen_down(RuleId rule, const Knowledge& knowledge) {
-  const Rule& failed = knowledge.rules[rule];
-  return std::any_of(failed.components.begin(), failed.components.end(), [&](ComponentId c) {
-    const ProcessState process = knowledge.components[c].process;
-    if (process == ProcessState::kRunning) return false;
-    return std::any_of(failed.strategies.begin(), failed.strategies.end(),
-                       [&](StrategyId s) { return replaces(knowledge.rules[s], c); });
-  });
 }
 
 }  // namespace culprit::plan

@@ -57,6 +57,8 @@ class Responsibility {
   double of(std::size_t i) const { return root_[i]; }
   // P(root i) alone: what others outside its circle leave unexplained.
   double against_others(std::size_t i) const { return against_others_[i]; }
+  // Is j alone enough for i to have no cause of its own, more likely than not?
+  bool is_explained_by(std::size_t i, std::size_t j) const;
   // Of the part 1 - R_i that others explain, what falls to failure j: in proportion to
   // kappa(j -> i) R_j.
   double share(std::size_t j, std::size_t i) const;
@@ -79,12 +81,5 @@ class Responsibility {
   std::vector<double> root_;
   std::vector<double> claims_;  // of failure i: the sum of kappa(j -> i) R_j over its causes
 };
-
-// Does the operating system say that the process of a component is gone or stopped that a strategy
-// of `rule` would replace?
-bool is_seen_down(RuleId rule, const Knowledge& knowledge);
-
-// Would the strategy replace the process of `component`?
-bool replaces(const Strategy& strategy, ComponentId component);
 
 }  // namespace culprit::plan

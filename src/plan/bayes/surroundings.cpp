@@ -2,16 +2,13 @@
 
 #include <algorithm>
 
+#include "plan/bayes/seen_down.h"
 #include "plan/bayes/suspicion.h"
 
 namespace culprit::plan {
 namespace {
 
 constexpr std::size_t kLevels = 3;
-
-std::size_t level_of(RuleId rule, const Knowledge& knowledge) {
-  return static_cast<std::size_t>(knowledge.rules[rule].policies.criticality);
-}
 
 }  // namespace
 
@@ -33,8 +30,13 @@ bool takes_down(const Strategy& strategy) {
 }
 
 Duration longest_wait(RuleId suspicious, const Knowledge& knowledge) {
-  return std::max<Duration>(duration_of(kLongestWait, knowledge.rules),
-                            kLongestWaitLatencies * knowledge.signals.latency(suspicious));
+  const Duration usual =
+      std::max<Duration>(duration_of(kLongestWait, knowledge.rules),
+                         kLongestWaitLatencies * knowledge.signals.latency(suspicious));
+  // What is known to be dead will not turn out to be well.
+  if (!is_seen_down(suspicious, knowledge)) return usual;
+  return std::max<Duration>(usual,
+                            knowledge.rules[suspicious].policies.hold_for + knowledge.rules.cycle);
 }
 
 std::vector<RuleId> suspicious_rules(std::span<const RuleId> failures, const Knowledge& knowledge) {
@@ -61,22 +63,25 @@ std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
   return all;
 }
 
-Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach,
+Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach, const Levels& levels,
                            std::span<const RuleId> failures, std::span<const RuleId> suspicious)
     : knowledge_(knowledge),
       reach_(reach),
+      levels_(levels),
       holding_(kLevels, Marks(reach.size())),
       urgent_(kLevels, Marks(reach.size())),
       planned_(kLevels, Marks(reach.size())),
       judged_(kLevels, Marks(reach.size())),
       pending_(kLevels, Marks(reach.size())),
-      suspects_(kLevels, Marks(reach.size())),
-      added_(reach.size()) {
+      suspects_(reach.size()),
+      patience_(reach.size()),
+      added_(reach.size()),
+      guarded_(reach.size()) {
   const auto mark = [&](Marks& marks, const std::vector<ComponentId>& components, RuleId rule) {
     for (const ComponentId c : components) marks.mark(reach.place_of(c), rule);
   };
   const auto mark_below = [&](std::vector<Marks>& marks, RuleId rule) {
-    for (std::size_t below = 0; below < level_of(rule, knowledge); ++below)
+    for (std::size_t below = 0; below < level_of(rule); ++below)
       mark(marks[below], knowledge.rules[rule].components, rule);
   };
   for (const RuleId rule : knowledge.states.active()) {
@@ -86,20 +91,22 @@ Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach,
     const bool has_effect = attempt->stage == Attempt::Stage::kWaiting;
     mark_below(has_effect ? judged_ : urgent_, rule);
     for (std::size_t level = 0; level < kLevels; ++level) {
-      if (!has_effect || level <= level_of(rule, knowledge)) mark(holding_[level], adapted, rule);
+      if (!has_effect || level <= level_of(rule)) mark(holding_[level], adapted, rule);
     }
   }
   for (const RuleId rule : failures) mark_below(planned_, rule);
   for (const RuleId rule : suspicious) {
-    patience_ = std::max(patience_, longest_wait(rule, knowledge));
     mark_below(pending_, rule);
-    for (std::size_t level = 0; level <= level_of(rule, knowledge); ++level)
-      mark(suspects_[level], knowledge.rules[rule].components, rule);
+    mark(suspects_, knowledge.rules[rule].components, rule);
+    for (const ComponentId c : knowledge.rules[rule].components) {
+      Duration& patience = patience_[reach.place_of(c)];
+      patience = std::max(patience, longest_wait(rule, knowledge));
+    }
   }
 }
 
 std::optional<Surroundings::Obstacle> Surroundings::reserved(const Strategy& strategy) const {
-  const Marks& marks = holding_[level_of(strategy.rule, knowledge_)];
+  const Marks& marks = holding_[level_of(strategy.rule)];
   for (const ComponentId c : strategy.components) {
     const std::size_t place = reach_.place_of(c);
     if (has(marks.bits(), place)) return Obstacle{Condition::kAdapting, c, marks.failure[place]};
@@ -110,22 +117,38 @@ std::optional<Surroundings::Obstacle> Surroundings::reserved(const Strategy& str
 std::optional<Surroundings::Obstacle> Surroundings::obstacle(std::size_t place,
                                                              const Strategy& strategy,
                                                              double chance) const {
-  const std::size_t level = level_of(strategy.rule, knowledge_);
+  const std::size_t level = level_of(strategy.rule);
   if (auto held = found(Condition::kDownstream, reach_.upstream(place), holding_[level]))
     return held;
-  const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
-  if (knowledge_.now < later(knowledge_.states[strategy.rule].failing_since, patience_)) {
-    if (auto pending = found(Condition::kSuspect, reach_.upstream(place), suspects_[level]))
-      return pending;
-    auto pending = in_the_way(place, pending_[level]);
-    if (pending && !needs_no_verdict) return pending;
-  }
+  if (auto pending = pending_verdict(place, strategy, chance)) return pending;
   if (auto urgent = in_the_way(place, urgent_[level])) return urgent;
   // What is sure and takes nothing down is over before they would have their turn downstream.
   if (auto next = in_the_way(place, planned_[level])) {
+    const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
     if (!needs_no_verdict || has(planned_[level].bits(), place)) return next;
   }
   return takes_down(strategy) ? in_the_way(place, judged_[level]) : std::nullopt;
+}
+
+// What looks ill upstream may be the cause; what does at the same component, and is more critical,
+// would have to wait. What does downstream may be the effect: nobody waits for it.
+std::optional<Surroundings::Obstacle> Surroundings::pending_verdict(std::size_t place,
+                                                                    const Strategy& strategy,
+                                                                    double chance) const {
+  const Time since = knowledge_.states[strategy.rule].failing_since;
+  const auto is_awaited = [&](std::size_t p) {
+    return knowledge_.now < later(since, patience_[p]);
+  };
+  std::optional<Obstacle> suspect;
+  for_each_common(reach_.upstream(place), suspects_.bits(), [&](std::size_t p) {
+    if (!suspect && is_awaited(p))
+      suspect = Obstacle{Condition::kSuspect, reach_[p], suspects_.failure[p]};
+  });
+  if (suspect) return suspect;
+  const Marks& pending = pending_[level_of(strategy.rule)];
+  const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
+  if (needs_no_verdict || !has(pending.bits(), place) || !is_awaited(place)) return std::nullopt;
+  return Obstacle{Condition::kInTheWay, reach_[place], pending.failure[place]};
 }
 
 // Does what is at `place`, or depends on it, belong to one of the failures?
@@ -137,15 +160,22 @@ std::optional<Surroundings::Obstacle> Surroundings::in_the_way(std::size_t place
 }
 
 void Surroundings::add(const Strategy& strategy) {
-  for (const ComponentId c : strategy.components) added_.mark(reach_.place_of(c), strategy.rule);
+  for (const ComponentId c : strategy.components) {
+    added_.mark(reach_.place_of(c), strategy.rule);
+    if (!only_revives(strategy, knowledge_)) guarded_.mark(reach_.place_of(c), strategy.rule);
+  }
+}
+
+std::optional<Surroundings::Obstacle> Surroundings::taken(std::size_t place) const {
+  if (!has(added_.bits(), place)) return std::nullopt;
+  return Obstacle{Condition::kAffected, reach_[place], added_.failure[place]};
 }
 
 std::optional<Surroundings::Obstacle> Surroundings::conflict(std::size_t place) const {
-  if (has(added_.bits(), place))
-    return Obstacle{Condition::kAffected, reach_[place], added_.failure[place]};
+  if (auto by_another = taken(place)) return by_another;
   if (auto upstream = found(Condition::kDownstream, reach_.upstream(place), added_))
     return upstream;
-  return found(Condition::kInTheWay, reach_.downstream(place), added_);
+  return found(Condition::kInTheWay, reach_.downstream(place), guarded_);
 }
 
 std::optional<Surroundings::Obstacle> Surroundings::found(Condition condition,

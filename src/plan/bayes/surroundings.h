@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "plan/bayes/failures.h"
+#include "plan/bayes/levels.h"
 
 namespace culprit::plan {
 
@@ -28,8 +28,8 @@ Duration longest_wait(RuleId suspicious, const Knowledge& knowledge);
 class Surroundings {
  public:
   // `failures` are those to be decided about.
-  Surroundings(const Knowledge& knowledge, const Reach& reach, std::span<const RuleId> failures,
-               std::span<const RuleId> suspicious);
+  Surroundings(const Knowledge& knowledge, const Reach& reach, const Levels& levels,
+               std::span<const RuleId> failures, std::span<const RuleId> suspicious);
 
   struct Obstacle {
     Condition condition = Condition::kAdapting;
@@ -43,8 +43,11 @@ class Surroundings {
   std::optional<Obstacle> obstacle(std::size_t place, const Strategy& strategy,
                                    double chance) const;
 
-  // From now on the strategy is carried out as well.
+  // From now on the strategy is carried out as well. What only replaces dead processes is not
+  // disturbed by what is done upstream.
   void add(const Strategy& strategy);
+  // Is it adapted by one of those that were added?
+  std::optional<Obstacle> taken(std::size_t place) const;
   // What the strategies that were added stand against.
   std::optional<Obstacle> conflict(std::size_t place) const;
 
@@ -62,21 +65,26 @@ class Surroundings {
     std::vector<RuleId> failure;
   };
   std::optional<Obstacle> in_the_way(std::size_t place, const Marks& marks) const;
+  std::optional<Obstacle> pending_verdict(std::size_t place, const Strategy& strategy,
+                                          double chance) const;
+  std::size_t level_of(RuleId rule) const { return static_cast<std::size_t>(levels_.of(rule)); }
   std::optional<Obstacle> found(Condition condition, std::span<const Word> where,
                                 const Marks& marks) const;
 
   const Knowledge& knowledge_;
   const Reach& reach_;
+  const Levels& levels_;
   // By level: reserved by attempts, and holding back what depends on it. Not by one that is less
   // critical and only waits for its verdict: it gives way.
   std::vector<Marks> holding_;
-  std::vector<Marks> urgent_;    // by level: of more critical failures that are worked on
-  std::vector<Marks> planned_;   // by level: of those to be decided about
-  std::vector<Marks> judged_;    // by level: of those whose strategy waits for its verdict
-  std::vector<Marks> pending_;   // by level: of suspicious rules that are more critical
-  std::vector<Marks> suspects_;  // by level: of suspicious rules at least as critical
-  Duration patience_{};          // with suspicious rules
+  std::vector<Marks> urgent_;       // by level: of more critical failures that are worked on
+  std::vector<Marks> planned_;      // by level: of those to be decided about
+  std::vector<Marks> judged_;       // by level: of those whose strategy waits for its verdict
+  std::vector<Marks> pending_;      // by level: of suspicious rules that are more critical
+  Marks suspects_;                  // of suspicious rules
+  std::vector<Duration> patience_;  // by place: how long a failure waits for the verdicts on them
   Marks added_;
+  Marks guarded_;  // of those added, what may not be disturbed from upstream
 };
 
 }  // namespace culprit::plan

@@ -17,9 +17,8 @@ Watchers::Watchers(const Knowledge& knowledge, Time until)
     if (symptom_of(RuleId(r), knowledge) != Symptom::kValue ||
         !is_heard_by(until, RuleId(r), knowledge))
       continue;
-    const auto level = static_cast<std::size_t>(rules.rules[r].policies.criticality);
     for (const ComponentId c : rules.rules[r].components) {
-      if (const auto knot = knowledge.graph.knot_of(c)) ++places_[*knot].rules[level];
+      if (const auto knot = knowledge.graph.knot_of(c)) ++places_[*knot].rules;
     }
   }
   for (std::size_t place = 0; place < graph.places(); ++place) {
@@ -27,25 +26,18 @@ Watchers::Watchers(const Knowledge& knowledge, Time until)
     if (knot == LiveCondensation::kNone) continue;
     for (const LiveCondensation::Knot producer : graph.producers(knot)) {
       const Place& before = places_[producer];
-      int highest = before.above;
-      for (int level = 0; level < 3; ++level) {
-        if (before.rules[static_cast<std::size_t>(level)] > 0) highest = std::max(highest, level);
-      }
-      places_[knot].above = std::max(places_[knot].above, highest);
+      places_[knot].is_below_one |= before.is_below_one || before.rules > 0;
     }
   }
 }
 
 bool Watchers::are_upstream_of(RuleId failure) const {
   const Rule& rule = knowledge_.rules[failure];
-  const auto level = static_cast<std::size_t>(rule.policies.criticality);
   return std::any_of(rule.components.begin(), rule.components.end(), [&](ComponentId c) {
     const auto knot = knowledge_.graph.knot_of(c);
     if (!knot) return false;
     const Place& place = places_[*knot];
-    std::size_t others = 0;
-    for (std::size_t l = level; l < 3; ++l) others += place.rules[l];
-    return place.above >= static_cast<int>(level) || (place.components > 1 && others > 1);
+    return place.is_below_one || (place.components > 1 && place.rules > 1);
   });
 }
 

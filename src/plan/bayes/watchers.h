@@ -5,7 +5,6 @@
 // would wait.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "knowledge/knowledge.h"
@@ -17,14 +16,14 @@ class Watchers {
   // One pass over the graph. It must outlive this. Nobody waits longer than `until`.
   Watchers(const Knowledge& knowledge, Time until);
 
-  // Does another rule about values, at least as critical, touch something upstream?
+  // Does another rule about values touch something upstream?
   bool are_upstream_of(RuleId failure) const;
 
  private:
   struct Place {
-    std::size_t components = 0;          // more than one: a circle
-    std::array<std::size_t, 3> rules{};  // that touch it and may be about to fire, by level
-    int above = -1;                      // the highest level of those upstream of it
+    std::size_t components = 0;  // more than one: a circle
+    std::size_t rules = 0;       // that touch it and may be about to fire
+    bool is_below_one = false;   // of those upstream of it
   };
 
   const Knowledge& knowledge_;

@@ -13,10 +13,15 @@ using Vertex = DependencyGraph::Vertex;
 // What is known of a component.
 struct Signs {
   std::array<bool, 2> is_watched{};  // by a quiet rule of each kind
-  bool is_ill = false;               // a rule that touches it is not quiet, or suspicious
+  std::array<bool, 2> has_ill{};     // a rule of that kind is not quiet, or suspicious
 
+  // Bad values come of outages too, but no outages of bad values.
+  bool is_ill(Symptom symptom) const {
+    return has_ill[static_cast<std::size_t>(Symptom::kOutage)] ||
+           has_ill[static_cast<std::size_t>(symptom)];
+  }
   bool is_well(Symptom symptom) const {
-    return !is_ill && is_watched[static_cast<std::size_t>(symptom)];
+    return !is_ill(symptom) && is_watched[static_cast<std::size_t>(symptom)];
   }
 };
 
@@ -28,7 +33,7 @@ std::vector<Signs> signs_of(const Knowledge& knowledge) {
     const bool is_seen = is_ill || knowledge.states[rule].trigger.known;
     const auto symptom = static_cast<std::size_t>(symptom_of(rule, knowledge));
     for (const ComponentId c : knowledge.rules[rule].components) {
-      signs[c.index].is_ill |= is_ill;
+      signs[c.index].has_ill[symptom] = signs[c.index].has_ill[symptom] || is_ill;
       signs[c.index].is_watched[symptom] = signs[c.index].is_watched[symptom] || is_seen;
     }
   }
@@ -49,7 +54,7 @@ class Narrowing {
     for (Vertex v = 0; v < place_.size(); ++v) {
       const auto component = knowledge.graph.component_at(v);
       const Signs* seen = component ? &signs[component->index] : nullptr;
-      is_ill_.push_back(seen != nullptr && seen->is_ill);
+      is_ill_.push_back(seen != nullptr && seen->is_ill(symptom));
       if (seen == nullptr || !seen->is_well(symptom)) place_[v] = left_++;
     }
   }

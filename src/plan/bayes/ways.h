@@ -3,7 +3,8 @@
 // A chain of effects does not go through a component that shows none. Left out, for failures of one
 // kind of symptom (an outage, or a bad value), are
 //   - components that are well: a rule of that kind touches them and is quiet, and no rule that
-//     touches them fails or is suspicious;
+//     touches them fails or is suspicious; an outage is none of who sends, however bad the values
+//     are;
 //   - topics and services that evidently carry no failures: of n consumers that are well or
 //     fail, more are well than kSpared n and kDeviations standard deviations of the binomial
 //     distribution. /tf and its like are read by many.

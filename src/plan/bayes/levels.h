@@ -1,0 +1,36 @@
+// How bad is it? The level at which each failure is treated.
+//
+// Whoever is held responsible for a failure inherits its criticality if that is higher, as the
+// holder of a lock inherits the priority of who waits for it (Sha, Rajkumar, Lehoczky, "Priority
+// inheritance protocols", IEEE Transactions on Computers 39, 1990):
+//
+//     L_i = max(own level of i, max_k L_k)
+//
+// over the failures k that wait for i: those that have a cause upstream and none of their own, i
+// being enough to explain them (Responsibility::is_explained_by); and those in the same circle as
+// i, for each of them may be the cause of the others. Without that, a WARNING whose effect is an
+// ERROR would wait for the repair of what is not broken.
+#pragma once
+
+#include <vector>
+
+#include "plan/bayes/responsibility.h"
+
+namespace culprit::plan {
+
+class Levels {
+ public:
+  // `knowledge` must outlive it.
+  Levels(const Knowledge& knowledge, const Failures& failures,
+         const Responsibility& responsibility);
+
+  // Of a rule that has no failure: its own.
+  Criticality of(RuleId rule) const;
+
+ private:
+  const Knowledge& knowledge_;
+  const Failures& failures_;
+  std::vector<Criticality> levels_;  // by failure
+};
+
+}  // namespace culprit::plan
