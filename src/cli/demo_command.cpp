@@ -176,7 +176,7 @@ int demo_sunset(const DemoOptions& options) {
     return kFailed;
   }
   web::RuleDesk desk("sunset.rules", kSunsetRules);
-  web::OrderDesk orders;
+  web::OrderDesk orders(web::keeps_nothing("a demonstration forgets all when it ends"));
   RobotNames names;
   StudyRunner studies(default_state_folder() / "studies");
   orders.open((*demo)->rules(), [&](Order order) { (*demo)->submit(std::move(order)); });

@@ -74,8 +74,9 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   session.learned = beginning.learned;
   session.interrupted = beginning.interrupted;
   session.past = journal::to_json(beginning.past, rules);
-  session.is_paused = beginning.is_paused;
-  session.is_dry_run = beginning.is_dry_run;
+  session.is_paused = beginning.orders.pause.has_value();
+  session.is_dry_run = beginning.orders.dry_run.has_value();
+  session.orders_kept = frame.orders.is_kept();
   return session;
 }
 
@@ -150,32 +151,57 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
 }
 
 RunBeginning LiveSession::look_back() {
-  return begin_journal(frame_.options.journal_path(rules_), rules_, {robot_->now(), wall_now()});
+  const auto path = frame_.options.journal_path(rules_);
+  if (frame_.records) return begin_journal(path, rules_, {robot_->now(), wall_now()});
+  if (frame_.options.no_journal) return begin_without_journal(path, robot_->now());
+  return {};
+}
+
+// What people have ordered, of the last run and of this process before.
+void LiveSession::hold(RunBeginning& beginning) {
+  const auto path = frame_.options.journal_path(rules_);
+  std::string trouble;
+  if (frame_.options.no_journal) {
+    beginning.orders = frame_.orders.begin_without("of --no-journal", beginning.orders);
+  } else if (!frame_.records) {
+    beginning.orders = frame_.orders.begin_without(
+        "another culprit manages this robot, and has to be told too", beginning.orders);
+  } else if (beginning.is_of_another) {
+    beginning.orders =
+        frame_.orders.begin_without("another culprit writes the journal", beginning.orders);
+  } else {
+    beginning.orders = frame_.orders.begin(journal::orders_beside(path), beginning.orders,
+                                           beginning.are_orders_kept, trouble);
+  }
+  if (!trouble.empty()) beginning.findings.push_back("orders are not kept: " + trouble);
+  for (Event& silence : journal::to_past(beginning.orders, rules_, robot_->now()))
+    beginning.past.push_back(std::move(silence));
 }
 
 void LiveSession::begin(const std::atomic<bool>& stop) {
-  RunBeginning beginning;
-  if (frame_.records) beginning = look_back();
+  RunBeginning beginning = look_back();
+  hold(beginning);
   for (const std::string& finding : beginning.findings) fmt::print("culprit: {}\n", finding);
   std::vector<Observation> seen;
-  if (frame_.options.launch && !frame_.advises) {
+  const bool is_held = beginning.orders.pause || beginning.orders.dry_run;
+  if (frame_.options.launch && !frame_.advises && !is_held) {
     seen = discover(*robot_, stop);
     launch_missing(*robot_, rules_, seen);
   }
-  const auto go_on_with = [&](const char* reason, auto order) {
-    seen.push_back({robot_->now(), Order{0, "the last run", reason, order}});
+  const auto go_on_with = [&](const journal::StandingOrders::Said& said, auto order) {
+    seen.push_back({robot_->now(), Order{0, said.author, said.reason, order}});
   };
-  if (beginning.is_paused) go_on_with("it was paused when it ended", Pause{});
-  if (beginning.is_dry_run && !frame_.advises)
-    go_on_with("a dry run was ordered when it ended", SetDryRun{true});
+  if (beginning.orders.pause) go_on_with(*beginning.orders.pause, Pause{});
+  if (beginning.orders.dry_run && !frame_.advises)
+    go_on_with(*beginning.orders.dry_run, SetDryRun{true});
   manage(std::move(beginning), std::move(seen), "");
 }
 
 void LiveSession::begin(Handover before) {
-  RunBeginning beginning;
-  if (frame_.records) beginning = look_back();
+  RunBeginning beginning = look_back();
   // What the manager knew is known, whether or not the journal could be written.
   beginning.learned = std::move(before.learned);
+  beginning.orders = frame_.orders.orders();
   manage(std::move(beginning), std::move(before.orders), std::move(before.occasion));
 }
 

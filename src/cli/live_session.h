@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "cli/live_robot.h"
+#include "cli/order_keeper.h"
 #include "cli/rule_file.h"
 #include "cli/run_journal.h"
 #include "cli/run_options.h"
@@ -26,6 +27,7 @@ class LiveSession {
     std::optional<ros2::LeaseClaim> lease;  // to be announced; nothing: it would never manage
     web::Hub& hub;
     web::Metrics& metrics;
+    OrderKeeper& orders;
     Time start;  // of the run: what people read counts from here
   };
   // What a session leaves to the next one.
@@ -72,6 +74,7 @@ class LiveSession {
       : frame_(frame), rules_(std::move(rules.rules)), rules_text_(std::move(rules.text)) {}
 
   RunBeginning look_back();
+  void hold(RunBeginning& beginning);
   void manage(RunBeginning beginning, std::vector<Observation> seen, std::string occasion);
   void tell(std::span<const Event> events);
 

@@ -205,7 +205,8 @@ int run(const RunOptions& options) {
   Stage stage(options);
   web::Hub hub([&] { stage.interrupt(); });
   web::Metrics metrics;
-  LiveSession::Frame frame{options, *governor, false, true, {}, hub, metrics, live_now()};
+  OrderKeeper keeper("the run has not begun");
+  LiveSession::Frame frame{options, *governor, false, true, {}, hub, metrics, keeper, live_now()};
   take_role(frame, role->role());
   if (!options.dry_run) frame.lease = role->lease();
   const std::string robot = name_of(rules->rules);
@@ -217,7 +218,7 @@ int run(const RunOptions& options) {
   std::fflush(stdout);
   (*session)->begin(signals.stopped());
 
-  web::OrderDesk orders;
+  web::OrderDesk orders(keeper.keeping());
   orders.open((*session)->rules(),
               [&session = **session](Order order) { session.submit(std::move(order)); });
   stage.enter(session->get());

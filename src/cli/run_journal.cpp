@@ -31,26 +31,71 @@ void tell(const Recovery& recovery, const RuleSet& rules, std::vector<std::strin
         "the last run ended without being asked to; nothing was left in the middle");
 }
 
-void take_over(const journal::Reader& reader, const RuleSet& rules, const journal::Moment& now,
-               RunBeginning& beginning) {
+// Nobody knows whether a person wants it to wait.
+void pause(RunBeginning& beginning, const std::string& why) {
+  beginning.orders.pause = journal::StandingOrders::Said{"culprit", why};
+  beginning.findings.push_back(
+      why + "; so it is paused until a person resumes it: start it with --web and press Resume");
+}
+
+// What the rows of a culprit say that had no file for it.
+journal::StandingOrders orders_of(const Recovery& recovery, const RuleSet& rules) {
+  journal::StandingOrders orders;
+  const journal::StandingOrders::Said said{"the last run", "it was ordered so when it ended"};
+  if (recovery.is_paused) orders.pause = said;
+  if (recovery.is_dry_run) orders.dry_run = said;
+  orders.silences = journal::silences_of(recovery.past, rules);
+  return orders;
+}
+
+enum class Rows : std::uint8_t { kNone, kRead, kUnreadable };
+
+void find_orders(const std::filesystem::path& path, Rows rows, const Recovery& recovery,
+                 const RuleSet& rules, Time now, RunBeginning& beginning) {
+  const auto file = journal::orders_beside(path);
+  const auto found = journal::read_orders(file, journal::clocks_now(now));
+  if (!found) return pause(beginning, found.error());
+  if (*found) {
+    beginning.orders = **found;
+    beginning.are_orders_kept = true;
+    if (const auto& pause = beginning.orders.pause)
+      beginning.findings.push_back("it was paused by " + pause->author +
+                                   (pause->reason.empty() ? "" : ": " + pause->reason) +
+                                   "; it stays so until a person resumes it");
+    return;
+  }
+  const std::string missing = "'" + file.string() + "' is missing, where orders are kept";
+  if (rows == Rows::kUnreadable) return pause(beginning, missing);
+  if (rows == Rows::kNone || !recovery.had_run) return;
+  if (recovery.orders_kept) return pause(beginning, missing);
+  beginning.orders = orders_of(recovery, rules);
+}
+
+std::optional<Recovery> take_over(const journal::Reader& reader, const RuleSet& rules,
+                                  const journal::Moment& now, RunBeginning& beginning) {
   const auto learned = reader.learned();
   const auto recovery = journal::recover(reader, rules, now);
   if (learned) beginning.learned = *learned;
   if (!learned || !recovery) {
     beginning.findings.push_back("the journal cannot be read whole: " +
                                  (learned ? recovery.error() : learned.error()));
-    return;
+    return std::nullopt;
   }
   tell(*recovery, rules, beginning.findings);
-  beginning.is_paused = recovery->is_paused;
-  beginning.is_dry_run = recovery->is_dry_run;
   beginning.past = recovery->past;
+  std::erase_if(beginning.past, journal::is_about_silence);
   if (!learned->beliefs.empty())
     beginning.findings.push_back(
         fmt::format("what was learned of {} strategies is known", learned->beliefs.size()));
-  if (recovery->was_other_boot) return;
+  if (recovery->was_other_boot) return *recovery;
   for (const Interrupted& each : recovery->interrupted)
     beginning.interrupted.push_back(journal::to_json(each, rules));
+  return *recovery;
+}
+
+bool is_locked(const std::filesystem::path& journal) {
+  const auto lock = journal::FileLock::take(journal.string() + "-lock");
+  return lock && !*lock;
 }
 
 }  // namespace
@@ -58,19 +103,36 @@ void take_over(const journal::Reader& reader, const RuleSet& rules, const journa
 RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rules,
                            const journal::Moment& now) {
   RunBeginning beginning;
+  std::error_code error;
+  const bool was_there = std::filesystem::exists(path, error);
   auto writer = journal::Writer::open(path, {});
+  bool is_set_aside = false;
   if (writer) {
-    if (!writer->remark().empty()) beginning.findings.push_back(writer->remark());
+    is_set_aside = !writer->remark().empty();
+    if (is_set_aside) beginning.findings.push_back(writer->remark());
     beginning.writer = std::move(*writer);
   } else {
     beginning.findings.push_back(writer.error());
     beginning.findings.emplace_back(
         "the robot is managed all the same; what happens is kept and written as soon as that is "
         "possible");
+    beginning.is_of_another = is_locked(path);
   }
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) return beginning;
-  if (const auto reader = journal::Reader::open(path)) take_over(*reader, rules, now, beginning);
+  std::optional<Recovery> recovery;
+  if (std::filesystem::exists(path, error)) {
+    if (const auto reader = journal::Reader::open(path))
+      recovery = take_over(*reader, rules, now, beginning);
+  }
+  const Rows rows = !was_there                  ? Rows::kNone
+                    : recovery && !is_set_aside ? Rows::kRead
+                                                : Rows::kUnreadable;
+  find_orders(path, rows, recovery.value_or(Recovery()), rules, now.robot, beginning);
+  return beginning;
+}
+
+RunBeginning begin_without_journal(const std::filesystem::path& path, Time now) {
+  RunBeginning beginning;
+  find_orders(path, Rows::kNone, {}, {}, now, beginning);
   return beginning;
 }
 

@@ -150,6 +150,7 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Mo
   recovery.had_run = true;
   const Json begin = from_text((*last)->body);
   recovery.was_other_boot = text_of(begin, "boot") != boot_id();
+  recovery.orders_kept = flag_of(begin, "orders_kept");
   Trail trail(rules, recovery.given_up);
   trail.begin_with(begin);
   auto rows = journal.entries(Which::kReadable, (*last)->id + 1);

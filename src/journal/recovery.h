@@ -17,7 +17,8 @@ struct Recovery {
   bool had_run = false;         // there was a run before
   bool was_stopped = false;     // and it was asked to end
   bool was_other_boot = false;  // the machine was started anew since
-  bool is_paused = false;       // by a person, who has to resume it
+  bool orders_kept = false;     // in a file of their own, which alone counts (standing_orders.h)
+  bool is_paused = false;       // by a person, who has to resume it; according to the rows
   bool is_dry_run = false;      // likewise
   std::vector<Interrupted> interrupted;
   std::vector<std::string> given_up;  // what was under way and cannot be finished, and why

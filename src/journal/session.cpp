@@ -80,6 +80,7 @@ Json to_json(const Session& session) {
           {"past", session.past},
           {"paused", session.is_paused},
           {"dry_run", session.is_dry_run},
+          {"orders_kept", session.orders_kept},
           {"rules_path", session.rules_path},
           {"rules_text", session.rules_text},
           {"occasion", session.occasion},
@@ -111,6 +112,7 @@ Expected<Session> session_from_json(const Json& json) {
   session.past = json.value("past", Json::array());
   session.is_paused = flag_of(json, "paused");
   session.is_dry_run = flag_of(json, "dry_run");
+  session.orders_kept = flag_of(json, "orders_kept");
   if (!(session.forgetting > 0 && session.forgetting <= 1) || session.settling < Duration::zero() ||
       session.rules_text.size() > (64u << 20))
     return Error{"the beginning of a run cannot be read"};

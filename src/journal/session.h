@@ -28,6 +28,9 @@ struct Session {
   // By a person's order in the run before, which goes on: said anew with the first step.
   bool is_paused = false;
   bool is_dry_run = false;
+  // What stands of people's orders is in a file of its own (standing_orders.h); older culprits have
+  // it in the rows only.
+  bool orders_kept = false;
 };
 
 // Also the form of what `culprit beliefs export` writes.

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -53,6 +54,18 @@ Expected<void> write_through(const std::filesystem::path& target, const std::str
   return file ? Expected<void>() : failure("write", target);
 }
 
+// A name is on the disk when its folder is.
+Expected<void> sync_folder(const std::filesystem::path& folder) {
+  const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return failure("write", folder);
+  const bool synced = fsync(file) == 0 || errno == EINVAL;  // not every file system can
+  const int reason = errno;
+  close(file);
+  if (synced) return {};
+  errno = reason;
+  return failure("write", folder);
+}
+
 Expected<void> replace(const std::filesystem::path& target, const std::string& text, mode_t mode) {
   // In the same folder, so that the rename stays within one file system.
   std::string temporary = target.parent_path() / ("." + target.filename().string() + ".XXXXXX");
@@ -62,7 +75,8 @@ Expected<void> replace(const std::filesystem::path& target, const std::string& t
   const bool written = write_all(file, text) && fchmod(file, mode) == 0 && fsync(file) == 0;
   const int reason = errno;
   const bool closed = close(file) == 0;
-  if (written && closed && rename(temporary.c_str(), target.c_str()) == 0) return {};
+  if (written && closed && rename(temporary.c_str(), target.c_str()) == 0)
+    return sync_folder(target.parent_path());
   if (!written) errno = reason;
   const Error what = failure("write", target);
   unlink(temporary.c_str());

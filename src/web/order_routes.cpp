@@ -1,5 +1,7 @@
 #include "web/order_routes.h"
 
+#include "robot/standing.h"
+
 namespace culprit::web {
 namespace {
 
@@ -80,12 +82,29 @@ Expected<What> read(const Json& body, const RuleSet& rules) {
       "'order' has to be pause, resume, dry_run, approve, refuse, silence, lift, run or forget"};
 }
 
+Expected<Order> read_order(const Json& body, const RuleSet& rules, std::uint64_t number) {
+  const auto what = read(body, rules);
+  if (!what) return Error{what.error()};
+  Order order{number, text_of(body, "author").value_or(""), text_of(body, "reason").value_or(""),
+              *what};
+  if (order.author.empty()) return Error{"say who you are: 'author'"};
+  if (order.author.size() > kLongestText || order.reason.size() > kLongestText)
+    return Error{"keep 'author' and 'reason' short"};
+  return order;
+}
+
+const RuleSet& no_rules() {
+  static const RuleSet rules;
+  return rules;
+}
+
 }  // namespace
 
 void OrderDesk::open(const RuleSet& rules, std::function<void(Order)> submit) {
   const std::lock_guard lock(mutex_);
   rules_ = &rules;
   submit_ = std::move(submit);
+  if (waiting_) submit_(*std::exchange(waiting_, std::nullopt));
 }
 
 void OrderDesk::close() {
@@ -94,20 +113,54 @@ void OrderDesk::close() {
   submit_ = nullptr;
 }
 
+void OrderDesk::submit(Order order) {
+  if (rules_ != nullptr) return submit_(std::move(order));
+  if (std::holds_alternative<Pause>(order.what)) waiting_ = std::move(order);
+}
+
 Answer OrderDesk::take(const Json& body) {
   // The rules that an order was read with must still be those of the manager that gets it.
-  const std::lock_guard lock(mutex_);
-  if (rules_ == nullptr) return refuse(503, "the rules are being reloaded; ask again");
-  const auto what = read(body, *rules_);
-  if (!what) return refuse(400, what.error());
-  Order order{last_ + 1, text_of(body, "author").value_or(""), text_of(body, "reason").value_or(""),
-              *what};
-  if (order.author.empty()) return refuse(400, "say who you are: 'author'");
-  if (order.author.size() > kLongestText || order.reason.size() > kLongestText)
-    return refuse(400, "keep 'author' and 'reason' short");
-  submit_(std::move(order));
+  std::unique_lock lock(mutex_);
+  const RuleSet& rules = rules_ == nullptr ? no_rules() : *rules_;
+  auto order = read_order(body, rules, last_ + 1);
+  const bool is_pause = order && std::holds_alternative<Pause>(order->what);
+  if (rules_ == nullptr && !is_pause) return refuse(503, "the rules are being reloaded; ask again");
+  if (!order) return refuse(400, order.error());
+  const std::uint64_t number = ++last_;
+  if (standing_of(*order) != Standing::kNot) {
+    const Keep keep_it = keeping_(*order, rules);
+    lock.unlock();
+    return keep(keep_it, body, number);
+  }
+  submit(std::move(*order));
   // The manager decides; an event of this number says how.
-  return {202, {{"number", ++last_}}};
+  return {202, {{"number", number}}};
+}
+
+// Without the lock, for a disk may take its time, and nothing may delay a pause. So the rules may
+// have been replaced before the order is given: it is read anew.
+Answer OrderDesk::keep(const Keep& keep, const Json& body, std::uint64_t number) {
+  const Kept kept = keep([&] {
+    const std::lock_guard lock(mutex_);
+    auto order = read_order(body, rules_ == nullptr ? no_rules() : *rules_, number);
+    if (order) submit(std::move(*order));
+  });
+  if (!kept.is_given)
+    return refuse(503,
+                  "nothing changes, for the next culprit would not know of it: " + kept.why_not);
+  return {202,
+          {{"number", number},
+           {"kept", kept.is_kept},
+           {"text", kept.is_kept ? "kept" : "in force, not kept: " + kept.why_not}}};
+}
+
+OrderDesk::Keeping keeps_nothing(std::string why) {
+  return [why = std::move(why)](const Order&, const RuleSet&) -> OrderDesk::Keep {
+    return [why](const std::function<void()>& submit) -> Kept {
+      submit();
+      return {false, true, why};
+    };
+  };
 }
 
 std::vector<Route> order_routes(OrderDesk& desk) {

@@ -85,7 +85,7 @@ struct Routes : testing::Test {
   Metrics metrics;
   RuleDesk desk{path};
   const RuleSet rules = *check(Source("test", kRules)).rules;
-  OrderDesk order_desk;
+  OrderDesk order_desk{keeps_nothing("this is a test")};
   bool is_file_wrong = false;
   std::string reloaded_by;
   std::optional<Studies::Campaign> started;
@@ -202,7 +202,32 @@ TEST_F(Routes, ForgetWhatWasLearned) {
 
 TEST_F(Routes, TakeNoOrdersWhileTheRulesAreReplaced) {
   order_desk.close();
-  EXPECT_EQ(ask("post /api/orders", {{"order", "pause"}, {"author", "ada"}}).status, 503);
+  EXPECT_EQ(ask("post /api/orders", {{"order", "resume"}, {"author", "ada"}}).status, 503);
+  EXPECT_TRUE(orders.empty());
+}
+
+TEST_F(Routes, TakeAPauseAlsoWhileTheRulesAreReplaced) {
+  order_desk.close();
+  EXPECT_EQ(ask("post /api/orders", {{"order", "pause"}, {"author", "ada"}}).status, 202);
+  EXPECT_TRUE(orders.empty());
+  order_desk.open(rules, [this](Order order) { orders.push_back(std::move(order)); });
+  ASSERT_EQ(orders.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<Pause>(orders[0].what));
+}
+
+TEST_F(Routes, SayWhetherAnOrderIsKept) {
+  const Answer answer = ask("post /api/orders", {{"order", "pause"}, {"author", "ada"}});
+  EXPECT_EQ(answer.status, 202);
+  EXPECT_EQ(answer.body["kept"], false);
+  EXPECT_EQ(answer.body["text"], "in force, not kept: this is a test");
+  OrderDesk strict([](const Order&, const RuleSet&) -> OrderDesk::Keep {
+    return [](const std::function<void()>&) -> Kept { return {false, false, "the disk is full"}; };
+  });
+  strict.open(rules, [this](Order order) { orders.push_back(std::move(order)); });
+  orders.clear();
+  const Answer refused = strict.take({{"order", "resume"}, {"author", "ada"}});
+  EXPECT_EQ(refused.status, 503);
+  EXPECT_THAT(refused.body["error"].get<std::string>(), HasSubstr("the disk is full"));
   EXPECT_TRUE(orders.empty());
 }
 

@@ -78,7 +78,8 @@ class Server::Http {
       : options_(std::move(options)),
         routes_(std::move(routes)),
         hub_(hub),
-        limit_(kRequestsPerSecond, kBurst) {
+        limit_(kRequestsPerSecond, kBurst),
+        owner_limit_(kRequestsPerSecond, kBurst) {
     using std::chrono::seconds;
     server_.new_task_queue = [] { return new ConnectionThreads(kMostConnections); };
     server_.set_socket_options(take_port_alone);
@@ -145,10 +146,10 @@ class Server::Http {
     const bool is_foreign = (site == "cross-site" || site == "same-site") && is_api(q);
     if (is_foreign || !options_.access.allows_origin(q.get_header_value("Origin"), host))
       return refuse(403, "pages of other sites may not ask this server");
-    if (!limit_.allows(q.remote_addr, RateLimit::Clock::now()))
-      return refuse(429, "too many requests; wait a second");
+    const bool has_token = options_.access.allows_token(q.get_header_value("Authorization"));
+    if (!is_within_limits(q, has_token)) return refuse(429, "too many requests; wait a second");
     const bool needs_token = changes(q) || (is_api(q) && !options_.access.is_local);
-    if (needs_token && !options_.access.allows_token(q.get_header_value("Authorization")))
+    if (needs_token && !has_token)
       return refuse(401,
                     "this needs the token that culprit printed: Authorization: Bearer <token>");
     if (q.has_header("Transfer-Encoding")) return refuse(411, "say the length of the body");
@@ -156,6 +157,14 @@ class Server::Http {
     if (has_body(q) && q.get_header_value("Content-Type").rfind(kJson, 0) != 0)
       return refuse(415, "send the body as application/json");
     return std::nullopt;
+  }
+
+  // Addresses say little of who asks: everybody on this machine has the same one. What the owner
+  // of the token changes is counted by itself, so that nobody without the token can delay it.
+  bool is_within_limits(const httplib::Request& q, bool has_token) {
+    const auto now = RateLimit::Clock::now();
+    if (has_token && changes(q)) return owner_limit_.allows("", now);
+    return limit_.allows(q.remote_addr, now);
   }
 
   // What this server offers: a page shows no more than that.
@@ -231,6 +240,7 @@ class Server::Http {
   const std::vector<Route> routes_;
   Hub* const hub_;
   RateLimit limit_;
+  RateLimit owner_limit_;
   std::atomic<int> streams_ = 0;
   std::atomic<bool> is_over_ = false;  // it does not listen any more
   httplib::Server server_;

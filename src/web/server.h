@@ -21,7 +21,8 @@ class Server {
   static constexpr std::size_t kMostConnections = 128;
   static constexpr std::size_t kMostStreams = 64;
   static constexpr std::size_t kMostBytes = 1 << 20;  // of a request's body
-  static constexpr double kRequestsPerSecond = 50;    // of one client, in the long run
+  // Of one address, in the long run; and again as many changes with the token.
+  static constexpr double kRequestsPerSecond = 50;
   static constexpr double kBurst = 200;
 
   struct Options {

@@ -1,0 +1,263 @@
+// The kill switch is never forgotten: whatever becomes of the disk, the journal and the clock
+// between two runs, who was paused is paused.
+#include "cli/order_keeper.h"
+
+#include <csignal>
+#include <fstream>
+#include <mutex>
+#include <sys/resource.h>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/run_journal.h"
+#include "journal/test_folder.h"
+#include "language/checker.h"
+#include "robot/inbox.h"
+
+namespace culprit::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using journal::StandingOrders;
+using journal::test::TestFolder;
+using testing::HasSubstr;
+using namespace std::chrono_literals;
+
+constexpr const char* kRules = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Silent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY redeploy 50 10
+      ADAPTATION camera redeploy 2
+)";
+constexpr std::int64_t kWall = 1'800'000'000'000'000'000;
+constexpr std::int64_t kDay = 86'400'000'000'000;
+
+// Files may not grow beyond so much while it lives: a disk that is full.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit tight = before_;
+    tight.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &tight);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+  FullDisk(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+struct KillSwitch : testing::Test {
+  // A run of culprit as far as orders are concerned.
+  struct Run {
+    Run(const fs::path& path, const RuleSet& rules, std::int64_t wall = kWall)
+        : rules_(rules), beginning(begin_journal(path, rules, {live_now(), wall})) {
+      std::string trouble;
+      beginning.orders = keeper.begin(journal::orders_beside(path), beginning.orders,
+                                      beginning.are_orders_kept, trouble);
+      if (!beginning.writer) return;
+      journal::Session session;
+      session.boot = journal::boot_id();
+      session.start = live_now();
+      session.orders_kept = keeper.is_kept();
+      session.is_paused = is_paused();
+      write(journal::kind::kSession, to_json(session), wall);
+    }
+    void write(std::string_view kind, const journal::Json& body, std::int64_t wall) {
+      const journal::Batch batch{{{0, wall, std::string(kind), journal::to_text(body)}}, {}};
+      const auto written =
+          beginning.writer->append(batch, wall, journal::Durability::kPowerFailure);
+      ASSERT_TRUE(written) << written.error();
+    }
+    web::Kept order(decltype(Order::what) what) {
+      const auto keep = keeper.keeping()({1, "ada", "why", std::move(what)}, rules_);
+      return keep([this] { ++given; });
+    }
+    bool is_paused() const { return keeper.orders().pause.has_value(); }
+    std::string findings() const {
+      std::string all;
+      for (const std::string& each : beginning.findings) all += each + "\n";
+      return all;
+    }
+
+    const RuleSet& rules_;
+    OrderKeeper keeper{"the run has not begun"};
+    RunBeginning beginning;
+    int given = 0;
+  };
+
+  const TestFolder folder;
+  const fs::path path = folder / "a.journal";
+  const RuleSet rules = *check(Source("test", kRules)).rules;
+};
+
+TEST_F(KillSwitch, IsOffAtAFirstStart) {
+  const Run run(path, rules);
+  EXPECT_FALSE(run.is_paused()) << run.findings();
+  EXPECT_TRUE(run.keeper.is_kept());
+}
+
+TEST_F(KillSwitch, OutlivesTheRunWithDryRunAndSilences) {
+  {
+    Run run(path, rules);
+    EXPECT_TRUE(run.order(Pause{}).is_kept);
+    EXPECT_TRUE(run.order(SetDryRun{true}).is_kept);
+    EXPECT_TRUE(run.order(Silence{ComponentId(0), {}}).is_kept);
+    EXPECT_EQ(run.given, 3);
+  }
+  {
+    Run run(path, rules);
+    EXPECT_TRUE(run.is_paused());
+    EXPECT_TRUE(run.keeper.orders().dry_run);
+    EXPECT_EQ(run.keeper.orders().silences.size(), 1u);
+    EXPECT_THAT(run.findings(), HasSubstr("paused"));
+    EXPECT_TRUE(run.order(Resume{}).is_kept);
+  }
+  EXPECT_FALSE(Run(path, rules).is_paused());
+}
+
+TEST_F(KillSwitch, IsInForceAndSaidNotToBeKeptOnAFullDisk) {
+  Run run(path, rules);
+  const FullDisk full(16);
+  const web::Kept kept = run.order(Pause{});
+  EXPECT_EQ(run.given, 1) << "at once, whatever the disk does";
+  EXPECT_TRUE(kept.is_given);
+  EXPECT_FALSE(kept.is_kept);
+  EXPECT_THAT(kept.why_not, HasSubstr("a.journal-orders"));
+}
+
+TEST_F(KillSwitch, IsLeftOnlyOnceThatIsKept) {
+  Run run(path, rules);
+  ASSERT_TRUE(run.order(Pause{}).is_kept);
+  {
+    const FullDisk full(16);
+    EXPECT_FALSE(run.order(Resume{}).is_given);
+    EXPECT_EQ(run.given, 1);
+    EXPECT_TRUE(run.is_paused());
+  }
+  EXPECT_TRUE(Run(path, rules).is_paused());
+  EXPECT_TRUE(run.order(Resume{}).is_kept);
+  EXPECT_EQ(run.given, 2);
+}
+
+TEST_F(KillSwitch, ThatWasNotKeptNeedsNoDiskToBeLeft) {
+  Run run(path, rules);
+  const FullDisk full(16);
+  EXPECT_FALSE(run.order(Pause{}).is_kept);
+  EXPECT_TRUE(run.order(Resume{}).is_given) << "the file says so already";
+  EXPECT_FALSE(run.is_paused());
+}
+
+TEST_F(KillSwitch, WithoutAJournalIsInForceAndSaidNotToBeKept) {
+  Run run(path, rules);
+  run.keeper.begin_without("of --no-journal", {});
+  EXPECT_FALSE(run.order(Pause{}).is_kept);
+  EXPECT_THAT(run.order(Pause{}).why_not, HasSubstr("--no-journal"));
+  EXPECT_TRUE(run.order(Resume{}).is_given);
+}
+
+TEST_F(KillSwitch, IsOnIfItsFileIsMissingOrDamaged) {
+  { const Run run(path, rules); }
+  fs::remove(journal::orders_beside(path));
+  {
+    Run run(path, rules);
+    EXPECT_TRUE(run.is_paused());
+    EXPECT_THAT(run.findings(), AllOf(HasSubstr("is missing"), HasSubstr("press Resume")));
+    ASSERT_TRUE(run.order(Resume{}).is_kept);
+  }
+  std::ofstream(journal::orders_beside(path)) << "nonsense";
+  EXPECT_TRUE(Run(path, rules).is_paused());
+  EXPECT_TRUE(Run(path, rules).is_paused()) << "until a person resumes it";
+}
+
+// (b) of the cases: also where the page is that the newest row or the beginning of the run is in.
+TEST_F(KillSwitch, OutlivesEveryBadPageOfTheJournal) {
+  {
+    Run run(path, rules);
+    for (int i = 0; i < 200; ++i)
+      run.write(journal::kind::kEvent, {{"text", std::string(500, 'x')}}, kWall);
+    ASSERT_TRUE(run.order(Pause{}).is_kept);
+  }
+  const auto pages = fs::file_size(path) / 4096;
+  ASSERT_GT(pages, 10u);
+  for (std::uintmax_t page = 0; page < pages; ++page) {
+    const TestFolder other;
+    for (const char* part : {"", "-orders"})
+      fs::copy_file(path.string() + part, (other / "a.journal").string() + part);
+    std::fstream file(other / "a.journal", std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(page * 4096));
+    file << std::string(4096, '\xff');
+    file.close();
+    EXPECT_TRUE(begin_journal(other / "a.journal", rules, {live_now(), kWall}).orders.pause)
+        << page;
+  }
+}
+
+// (c): no battery, so it begins in 1970; then the network tells the time.
+TEST_F(KillSwitch, OutlivesAJumpOfTheClock) {
+  {
+    Run run(path, rules, 0);
+    ASSERT_TRUE(run.order(Pause{}).is_kept);
+    ASSERT_TRUE(run.order(Silence{RuleId(0), 1h}).is_kept);
+    for (int i = 0; i < 300; ++i) run.write(journal::kind::kEvent, {{"text", "x"}}, 40 * kDay);
+  }
+  const Run run(path, rules, 40 * kDay);
+  EXPECT_TRUE(run.is_paused());
+  EXPECT_EQ(run.keeper.orders().silences.size(), 1u);
+}
+
+TEST_F(KillSwitch, IsKnownFromTheRowsOfAnOlderCulprit) {
+  {
+    auto writer = journal::Writer::open(path, {});
+    ASSERT_TRUE(writer);
+    journal::Session session;
+    session.boot = journal::boot_id();
+    const journal::Json pause = {{"type", "order_accepted"}, {"order", "pause"}, {"author", "ada"}};
+    const journal::Batch batch{{{0, kWall, "session", journal::to_text(to_json(session))},
+                                {0, kWall, "event", journal::to_text(pause)}},
+                               {}};
+    ASSERT_TRUE(writer->append(batch, kWall, journal::Durability::kProcessEnd));
+  }
+  {
+    Run run(path, rules);
+    EXPECT_TRUE(run.is_paused());
+    EXPECT_TRUE(run.keeper.is_kept());
+    EXPECT_TRUE(run.order(Resume{}).is_kept);
+  }
+  EXPECT_FALSE(Run(path, rules).is_paused());
+}
+
+// The two of them are one after the other, on the disk and in force.
+TEST_F(KillSwitch, EndsAsItIsKeptIfTwoPeopleOrderAtOnce) {
+  Run run(path, rules);
+  std::vector<bool> in_force;
+  std::mutex mutex;
+  const auto give = [&](decltype(Order::what) what) {
+    const bool pauses = std::holds_alternative<Pause>(what);
+    const auto keep = run.keeper.keeping()({1, "ada", "", std::move(what)}, rules);
+    keep([&, pauses] {
+      const std::lock_guard lock(mutex);
+      in_force.push_back(pauses);
+    });
+  };
+  for (int i = 0; i < 20; ++i) {
+    std::thread other([&] { give(Resume{}); });
+    give(Pause{});
+    other.join();
+    EXPECT_EQ(in_force.back(), run.is_paused());
+    EXPECT_EQ(journal::read_orders(journal::orders_beside(path), journal::clocks_now(live_now()))
+                  ->value()
+                  .pause.has_value(),
+              run.is_paused());
+  }
+}
+
+}  // namespace
+}  // namespace culprit::cli

@@ -1,0 +1,27 @@
+// One moment on the clocks that what outlives a process is judged by.
+//
+// The robot's clock is sure, and begins anew with each start of the machine. The wall clock goes
+// on, and jumps: a computer without a battery begins in 1970 until the network tells it the time.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "robot/time.h"
+
+namespace culprit::journal {
+
+struct Clocks {
+  std::string boot;  // which start of the machine (boot_id(), session.h)
+  Time robot;
+  std::int64_t wall = 0;     // nanoseconds since 1970
+  bool is_wall_set = false;  // the kernel holds the wall clock to be synchronised
+};
+
+// `robot`: now, on the robot's clock.
+Clocks clocks_now(Time robot);
+
+// How long ago `then` was, as far as that is certain: less if the clocks cannot tell.
+Duration certain_age(const Clocks& then, const Clocks& now);
+
+}  // namespace culprit::journal

@@ -1,0 +1,75 @@
+// What people have ordered that holds until they say otherwise: pause, dry run, silences. It stands
+// in a small file of its own beside the journal, so that no damage and no retention of the journal,
+// and no jump of the clock, can make culprit forget that it must not act.
+//
+// Whoever finds that file unreadable, or missing although a run had one, is paused.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "journal/clocks.h"
+#include "knowledge/past.h"
+#include "language/rule_set.h"
+
+namespace culprit::journal {
+
+struct StandingOrders {
+  struct Said {
+    std::string author;
+    std::string reason;
+    bool operator==(const Said&) const = default;
+  };
+  enum class About : std::uint8_t { kComponent, kRule };
+  struct Quiet {
+    About about = About::kComponent;
+    std::string name;
+    Said said;
+    Time until = kNever;  // on the robot's clock
+    bool operator==(const Quiet&) const = default;
+  };
+  std::optional<Said> pause;
+  std::optional<Said> dry_run;
+  std::vector<Quiet> silences;
+  bool operator==(const StandingOrders&) const = default;
+};
+
+// A standing order by names, which outlive the rules. @pre standing_of(order) is not kNot
+struct NamedOrder {
+  decltype(Order::what) what;
+  StandingOrders::Said said;
+  StandingOrders::About about = StandingOrders::About::kComponent;  // of silences
+  std::string name;
+};
+NamedOrder by_name(const Order& order, const RuleSet& rules);
+
+// `orders` after `order` at `now`. Silences that are over are left out.
+StandingOrders after(StandingOrders orders, const NamedOrder& order, Time now);
+
+// All restraints of both.
+StandingOrders both(StandingOrders a, const StandingOrders& b);
+
+// Silences as the manager remembers them (knowledge/past.h); those about what `rules` does not have
+// are left out. And back.
+Past to_past(const StandingOrders& orders, const RuleSet& rules, Time now);
+std::vector<StandingOrders::Quiet> silences_of(const Past& past, const RuleSet& rules);
+bool is_about_silence(const Event& event);
+
+// As text, also for a successor on another machine. A silence goes on for what is left of it; where
+// the clocks cannot tell how much that is, for longer rather than shorter.
+std::string to_text(const StandingOrders& orders, const Clocks& now);
+Expected<StandingOrders> orders_from_text(const std::string& text, const Clocks& now);
+
+// Beside which journal: "a.journal" -> "a.journal-orders"
+std::filesystem::path orders_beside(const std::filesystem::path& journal);
+
+// On the disk when it returns.
+Expected<void> write_orders(const std::filesystem::path& path, const StandingOrders& orders,
+                            const Clocks& now);
+// Nothing: there is no such file. Errors: it cannot be read, or is damaged.
+Expected<std::optional<StandingOrders>> read_orders(const std::filesystem::path& path,
+                                                    const Clocks& now);
+
+}  // namespace culprit::journal
