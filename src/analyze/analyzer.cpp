@@ -28,12 +28,16 @@ Duration longest_detection(const RuleSet& rules) {
 }
 
 Analyzer::Analyzer(Knowledge& knowledge)
-    : knowledge_(knowledge), deadlines_(knowledge.rules.rules.size()), couplings_(knowledge) {}
+    : knowledge_(knowledge),
+      deadlines_(knowledge.rules.rules.size()),
+      couplings_(knowledge),
+      outcomes_(knowledge) {}
 
 void Analyzer::advance(Time now) {
   for (const RuleId id : knowledge_.signals.take_touched()) look_at(id, now);
   while (const auto due = deadlines_.pop_due(now)) look_at(RuleId(*due), now);
   couplings_.advance(now);
+  outcomes_.advance(now);
 }
 
 std::vector<RuleId> Analyzer::plannable(Time now) const {
@@ -51,20 +55,21 @@ void Analyzer::remember(const Past& past) {
 }
 
 void Analyzer::remember(const Event& event) {
+  outcomes_.remember(event);
   const auto left_off = [&](RuleId id) -> std::optional<Search>& {
     return knowledge_.states.state(id).left_off;
   };
   const auto begin_anew = [](Search& search) { search.tried.assign(search.tried.size(), false); };
   if (const auto* detected = std::get_if<FailureDetected>(&event.what)) {
-    auto& search = left_off(detected->rule);
-    // A process that took the search over detected the failure anew.
-    if (search) return;
-    search.emplace().since = event.at;
-    search->tried.assign(knowledge_.rules[detected->rule].strategies.size(), false);
+    remember_detected(detected->rule, event.at);
   } else if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) {
+    if (auto& search = left_off(resolved->rule); search && resolved->strategy) {
+      ++search->attempts;
+      search->tried[knowledge_.states.place_of(*resolved->strategy)] = true;
+    }
     remember_gone(resolved->rule, event.at, knowledge_.rules[resolved->rule].policies.cooldown);
   } else if (const auto* lost = std::get_if<FailureLost>(&event.what)) {
-    left_off(lost->rule).reset();
+    remember_gone(lost->rule, event.at, Duration::zero());
   } else if (const auto* failed = std::get_if<StrategyFailed>(&event.what)) {
     const RuleId rule = knowledge_.rules[failed->strategy].rule;
     if (auto& search = left_off(rule)) {
@@ -86,10 +91,27 @@ void Analyzer::remember(const Event& event) {
   }
 }
 
+void Analyzer::remember_detected(RuleId id, Time at) {
+  auto& search = knowledge_.states.state(id).left_off;
+  if (search && search->gone && is_proven(*search->gone, at)) search.reset();
+  if (search) {
+    // Without having gone it is what a process that took the search over detected anew.
+    if (search->gone) ++search->times;
+    search->gone.reset();
+    return;
+  }
+  search.emplace().since = at;
+  search->tried.assign(knowledge_.rules[id].strategies.size(), false);
+}
+
 void Analyzer::remember_gone(RuleId id, Time at, Duration quiet) {
   RuleState& state = knowledge_.states.state(id);
-  state.left_off.reset();
+  if (state.left_off) state.left_off->gone = at;
   state.quiet_until = later(at, quiet);
+}
+
+bool Analyzer::is_proven(Time gone, Time now) const {
+  return later(gone, knowledge_.outcomes.healthy) <= now;
 }
 
 void Analyzer::look_at(RuleId id, Time now) {
@@ -117,15 +139,16 @@ void Analyzer::evaluate_trigger(RuleId id, Time now) {
     state.trigger_since = now;
   }
   if (!is_true(value)) state.armed = true;
-  if (is_false(value) && state.left_off) forget_left_off(id, now);
+  if (is_false(value) && state.left_off && !state.left_off->gone) forget_left_off(id, now);
   if (!state.history.empty()) sample_history(id, now);
 }
 
 // What an earlier process left off at went away while nobody looked on.
 void Analyzer::forget_left_off(RuleId id, Time now) {
-  const auto left_off = std::exchange(knowledge_.states.state(id).left_off, std::nullopt);
+  Search& left_off = *knowledge_.states.state(id).left_off;
+  left_off.gone = now;
   knowledge_.tell(
-      now, FailureResolved{id, FailureResolved::How::kWithoutStrategy, {}, now - left_off->since});
+      now, FailureResolved{id, FailureResolved::How::kWithoutStrategy, {}, now - left_off.since});
 }
 
 void Analyzer::sample_history(RuleId id, Time now) {
@@ -160,15 +183,37 @@ bool Analyzer::is_gone(RuleId id, Time now) const {
 void Analyzer::detect(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   const bool recurs = state.gone_since != kLongAgo && now < later(state.gone_since, kRecurs);
-  const bool was_exhausted = state.left_off && state.left_off->is_exhausted;
+  // A rule with ON_CHANGE acts on each edge.
+  const bool is_same = state.times > 0 && !is_proven(state.gone_since, now) &&
+                       !knowledge_.rules[id].policies.on_change;
+  if (state.left_off && state.left_off->gone) {
+    if (is_proven(*state.left_off->gone, now)) {
+      state.left_off.reset();
+    } else {
+      ++state.left_off->times;
+    }
+  }
+  const bool is_said_to_be_exhausted = is_same && state.is_exhausted;
   state.recurring_since = recurs ? state.first_detected() : kNever;
   state.armed = false;
   state.is_advised = false;
   state.settling.reset();
-  knowledge_.states.begin_search(id, now);
+  if (is_same) {
+    knowledge_.states.go_on_searching(id, now);
+  } else {
+    knowledge_.states.begin_search(id, now);
+  }
   knowledge_.states.enter(id, RulePhase::kFailing);
   knowledge_.tell(now, FailureDetected{id});
-  if (was_exhausted) exhaust(id, now);
+  outcomes_.detected(id, now);
+  if (state.times == kFlaps) knowledge_.tell(now, FailureFlaps{id, state.times});
+  if (is_said_to_be_exhausted) {
+    knowledge_.states.enter(id, RulePhase::kExhausted);
+  } else if (state.is_exhausted) {
+    exhaust(id, now);
+  } else {
+    exhaust_if_spent(id, now);
+  }
 }
 
 void Analyzer::watch_failing(RuleId id, Time now) {
@@ -176,7 +221,7 @@ void Analyzer::watch_failing(RuleId id, Time now) {
   if (is_gone(id, now)) {
     resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
   } else if (!state.trigger.known && now >= later(state.trigger_since, kLostAfter)) {
-    knowledge_.states.enter(id, RulePhase::kQuiet);
+    leave(id, now);
     knowledge_.tell(now, FailureLost{id});
   }
 }
@@ -186,8 +231,9 @@ void Analyzer::judge(RuleId id, Time now) {
   Attempt& attempt = *state.attempt;
   switch (attempt.stage) {
     case Attempt::Stage::kAdapting:
-      if (!attempt.obstacle.empty()) fail(id, now);
-      return;
+      if (attempt.obstacle.empty()) return;
+      attempt.is_ambiguous |= couplings_.is_echo(attempt);
+      return fail(id, now);
     case Attempt::Stage::kWaiting:
       break;
     case Attempt::Stage::kUndoing:
@@ -204,6 +250,8 @@ void Analyzer::judge(RuleId id, Time now) {
     knowledge_.tell(now, OrderCarriedOut{attempt.strategy});
     return end_attempt(id, now);
   }
+  // Before anybody knows how it ends: what keeps an outcome from counting must not depend on it.
+  if (attempt.deadline == kNever) attempt.is_ambiguous |= couplings_.is_echo(attempt);
   // Anew each time: how long a signal takes to show a change may have become known meanwhile.
   const Duration impact = duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
   attempt.deadline = later(later(attempt.effective, impact), knowledge_.signals.latency(id));
@@ -243,25 +291,29 @@ void Analyzer::abandon(RuleId id, Time now) {
   look_at(id, now);  // the failure may be gone already
 }
 
-bool Analyzer::can_have_caused(RuleId id) const {
+// Was the failure gone before the attempt had changed anything?
+bool Analyzer::went_away_before(const Attempt& attempt) const {
+  const RuleId id = knowledge_.rules[attempt.strategy].rule;
   const RuleState& state = knowledge_.states[id];
-  return knowledge_.rules[id].policies.on_change ||
-         state.trigger_since >= state.attempt->first_change;
+  return !knowledge_.rules[id].policies.on_change && is_false(state.trigger) &&
+         state.trigger_since < attempt.first_change;
 }
 
 void Analyzer::succeed(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
-  const bool caused = can_have_caused(id);
   const Attempt attempt = *std::exchange(state.attempt, std::nullopt);
-  const bool is_proven = caused && !attempt.is_ambiguous && !couplings_.is_echo(attempt);
-  if (is_proven) knowledge_.beliefs.helped(attempt.strategy);
-  if (caused) couplings_.resolved(attempt, is_proven, now);
+  const bool caused = !went_away_before(attempt);
+  if (caused) couplings_.resolved(attempt, !attempt.is_ambiguous, now);
   couplings_.ended(attempt, now);
   if (caused) {
     resolve(id, {id, FailureResolved::How::kByStrategy, attempt.strategy, {}}, now);
   } else {
     resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
   }
+  // If the failure comes back, this one was tried.
+  ++state.attempts;
+  knowledge_.states.set_tried(attempt.strategy, true);
+  if (caused) outcomes_.judged(attempt, true, now);
 }
 
 void Analyzer::fail(RuleId id, Time now) {
@@ -270,9 +322,7 @@ void Analyzer::fail(RuleId id, Time now) {
   if (!attempt.has_no_failure) {
     knowledge_.states.set_tried(attempt.strategy, true);
     ++state.attempts;
-    // An unknown trigger proves nothing, nor does an overlap with another strategy.
-    if (!attempt.is_ambiguous && state.trigger.known)
-      knowledge_.beliefs.did_not_help(attempt.strategy);
+    if (!went_away_before(attempt)) outcomes_.judged(attempt, false, now);
   }
   const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
                              : state.trigger.known
@@ -285,11 +335,15 @@ void Analyzer::fail(RuleId id, Time now) {
 void Analyzer::resolve(RuleId id, FailureResolved how, Time now) {
   RuleState& state = knowledge_.states.state(id);
   how.reaction = now - state.failing_since;
-  state.gone_since = now;
   state.quiet_until = later(now, knowledge_.rules[id].policies.cooldown);
-  knowledge_.states.enter(id, RulePhase::kQuiet);
-  if (!how.strategy && state.attempts == 0) couplings_.cleared(id, now);
+  leave(id, now);
+  if (!how.strategy && state.attempts == state.attempts_before) couplings_.cleared(id, now);
   knowledge_.tell(now, std::move(how));
+}
+
+void Analyzer::leave(RuleId id, Time now) {
+  knowledge_.states.state(id).gone_since = now;
+  knowledge_.states.enter(id, RulePhase::kQuiet);
 }
 
 void Analyzer::round_is_spent(RuleId id, Time now) {
@@ -324,6 +378,7 @@ void Analyzer::exhaust_if_spent(RuleId id, Time now) {
 }
 
 void Analyzer::exhaust(RuleId id, Time now) {
+  knowledge_.states.state(id).is_exhausted = true;
   knowledge_.states.enter(id, RulePhase::kExhausted);
   knowledge_.tell(now, RuleExhausted{id});
 }

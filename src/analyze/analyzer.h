@@ -5,6 +5,10 @@
 //
 //   detected   its trigger held for its policy's time (FOR, HOLD n/k) and its COOLDOWN is over
 //   resolved   its trigger was false for its policy's time; unknown is neither true nor false
+//   proven     it stayed resolved for `healthy`; a failure that is back before that is the same
+//   one:
+//              its strategies stay tried, its attempts and rounds go on, and if it is back often it
+//              flaps, which is said
 //   a strategy under way succeeds when that happens, once its adaptations took effect; it fails at
 //   its deadline:
 //              its impact in cycles after they took effect, plus the latency of what the trigger
@@ -20,7 +24,7 @@
 //
 // Success and failure go to the beliefs only where this strategy alone can have caused them: the
 // symptom went away after the first request that changed anything, and no other strategy upstream
-// of it was under way or had only just ended.
+// of it was under way or had only just ended; and only once that is proven (outcome_watch.h).
 #pragma once
 
 #include <algorithm>
@@ -28,6 +32,7 @@
 #include <vector>
 
 #include "analyze/coupling_watch.h"
+#include "analyze/outcome_watch.h"
 #include "knowledge/deadlines.h"
 #include "knowledge/knowledge.h"
 #include "knowledge/past.h"
@@ -44,8 +49,10 @@ class Analyzer {
   // A failing rule whose trigger is unknown for longer is no longer called failing: nobody can see
   // whether it is.
   static constexpr Duration kLostAfter = std::chrono::seconds(30);
-  // A failure that is back within so long is the same one.
+  // A failure that is back within so long may be an effect that its cause brought back.
   static constexpr Duration kRecurs = std::chrono::seconds(5);
+  // A failure that came so often, each time before it was proven gone, flaps.
+  static constexpr int kFlaps = 3;
 
   // `knowledge` must outlive the analyzer.
   explicit Analyzer(Knowledge& knowledge);
@@ -55,7 +62,9 @@ class Analyzer {
 
   // Looks at every rule that the monitor touched and at those whose time has come.
   void advance(Time now);
-  Time next_deadline() const { return std::min(deadlines_.next(), couplings_.next_deadline()); }
+  Time next_deadline() const {
+    return std::min({deadlines_.next(), couplings_.next_deadline(), outcomes_.next_deadline()});
+  }
 
   // Failures that a planner should decide about now, ascending: there, and no strategy under way,
   // no back-off.
@@ -79,9 +88,12 @@ class Analyzer {
   Duration clearing_time(RuleId id) const;
 
   void remember(const Event& event);
+  void remember_detected(RuleId id, Time at);
   void remember_gone(RuleId id, Time at, Duration quiet);
+  bool is_proven(Time gone, Time now) const;
   void detect(RuleId id, Time now);
   void watch_failing(RuleId id, Time now);
+  void leave(RuleId id, Time now);
   void judge(RuleId id, Time now);
   void end_attempt(RuleId id, Time now);
   void succeed(RuleId id, Time now);
@@ -89,7 +101,7 @@ class Analyzer {
   void resolve(RuleId id, FailureResolved how, Time now);
   void exhaust_if_spent(RuleId id, Time now);
   void exhaust(RuleId id, Time now);
-  bool can_have_caused(RuleId id) const;
+  bool went_away_before(const Attempt& attempt) const;
   // Is there a more critical failure for which the same component would be adapted?
   bool holds_up_more_critical(StrategyId strategy) const;
   syntax::Criticality criticality(RuleId id) const {
@@ -100,6 +112,7 @@ class Analyzer {
   Knowledge& knowledge_;
   Deadlines deadlines_;  // by RuleId
   CouplingWatch couplings_;
+  OutcomeWatch outcomes_;
 };
 
 }  // namespace culprit

@@ -178,7 +178,7 @@ bool CouplingWatch::is_echo(const Attempt& attempt) const {
   return std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
     return knowledge_.rules[change.strategy].rule != rule &&
            shown(change, rule) > attempt.first_change &&
-           sources.have(knowledge_.rules[change.strategy].components);
+           is_rival(knowledge_, change.strategy, sources, rule);
   });
 }
 

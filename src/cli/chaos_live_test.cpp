@@ -72,8 +72,10 @@ class OutcomesCount {
   void said(const journal::Json& body) {
     const std::string type = journal::text_of(body, "type");
     const Name name{journal::text_of(body, "rule"), journal::text_of(body, "strategy")};
-    if (type == "strategy_failed") ++said_[name].second;
-    if (type == "failure_resolved" && !name.second.empty()) ++said_[name].first;
+    if (type != "outcome_counted") return;
+    const std::string as = journal::text_of(body, "as");
+    if (as == "success") ++said_[name].first;
+    if (as == "failure") ++said_[name].second;
   }
   void learned(const journal::Json& body, std::int64_t row) {
     const Name name{journal::text_of(body, "rule"), journal::text_of(body, "strategy")};
@@ -96,8 +98,9 @@ class OutcomesCount {
 
 struct Chaos : testing::Test {
   TestProgram run() {
-    return TestProgram(world, {"culprit", "run", rules, "--journal", journal_path, "--state-dir",
-                               (world.folder() / "state").string(), "--settle", "2"});
+    return TestProgram(world,
+                       {"culprit", "run", rules, "--journal", journal_path, "--state-dir",
+                        (world.folder() / "state").string(), "--settle", "2", "--healthy", "1"});
   }
   // A run that ends in order. Gives what it held.
   Holdings see_the_whole_robot() {
@@ -144,6 +147,8 @@ struct Chaos : testing::Test {
 
 // Gives how many runs there were.
 int expect_runs_to_replay(const journal::Reader& journal) {
+  Governor::Options governor = Governor::Options::recommended();
+  governor.limits.backoff.healthy = std::chrono::seconds(1);  // as it was run
   int runs = 0;
   std::int64_t before = 0;
   while (true) {
@@ -154,8 +159,8 @@ int expect_runs_to_replay(const journal::Reader& journal) {
     auto recording = replay::Recording::open(journal, before);
     EXPECT_TRUE(recording) << recording.error();
     if (!recording) continue;
-    const auto repetition = replay::repeat(*recording, journal, std::make_unique<BayesPlanner>(),
-                                           Governor::Options::recommended());
+    const auto repetition =
+        replay::repeat(*recording, journal, std::make_unique<BayesPlanner>(), governor);
     EXPECT_TRUE(repetition) << repetition.error();
     if (repetition && repetition->difference)
       ADD_FAILURE() << "the run of row " << before << " decides otherwise, first in row "

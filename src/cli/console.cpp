@@ -44,6 +44,9 @@ struct Labels {
   Label operator()(const ApprovalLapsed&) const { return {"lapsed", "\033[35m"}; }
   Label operator()(const StrategyAbandoned&) const { return {"abandoned", "\033[33m"}; }
   Label operator()(const OrderCarriedOut&) const { return {"done", "\033[36m"}; }
+  Label operator()(const OutcomePending&) const { return {"pending", ""}; }
+  Label operator()(const OutcomeCounted&) const { return {"learned", ""}; }
+  Label operator()(const FailureFlaps&) const { return {"FLAPPING", "\033[1;31m"}; }
   Label operator()(const SilenceEnded&) const { return {"silence", "\033[35m"}; }
   Label operator()(const StormBegan&) const { return {"STORM", "\033[1;31m"}; }
   Label operator()(const StormEnded&) const { return {"calm", "\033[32m"}; }

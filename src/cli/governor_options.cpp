@@ -68,7 +68,9 @@ void GovernorOptions::add_to(CLI::App& command) {
   time("--backoff", backoff_seconds,
        "Seconds between two restarts of a component, doubled with each; 0: no back-off");
   time("--backoff-most", backoff_most_seconds, "At most so many seconds");
-  time("--healthy", healthy_seconds, "A component that was well for so many seconds begins anew");
+  time("--healthy", healthy_seconds,
+       "A failure that stayed away, and a component that was well, for so many seconds is proven "
+       "well: only then is learned from it, and attempts are counted anew");
   command
       .add_option("--storm", storm_percent,
                   "Stop acting when so many percent of the components are ill and nothing explains "

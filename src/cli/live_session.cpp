@@ -18,6 +18,7 @@ namespace {
 ros2::Severity severity_of(const Event& event) {
   if (std::holds_alternative<RuleExhausted>(event.what) ||
       std::holds_alternative<LastResortReached>(event.what) ||
+      std::holds_alternative<FailureFlaps>(event.what) ||
       std::holds_alternative<StormBegan>(event.what))
     return ros2::Severity::kError;
   const bool is_bad = std::holds_alternative<FailureDetected>(event.what) ||

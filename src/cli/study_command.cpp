@@ -210,7 +210,7 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
   command->add_flag("--robustness", options->robustness,
                     "Success probabilities that are 20 % off, beside ideal ones");
   command->add_flag("--learning", options->learning,
-                    "What the paper's planner learns of F1 and F4");
+                    "What the paper's planner learns of each strategy");
   command
       ->add_option(
           "--planner", options->planners,

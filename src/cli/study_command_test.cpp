@@ -71,7 +71,11 @@ TEST_F(StudyCommand, GivesTheRowsOfAllThreeTables) {
   EXPECT_EQ(row["runs"], 4);
   EXPECT_GT(row["downtime_s"]["mean"], 3);
   EXPECT_GT(row["honest"]["recovery_s"]["mean"], 3);
-  EXPECT_EQ(document["learning"].size(), 5);  // strategies of F1 and F4
+  ASSERT_EQ(document["learning"].size(), 10);  // strategies of F1 to F5
+  const auto& learned = document["learning"][0];
+  EXPECT_EQ(learned["strategy"], "rgb_restart");
+  for (const char* key : {"believed", "truth", "error", "executed"})
+    EXPECT_TRUE(learned[key].is_number()) << key;
 }
 
 TEST_F(StudyCommand, SeesOutagesByTheDetectorsThatAreChosen) {

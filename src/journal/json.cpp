@@ -146,6 +146,20 @@ class EventWriter {
     return {{"type", "storm_began"}, {"reason", e.reason}};
   }
   Json operator()(const StormEnded&) const { return {{"type", "storm_ended"}}; }
+  Json operator()(const OutcomePending& e) const {
+    Json json = of_strategy("outcome_pending", e.strategy);
+    json["helped"] = e.has_helped;
+    json["due"] = e.due.time_since_epoch().count();
+    return json;
+  }
+  Json operator()(const OutcomeCounted& e) const {
+    Json json = of_strategy("outcome_counted", e.strategy);
+    json["as"] = culprit::to_string(e.as);
+    return json;
+  }
+  Json operator()(const FailureFlaps& e) const {
+    return {{"type", "failure_flaps"}, {"rule", name(e.rule)}, {"times", e.times}};
+  }
   Json operator()(const LastResortReached& e) const {
     return {{"type", "last_resort_reached"}, {"rule", name(e.rule)}};
   }

@@ -20,7 +20,6 @@ const What* order_of(const Event& event) {
 
 std::optional<decltype(Event::what)> about_rule(const std::string& type, RuleId rule) {
   if (type == "failure_detected") return FailureDetected{rule};
-  if (type == "failure_resolved") return FailureResolved{rule, {}, {}, {}};
   if (type == "failure_lost") return FailureLost{rule};
   if (type == "round_spent") return RoundSpent{rule, {}};
   if (type == "last_resort_reached") return LastResortReached{rule};
@@ -33,12 +32,24 @@ std::optional<decltype(Event::what)> about_strategy(const std::string& type, con
   if (type == "strategy_chosen" && !flag_of(body, "dry_run"))
     return StrategyChosen{strategy, {}, {}, false};
   if (type == "strategy_resumed") return StrategyResumed{strategy};
+  if (type == "outcome_pending")
+    return OutcomePending{strategy, flag_of(body, "helped"),
+                          Time(Duration(integer_of(body, "due")))};
+  if (type == "outcome_counted") return OutcomeCounted{strategy, {}};
   if (type == "strategy_failed") return StrategyFailed{strategy, ""};
   const std::int64_t adaptation = integer_of(body, "adaptation", -1);
   const auto count = static_cast<std::int64_t>(rules[strategy].adaptations.size());
   if (type == "adaptation_done" && adaptation >= 0 && adaptation < count)
     return AdaptationDone{strategy, static_cast<std::size_t>(adaptation), ""};
   return std::nullopt;
+}
+
+// Whose strategy resolved it may be one that is no longer there.
+std::optional<decltype(Event::what)> about_resolution(const std::string& type, RuleId rule,
+                                                      std::optional<StrategyId> strategy) {
+  if (type != "failure_resolved") return std::nullopt;
+  using How = FailureResolved::How;
+  return FailureResolved{rule, strategy ? How::kByStrategy : How::kWithoutStrategy, strategy, {}};
 }
 
 std::optional<decltype(Event::what)> about_order(const Json& body, const RuleSet& rules) {
@@ -93,6 +104,15 @@ bool replaces_older(const Event& event, Past& kept) {
   return true;
 }
 
+// The oldest outcome of the strategy that waits does so no longer.
+void forget_pending(StrategyId strategy, Past& kept) {
+  const auto oldest = std::find_if(kept.begin(), kept.end(), [&](const Event& event) {
+    const auto* pending = std::get_if<OutcomePending>(&event.what);
+    return pending != nullptr && pending->strategy == strategy;
+  });
+  if (oldest != kept.end()) kept.erase(oldest);
+}
+
 bool is_over(const Silence& silence, Time began, Time now) {
   return silence.lasts && later(began, *silence.lasts) <= now;
 }
@@ -107,12 +127,16 @@ std::optional<RuleId> searched(const Event& event, const RuleSet& rules) {
   return std::nullopt;
 }
 
-// By rule: from which event on its failure is there; past.size() if it is not.
-std::vector<std::size_t> open_since(const Past& past, const RuleSet& rules) {
+// Is it gone for so long that it would be another one if it came now?
+bool is_long_gone(const Event& event, Time now) { return later(event.at, kPastCounts) <= now; }
+
+// By rule: from which event on its failure is there, or may still come back; past.size() if not.
+std::vector<std::size_t> open_since(const Past& past, Time now, const RuleSet& rules) {
   std::vector<std::size_t> since(rules.rules.size(), past.size());
   for (std::size_t i = 0; i < past.size(); ++i) {
     if (const auto* e = std::get_if<FailureDetected>(&past[i].what))
       since[e->rule.index] = std::min(since[e->rule.index], i);
+    if (!is_long_gone(past[i], now)) continue;
     if (const auto* e = std::get_if<FailureResolved>(&past[i].what))
       since[e->rule.index] = past.size();
     if (const auto* e = std::get_if<FailureLost>(&past[i].what)) since[e->rule.index] = past.size();
@@ -120,12 +144,22 @@ std::vector<std::size_t> open_since(const Past& past, const RuleSet& rules) {
   return since;
 }
 
+// The rule whose failure went away, or out of sight; nothing for other events.
+std::optional<RuleId> went(const Event& event) {
+  if (const auto* e = std::get_if<FailureResolved>(&event.what)) return e->rule;
+  if (const auto* e = std::get_if<FailureLost>(&event.what)) return e->rule;
+  return std::nullopt;
+}
+
 // What each process says anew of a failure that is still there. @pre its failure is there
 bool is_said_again(const Event& event, const Past& kept, const RuleSet& rules) {
   if (!is_any_of<FailureDetected, LastResortReached, RuleExhausted>(event)) return false;
-  return std::any_of(kept.rbegin(), kept.rend(), [&](const Event& old) {
-    return old.what.index() == event.what.index() && searched(old, rules) == searched(event, rules);
-  });
+  const auto rule = searched(event, rules);
+  for (auto old = kept.rbegin(); old != kept.rend(); ++old) {
+    if (went(*old) == rule) return false;  // it came back
+    if (old->what.index() == event.what.index() && searched(*old, rules) == rule) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -139,13 +173,14 @@ std::optional<Event> past_event(const Json& body, const RuleSet& rules) {
   if (type == "component_found") what = about_process(body, rules);
   if (type == "lifecycle_intended") what = about_lifecycle(body, rules);
   if (!what && rule) what = about_rule(type, *rule);
+  if (!what && rule) what = about_resolution(type, *rule, strategy);
   if (!what && strategy) what = about_strategy(type, body, *strategy, rules);
   if (!what) return std::nullopt;
   return Event{Time(Duration(integer_of(body, "time"))), std::move(*what)};
 }
 
 Past still_counting(const Past& past, Time now, const RuleSet& rules) {
-  const std::vector<std::size_t> open = open_since(past, rules);
+  const std::vector<std::size_t> open = open_since(past, now, rules);
   Past kept;
   for (std::size_t i = 0; i < past.size(); ++i) {
     const Event& event = past[i];
@@ -158,6 +193,13 @@ Past still_counting(const Past& past, Time now, const RuleSet& rules) {
         return other != nullptr && other->what == what;
       });
       if (silence != nullptr && !is_over(*silence, event.at, now)) kept.push_back(event);
+      continue;
+    }
+    // Nobody looked on when it was due.
+    const auto* pending = std::get_if<OutcomePending>(&event.what);
+    if (pending != nullptr && pending->due <= now) continue;
+    if (const auto* counted = std::get_if<OutcomeCounted>(&event.what)) {
+      forget_pending(counted->strategy, kept);
       continue;
     }
     if (replaces_older<ComponentFound>(event, kept) ||

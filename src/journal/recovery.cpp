@@ -169,6 +169,12 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Mo
       recovery.was_other_boot ? after_restart(trail.past(), shift_of_clock(**last, robot_then, now))
                               : trail.past(),
       now.robot, rules);
+  // Whoever stops culprit may stop the robot as well: what comes back then proves nothing.
+  if (recovery.was_stopped) {
+    std::erase_if(recovery.past, [](const Event& event) {
+      return std::holds_alternative<OutcomePending>(event.what);
+    });
+  }
   recovery.interrupted = std::move(trail).open();
   return recovery;
 }

@@ -23,16 +23,38 @@ bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& ada
   return Sources(knowledge, rule).have(adapted);
 }
 
+bool is_rival(const Knowledge& knowledge, StrategyId strategy, const Sources& sources,
+              RuleId rule) {
+  const Strategy& other = knowledge.rules[strategy];
+  const bool begins_anew = std::any_of(
+      other.adaptations.begin(), other.adaptations.end(), [](const Adaptation& adaptation) {
+        using enum AdaptationType;
+        return adaptation.type == kRestart || adaptation.type == kRedeploy ||
+               adaptation.type == kStart || adaptation.type == kStop;
+      });
+  const bool is_lesser =
+      knowledge.rules[other.rule].policies.criticality < knowledge.rules[rule].policies.criticality;
+  return (begins_anew || !is_lesser) && sources.have(other.components);
+}
+
+bool is_upstream_of(const Knowledge& knowledge, const std::vector<ComponentId>& components,
+                    RuleId rule) {
+  const auto& own = knowledge.rules[rule].components;
+  const Sources sources(knowledge, rule);
+  return std::any_of(components.begin(), components.end(), [&](ComponentId c) {
+    return !std::binary_search(own.begin(), own.end(), c) && sources.have({c});
+  });
+}
+
 void mark_ambiguous(Knowledge& knowledge, RuleId changed) {
   Attempt& own = *knowledge.states.state(changed).attempt;
-  const auto& own_components = knowledge.rules[own.strategy].components;
   const Sources sources(knowledge, changed);
   for (const RuleId id : knowledge.states.active()) {
     auto& other = knowledge.states.state(id).attempt;
     if (id == changed || !other) continue;
-    if (can_resolve(knowledge, own_components, id)) other->is_ambiguous = true;
+    if (is_rival(knowledge, own.strategy, Sources(knowledge, id), id)) other->is_ambiguous = true;
     const bool has_changed = other->first_change != kNever;
-    if (has_changed && sources.have(knowledge.rules[other->strategy].components))
+    if (has_changed && is_rival(knowledge, other->strategy, sources, changed))
       own.is_ambiguous = true;
   }
 }

@@ -22,6 +22,15 @@ class Sources {
 // Can adapting these components make the failure of `rule` go away?
 bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& adapted, RuleId rule);
 
+// Can `strategy`, which is of another rule, do so? It adapts a place from where that failure may
+// come, and does more there than reconfigure it for the sake of something less critical.
+bool is_rival(const Knowledge& knowledge, StrategyId strategy, const Sources& sources, RuleId rule);
+
+// Do these components stand upstream of all that the rule touches? Then what fails there may bring
+// the rule's failure back.
+bool is_upstream_of(const Knowledge& knowledge, const std::vector<ComponentId>& components,
+                    RuleId rule);
+
 // The strategy under way for `changed` begins to change the system. Marks every attempt whose
 // outcome it can cause, and its own if another one's changes can cause that: those that touch the
 // same components or are upstream of them.

@@ -135,6 +135,12 @@ class Describer {
   std::string operator()(const OrderCarriedOut& e) const {
     return with_rule(e.strategy) + " was carried out";
   }
+  std::string operator()(const OutcomePending&) const { return ""; }
+  std::string operator()(const OutcomeCounted&) const { return ""; }
+  std::string operator()(const FailureFlaps& e) const {
+    return rules_[e.rule].name + " comes and goes: detected " + std::to_string(e.times) +
+           " times, and counted as one failure until it stays away";
+  }
   std::string operator()(const SilenceEnded& e) const {
     return name_of(e.what) + " is no longer silenced";
   }
@@ -221,6 +227,18 @@ std::string_view to_string(Condition condition) {
       return "in_the_way";
     case Condition::kWithheld:
       return "withheld";
+  }
+  return "";
+}
+
+std::string_view to_string(OutcomeCounted::As as) {
+  switch (as) {
+    case OutcomeCounted::As::kSuccess:
+      return "success";
+    case OutcomeCounted::As::kFailure:
+      return "failure";
+    case OutcomeCounted::As::kNothing:
+      return "nothing";
   }
   return "";
 }

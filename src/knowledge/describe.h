@@ -11,6 +11,7 @@ std::string_view to_string(Criticality criticality);
 
 // The word of rule tests and documents for it: "tried", "dependency", "other_chosen".
 std::string_view to_string(Condition condition);
+std::string_view to_string(OutcomeCounted::As as);
 
 // As an expression has it: "segmentation_entropy", "age(/rgb)", "mean(load, 2s)"
 std::string describe(const Input& input, const RuleSet& rules);

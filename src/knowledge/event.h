@@ -215,6 +215,31 @@ struct OrderCarriedOut {
   StrategyId strategy;
 };
 
+// The verdict on a strategy is in, and stands for proof until `due` (outcomes.h). Not said to
+// people.
+struct OutcomePending {
+  StrategyId strategy;
+  bool has_helped = false;
+  Time due;
+};
+
+// The outcome of a strategy is learned from, or from no longer (outcomes.h). Not said to people.
+struct OutcomeCounted {
+  enum class As : std::uint8_t {
+    kSuccess,
+    kFailure,
+    kNothing  // something else can have had the same effect, or nobody can see it
+  };
+  StrategyId strategy;
+  As as = As::kNothing;
+};
+
+// The failure comes and goes: it is one, until it stayed away for long enough to be proven gone.
+struct FailureFlaps {
+  RuleId rule;
+  int times = 0;  // that it came
+};
+
 // Its time is over.
 struct SilenceEnded {
   Silenceable what;
@@ -234,7 +259,7 @@ struct Event {
                RoundSpent, RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble,
                OrderAccepted, OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed,
                StrategyAbandoned, OrderCarriedOut, SilenceEnded, StormBegan, StormEnded,
-               LastResortReached, LifecycleIntended>
+               LastResortReached, LifecycleIntended, OutcomePending, OutcomeCounted, FailureFlaps>
       what;
 };
 

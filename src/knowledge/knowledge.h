@@ -8,6 +8,7 @@
 #include "knowledge/couplings.h"
 #include "knowledge/dependency_graph.h"
 #include "knowledge/event.h"
+#include "knowledge/outcomes.h"
 #include "knowledge/rivals.h"
 #include "knowledge/rule_states.h"
 #include "knowledge/signal_store.h"
@@ -37,6 +38,7 @@ struct Knowledge {
         beliefs(other.beliefs),
         couplings(other.couplings),
         withheld(other.withheld),
+        outcomes(other.outcomes),
         rivals(other.rivals),
         now(other.now) {}
   Knowledge(const Knowledge&) = delete;
@@ -50,6 +52,7 @@ struct Knowledge {
   Couplings couplings;
   // By strategy: why the governor does not allow it now; empty where it does.
   std::vector<std::string> withheld;
+  PendingOutcomes outcomes;
   Rivals rivals;
   Time now{};                 // of the step under way
   std::vector<Event> events;  // of the step under way

@@ -37,6 +37,9 @@ void RuleStates::begin_search(RuleId id, Time now) {
   const auto left_off = std::exchange(state.left_off, std::nullopt);
   state.failing_since = now;
   state.attempts = left_off ? left_off->attempts : 0;
+  state.attempts_before = state.attempts;
+  state.times = left_off ? left_off->times : 1;
+  state.is_exhausted = left_off && left_off->is_exhausted;
   state.round = left_off ? left_off->round : 0;
   state.retry_at = left_off ? std::max(now, left_off->retry_at) : now;
   state.is_at_last_resort = left_off && left_off->is_at_last_resort;
@@ -46,6 +49,13 @@ void RuleStates::begin_search(RuleId id, Time now) {
   } else {
     std::fill(state.tried.begin(), state.tried.end(), false);
   }
+}
+
+void RuleStates::go_on_searching(RuleId id, Time now) {
+  RuleState& state = states_[id.index];
+  state.failing_since = now;
+  state.attempts_before = state.attempts;
+  ++state.times;
 }
 
 void RuleStates::enter(RuleId id, RulePhase phase) {

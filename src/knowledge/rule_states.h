@@ -41,6 +41,8 @@ struct Search {
   std::vector<bool> tried;         // in this round, by place in Rule::strategies
   bool is_at_last_resort = false;  // only the last resorts are left to try
   bool is_exhausted = false;
+  int times = 1;             // it was detected
+  std::optional<Time> gone;  // it went away then, which is not proven yet
 };
 
 struct RuleState {
@@ -60,12 +62,15 @@ struct RuleState {
   Time sampled = kLongAgo;
 
   // The search for a strategy that helps.
-  int attempts = 0;          // strategies executed since the failure was detected
+  int attempts = 0;          // strategies executed for the failure, also before it came back
+  int attempts_before = 0;   // those of before it came back
+  int times = 0;             // the failure was detected, until it was proven gone
   int round = 0;             // how often all strategies were gone through
   Time retry_at = kLongAgo;  // back-off after a round
   std::vector<bool> tried;   // in this round, by place in Rule::strategies
   std::optional<Attempt> attempt;
   bool is_at_last_resort = false;  // only the last resorts are left to try
+  bool is_exhausted = false;       // nothing is left, until it is proven gone
   bool is_advised = false;         // dry run: what would be done was said
   std::optional<Settling> settling;
   // Where an earlier process of culprit came to with this failure. Nobody has seen it gone since.
@@ -92,6 +97,8 @@ class RuleStates {
   void set_tried(StrategyId id, bool tried);
   // The search for a strategy begins: anew, or where an earlier process left off.
   void begin_search(RuleId id, Time now);
+  // The failure is back before it was proven gone: the search goes on where it was.
+  void go_on_searching(RuleId id, Time now);
 
   // Moves a rule to another phase and keeps the health of its components.
   void enter(RuleId id, RulePhase phase);

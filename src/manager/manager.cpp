@@ -37,6 +37,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
       held_back_(rules.rules.size()) {
   knowledge_.beliefs.set_forgetting(options.forgetting);
   knowledge_.couplings.set_forgetting(options.forgetting);
+  knowledge_.outcomes.healthy = options.governor.limits.backoff.healthy;
 }
 
 void Manager::remember(const Past& past) {
@@ -128,6 +129,9 @@ void Manager::forget(std::optional<RuleId> rule) {
     if (!rule || strategy.rule == *rule)
       knowledge_.beliefs.set(StrategyId(s), initial_belief(strategy.success, strategy.confidence));
   }
+  std::erase_if(knowledge_.outcomes.open, [&](const PendingOutcome& outcome) {
+    return !rule || rules[outcome.strategy].rule == *rule;
+  });
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     const RuleId effect(r);
     for (const Couplings::Learned& each : knowledge_.couplings.of(effect)) {

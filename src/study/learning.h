@@ -1,6 +1,7 @@
 // How a learned success probability comes closer to the true rate, experiment by experiment.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,14 @@ struct LearningCurve {
   std::string rule;
   std::string strategy;
   double initial = 0;  // what the designer believed
-  double truth = 0;    // the true success rate
+  double truth = 0;    // the true success rate, of all the times that it was executed
   // After the first, second, ... experiment; each over the repetitions of the whole series.
   std::vector<Moments> learned;
+  double executed = 0;  // how often in a series, on average
+
+  // What is believed at the end, and how far that is from the truth.
+  double believed() const { return learned.empty() ? initial : learned.back().mean(); }
+  double error() const { return std::abs(believed() - truth); }
 };
 
 }  // namespace culprit::study

@@ -22,7 +22,8 @@ double around(const published::MeanSd& value, std::mt19937& engine) {
 
 LearningCurve synthetic_curve(std::string failure, std::string rule, std::string strategy,
                               double initial, double truth) {
-  LearningCurve curve{std::move(failure), std::move(rule), std::move(strategy), initial, truth, {}};
+  LearningCurve curve{
+      std::move(failure), std::move(rule), std::move(strategy), initial, truth, {}, 162};
   std::mt19937 engine(static_cast<unsigned>(truth * 1000));
   double alpha = 10 * initial;
   double beta = 10 - alpha;

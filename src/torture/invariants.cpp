@@ -144,19 +144,19 @@ void Invariants::check_beliefs(const Manager& manager, Time now) {
     const double helped = belief.alpha - beliefs_[s].alpha;
     const double failed = belief.beta - beliefs_[s].beta;
     beliefs_[s] = belief;
-    int resolutions = 0;
+    int successes = 0;
     int failures = 0;
     for (const Event& event : manager.events()) {
-      const auto* resolved = std::get_if<FailureResolved>(&event.what);
-      if (resolved != nullptr && resolved->strategy == id) ++resolutions;
-      const auto* failure = std::get_if<StrategyFailed>(&event.what);
-      if (failure != nullptr && failure->strategy == id) ++failures;
+      const auto* counted = std::get_if<OutcomeCounted>(&event.what);
+      if (counted == nullptr || counted->strategy != id) continue;
+      successes += counted->as == OutcomeCounted::As::kSuccess ? 1 : 0;
+      failures += counted->as == OutcomeCounted::As::kFailure ? 1 : 0;
     }
     const auto is_earned_by = [](double change, int outcomes) {
       constexpr double kRounding = 1e-9;
       return std::abs(change) < kRounding || std::abs(change - outcomes) < kRounding;
     };
-    const bool is_earned = is_earned_by(helped, resolutions) && is_earned_by(failed, failures);
+    const bool is_earned = is_earned_by(helped, successes) && is_earned_by(failed, failures);
     if (!is_earned) fail(now, "the belief in " + rules_[id].name + " is no sum of outcomes");
   }
 }

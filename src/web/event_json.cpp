@@ -65,6 +65,20 @@ struct AsJson {
   Json operator()(const StrategyResumed& e) const {
     return of_strategy("resumed", e.strategy, rules);
   }
+  Json operator()(const OutcomePending& e) const {
+    Json json = of_strategy("outcome_pending", e.strategy, rules);
+    json["helped"] = e.has_helped;
+    json["due"] = time_to_json(e.due, start);
+    return json;
+  }
+  Json operator()(const OutcomeCounted& e) const {
+    Json json = of_strategy("outcome_counted", e.strategy, rules);
+    json["as"] = culprit::to_string(e.as);
+    return json;
+  }
+  Json operator()(const FailureFlaps& e) const {
+    return {{"kind", "flapping"}, {"rule", rules[e.rule].name}, {"times", e.times}};
+  }
   Json operator()(const LastResortReached& e) const {
     return {{"kind", "last_resort"}, {"rule", rules[e.rule].name}};
   }

@@ -33,12 +33,8 @@ std::vector<double> apart(const std::vector<double>& wanted) {
   return places;
 }
 
-double last(const LearningCurve& curve) {
-  return curve.learned.empty() ? curve.initial : curve.learned.back().mean();
-}
-
 std::string label(const LearningCurve& curve) {
-  return fmt::format("{} {:.2f} (true {:.2f})", curve.strategy, last(curve), curve.truth);
+  return fmt::format("{} {:.2f} (true {:.2f})", curve.strategy, curve.believed(), curve.truth);
 }
 
 // The labels are behind the axis.
@@ -62,7 +58,7 @@ class Plot {
     std::vector<double> ends;
     for (std::size_t i = 0; i < curves_.size(); ++i) {
       curve(curves_[i], static_cast<int>(i) % kCurveColours);
-      ends.push_back(y_(last(curves_[i])));
+      ends.push_back(y_(curves_[i].believed()));
     }
     names(apart(ends));
     return std::move(svg_);
@@ -104,7 +100,7 @@ class Plot {
   void names(const std::vector<double>& places) {
     for (std::size_t i = 0; i < curves_.size(); ++i) {
       const int colour = static_cast<int>(i) % kCurveColours;
-      svg_.line({kRight + 2, y_(last(curves_[i]))}, {kRight + 12, places[i]},
+      svg_.line({kRight + 2, y_(curves_[i].believed())}, {kRight + 12, places[i]},
                 fmt::format("truth{}", colour));
       svg_.text({kRight + 16, places[i] + 4}, Anchor::kStart, fmt::format("name{}", colour),
                 label(curves_[i]));

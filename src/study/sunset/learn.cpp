@@ -16,16 +16,26 @@ struct Learner {
   std::int64_t remedies = 0;
 };
 
+// The paper's name of the failure; empty: no fault of SUNSET causes it.
+std::string failure_of(const std::string& rule) {
+  if (rule == "RGBDead") return "F1";
+  if (rule == "SensorFusionDead") return "F2";
+  if (rule == "SegmentationDead") return "F3";
+  if (rule == "SegmentationBad") return "F4";
+  if (rule == "AutoFocusNeeded") return "F5";
+  return "";
+}
+
 std::vector<Learner> learners(const RuleSet& rules, std::uint32_t experiments) {
   std::vector<Learner> all;
   for (std::size_t s = 0; s < rules.strategies.size(); ++s) {
     const Strategy& strategy = rules.strategies[s];
     const std::string& rule = rules[strategy.rule].name;
-    const std::string failure = rule == "RGBDead" ? "F1" : rule == "SegmentationBad" ? "F4" : "";
+    const std::string failure = failure_of(rule);
     if (failure.empty()) continue;
     Learner learner;
     learner.strategy = StrategyId(s);
-    learner.curve = {failure, rule, strategy.name, strategy.success.value, 0, {}};
+    learner.curve = {failure, rule, strategy.name, strategy.success.value, 0, {}, 0};
     learner.curve.learned.resize(experiments);
     all.push_back(std::move(learner));
   }
@@ -74,6 +84,7 @@ std::vector<LearningCurve> SunsetStudy::learn(
     if (learner.executed > 0)
       learner.curve.truth =
           static_cast<double>(learner.remedies) / static_cast<double>(learner.executed);
+    learner.curve.executed = static_cast<double>(learner.executed) / std::max(1U, repetitions);
     curves.push_back(std::move(learner.curve));
   }
   return curves;

@@ -40,7 +40,7 @@ class SunsetStudy {
   Timeline explain(RunId id) const;
 
   // `experiments` runs after each other with beliefs that are carried on, `repetitions` times: what
-  // row 0 learns. A curve for each strategy of F1 and F4 (rules RGBDead and SegmentationBad).
+  // row 0 learns. A curve for each strategy of the paper's failures F1 to F5.
   // `told` is told how many are done of all (null: nobody is).
   std::vector<LearningCurve> learn(std::uint32_t experiments, std::uint32_t repetitions,
                                    const std::function<void(std::uint64_t done)>& told) const;

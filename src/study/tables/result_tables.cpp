@@ -115,6 +115,7 @@ Table learning_table(const std::vector<LearningCurve>& curves) {
               {{"", "failure", "", "", Align::kLeft},
                {"", "rule", "", "", Align::kLeft},
                {"", "strategy", "", "", Align::kLeft},
+               {"", "executed"},
                {"", "initial P", "", "Initial $P_s$"},
                {"", "learned P", "", "Learned $P_s$"},
                {"", "true rate"},
@@ -131,10 +132,11 @@ Table learning_table(const std::vector<LearningCurve>& curves) {
     table.rows.push_back({{curve.failure},
                           {curve.rule},
                           {curve.strategy},
+                          {number(curve.executed, 0)},
                           {number(curve.initial)},
                           {learned},
                           {number(curve.truth)},
-                          {last.count() == 0 ? "–" : number(std::abs(last.mean() - curve.truth))}});
+                          {last.count() == 0 ? "–" : number(curve.error())}});
   }
   table.notes.push_back(fmt::format(
       "After {} experiments. Of the paper's own learning (c_p = {:g}) there is a figure of "

@@ -1,0 +1,36 @@
+// From verdicts to beliefs: an outcome counts once it stood for long enough (knowledge/outcomes.h).
+//
+// An outcome counts for nothing if
+//   - while the strategy was under way something else could have had the same effect
+//   (is_ambiguous),
+//   - a failure upstream came after the verdict: a second fault blames nobody,
+//   - when it is due nobody can see whether the failure is there.
+// If the failure is back before that by itself, the strategy did not help.
+#pragma once
+
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+class OutcomeWatch {
+ public:
+  // `knowledge` must outlive the watch.
+  explicit OutcomeWatch(Knowledge& knowledge) : knowledge_(knowledge) {}
+
+  // The verdict on `attempt`, which began to change things before its failure went away by itself.
+  void judged(const Attempt& attempt, bool has_helped, Time now);
+  // A failure came, or came back.
+  void detected(RuleId rule, Time now);
+  // What an earlier process waited for.
+  void remember(const Event& event);
+
+  void advance(Time now);
+  Time next_deadline() const;
+
+ private:
+  void count(const PendingOutcome& outcome, Time now);
+
+  Knowledge& knowledge_;
+};
+
+}  // namespace culprit

@@ -1,0 +1,79 @@
+// What of earlier runs still counts.
+#include "journal/past.h"
+
+#include <gtest/gtest.h>
+
+#include "journal/requests.h"
+#include "language/checker.h"
+
+namespace culprit::journal {
+namespace {
+
+using namespace std::chrono_literals;
+
+RuleSet rules() {
+  return *check(Source("t",
+                       "RULE R\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY s 90 10\n"
+                       "ADAPTATION c restart 1\nSTRATEGY t 90 10\nADAPTATION c redeploy 1\n"))
+              .rules;
+}
+
+Event at(Duration when, decltype(Event::what) what) { return {Time(when), std::move(what)}; }
+
+template <class What>
+std::size_t count(const Past& past) {
+  std::size_t found = 0;
+  for (const Event& event : past) found += std::holds_alternative<What>(event.what) ? 1 : 0;
+  return found;
+}
+
+TEST(Past, AnOutcomeWaitsUntilItIsDueOrCounted) {
+  const RuleSet r = rules();
+  const StrategyId s(0);
+  const Past past = {at(1s, OutcomePending{s, true, Time(61s)})};
+  EXPECT_EQ(count<OutcomePending>(still_counting(past, Time(60s), r)), 1u);
+  EXPECT_EQ(count<OutcomePending>(still_counting(past, Time(61s), r)), 0u) << "nobody looked on";
+  Past counted = past;
+  counted.push_back(at(30s, OutcomeCounted{s, OutcomeCounted::As::kNothing}));
+  EXPECT_EQ(count<OutcomePending>(still_counting(counted, Time(60s), r)), 0u);
+}
+
+TEST(Past, OutcomesAreReadBackAsTheyWereWritten) {
+  const RuleSet r = rules();
+  const Past past = {
+      at(1s, OutcomePending{StrategyId(1), true, Time(61s)}),
+      at(2s, FailureResolved{RuleId(0), FailureResolved::How::kByStrategy, StrategyId(1), 1s})};
+  const Past again = past_from_json(to_json(past, r), r);
+  ASSERT_EQ(again.size(), 2u);
+  const auto& pending = std::get<OutcomePending>(again[0].what);
+  EXPECT_EQ(pending.strategy, StrategyId(1));
+  EXPECT_TRUE(pending.has_helped);
+  EXPECT_EQ(pending.due, Time(61s));
+  EXPECT_EQ(std::get<FailureResolved>(again[1].what).strategy, StrategyId(1));
+}
+
+// Journals of before outcomes waited.
+TEST(Past, OldRowsAreStillRead) {
+  const RuleSet r = rules();
+  const auto resolved =
+      past_event(from_text(R"({"type":"failure_resolved","rule":"R","reaction_s":1,"time":5})"), r);
+  ASSERT_TRUE(resolved);
+  EXPECT_FALSE(std::get<FailureResolved>(resolved->what).strategy);
+}
+
+TEST(Past, WhatWasTriedCountsUntilTheFailureStayedAway) {
+  const RuleSet r = rules();
+  const Past past = {at(1s, FailureDetected{RuleId(0)}),
+                     at(2s, StrategyFailed{StrategyId(0), ""}),
+                     at(3s, FailureResolved{RuleId(0), {}, {}, {}}),
+                     at(5s, FailureDetected{RuleId(0)}),
+                     at(6s, StrategyFailed{StrategyId(1), ""}),
+                     at(7s, FailureResolved{RuleId(0), {}, {}, {}})};
+  const Past soon = still_counting(past, Time(10s), r);
+  EXPECT_EQ(count<FailureDetected>(soon), 2u) << "it came back";
+  EXPECT_EQ(count<StrategyFailed>(soon), 2u);
+  EXPECT_EQ(count<StrategyFailed>(still_counting(past, Time(2h), r)), 0u);
+}
+
+}  // namespace
+}  // namespace culprit::journal

@@ -1,0 +1,31 @@
+// Verdicts that do not count yet, and how long they have to stand.
+//
+// What helped for a second did not help. So a verdict is learned from only once the time is over in
+// which the failure comes back if nothing was mended: `healthy` (--healthy) after the strategy's
+// deadline. A strategy that failed waits as long as one that helped, and whatever keeps an outcome
+// from counting is asked of both alike: what is credited must not depend on how it came out, or the
+// beliefs miss the true rates for good.
+#pragma once
+
+#include <vector>
+
+#include "language/ids.h"
+#include "robot/time.h"
+
+namespace culprit {
+
+struct PendingOutcome {
+  StrategyId strategy;
+  bool has_helped = false;  // as far as is known: turns to false if the failure comes back
+  Time judged;              // when the verdict came
+  Time due;                 // when it counts
+  // Something else can have had the same effect, or brought the failure back: it blames nobody.
+  bool is_void = false;
+};
+
+struct PendingOutcomes {
+  std::vector<PendingOutcome> open;  // oldest first
+  Duration healthy{};  // how long a failure has to stay away until it is proven to be gone
+};
+
+}  // namespace culprit

@@ -1,0 +1,172 @@
+// Success is proven health: when a failure that comes back is the same, and when an outcome counts.
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+constexpr const char* kRules = R"(
+CYCLE 100ms
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+RULE CameraSilent
+  POLICIES ERROR ATTEMPTS 4
+  TRIGGER age(/image) > 300ms
+    STRATEGY restart 50 10
+      ADAPTATION camera restart 5
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 10
+RULE FusionSilent
+  POLICIES ERROR ATTEMPTS 4
+  TRIGGER age(/fused) > 300ms
+    STRATEGY fusion_restart 50 10
+      ADAPTATION fusion restart 5
+)";
+
+Manager::Options healthy_after(Duration healthy) {
+  Manager::Options options;
+  options.governor.limits.backoff.healthy = healthy;
+  return options;
+}
+
+TestRobot robot_that_is_well(Duration healthy) {
+  TestRobot robot(kRules, std::make_unique<BayesPlanner>(), healthy_after(healthy));
+  robot.add("camera", {}, "/image");
+  robot.add("fusion", {"camera"}, "/fused");
+  robot.discover();
+  robot.run_for(6s);
+  return robot;
+}
+
+Belief belief(TestRobot& robot, const std::string& name) {
+  const auto& strategies = robot.rules().strategies;
+  for (std::size_t s = 0; s < strategies.size(); ++s) {
+    if (strategies[s].name == name) return robot.manager().knowledge().beliefs[StrategyId(s)];
+  }
+  return {};
+}
+
+// Breaks the component whenever it has worked for `well`.
+void let_crash_again(TestRobot& robot, const std::string& name, Duration well, Duration time) {
+  const Time end = robot.now + time;
+  Time works_since = robot.now;
+  while (robot.now < end) {
+    robot.run_for(100ms);
+    if (!robot.works(name)) {
+      works_since = robot.now;
+    } else if (robot.now - works_since >= well) {
+      robot[name].fault = "restart";
+    }
+  }
+}
+
+TEST(ProvenHealth, ResolvedIsSaidAtOnceAndLearnedWhenItLasted) {
+  TestRobot robot = robot_that_is_well(20s);
+  robot["camera"].fault = "restart";
+  robot.run_for(5s);
+  EXPECT_EQ(robot.count("CameraSilent resolved by restart"), 1u) << transcript(robot);
+  EXPECT_EQ(belief(robot, "restart"), (Belief{5, 5}));
+  robot.run_for(20s);
+  EXPECT_EQ(belief(robot, "restart"), (Belief{6, 5})) << transcript(robot);
+}
+
+TEST(ProvenHealth, ACrashLoopIsNoSuccessAndReachesAPerson) {
+  TestRobot robot = robot_that_is_well(20s);
+  let_crash_again(robot, "camera", 1s, 60s);
+  EXPECT_EQ(robot.count("CameraSilent is exhausted"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent comes and goes"), 1u) << transcript(robot);
+  EXPECT_LE(robot.count_asked("camera: activate") + robot.count_asked("camera: start"), 4u)
+      << transcript(robot);
+  robot.run_for(60s);
+  EXPECT_EQ(belief(robot, "restart").alpha, 5) << transcript(robot);
+  EXPECT_EQ(belief(robot, "redeploy").alpha, 9) << transcript(robot);
+  EXPECT_GE(belief(robot, "restart").beta, 6);
+}
+
+TEST(ProvenHealth, WhatComesAndGoesByItselfIsOneFailureUntilItStaysAway) {
+  TestRobot robot = robot_that_is_well(20s);
+  for (int i = 0; i < 10; ++i) {
+    robot["camera"].fault = "never";
+    robot.run_for(3s);
+    robot["camera"].fault = "";
+    robot.run_for(3s);
+  }
+  EXPECT_EQ(robot.count("CameraSilent is exhausted"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent comes and goes"), 1u) << transcript(robot);
+  // Well for long enough: the next one is another.
+  robot.run_for(25s);
+  robot["camera"].fault = "restart";
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+TEST(ProvenHealth, ASecondFaultUpstreamBlamesNobody) {
+  TestRobot robot = robot_that_is_well(20s);
+  robot["fusion"].fault = "restart";
+  robot.run_for(5s);
+  EXPECT_EQ(robot.count("FusionSilent resolved by fusion_restart"), 1u) << transcript(robot);
+  robot["camera"].fault = "restart";
+  robot.run_for(60s);
+  EXPECT_TRUE(robot.works("fusion")) << transcript(robot);
+  EXPECT_EQ(belief(robot, "fusion_restart"), (Belief{5, 5})) << transcript(robot);
+  EXPECT_EQ(belief(robot, "restart"), (Belief{6, 5})) << transcript(robot);
+}
+
+TEST(ProvenHealth, AFailureIsLearnedAsLateAsASuccess) {
+  TestRobot robot = robot_that_is_well(20s);
+  robot["camera"].fault = "redeploy";
+  robot.run_for(8s);
+  EXPECT_EQ(robot.count("restart did not resolve CameraSilent"), 1u) << transcript(robot);
+  EXPECT_EQ(belief(robot, "restart"), (Belief{5, 5}));
+  robot.run_for(25s);
+  EXPECT_EQ(belief(robot, "restart"), (Belief{5, 6})) << transcript(robot);
+  EXPECT_EQ(belief(robot, "redeploy").alpha, 10) << transcript(robot);
+}
+
+// The next process of culprit, which knows what the one before told, and nothing else.
+void crash_and_go_on(TestRobot& robot, Duration healthy) {
+  Manager::Options options = healthy_after(healthy);
+  options.start = robot.now;
+  auto manager =
+      std::make_unique<Manager>(robot.rules(), std::make_unique<BayesPlanner>(), options);
+  for (std::size_t s = 0; s < robot.rules().strategies.size(); ++s)
+    manager->set_belief(StrategyId(s), robot.manager().knowledge().beliefs[StrategyId(s)]);
+  manager->remember(robot.events);
+  robot.replace_manager(std::move(manager));
+}
+
+TEST(ProvenHealth, WhatWaitedForItsProofStillDoesAfterACrash) {
+  TestRobot robot = robot_that_is_well(20s);
+  robot["camera"].fault = "restart";
+  robot.run_for(5s);
+  crash_and_go_on(robot, 20s);
+  robot.run_for(25s);
+  EXPECT_EQ(belief(robot, "restart"), (Belief{6, 5})) << transcript(robot);
+  crash_and_go_on(robot, 20s);
+  robot.run_for(25s);
+  EXPECT_EQ(belief(robot, "restart"), (Belief{6, 5})) << "counted once";
+}
+
+TEST(ProvenHealth, ACrashLoopGoesOnBeingOneAcrossCrashesOfCulprit) {
+  TestRobot robot = robot_that_is_well(20s);
+  for (int i = 0; i < 4; ++i) {
+    let_crash_again(robot, "camera", 1s, 4s);
+    crash_and_go_on(robot, 20s);
+  }
+  let_crash_again(robot, "camera", 1s, 20s);
+  EXPECT_GE(robot.count("CameraSilent is exhausted"), 1u) << transcript(robot);
+  EXPECT_LE(robot.count_asked("camera: activate") + robot.count_asked("camera: start"), 4u)
+      << transcript(robot);
+}
+
+// As the paper has it; what its studies are run with.
+TEST(ProvenHealth, WithNoneAskedForEachVerdictCountsByItself) {
+  TestRobot robot = robot_that_is_well(0s);
+  let_crash_again(robot, "camera", 3s, 60s);
+  EXPECT_EQ(robot.count("exhausted"), 0u) << transcript(robot);
+  EXPECT_GT(belief(robot, "restart").alpha, 8) << transcript(robot);
+}
+
+}  // namespace
+}  // namespace culprit::test
