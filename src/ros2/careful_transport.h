@@ -1,4 +1,5 @@
-// A transport over another one, which spares a participant two faults of Fast DDS.
+// A transport over another one, which spares a participant two faults of Fast DDS, and writes down
+// where datagrams come from.
 //
 // It is quiet until it can hear. Fast DDS announces a participant while its receivers are still
 // being opened. Whoever answers at once, as every peer on the same machine does, answers into the
@@ -12,6 +13,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstring>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -19,6 +21,8 @@
 #include <fastdds/rtps/network/SenderResource.h>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+
+#include "ros2/datagram_sources.h"
 
 namespace culprit::ros2::fast_dds {
 
@@ -28,8 +32,11 @@ using Listens = std::shared_ptr<std::atomic<bool>>;
 class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport {
  public:
   CarefulTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
-                   Listens listens, bool is_secured)
-      : ChainingTransport(descriptor), listens_(std::move(listens)), is_secured_(is_secured) {}
+                   Listens listens, std::shared_ptr<DatagramSources> sources, bool is_secured)
+      : ChainingTransport(descriptor),
+        listens_(std::move(listens)),
+        sources_(std::move(sources)),
+        is_secured_(is_secured) {}
 
   eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override {
     return low_level_transport_->get_configuration();
@@ -47,13 +54,22 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
                const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
                const eprosima::fastrtps::rtps::Locator_t& local,
                const eprosima::fastrtps::rtps::Locator_t& remote) override {
+    sources_->heard({bytes, size}, address_of(remote));
     std::unique_lock lock(one_at_a_time_, std::defer_lock);
     if (is_secured_) lock.lock();
     next->OnDataReceived(bytes, size, local, remote);
   }
 
  private:
+  static UdpAddress address_of(const eprosima::fastrtps::rtps::Locator_t& locator) {
+    UdpAddress address;
+    std::memcpy(address.ip.data(), locator.address + 12, address.ip.size());
+    address.port = static_cast<std::uint16_t>(locator.port);
+    return address;
+  }
+
   const Listens listens_;
+  const std::shared_ptr<DatagramSources> sources_;
   const bool is_secured_;
   std::mutex one_at_a_time_;
 };
@@ -61,16 +77,18 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
 struct CarefulTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   CarefulTransportDescriptor(
       std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> transport,
-      Listens flag, bool secured)
+      Listens flag, std::shared_ptr<DatagramSources> origins, bool secured)
       : ChainingTransportDescriptor(std::move(transport)),
         listens(std::move(flag)),
+        sources(std::move(origins)),
         is_secured(secured) {}
 
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override {
-    return new CarefulTransport(*this, listens, is_secured);
+    return new CarefulTransport(*this, listens, sources, is_secured);
   }
 
   const Listens listens;
+  const std::shared_ptr<DatagramSources> sources;
   const bool is_secured;
 };
 

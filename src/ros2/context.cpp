@@ -21,14 +21,20 @@ Expected<std::unique_ptr<Context>> Context::create(Executor& executor,
 }
 
 Context::Context(Executor& executor, Graph::Options graph)
-    : executor_(executor), graph_(with_watches(std::move(graph))), tasks_(executor) {}
+    : executor_(executor), graph_(with_context(std::move(graph))), tasks_(executor) {}
 
-Graph::Options Context::with_watches(Graph::Options options) {
+Graph::Options Context::with_context(Graph::Options options) {
   options.listener = [this, listener = std::move(options.listener)](const GraphChange& change) {
     const auto* left = std::get_if<EndpointLeft>(&change);
     if (left != nullptr && left->kind == EndpointKind::kServer) on_server_left(left->name);
     if (listener) listener(change);
   };
+  if (options.find_process) {
+    options.find_process = [this, find = std::move(options.find_process)](ParticipantInfo info) {
+      info.origin = participant_->origin_of(info.guid.prefix());
+      return find(info);
+    };
+  }
   return options;
 }
 

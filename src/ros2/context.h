@@ -69,7 +69,7 @@ class Context {
   };
 
   Context(Executor& executor, Graph::Options graph);
-  Graph::Options with_watches(Graph::Options options);
+  Graph::Options with_context(Graph::Options options);
   Expected<void> open(const ParticipantOptions& options);
 
   // On the executor's thread.

@@ -213,10 +213,12 @@ inline rtps::Locator_t locator(const std::string& ip, std::uint32_t port) {
   return out;
 }
 
-// `peers` are IPv4 addresses. Nothing is sent before `listens`.
+// `peers` are IPv4 addresses. Nothing is sent before `listens`. Where datagrams come from is
+// written into `sources`.
 inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& options,
                                                  const std::vector<std::string>& peers,
-                                                 Listens listens) {
+                                                 Listens listens,
+                                                 std::shared_ptr<DatagramSources> sources) {
   dds::DomainParticipantQos out;
   out.name(options.enclave);
   const std::string user_data = "enclave=" + options.enclave + ";";
@@ -252,7 +254,7 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
       32;  // participants of one machine that are announced to, as ROS 2 Iron and newer
   out.transport().use_builtin_transports = false;
   out.transport().user_transports.push_back(std::make_shared<CarefulTransportDescriptor>(
-      std::move(udp), std::move(listens), options.security.has_value()));
+      std::move(udp), std::move(listens), std::move(sources), options.security.has_value()));
   return out;
 }
 

@@ -221,7 +221,7 @@ Graph::Node* Graph::holder_of(const Guid& guid) {
 void Graph::tell_joined(const std::string& name, Node& node) {
   node.told = node.claimants.back();
   Peer& peer = peers_.at(*node.told);
-  pid_of(peer);
+  look_for_process(name, peer);
   tell(NodeJoined{describe(name, peer)});
   // Those that were known before: an older node of the name comes to count again.
   const auto claimed = peer.claims.find(name);
@@ -247,10 +247,23 @@ const Graph::Endpoint* Graph::find(const Guid& guid) const {
 }
 
 int Graph::pid_of(Peer& peer) {
-  if (!std::exchange(peer.pid_is_known, true) && options_.find_process) {
-    peer.pid = options_.find_process(peer.info);
-  }
+  if (!std::exchange(peer.pid_is_known, true) && options_.find_process)
+    peer.pid = options_.find_process(peer.info).pid;
   return peer.pid;
+}
+
+// For a node that it comes to hold. Of an ended process nothing can be proven any more: what was
+// known of it stays known.
+void Graph::look_for_process(const std::string& name, Peer& peer) {
+  const bool has_ended = peer.pid != 0 && options_.is_running && !options_.is_running(peer.pid);
+  if (!options_.find_process || has_ended) return;
+  FoundProcess found = options_.find_process(peer.info);
+  peer.pid = found.pid;
+  peer.pid_is_known = true;
+  if (!found.missing.empty() && found.missing != peer.told_missing)
+    tell(GraphTrouble{"the process of " + name +
+                      " is not proven, so it is not ended: " + found.missing});
+  peer.told_missing = std::move(found.missing);
 }
 
 GraphNode Graph::describe(const std::string& name, const Peer& peer) const {

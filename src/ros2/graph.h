@@ -49,6 +49,13 @@ struct GraphNode {
   int pid = 0;       // on this machine; 0 where it is not known
 };
 
+// The process of a participant, as far as it is proven.
+struct FoundProcess {
+  int pid = 0;  // on this machine; 0: it is elsewhere, or not proven
+  // What is missing for a proof, in words: "nobody here has ...". Empty where nothing is claimed.
+  std::string missing;
+};
+
 struct NodeJoined {
   GraphNode node;
 };
@@ -82,8 +89,9 @@ class Graph {
     std::size_t nodes = 10'000;
     std::size_t endpoints = 100'000;  // discovered, and as many again claimed
   };
-  // Finds the process of a participant on this machine, 0 if it cannot. Asked once for each.
-  using FindProcess = std::function<int(const ParticipantInfo&)>;
+  // Asked for each node that a participant comes to hold: what speaks against it may have come
+  // since it was asked last.
+  using FindProcess = std::function<FoundProcess(const ParticipantInfo&)>;
   using IsRunning = std::function<bool(int pid)>;
   using Listener = std::function<void(const GraphChange&)>;  // must not call back into the graph
 
@@ -124,6 +132,7 @@ class Graph {
     ParticipantInfo info;
     int pid = 0;
     bool pid_is_known = false;
+    std::string told_missing;  // what was told of last
     bool told_of_invalid_name = false;
     bool told_of_duplicate = false;
     Claims claims;
@@ -158,6 +167,7 @@ class Graph {
 
   const Endpoint* find(const Guid& guid) const;
   int pid_of(Peer& peer);
+  void look_for_process(const std::string& name, Peer& peer);
   GraphNode describe(const std::string& name, const Peer& peer) const;
   void warn_of_duplicate(const std::string& name, const Node& node);
   void count_namesakes(const std::string& name, Node& node);

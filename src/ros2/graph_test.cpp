@@ -238,7 +238,7 @@ TEST(Graph, WhoIsNotThereSaysNothing) {
 TEST(Graph, ARestartedNodeReplacesItsDeadPredecessor) {
   std::set<int> running = {10, 20};
   Graph::Options options;
-  options.find_process = [](const ParticipantInfo& info) { return info.pid; };
+  options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };
   options.is_running = [&](int pid) { return running.contains(pid); };
   Watched watched(options);
   watched.joins(1, 10).has(publishes(writer(1, 1), "/t")).says(1, {node("/", "a", {writer(1, 1)})});
@@ -256,7 +256,7 @@ TEST(Graph, ARestartedNodeReplacesItsDeadPredecessor) {
 
 TEST(Graph, TwoLivingNodesOfOneNameAreTrouble) {
   Graph::Options options;
-  options.find_process = [](const ParticipantInfo& info) { return info.pid; };
+  options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };
   options.is_running = [](int) { return true; };
   Watched watched(options);
   watched.joins(1, 10)
@@ -276,7 +276,7 @@ TEST(Graph, TwoLivingNodesOfOneNameAreTrouble) {
 
 TEST(Graph, AnEndedProcessIsGoneAtOnce) {
   Graph::Options options;
-  options.find_process = [](const ParticipantInfo& info) { return info.pid; };
+  options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };
   Watched watched(options);
   watched.joins(1, 10).joins(2, 20).joins(3);
   watched.says(1, {node("/", "a")}).says(2, {node("/", "b")}).says(3, {node("/", "c")}).told();

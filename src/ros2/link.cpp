@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <signal.h>
 
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
@@ -34,8 +32,6 @@ bool is_for_management(std::string_view service) {
 bool is_service(EndpointKind kind) {
   return kind == EndpointKind::kServer || kind == EndpointKind::kClient;
 }
-
-bool is_running(int pid) { return kill(pid, 0) == 0 || errno == EPERM; }
 
 }  // namespace
 
@@ -75,7 +71,7 @@ Expected<void> Link::start() {
   graph.find_process = [finder = ProcessFinder()](const ParticipantInfo& participant) {
     return finder.find(participant);
   };
-  graph.is_running = is_running;
+  graph.is_running = [finder = ProcessFinder()](int pid) { return finder.is_running(pid); };
   auto context = Context::create(executor_, options_.participant, std::move(graph));
   if (!context) return Error{context.error()};
   context_ = std::move(*context);

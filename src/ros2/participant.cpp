@@ -235,6 +235,10 @@ class Participant::Impl {
  public:
   explicit Impl(DiscoveryCallback on_discovery)
       : listener_([this, callback = std::move(on_discovery)](DiscoveryEvent event) {
+          if (const auto* info = std::get_if<ParticipantInfo>(&event))
+            sources_->keep(info->guid.prefix());
+          if (const auto* gone = std::get_if<ParticipantGone>(&event))
+            sources_->forget(gone->guid.prefix());
           gate_.pass([&] { callback(std::move(event)); });
         }) {}
 
@@ -247,7 +251,7 @@ class Participant::Impl {
     }
     const auto listens = std::make_shared<std::atomic<bool>>(false);
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
-        options.domain, fast_dds::participant_qos(options, peers, listens), &listener_,
+        options.domain, fast_dds::participant_qos(options, peers, listens, sources_), &listener_,
         dds::StatusMask::none());
     if (participant_ == nullptr) {
       return Error{"cannot join DDS domain " + std::to_string(options.domain) +
@@ -287,9 +291,11 @@ class Participant::Impl {
   }
 
   const Guid& guid() const { return guid_; }
+  const DatagramSources& sources() const { return *sources_; }
 
  private:
   Gate gate_;
+  const std::shared_ptr<DatagramSources> sources_ = std::make_shared<DatagramSources>();
   fast_dds::DiscoveryListener listener_;
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;
@@ -302,6 +308,9 @@ class Participant::Impl {
 Participant::Participant(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Participant::~Participant() = default;
 const Guid& Participant::guid() const { return impl_->guid(); }
+DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) const {
+  return impl_->sources().of(participant);
+}
 
 Expected<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,
                                                            DiscoveryCallback on_discovery) {

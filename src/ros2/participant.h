@@ -22,6 +22,7 @@
 
 #include "language/expected.h"
 #include "ros2/cdr.h"
+#include "ros2/datagram_sources.h"
 #include "ros2/guid.h"
 #include "ros2/options.h"
 #include "ros2/qos.h"
@@ -31,12 +32,6 @@ namespace culprit::ros2 {
 // By the vendor id that the participant announces (RTPS 2.3 §9.3.1.3).
 enum class Vendor : std::uint8_t { kFastDds, kCyclone, kOther };
 
-struct UdpAddress {
-  std::array<std::uint8_t, 4> ip{};
-  std::uint16_t port = 0;
-  bool operator==(const UdpAddress&) const = default;
-};
-
 // What a remote participant says of itself. Strings are as sent, cut at 1024 bytes.
 struct ParticipantInfo {
   Guid guid;
@@ -44,6 +39,8 @@ struct ParticipantInfo {
   std::string host;  // its machine; empty when it does not say
   int pid = 0;       // its process there, as seen by itself; 0 when it does not say
   std::vector<UdpAddress> metatraffic;  // where it listens for discovery
+  // Not its word: where its datagrams came from. Filled in when its process is looked for.
+  DatagramSources::Origin origin{};
 };
 
 // What a remote reader or writer says of itself. DDS names; strings as above. History depth is not
@@ -145,6 +142,9 @@ class Participant {
   ~Participant();
 
   const Guid& guid() const;
+
+  // Where the datagrams of another participant came from so far.
+  DatagramSources::Origin origin_of(const GuidPrefix& participant) const;
 
   // An error when the middleware refuses: one participant cannot have a topic with two types.
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample);

@@ -4,24 +4,22 @@
 #include <arpa/inet.h>
 #include <array>
 #include <charconv>
+#include <cstring>
 #include <fstream>
 #include <ifaddrs.h>
 #include <memory>
 #include <netinet/in.h>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <unistd.h>
 
 namespace culprit::ros2 {
 namespace {
 
 namespace fs = std::filesystem;
-
-// As the link of a file descriptor shows a socket: "socket:[12345]".
-using SocketLinks = std::set<std::string>;
 
 bool is_local(const std::array<std::uint8_t, 4>& ip) {
   if (ip[0] == 127) return true;
@@ -36,44 +34,103 @@ bool is_local(const std::array<std::uint8_t, 4>& ip) {
   return false;
 }
 
-std::string own_host() {
-  std::array<char, 256> name{};
-  gethostname(name.data(), name.size() - 1);
-  return name.data();
+std::string to_text(const UdpAddress& address) {
+  std::string text;
+  for (const std::uint8_t part : address.ip)
+    text += (text.empty() ? "" : ".") + std::to_string(part);
+  return text + ":" + std::to_string(address.port);
 }
 
-// Adds the sockets of a table such as /proc/net/udp that are bound to `port`.
-void add_sockets(const fs::path& table, std::uint16_t port, SocketLinks& links) {
+struct BoundSocket {
+  UdpAddress address;  // of the form 0.0.0.0:port: it is bound to no address
+  unsigned user = 0;   // that made it
+  std::string link;    // as the link of a file descriptor shows it: "socket:[12345]"
+};
+
+// "0100007F" is 127.0.0.1: four bytes at a time, as the machine keeps them. Of IPv6 the last four
+// count: an IPv4 address inside one, or none.
+std::optional<UdpAddress> parse_address(std::string_view text) {
+  const auto colon = text.find(':');
+  if (colon == std::string_view::npos || colon < 8) return std::nullopt;
+  std::uint32_t ip = 0;
+  UdpAddress address;
+  const char* begin = text.data() + colon - 8;
+  if (std::from_chars(begin, begin + 8, ip, 16).ec != std::errc()) return std::nullopt;
+  std::memcpy(address.ip.data(), &ip, address.ip.size());
+  begin = text.data() + colon + 1;
+  if (std::from_chars(begin, text.data() + text.size(), address.port, 16).ec != std::errc())
+    return std::nullopt;
+  return address;
+}
+
+// Adds what a table such as /proc/net/udp knows.
+void add_sockets(const fs::path& table, std::vector<BoundSocket>& sockets) {
   std::ifstream file(table);
   std::string line;
   std::getline(file, line);  // the headings
   while (std::getline(file, line)) {
     std::istringstream columns(line);
     std::string skipped, local, inode;
+    BoundSocket socket;
     columns >> skipped >> local;
-    for (int i = 0; i < 7; ++i) columns >> skipped;
-    columns >> inode;
-    const auto colon = local.find(':');
-    unsigned bound = 0;
-    if (colon == std::string::npos) continue;
-    std::from_chars(local.data() + colon + 1, local.data() + local.size(), bound, 16);
-    if (bound == port) links.insert("socket:[" + inode + "]");
+    for (int i = 0; i < 5; ++i) columns >> skipped;
+    columns >> socket.user >> skipped >> inode;
+    const auto address = parse_address(local);
+    if (!columns || !address) continue;
+    socket.address = *address;
+    socket.link = "socket:[" + inode + "]";
+    sockets.push_back(std::move(socket));
   }
 }
 
-enum class Holds : std::uint8_t { kYes, kNo, kHidden };
+// The sockets that one address may belong to: several where they share a port.
+using Candidates = std::vector<BoundSocket>;
 
-Holds holds(const fs::path& process, const SocketLinks& links) {
+Candidates bound_to(const UdpAddress& address, const std::vector<BoundSocket>& sockets) {
+  Candidates found;
+  for (const BoundSocket& socket : sockets) {
+    const bool fits =
+        socket.address.ip == std::array<std::uint8_t, 4>{} || socket.address.ip == address.ip;
+    if (fits && socket.address.port == address.port) found.push_back(socket);
+  }
+  return found;
+}
+
+// Who it runs as: the real and the effective user.
+std::vector<unsigned> users_of(const fs::path& process) {
+  std::ifstream file(process / "status");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("Uid:")) continue;
+    std::istringstream columns(line.substr(4));
+    unsigned real = 0, effective = 0;
+    if (columns >> real >> effective) return {real, effective};
+  }
+  return {};
+}
+
+std::set<std::string> descriptors_of(const fs::path& process) {
+  std::set<std::string> links;
   std::error_code error;
   fs::directory_iterator files(process / "fd", error);
-  if (error) return fs::exists(process, error) ? Holds::kHidden : Holds::kNo;
-  while (files != fs::directory_iterator()) {
+  while (!error && files != fs::directory_iterator()) {
     const fs::path target = fs::read_symlink(files->path(), error);
-    if (!error && links.contains(target.native())) return Holds::kYes;
-    files.increment(error);
-    if (error) break;  // the process went away meanwhile
+    if (!error) links.insert(target.native());
+    files.increment(error);  // fails if the process went away meanwhile
   }
-  return Holds::kNo;
+  return links;
+}
+
+bool holds(const fs::path& process, const std::vector<Candidates>& needed) {
+  const std::set<std::string> links = descriptors_of(process);
+  if (links.empty()) return false;
+  const std::vector<unsigned> users = users_of(process);
+  const auto is_its = [&](const BoundSocket& socket) {
+    return links.contains(socket.link) &&
+           std::find(users.begin(), users.end(), socket.user) != users.end();
+  };
+  return std::all_of(needed.begin(), needed.end(), [&](const Candidates& each) {
+    return std::any_of(each.begin(), each.end(), is_its);
+  });
 }
 
 int to_pid(const fs::path& process) {
@@ -83,29 +140,76 @@ int to_pid(const fs::path& process) {
   return error == std::errc() && rest == name.data() + name.size() ? pid : 0;
 }
 
+// What the kernel says after the command, which is in parentheses and may hold anything.
+std::string stat_after_command(const fs::path& process) {
+  std::ifstream file(process / "stat");
+  std::string line;
+  std::getline(file, line);
+  const auto end = line.rfind(')');
+  return end == std::string::npos || end + 2 >= line.size() ? "" : line.substr(end + 2);
+}
+
+// In ticks since the machine was started; the latest if it cannot be told.
+std::uint64_t began(const fs::path& process) {
+  std::istringstream rest(stat_after_command(process));
+  std::string skipped;
+  for (int i = 0; i < 19; ++i) rest >> skipped;  // proc(5)
+  std::uint64_t ticks = 0;
+  return rest >> ticks ? ticks : UINT64_MAX;
+}
+
 }  // namespace
 
 ProcessFinder::ProcessFinder(fs::path proc) : proc_(std::move(proc)) {}
 
-int ProcessFinder::find(const ParticipantInfo& participant) const {
-  SocketLinks links;
-  for (const UdpAddress& address : participant.metatraffic) {
-    if (!is_local(address.ip)) continue;
-    add_sockets(proc_ / "net/udp", address.port, links);
-    add_sockets(proc_ / "net/udp6", address.port, links);
+FoundProcess ProcessFinder::find(const ParticipantInfo& participant) const {
+  std::vector<UdpAddress> addresses;
+  for (const UdpAddress& each : participant.metatraffic) {
+    if (is_local(each.ip)) addresses.push_back(each);
   }
-  if (links.empty()) return 0;
+  if (addresses.empty()) return {};
+  if (!participant.origin.is_complete)
+    return {0, participant.origin.addresses.empty()
+                   ? "nothing is known of where its datagrams come from"
+                   : "its datagrams come from more places than one process has"};
+  for (const UdpAddress& each : participant.origin.addresses) {
+    if (!is_local(each.ip))
+      return {0, "it says that it is on this machine, but datagrams in its name come from " +
+                     to_text(each)};
+    addresses.push_back(each);
+  }
 
-  const Holds claimed =
-      participant.pid > 0 ? holds(proc_ / std::to_string(participant.pid), links) : Holds::kNo;
-  if (claimed == Holds::kYes) return participant.pid;
+  std::vector<BoundSocket> sockets;
+  for (const char* table : {"net/udp", "net/udp6"}) add_sockets(proc_ / table, sockets);
+  std::vector<Candidates> needed;
+  for (const UdpAddress& each : addresses) {
+    needed.push_back(bound_to(each, sockets));
+    if (needed.back().empty())
+      return {0, "no process of this machine has the socket " + to_text(each) +
+                     " that it announces or sends from"};
+  }
+
+  // Forks of the process hold the same sockets: what it says helps to choose among those.
+  if (participant.pid > 0 && holds(proc_ / std::to_string(participant.pid), needed))
+    return {participant.pid, ""};
+  int oldest = 0;
   std::error_code error;
   for (fs::directory_iterator i(proc_, error); !error && i != fs::directory_iterator();
        i.increment(error)) {
     const int pid = to_pid(i->path());
-    if (pid > 0 && holds(i->path(), links) == Holds::kYes) return pid;
+    if (pid <= 0 || !holds(i->path(), needed)) continue;
+    if (oldest == 0 || began(i->path()) < began(proc_ / std::to_string(oldest))) oldest = pid;
   }
-  return claimed == Holds::kHidden && participant.host == own_host() ? participant.pid : 0;
+  if (oldest != 0) return {oldest, ""};
+  std::string all;
+  for (const UdpAddress& each : addresses) all += (all.empty() ? "" : ", ") + to_text(each);
+  return {0, "no process whose files can be seen holds all of its sockets (" + all +
+                 "); of another user's, culprit may see them only with CAP_SYS_PTRACE"};
+}
+
+bool ProcessFinder::is_running(int pid) const {
+  const std::string state = stat_after_command(proc_ / std::to_string(pid));
+  return !state.empty() && state.front() != 'Z' && state.front() != 'X';
 }
 
 }  // namespace culprit::ros2

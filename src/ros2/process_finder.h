@@ -1,13 +1,22 @@
 // Which process of this machine is behind a participant?
 //
-// What a participant says of its process id is only a claim: inside a container, process ids count
-// from one. Proof is the UDP port that it announces for discovery. The kernel knows which socket is
-// bound to it (/proc/net/udp), and which process holds that socket (/proc/<pid>/fd). Files of other
-// users' processes cannot be seen; there the claim has to do.
+// What a participant says of itself is only a claim: its process id (inside a container, process
+// ids count from one), and the port that it listens on. Anybody can announce the port of somebody
+// else. Proof is one process that holds both
+//
+// - the sockets that are bound to every address of this machine that the participant announces, and
+// - the sockets that its datagrams came from, all of them (datagram_sources.h), each made by the
+//   user that the process runs as.
+//
+// Somebody on the network has no socket here, so whatever he says leads to no process. The kernel
+// knows which socket is bound to which address (/proc/net/udp), and which process holds that socket
+// (/proc/<pid>/fd). Files of other users' processes cannot be seen without the right to: those are
+// not proven.
 #pragma once
 
 #include <filesystem>
 
+#include "ros2/graph.h"
 #include "ros2/participant.h"
 
 namespace culprit::ros2 {
@@ -17,9 +26,12 @@ class ProcessFinder {
   // `proc` is where the proc file system is mounted.
   explicit ProcessFinder(std::filesystem::path proc = "/proc");
 
-  // The process id here, or 0 when it cannot be told: another machine, another network namespace.
-  // Milliseconds, when it has to look through all processes.
-  int find(const ParticipantInfo& participant) const;
+  // Milliseconds, when it has to look through all processes. Of another machine, or of another
+  // network namespace, nothing is missing: there is no process here.
+  FoundProcess find(const ParticipantInfo& participant) const;
+
+  // Not one that has ended and was not reaped: where nobody reaps, it keeps its number for good.
+  bool is_running(int pid) const;
 
  private:
   std::filesystem::path proc_;

@@ -1,90 +1,192 @@
 #include "ros2/process_finder.h"
 
 #include <arpa/inet.h>
+#include <csignal>
 #include <fstream>
+#include <memory>
 #include <netinet/in.h>
 #include <string>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace culprit::ros2 {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+using Ip = std::array<std::uint8_t, 4>;
+constexpr Ip kLoopback = {127, 0, 0, 1};
+constexpr Ip kOtherLoopback = {127, 0, 0, 2};
+constexpr Ip kElsewhere = {203, 0, 113, 1};  // 203.0.113.0/24 is for documentation only
 
 // A UDP socket on a port that the system chose.
 class Socket {
  public:
-  Socket() : fd_(socket(AF_INET, SOCK_DGRAM, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    bind(fd_, reinterpret_cast<const sockaddr*>(&address), size);
-    getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &size);
-    port_ = ntohs(address.sin_port);
+  explicit Socket(const Ip& ip = kLoopback) : fd_(socket(AF_INET, SOCK_DGRAM, 0)) {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    std::memcpy(&to.sin_addr, ip.data(), ip.size());
+    socklen_t size = sizeof to;
+    bind(fd_, reinterpret_cast<const sockaddr*>(&to), size);
+    getsockname(fd_, reinterpret_cast<sockaddr*>(&to), &size);
+    address_ = {ip, ntohs(to.sin_port)};
   }
   ~Socket() { close(fd_); }
-  std::uint16_t port() const { return port_; }
+  const UdpAddress& address() const { return address_; }
+  int descriptor() const { return fd_; }
 
  private:
   int fd_;
-  std::uint16_t port_ = 0;
+  UdpAddress address_;
 };
 
-ParticipantInfo participant_at(std::array<std::uint8_t, 4> ip, std::uint16_t port,
-                               int said_pid = 0) {
+// A process that was forked from this one and waits, with none of its files but one.
+class Fork {
+ public:
+  explicit Fork(int kept) : pid_(fork()) {
+    if (pid_ != 0) return;
+    dup2(kept, 0);
+    closefrom(1);
+    for (;;) pause();
+  }
+  ~Fork() {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  int pid() const { return pid_; }
+
+ private:
+  int pid_;
+};
+
+// Announces one address and sends from another.
+ParticipantInfo participant(const UdpAddress& announced, const UdpAddress& sends_from,
+                            int said_pid = 0) {
   ParticipantInfo info;
   info.pid = said_pid;
-  info.metatraffic = {{ip, port}};
+  info.metatraffic = {announced};
+  info.origin = {{sends_from}, true};
   return info;
 }
 
-constexpr std::array<std::uint8_t, 4> kLoopback = {127, 0, 0, 1};
+struct Sockets {
+  Socket listens, sends;
+  ParticipantInfo participant(int said_pid = 0) const {
+    return ros2::participant(listens.address(), sends.address(), said_pid);
+  }
+};
 
-TEST(ProcessFinder, FindsTheOwnerOfThePort) {
-  const Socket socket;
-  EXPECT_EQ(ProcessFinder().find(participant_at(kLoopback, socket.port())), getpid());
+TEST(ProcessFinder, FindsWhoHoldsBothSockets) {
+  const Sockets sockets;
+  const FoundProcess found = ProcessFinder().find(sockets.participant());
+  EXPECT_EQ(found.pid, getpid()) << found.missing;
+  EXPECT_EQ(found.missing, "");
 }
 
 TEST(ProcessFinder, ConfirmsATrueClaim) {
-  const Socket socket;
-  EXPECT_EQ(ProcessFinder().find(participant_at(kLoopback, socket.port(), getpid())), getpid());
+  const Sockets sockets;
+  EXPECT_EQ(ProcessFinder().find(sockets.participant(getpid())).pid, getpid());
 }
 
 TEST(ProcessFinder, CorrectsAFalseClaim) {
+  const Sockets sockets;
+  EXPECT_EQ(ProcessFinder().find(sockets.participant(1)).pid, getpid());
+}
+
+TEST(ProcessFinder, OfForksThatHoldTheSameItFindsTheOldest) {
   const Socket socket;
-  EXPECT_EQ(ProcessFinder().find(participant_at(kLoopback, socket.port(), 1)), getpid());
+  const Fork fork(socket.descriptor());
+  const ParticipantInfo both = participant(socket.address(), socket.address());
+  EXPECT_EQ(ProcessFinder().find(both).pid, getpid());
 }
 
 TEST(ProcessFinder, KnowsNothingOfOtherMachines) {
-  const Socket socket;
-  // 203.0.113.0/24 is for documentation only.
-  EXPECT_EQ(ProcessFinder().find(participant_at({203, 0, 113, 1}, socket.port(), getpid())), 0);
+  const Sockets sockets;
+  ParticipantInfo info = sockets.participant(getpid());
+  info.metatraffic.front().ip = kElsewhere;
+  const FoundProcess found = ProcessFinder().find(info);
+  EXPECT_EQ(found.pid, 0);
+  EXPECT_EQ(found.missing, "") << "it does not say that it is here";
+}
+
+// Somebody on the network announces a port of this machine as his own.
+TEST(ProcessFinder, AnAnnouncedPortAloneProvesNothing) {
+  const Sockets sockets;
+  const UdpAddress attacker{kElsewhere, 4321};
+  const FoundProcess found =
+      ProcessFinder().find(participant(sockets.listens.address(), attacker, getpid()));
+  EXPECT_EQ(found.pid, 0);
+  EXPECT_EQ(found.missing,
+            "it says that it is on this machine, but datagrams in its name come from "
+            "203.0.113.1:4321");
+}
+
+// Somebody on the network speaks in the name of a participant that is here.
+TEST(ProcessFinder, OneForeignDatagramSpeaksAgainstIt) {
+  const Sockets sockets;
+  ParticipantInfo info = sockets.participant(getpid());
+  info.origin.addresses.push_back({kElsewhere, 4321});
+  EXPECT_EQ(ProcessFinder().find(info).pid, 0);
+}
+
+TEST(ProcessFinder, APortOfSomebodyElseProvesNothing) {
+  auto others = std::make_unique<Socket>();
+  const Fork victim(others->descriptor());
+  const UdpAddress announced = others->address();
+  others.reset();  // the fork alone has it
+  const Sockets sockets;
+  const FoundProcess found =
+      ProcessFinder().find(participant(announced, sockets.sends.address(), victim.pid()));
+  EXPECT_EQ(found.pid, 0);
+  EXPECT_THAT(found.missing, HasSubstr("no process whose files can be seen holds all"));
+}
+
+TEST(ProcessFinder, APortOfAnotherAddressIsAnother) {
+  const Socket listens(kOtherLoopback), sends;
+  const UdpAddress announced{kLoopback, listens.address().port};
+  EXPECT_EQ(ProcessFinder().find(participant(listens.address(), sends.address())).pid, getpid());
+  EXPECT_EQ(ProcessFinder().find(participant(announced, sends.address())).pid, 0);
+}
+
+TEST(ProcessFinder, WithoutADatagramNothingIsProven) {
+  const Sockets sockets;
+  ParticipantInfo info = sockets.participant(getpid());
+  info.origin = {};
+  EXPECT_THAT(ProcessFinder().find(info).missing, HasSubstr("nothing is known"));
+  info.origin = {{sockets.sends.address()}, false};
+  EXPECT_THAT(ProcessFinder().find(info).missing, HasSubstr("more places"));
 }
 
 TEST(ProcessFinder, KnowsNothingOfAClosedPort) {
-  std::uint16_t port = 0;
-  {
-    const Socket socket;
-    port = socket.port();
-  }
-  EXPECT_EQ(ProcessFinder().find(participant_at(kLoopback, port, getpid())), 0);
+  UdpAddress closed;
+  closed = Socket().address();
+  const Socket sends;
+  EXPECT_THAT(ProcessFinder().find(participant(closed, sends.address(), getpid())).missing,
+              HasSubstr("no process of this machine has the socket"));
 }
 
-// A proc file system with one socket on port 0x1CF2 and one process that holds it.
+// A proc file system with a socket on port 0x1CF2 and one on 0x1CF4, both made by user 1000, and
+// one process that holds them.
 class FakeProc {
  public:
-  FakeProc() : path_(fs::temp_directory_path() / ("culprit-proc-" + std::to_string(getpid()))) {
+  explicit FakeProc(const std::string& user)
+      : path_(fs::temp_directory_path() / ("culprit-proc-" + std::to_string(getpid()))) {
     fs::create_directories(path_ / "net");
     fs::create_directories(path_ / "4242/fd");
     fs::create_symlink("socket:[777]", path_ / "4242/fd/5");
+    fs::create_symlink("socket:[778]", path_ / "4242/fd/6");
+    std::ofstream(path_ / "4242/status") << "Name:\tnode\nUid:\t" << user << "\t" << user << "\n";
     std::ofstream(path_ / "net/udp") << "   sl  local_address rem_address   st tx_queue rx_queue "
                                         "tr tm->when retrnsmt   uid  timeout inode ref\n"
                                      << "  10: 0100007F:1CF2 00000000:0000 07 00000000:00000000 "
                                         "00:00000000 00000000  1000        0 777 2 0 0\n"
+                                     << "  11: 00000000:1CF4 00000000:0000 07 00000000:00000000 "
+                                        "00:00000000 00000000  1000        0 778 2 0 0\n"
                                      << "a line that is none\n";
   }
   ~FakeProc() { fs::remove_all(path_); }
@@ -95,14 +197,35 @@ class FakeProc {
 };
 
 TEST(ProcessFinder, ReadsTheTablesOfTheKernel) {
-  const FakeProc proc;
+  const FakeProc proc("1000");
   const ProcessFinder finder(proc.path());
-  EXPECT_EQ(finder.find(participant_at(kLoopback, 0x1cf2)), 4242);
-  EXPECT_EQ(finder.find(participant_at(kLoopback, 0x1cf3)), 0);
+  EXPECT_EQ(finder.find(participant({kLoopback, 0x1cf2}, {kLoopback, 0x1cf4})).pid, 4242);
+  EXPECT_EQ(finder.find(participant({kLoopback, 0x1cf3}, {kLoopback, 0x1cf4})).pid, 0);
+}
+
+// A socket can be handed to the process of another user, which then holds it.
+TEST(ProcessFinder, ASocketThatAnotherUserMadeProvesNothing) {
+  const FakeProc proc("0");
+  EXPECT_EQ(ProcessFinder(proc.path())
+                .find(participant({kLoopback, 0x1cf2}, {kLoopback, 0x1cf4}, 4242))
+                .pid,
+            0);
 }
 
 TEST(ProcessFinder, SurvivesAMissingProcFileSystem) {
-  EXPECT_EQ(ProcessFinder("/does/not/exist").find(participant_at(kLoopback, 1)), 0);
+  EXPECT_EQ(ProcessFinder("/does/not/exist").find(participant({kLoopback, 1}, {kLoopback, 2})).pid,
+            0);
+}
+
+TEST(ProcessFinder, AZombieDoesNotRun) {
+  const int pid = fork();
+  if (pid == 0) _exit(0);
+  siginfo_t info{};
+  ASSERT_EQ(waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOWAIT), 0);
+  EXPECT_EQ(kill(pid, 0), 0) << "its number is there";
+  EXPECT_FALSE(ProcessFinder().is_running(pid));
+  waitpid(pid, nullptr, 0);
+  EXPECT_TRUE(ProcessFinder().is_running(getpid()));
 }
 
 }  // namespace

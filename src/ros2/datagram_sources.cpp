@@ -1,0 +1,105 @@
+#include "ros2/datagram_sources.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+namespace culprit::ros2 {
+namespace {
+
+// RTPS 2.3 §9.4.4, §9.4.5.
+constexpr std::size_t kHeaderSize = 20;
+constexpr std::size_t kPrefixInHeader = 8;
+constexpr std::size_t kSubmessageHeaderSize = 4;
+constexpr std::uint8_t kPad = 0x01;
+constexpr std::uint8_t kInfoTimestamp = 0x09;
+constexpr std::uint8_t kInfoSource = 0x0c;
+constexpr std::size_t kPrefixInInfoSource = kSubmessageHeaderSize + 8;
+
+GuidPrefix prefix_at(std::span<const std::uint8_t> bytes, std::size_t position) {
+  GuidPrefix prefix;
+  std::memcpy(prefix.bytes.data(), bytes.data() + position, prefix.bytes.size());
+  return prefix;
+}
+
+// Calls `found` with each participant that an INFO_SRC names.
+template <class Found>
+void find_sources(std::span<const std::uint8_t> datagram, Found found) {
+  bool is_sure_of_place = true;
+  for (std::size_t at = kHeaderSize; at + kSubmessageHeaderSize <= datagram.size();) {
+    if (datagram[at] == kInfoSource && at + kPrefixInInfoSource + 12 <= datagram.size())
+      found(prefix_at(datagram, at + kPrefixInInfoSource));
+    if (!is_sure_of_place) {
+      ++at;
+      continue;
+    }
+    const bool is_little = (datagram[at + 1] & 1) != 0;
+    const std::size_t low = datagram[at + (is_little ? 2 : 3)];
+    const std::size_t high = datagram[at + (is_little ? 3 : 2)];
+    const std::size_t length = high << 8 | low;
+    const bool reaches_the_end =
+        length == 0 && datagram[at] != kPad && datagram[at] != kInfoTimestamp;
+    if (reaches_the_end) return;
+    // Implementations differ in where they go on after an odd length: then each place may count.
+    is_sure_of_place = length % 4 == 0;
+    at += kSubmessageHeaderSize + length;
+  }
+}
+
+}  // namespace
+
+void DatagramSources::heard(std::span<const std::uint8_t> datagram, const UdpAddress& from) {
+  if (datagram.size() < kHeaderSize || std::memcmp(datagram.data(), "RTPS", 4) != 0) return;
+  const std::lock_guard lock(mutex_);
+  note(prefix_at(datagram, kPrefixInHeader), from);
+  find_sources(datagram, [&](const GuidPrefix& participant) { note(participant, from); });
+}
+
+void DatagramSources::note(const GuidPrefix& participant, const UdpAddress& from) {
+  const auto [found, is_new] = entries_.try_emplace(participant);
+  Entry& entry = found->second;
+  if (is_new) entry.place = others_.insert(others_.end(), participant);
+  const auto& known = entry.addresses;
+  if (std::find(known.begin(), known.end(), from) == known.end()) {
+    if (known.size() < kMostAddresses) {
+      entry.addresses.push_back(from);
+    } else {
+      entry.has_more = true;
+    }
+  }
+  if (others_.size() > kMostOthers) {
+    entries_.erase(others_.front());
+    others_.pop_front();
+  }
+}
+
+void DatagramSources::keep(const GuidPrefix& participant) {
+  const std::lock_guard lock(mutex_);
+  if (entries_.size() - others_.size() >= kMostParticipants) return;
+  const auto [found, is_new] = entries_.try_emplace(participant);
+  Entry& entry = found->second;
+  if (entry.is_kept) return;
+  entry.is_kept = true;
+  if (is_new) {
+    entry.has_more = true;  // what was known of it had to make room meanwhile
+  } else {
+    others_.erase(entry.place);
+  }
+}
+
+void DatagramSources::forget(const GuidPrefix& participant) {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(participant);
+  if (found == entries_.end()) return;
+  if (!found->second.is_kept) others_.erase(found->second.place);
+  entries_.erase(found);
+}
+
+DatagramSources::Origin DatagramSources::of(const GuidPrefix& participant) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(participant);
+  if (found == entries_.end()) return {};
+  return {found->second.addresses, !found->second.has_more};
+}
+
+}  // namespace culprit::ros2

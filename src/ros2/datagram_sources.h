@@ -1,0 +1,66 @@
+// Which sockets the datagrams of each participant come from.
+//
+// What a participant says of itself is a claim, its addresses too. Where its datagrams come from is
+// not: the kernel drops what pretends to come from an address of this machine and comes by the
+// network. So the transport writes down, before the middleware sees a datagram, from which address
+// it came, under every participant that it speaks for: the one of its header (RTPS 2.3 §8.3.7), and
+// those that INFO_SRC submessages put in its place (§8.3.7.9). Whoever forges a datagram leaves his
+// own address here before it has any effect.
+//
+// Bounded: participants that were discovered are kept while they are there, of the others the ones
+// heard last. Whoever has too many addresses is known to have too many.
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <mutex>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "ros2/guid.h"
+
+namespace culprit::ros2 {
+
+struct UdpAddress {
+  std::array<std::uint8_t, 4> ip{};
+  std::uint16_t port = 0;
+  bool operator==(const UdpAddress&) const = default;
+};
+
+// All members may be called from any thread.
+class DatagramSources {
+ public:
+  static constexpr std::size_t kMostAddresses = 64;       // of one participant
+  static constexpr std::size_t kMostParticipants = 8192;  // kept
+  static constexpr std::size_t kMostOthers = 1024;
+
+  struct Origin {
+    std::vector<UdpAddress> addresses;  // in the order of their first datagrams
+    bool is_complete = false;           // false: nothing was heard, or from more than these
+  };
+
+  void heard(std::span<const std::uint8_t> datagram, const UdpAddress& from);
+
+  // It was discovered: it is kept until it is forgotten.
+  void keep(const GuidPrefix& participant);
+  void forget(const GuidPrefix& participant);
+
+  Origin of(const GuidPrefix& participant) const;
+
+ private:
+  struct Entry {
+    std::vector<UdpAddress> addresses;
+    bool has_more = false;
+    bool is_kept = false;
+    std::list<GuidPrefix>::iterator place;  // in others_, unless it is kept
+  };
+
+  void note(const GuidPrefix& participant, const UdpAddress& from);
+
+  mutable std::mutex mutex_;
+  std::unordered_map<GuidPrefix, Entry> entries_;
+  std::list<GuidPrefix> others_;  // those that are not kept, oldest first
+};
+
+}  // namespace culprit::ros2

@@ -1,0 +1,131 @@
+#include "ros2/datagram_sources.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "ros2/live_test.h"
+
+namespace culprit::ros2 {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+using Datagram = std::vector<std::uint8_t>;
+
+constexpr UdpAddress kHere{{127, 0, 0, 1}, 1000};
+constexpr UdpAddress kThere{{203, 0, 113, 1}, 2000};
+
+GuidPrefix prefix(std::size_t number) {
+  GuidPrefix p;
+  for (std::size_t i = 0; i < 4; ++i) p.bytes[i] = static_cast<std::uint8_t>(number >> (8 * i));
+  return p;
+}
+
+Datagram from(const GuidPrefix& sender) {
+  Datagram bytes = {'R', 'T', 'P', 'S', 2, 3, 1, 15};
+  bytes.insert(bytes.end(), sender.bytes.begin(), sender.bytes.end());
+  return bytes;
+}
+
+void add(Datagram& datagram, std::uint8_t id, std::uint8_t length, const Datagram& body) {
+  datagram.insert(datagram.end(), {id, 1, length, 0});
+  datagram.insert(datagram.end(), body.begin(), body.end());
+}
+
+void add_info_source(Datagram& datagram, const GuidPrefix& sender) {
+  Datagram body = {0, 0, 0, 0, 2, 3, 1, 15};
+  body.insert(body.end(), sender.bytes.begin(), sender.bytes.end());
+  add(datagram, 0x0c, 20, body);
+}
+
+TEST(DatagramSources, AreKnownByTheHeader) {
+  DatagramSources sources;
+  sources.heard(from(prefix(1)), kHere);
+  sources.heard(from(prefix(1)), kHere);
+  sources.heard(from(prefix(1)), kThere);
+  EXPECT_THAT(sources.of(prefix(1)).addresses, ElementsAre(kHere, kThere));
+  EXPECT_TRUE(sources.of(prefix(1)).is_complete);
+  EXPECT_FALSE(sources.of(prefix(2)).is_complete) << "nothing was heard of it";
+}
+
+TEST(DatagramSources, WhoSpeaksInAnothersNameIsWrittenDownThere) {
+  DatagramSources sources;
+  Datagram datagram = from(prefix(1));
+  add(datagram, 0x09, 8, Datagram(8));
+  add_info_source(datagram, prefix(2));
+  sources.heard(datagram, kThere);
+  EXPECT_THAT(sources.of(prefix(1)).addresses, ElementsAre(kThere));
+  EXPECT_THAT(sources.of(prefix(2)).addresses, ElementsAre(kThere));
+}
+
+TEST(DatagramSources, AnOddLengthHidesNothing) {
+  for (const std::size_t padding : {0, 1, 2, 3}) {
+    DatagramSources sources;
+    Datagram datagram = from(prefix(1));
+    add(datagram, 0x80, 5, Datagram(5 + padding));
+    add_info_source(datagram, prefix(2));
+    sources.heard(datagram, kThere);
+    EXPECT_THAT(sources.of(prefix(2)).addresses, ElementsAre(kThere)) << padding;
+  }
+}
+
+TEST(DatagramSources, WhatIsNoDatagramOfRtpsSaysNothing) {
+  DatagramSources sources;
+  Datagram datagram = from(prefix(1));
+  sources.heard({datagram.data(), 19}, kHere);
+  datagram[0] = 'X';
+  sources.heard(datagram, kHere);
+  sources.heard({}, kHere);
+  EXPECT_THAT(sources.of(prefix(1)).addresses, IsEmpty());
+}
+
+TEST(DatagramSources, EveryCutOfADatagramIsRead) {
+  Datagram datagram = from(prefix(1));
+  add(datagram, 0x15, 7, Datagram(7));
+  add_info_source(datagram, prefix(2));
+  for (std::size_t size = 0; size <= datagram.size(); ++size) {
+    const Datagram cut(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(size));
+    DatagramSources().heard(cut, kHere);
+  }
+}
+
+TEST(DatagramSources, StrangersDoNotWashOutWhoIsThere) {
+  DatagramSources sources;
+  sources.heard(from(prefix(1)), kThere);
+  sources.keep(prefix(1));
+  for (std::size_t i = 2; i < 3 * DatagramSources::kMostOthers; ++i)
+    sources.heard(from(prefix(i)), kHere);
+  EXPECT_THAT(sources.of(prefix(1)).addresses, ElementsAre(kThere));
+  EXPECT_THAT(sources.of(prefix(2)).addresses, IsEmpty()) << "the oldest makes room";
+  sources.keep(prefix(2));
+  sources.heard(from(prefix(2)), kHere);
+  EXPECT_FALSE(sources.of(prefix(2)).is_complete) << "nobody knows what was lost of it";
+  sources.forget(prefix(1));
+  EXPECT_THAT(sources.of(prefix(1)).addresses, IsEmpty());
+}
+
+TEST(DatagramSources, TooManyAddressesAreKnownToBeTooMany) {
+  DatagramSources sources;
+  for (std::uint16_t port = 1; port <= DatagramSources::kMostAddresses + 1; ++port)
+    sources.heard(from(prefix(1)), {{127, 0, 0, 1}, port});
+  EXPECT_EQ(sources.of(prefix(1)).addresses.size(), DatagramSources::kMostAddresses);
+  EXPECT_FALSE(sources.of(prefix(1)).is_complete);
+}
+
+TEST(DatagramSources, OfALiveParticipantAreItsSockets) {
+  const TestDomain domain;
+  LiveContext watcher(domain.options()), robot(domain.options());
+  const NodeEntry node(*robot, {"/", "a"});
+  ASSERT_TRUE(watcher.sees_node("/a"));
+  const auto origin = watcher->participant().origin_of(robot->participant().guid().prefix());
+  EXPECT_TRUE(origin.is_complete);
+  ASSERT_FALSE(origin.addresses.empty());
+  for (const UdpAddress& each : origin.addresses) {
+    EXPECT_EQ(each.ip, (std::array<std::uint8_t, 4>{127, 0, 0, 1}));
+    EXPECT_GE(each.port, 1024);
+  }
+}
+
+}  // namespace
+}  // namespace culprit::ros2
