@@ -26,7 +26,11 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
 
 void LiveRobot::execute(const Command& command) {
   if (std::holds_alternative<StopProcess>(command.what)) {
-    supervisor_->stop(command.id, command.component);
+    const Adaptation& what =
+        rules_[command.purpose.strategy].adaptations[command.purpose.adaptation];
+    const bool is_replaced = what.type == AdaptationType::kRedeploy;
+    supervisor_->stop(command.id, command.component,
+                      is_replaced ? process::Ending::kToStartAgain : process::Ending::kForGood);
   } else if (std::holds_alternative<StartProcess>(command.what)) {
     supervisor_->start(command.id, command.component);
   } else {

@@ -33,8 +33,9 @@ class LiveRobot : public Robot {
   process::Supervisor& supervisor() { return *supervisor_; }
 
  private:
-  explicit LiveRobot(const RuleSet& rules) : binding_(rules) {}
+  explicit LiveRobot(const RuleSet& rules) : rules_(rules), binding_(rules) {}
 
+  const RuleSet& rules_;
   Inbox inbox_;
   ComponentBinding binding_;
   std::unique_ptr<process::Supervisor> supervisor_;

@@ -11,20 +11,29 @@
 #include <sstream>
 #include <string_view>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
-
-#include "process/file_descriptor.h"
+#include <utility>
 
 extern char** environ;
 
 namespace culprit::process {
 namespace {
 
-bool is_executable(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0;
+// Where the program may be, in the order of looking.
+std::vector<std::string> places_of(const Program& program) {
+  const std::string& name = program.arguments.front();
+  if (name.find('/') != std::string::npos) return {name};
+  std::vector<std::string> places;
+  for (const auto& folder : program.search_first) places.push_back((folder / name).native());
+  if (const char* path = std::getenv("PATH")) {
+    std::istringstream list(path);
+    for (std::string folder; std::getline(list, folder, ':');)
+      places.push_back((folder.empty() ? "." : folder) + "/" + name);
+  }
+  return places;
 }
 
 // What is inherited, without what `added` has a value for, and `added`.
@@ -42,14 +51,23 @@ std::vector<char*> environment_with(std::vector<std::string>& added) {
   return all;
 }
 
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
 // All that is needed from fork() to execve(). After the fork of a program with threads only system
 // calls are safe, on what was made ready before.
-struct Launch {
-  const char* path;
+struct Preparation {
+  char* const* places;
   const char* log;
   char* const* arguments;
   char* const* environment;
   char* pid_digits;  // where the pid's are to be written; null: nowhere
+  int kept;
+  Until until;
 };
 constexpr std::size_t kPidDigits = 10;
 
@@ -77,98 +95,168 @@ bool redirect(const char* log) {
          dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0;
 }
 
-// Where the child says why it failed; closed by a successful execve().
-constexpr int kReport = STDERR_FILENO + 1;
-
-// In the child. Comes back only if it fails; then errno says why.
-void become(const Launch& launch, int report) {
-  if (report != kReport && dup3(report, kReport, O_CLOEXEC) < 0) return;
-  setsid();
-  prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
-  if (!redirect(launch.log)) return;
-  // Our DDS sockets are not marked close-on-exec; a child that kept one would keep its port.
-  closefrom(kReport + 1);
-  if (launch.pid_digits != nullptr) write_pid(launch.pid_digits);
-  reset_signals();
-  execve(launch.path, launch.arguments, launch.environment);
+const char* first_executable(char* const* places) {
+  for (; *places != nullptr; ++places) {
+    struct stat status {};
+    if (stat(*places, &status) == 0 && S_ISREG(status.st_mode) && access(*places, X_OK) == 0)
+      return *places;
+  }
+  return nullptr;
 }
 
-// Gives the pid, or minus the number of the error.
-int start(const Launch& launch) {
+// What execve() would find out of a script: whether the program that its first line names can be
+// run. Sets errno.
+bool has_interpreter(const char* path) {
+  std::array<char, 256> line{};
+  const int file = open(path, O_RDONLY | O_CLOEXEC);
+  if (file < 0) return true;  // it may be executable and not readable
+  const ssize_t size = read(file, line.data(), line.size() - 1);
+  close(file);
+  if (size < 3 || line[0] != '#' || line[1] != '!') return true;
+  char* begin = line.data() + 2;
+  while (*begin == ' ' || *begin == '\t') ++begin;
+  char* end = begin;
+  while (*end != '\0' && *end != ' ' && *end != '\t' && *end != '\n') ++end;
+  *end = '\0';
+  return access(begin, X_OK) == 0;
+}
+
+// Where the child says why it failed; closed by a successful execve(). What it keeps is beside it.
+constexpr int kReport = STDERR_FILENO + 1;
+constexpr int kKept = kReport + 1;
+
+enum class Step : std::int32_t { kPrepare, kFind, kOpenLog, kRun };
+struct Failure {
+  Step step;
+  std::int32_t why;  // errno
+};
+
+// In the child. Comes back only if it fails, or if it is not to be run.
+Failure become(const Preparation& ready, int report) {
+  // Neither may be in the other's place.
+  const int kept = ready.kept < 0 ? -1 : fcntl(ready.kept, F_DUPFD_CLOEXEC, kKept + 1);
+  if (ready.kept >= 0 && kept < 0) return {Step::kPrepare, errno};
+  if (report != kReport && dup3(report, kReport, O_CLOEXEC) < 0) return {Step::kPrepare, errno};
+  if (kept >= 0 && dup3(kept, kKept, O_CLOEXEC) < 0) return {Step::kPrepare, errno};
+  setsid();
+  prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
+  // Our DDS sockets are not marked close-on-exec; a child that kept one would keep its port.
+  closefrom(kept >= 0 ? kKept + 1 : kReport + 1);
+  if (!redirect(ready.log)) return {Step::kOpenLog, errno};
+  closefrom(kept >= 0 ? kKept + 1 : kReport + 1);
+  const char* path = first_executable(ready.places);
+  if (path == nullptr) return {Step::kFind, ENOENT};
+  if (ready.until == Until::kItCouldRun) return {Step::kRun, has_interpreter(path) ? 0 : errno};
+  if (ready.pid_digits != nullptr) write_pid(ready.pid_digits);
+  reset_signals();
+  execve(path, ready.arguments, ready.environment);
+  return {Step::kRun, errno};
+}
+
+std::string description(const Failure& failure, const std::string& name,
+                        const std::filesystem::path& log) {
+  if (failure.step == Step::kFind)
+    return "there is no program '" + name + "'" +
+           (name.find('/') == std::string::npos ? " in PATH" : ", or it is not executable");
+  const std::string why = std::strerror(failure.why);
+  if (failure.step == Step::kOpenLog)
+    return "cannot start '" + name + "': its log " + log.string() + " cannot be written: " + why;
+  return "cannot start '" + name + "': " + why;
+}
+
+}  // namespace
+
+Expected<Launch> Launch::begin(const Program& program, Until until) {
+  if (program.arguments.empty()) return Error{"the launch command is empty"};
+  std::error_code error;
+  if (program.log.has_parent_path())
+    std::filesystem::create_directories(program.log.parent_path(), error);
+
+  std::vector<std::string> arguments = program.arguments;
+  std::vector<std::string> places = places_of(program);
+  std::vector<std::string> added = program.environment;
+  if (!program.pid_variable.empty())
+    added.push_back(program.pid_variable + "=" + std::string(kPidDigits + 1, '\0'));
+  const std::vector<char*> argument_pointers = pointers_to(arguments);
+  const std::vector<char*> place_pointers = pointers_to(places);
+  const std::vector<char*> environment = environment_with(added);
+  const Preparation ready{
+      place_pointers.data(),
+      program.log.c_str(),
+      argument_pointers.data(),
+      environment.data(),
+      program.pid_variable.empty() ? nullptr : &added.back()[program.pid_variable.size() + 1],
+      program.kept_until_it_runs,
+      until};
+
+  const std::string& name = program.arguments.front();
+  const auto failed = [&](int why) {
+    return Error{description({Step::kPrepare, why}, name, program.log)};
+  };
   std::array<int, 2> report{};
-  if (pipe2(report.data(), O_CLOEXEC) != 0) return -errno;
-  const FileDescriptor read_end(report[0]);
-  FileDescriptor write_end(report[1]);
+  if (pipe2(report.data(), O_CLOEXEC) != 0) return failed(errno);
+  FileDescriptor read_end(report[0]);
+  const FileDescriptor write_end(report[1]);
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);  // no handler of ours runs in the child
   const pid_t pid = fork();
   if (pid == 0) {
-    become(launch, write_end.get());
-    const int why = errno;
-    [[maybe_unused]] const auto written = write(kReport, &why, sizeof why);
+    const Failure failure = become(ready, write_end.get());
+    if (failure.why != 0) {
+      [[maybe_unused]] const auto written = write(kReport, &failure, sizeof failure);
+    }
     _exit(127);
   }
-  const int fork_error = errno;
+  const int why = errno;
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  if (pid < 0) return -fork_error;
-  write_end = FileDescriptor();
-  int why = 0;
-  ssize_t size = 0;
-  do size = read(read_end.get(), &why, sizeof why);
-  while (size < 0 && errno == EINTR);
-  if (size != sizeof why) return pid;
-  waitpid(pid, nullptr, 0);
-  return -why;
+  if (pid < 0) return failed(why);
+  return Launch(pid, std::move(read_end), until, name, program.log);
 }
 
-}  // namespace
+Launch::Launch(Launch&& other) noexcept
+    : pid_(std::exchange(other.pid_, 0)),
+      report_(std::move(other.report_)),
+      until_(other.until_),
+      name_(std::move(other.name_)),
+      log_(std::move(other.log_)) {}
 
-Expected<std::filesystem::path> find_program(
-    const std::string& name, const std::vector<std::filesystem::path>& search_first) {
-  if (name.find('/') != std::string::npos) {
-    if (is_executable(name)) return std::filesystem::path(name);
-    return Error{"there is no program '" + name + "', or it is not executable"};
-  }
-  std::vector<std::filesystem::path> folders = search_first;
-  if (const char* path = std::getenv("PATH")) {
-    std::istringstream list(path);
-    for (std::string folder; std::getline(list, folder, ':');)
-      folders.emplace_back(folder.empty() ? "." : folder);
-  }
-  for (const auto& folder : folders) {
-    if (is_executable(folder / name)) return folder / name;
-  }
-  return Error{"there is no program '" + name + "' in PATH"};
+Launch& Launch::operator=(Launch&& other) noexcept {
+  std::swap(pid_, other.pid_);
+  std::swap(report_, other.report_);
+  std::swap(until_, other.until_);
+  std::swap(name_, other.name_);
+  std::swap(log_, other.log_);
+  return *this;
+}
+
+Launch::~Launch() {
+  if (pid_ == 0) return;
+  kill(pid_, SIGKILL);
+  // One that hangs in a file system dies when that lets it go: nobody can wait for it.
+  waitpid(pid_, nullptr, WNOHANG);
+}
+
+Expected<void> Launch::outcome() {
+  const int pid = std::exchange(pid_, 0);
+  Failure failure{};
+  ssize_t size = 0;
+  do size = read(report_.get(), &failure, sizeof failure);
+  while (size < 0 && errno == EINTR);
+  report_ = FileDescriptor();
+  const bool has_failed = size == sizeof failure;
+  if (has_failed || until_ == Until::kItCouldRun) waitpid(pid, nullptr, 0);
+  if (has_failed) return Error{description(failure, name_, log_)};
+  return {};
 }
 
 Expected<int> spawn(const Program& program) {
-  if (program.arguments.empty()) return Error{"the launch command is empty"};
-  const auto path = find_program(program.arguments.front(), program.search_first);
-  if (!path) return Error{path.error()};
-  std::error_code error;
-  if (program.log.has_parent_path())
-    std::filesystem::create_directories(program.log.parent_path(), error);
-
-  std::vector<std::string> arguments = program.arguments;
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  std::vector<std::string> added = program.environment;
-  if (!program.pid_variable.empty())
-    added.push_back(program.pid_variable + "=" + std::string(kPidDigits + 1, '\0'));
-  const std::vector<char*> environment = environment_with(added);
-  char* digits =
-      program.pid_variable.empty() ? nullptr : &added.back()[program.pid_variable.size() + 1];
-  const int pid =
-      start({path->c_str(), program.log.c_str(), argv.data(), environment.data(), digits});
-  if (pid > 0) return pid;
-  const bool log_fails =
-      access(program.log.parent_path().empty() ? "." : program.log.parent_path().c_str(), W_OK) !=
-      0;
-  return Error{"cannot start '" + path->string() + "': " + std::strerror(-pid) +
-               (log_fails ? " (its log " + program.log.string() + " cannot be written)" : "")};
+  auto launch = Launch::begin(program, Until::kItRuns);
+  if (!launch) return Error{launch.error()};
+  const int pid = launch->pid();
+  if (const auto runs = launch->outcome(); !runs) return Error{runs.error()};
+  return pid;
 }
 
 }  // namespace culprit::process

@@ -3,24 +3,19 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstring>
+#include <fcntl.h>
 #include <poll.h>
 #include <set>
 #include <sys/eventfd.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "process/proc.h"
-#include "process/spawn.h"
+#include "process/mark.h"
 
 namespace culprit::process {
 namespace {
-
-constexpr const char* kPidVariable = "CULPRIT_PROCESS";
-
-// Not one that it started in turn, which inherits the mark.
-bool is_what_was_launched(int pid) {
-  return has_variable(pid, kPidVariable + ("=" + std::to_string(pid)));
-}
 
 // Numbers are given out anew.
 bool was_there(int pid, Time known) {
@@ -31,6 +26,11 @@ bool was_there(int pid, Time known) {
 bool is_child(int pid) {
   siginfo_t info{};
   return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0;
+}
+
+bool is_readable(int descriptor) {
+  pollfd file{descriptor, POLLIN, 0};
+  return poll(&file, 1, 0) > 0;
 }
 
 }  // namespace
@@ -53,50 +53,106 @@ Supervisor::~Supervisor() {
   thread_.join();
 }
 
-std::string Supervisor::mark(ComponentId component) const {
-  return "CULPRIT_COMPONENT=" + options_.robot + "/" + rules_[component].name;
+std::string Supervisor::marked_as(ComponentId component) const {
+  return options_.robot + "/" + rules_[component].name;
+}
+
+void Supervisor::answer(CommandId command, Outcome outcome, std::string text) const {
+  inbox_.put(Reply{command, outcome, {}, std::move(text)});
 }
 
 void Supervisor::take_over(ComponentId component) {
   if (options_.robot.empty() || rules_[component].launch.empty()) return;
-  for (const int pid : processes_with(mark(component))) {
-    const bool has_ended = state_letter(pid).value_or('X') == 'Z';
-    if (!has_ended && pid != getpid() && is_what_was_launched(pid))
-      adopt(component, pid, live_now());
+  for (const int pid : launched_as(marked_as(component))) {
+    if (!is_known(component, pid)) watch(component, pid, Relation::kMarked);
   }
 }
 
-void Supervisor::adopt_again(ComponentId component, int pid, Time known) {
-  const bool has_ended = state_letter(pid).value_or('X') == 'Z';
-  if (!has_ended && was_there(pid, known)) adopt(component, pid, known);
+// ---- starting
+
+Program Supervisor::program_of(ComponentId component) const {
+  const Component& what = rules_[component];
+  Program program{
+      what.launch, options_.search_first, options_.log_folder / (what.name + ".log"), {}, {}};
+  if (!options_.robot.empty()) {
+    program.environment = mark_of(marked_as(component));
+    program.pid_variable = kPidVariable;
+  }
+  return program;
+}
+
+// From the decision to start until the program runs, and carries the mark, it is nobody else's to
+// start. The kernel lets go of it when the last one that holds it has ended or runs the program.
+Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const {
+  const std::filesystem::path log = program_of(component).log;
+  std::error_code error;
+  std::filesystem::create_directories(log.parent_path(), error);
+  FileDescriptor lock(
+      open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0644));
+  const std::string& name = rules_[component].name;
+  if (!lock)
+    return Error{"cannot start " + name + ": its log " + log.string() +
+                 " cannot be written: " + std::strerror(errno)};
+  if (flock(lock.get(), LOCK_EX | LOCK_NB) == 0) return Expected<FileDescriptor>(std::move(lock));
+  return Error{errno == EWOULDBLOCK
+                   ? name + " is being started already; look at what its program waits for"
+                   : "cannot start " + name +
+                         ": its log cannot be locked: " + std::strerror(errno)};
 }
 
 void Supervisor::start(CommandId command, ComponentId component) {
   const Component& what = rules_[component];
-  const auto answer = [&](Outcome outcome, decltype(Reply::value) value, std::string text) {
-    inbox_.put(Reply{command, outcome, std::move(value), std::move(text)});
-  };
   if (what.launch.empty())
-    return answer(Outcome::kUnreachable, {}, what.name + " has no LAUNCH command");
-  take_over(component);
+    return answer(command, Outcome::kUnreachable, what.name + " has no LAUNCH command");
   const std::lock_guard lock(mutex_);
-  // The old process must be proven gone before a new one takes its place.
-  if (!is_gone(component)) return answer(Outcome::kRefused, {}, what.name + " is running already");
-  Program program{
-      what.launch, options_.search_first, options_.log_folder / (what.name + ".log"), {}};
-  if (!options_.robot.empty()) {
-    program.environment = {mark(component)};
-    program.pid_variable = kPidVariable;
-  }
-  const auto pid = spawn(program);
-  if (!pid) return answer(Outcome::kUnreachable, {}, pid.error());
-  auto process = WatchedProcess::watch(*pid, Relation::kChild);
-  if (!process) return answer(Outcome::kUnreachable, {}, process.error());
-  members_.push_back({component, std::move(*process), Relation::kChild, ProcessState::kRunning});
-  inbox_.put(ProcessSeen{component, ProcessState::kRunning, *pid, ""});
-  answer(Outcome::kDone, Value(std::int64_t{*pid}), "");
+  if (!is_gone(component))
+    return answer(command, Outcome::kRefused, what.name + " is running already");
+  if (const auto begun = begin_start(command, component); !begun)
+    return answer(command, Outcome::kUnreachable, begun.error());
   wake();
 }
+
+Expected<void> Supervisor::begin_start(CommandId command, ComponentId component) {
+  auto lock = lock_start_of(component);
+  if (!lock) return Error{lock.error()};
+  // Whatever was started before has the lock no more, and is seen.
+  take_over(component);
+  if (!is_gone(component)) {
+    answer(command, Outcome::kRefused, rules_[component].name + " is running already");
+    return {};
+  }
+  Program program = program_of(component);
+  program.kept_until_it_runs = lock->get();
+  auto launch = Launch::begin(program, Until::kItRuns);
+  if (!launch) return Error{launch.error()};
+  // Nothing runs unwatched: if it cannot be held, the launch goes, and kills it.
+  auto process = WatchedProcess::watch(launch->pid(), Relation::kChild);
+  if (!process) return Error{process.error()};
+  members_.push_back({component, std::move(*process), ProcessState::kRunning, std::move(*launch),
+                      command, std::move(*lock)});
+  return {};
+}
+
+// Those whose programs run by now, or never will.
+void Supervisor::finish_starts() {
+  for (Member& member : members_) {
+    if (!member.launch || !is_readable(member.launch->descriptor())) continue;
+    const auto runs = member.launch->outcome();
+    member.launch.reset();
+    member.lock = FileDescriptor();
+    if (!runs) {
+      answer(member.command, Outcome::kUnreachable, runs.error());
+      member.state = ProcessState::kGone;  // it is reaped, and was never the component
+      continue;
+    }
+    const int pid = member.process.pid();
+    inbox_.put(ProcessSeen{member.component, ProcessState::kRunning, pid, ""});
+    inbox_.put(Reply{member.command, Outcome::kDone, Value(std::int64_t{pid}), ""});
+  }
+  std::erase_if(members_, [](const Member& m) { return m.state == ProcessState::kGone; });
+}
+
+// ---- taking over what runs
 
 void Supervisor::adopt(ComponentId component, int pid, Time known) {
   const std::lock_guard lock(mutex_);
@@ -105,25 +161,95 @@ void Supervisor::adopt(ComponentId component, int pid, Time known) {
     inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, "ended"});
     return;
   }
+  watch(component, pid, Relation::kAdopted);
+}
+
+void Supervisor::adopt_again(ComponentId component, int pid, Time known) {
+  const bool has_ended = state_letter(pid).value_or('X') == 'Z';
+  if (!has_ended && was_there(pid, known)) adopt(component, pid, known);
+}
+
+void Supervisor::watch(ComponentId component, int pid, Relation relation) {
   // A supervisor before this one may have started it.
-  const Relation relation = is_child(pid) ? Relation::kChild : Relation::kAdopted;
+  if (is_child(pid)) relation = Relation::kChild;
   auto process = WatchedProcess::watch(pid, relation);
   if (!process) {
     inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, process.error()});
     return;
   }
-  members_.push_back({component, std::move(*process), relation, ProcessState::kRunning});
+  const bool is_others = relation == Relation::kAdopted && !carries_mark(pid, marked_as(component));
+  if (const auto identity = is_others ? identity_of(pid) : std::nullopt)
+    identities_.try_emplace(component, *identity);
+  members_.push_back({component, std::move(*process)});
   inbox_.put(ProcessSeen{component, ProcessState::kRunning, pid, ""});
   wake();
 }
 
-void Supervisor::stop(CommandId command, ComponentId component) {
+// ---- ending
+
+// Why it is not proven that the process is the component's; nothing if it is.
+std::optional<std::string> Supervisor::doubt(const Member& member) const {
+  const int pid = member.process.pid();
+  if (member.process.relation() != Relation::kAdopted ||
+      carries_mark(pid, marked_as(member.component)))
+    return std::nullopt;
+  const auto found = identities_.find(member.component);
+  const auto identity = identity_of(pid);
+  if (!identity && member.process.state() == ProcessState::kGone) return std::nullopt;
+  const std::string process = "process " + std::to_string(pid);
+  if (!identity || found == identities_.end())
+    return process + " is not ended: it cannot be seen what it runs";
+  if (*identity == found->second) return std::nullopt;
+  return process + " is not ended: it runs " + to_string(*identity) + ", but " +
+         rules_[member.component].name + " was " + to_string(found->second) +
+         "; if that is right, start culprit anew";
+}
+
+void Supervisor::stop(CommandId command, ComponentId component, Ending ending) {
   const std::lock_guard lock(mutex_);
-  begin_shutdown(command, component);
+  for (const Member& member : members_) {
+    if (member.component != component) continue;
+    if (auto why = doubt(member)) return answer(command, Outcome::kRefused, std::move(*why));
+  }
+  if (ending == Ending::kForGood || is_gone(component)) {
+    begin_shutdown(command, component);
+  } else {
+    const auto lock_of_start = lock_start_of(component);
+    if (!lock_of_start) return answer(command, Outcome::kRefused, lock_of_start.error());
+    auto launch = Launch::begin(program_of(component), Until::kItCouldRun);
+    if (!launch) return answer(command, Outcome::kRefused, launch.error());
+    trials_.push_back({command, component, std::move(*launch), later(live_now(), kTrial)});
+  }
   wake();
 }
 
+void Supervisor::finish_trials(Time now) {
+  for (Trial& trial : trials_) {
+    const bool is_over = is_readable(trial.launch.descriptor());
+    if (!is_over && now < trial.until) continue;
+    const std::string& name = rules_[trial.component].name;
+    const auto could_run =
+        is_over ? trial.launch.outcome()
+                : Expected<void>(Error{"its start was tried and hung for " +
+                                       culprit::to_string(kTrial) +
+                                       "; does the file system of its program answer?"});
+    if (could_run) {
+      begin_shutdown(trial.command, trial.component);
+    } else {
+      answer(trial.command, Outcome::kRefused,
+             name + " is not ended, for it could not be started again: " + could_run.error());
+    }
+    trial.until = kLongAgo;
+  }
+  std::erase_if(trials_, [](const Trial& t) { return t.until == kLongAgo; });
+}
+
 void Supervisor::begin_shutdown(CommandId command, ComponentId component) {
+  for (Member& member : members_) {
+    if (member.component != component || member.process.relation() != Relation::kAdopted) continue;
+    member.left = descendants_of(member.process.pid());
+    member.left_at = live_now();
+  }
   shutdowns_.push_back({command, component, 0, live_now()});
 }
 
@@ -131,7 +257,7 @@ void Supervisor::stop_all() {
   std::unique_lock lock(mutex_);
   std::set<ComponentId> started;
   for (const Member& member : members_) {
-    if (member.relation == Relation::kChild) started.insert(member.component);
+    if (member.process.relation() == Relation::kChild) started.insert(member.component);
   }
   for (const ComponentId component : started) begin_shutdown({}, component);
   wake();
@@ -151,9 +277,34 @@ bool Supervisor::is_gone(ComponentId component) const {
                       [&](const Member& m) { return m.component == component; });
 }
 
-Time Supervisor::next_escalation() const {
+void Supervisor::end_member(Member& member) {
+  // What the process had started must not live on beside its successor. While it is not reaped, no
+  // other group can have its number.
+  member.process.kill_group();
+  const std::string remark = member.process.reap();
+  inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), remark});
+  tell_what_stays(member);
+}
+
+// What somebody else's process had started is not ours to end.
+void Supervisor::tell_what_stays(const Member& member) const {
+  std::string stays;
+  for (const Relative& each : member.left) {
+    const bool has_ended = state_letter(each.pid).value_or('X') == 'Z';
+    if (!has_ended && was_there(each.pid, member.left_at))
+      stays += (stays.empty() ? "" : ", ") + std::to_string(each.pid) + " (" + each.command + ")";
+  }
+  if (!stays.empty())
+    inbox_.put(LinkTrouble{rules_[member.component].name +
+                           " was ended, and what it had started goes on: process " + stays});
+}
+
+// ---- the thread
+
+Time Supervisor::next_deadline() const {
   Time next = kNever;
   for (const Shutdown& shutdown : shutdowns_) next = std::min(next, shutdown.escalate);
+  for (const Trial& trial : trials_) next = std::min(next, trial.until);
   return next;
 }
 
@@ -167,10 +318,12 @@ void Supervisor::run() {
   Time next_look = live_now();
   while (!is_ending_) {
     std::vector<pollfd> watched{{wake_.get(), POLLIN, 0}};
-    for (const Member& member : members_)
+    for (const Member& member : members_) {
       watched.push_back({member.process.descriptor(), POLLIN, 0});
-    const Time until =
-        members_.empty() ? next_escalation() : std::min(next_look, next_escalation());
+      if (member.launch) watched.push_back({member.launch->descriptor(), POLLIN, 0});
+    }
+    for (const Trial& trial : trials_) watched.push_back({trial.launch.descriptor(), POLLIN, 0});
+    const Time until = members_.empty() ? next_deadline() : std::min(next_look, next_deadline());
     const auto wait =
         until == kNever ? Duration(-1) : std::max(Duration::zero(), until - live_now());
     lock.unlock();
@@ -191,7 +344,9 @@ void Supervisor::run() {
 }
 
 void Supervisor::look(Time now) {
+  finish_starts();
   for (Member& member : members_) {
+    if (member.launch) continue;
     const ProcessState state = member.process.state();
     if (state == ProcessState::kGone) {
       end_member(member);
@@ -201,24 +356,20 @@ void Supervisor::look(Time now) {
     member.state = state;
   }
   std::erase_if(members_, [](const Member& m) { return m.state == ProcessState::kGone; });
-  for (Shutdown& shutdown : shutdowns_) {
-    if (!is_gone(shutdown.component)) {
-      if (shutdown.escalate <= now) escalate(shutdown, now);
-      continue;
-    }
-    if (shutdown.command != CommandId{})
-      inbox_.put(Reply{shutdown.command, Outcome::kDone, {}, ""});
-  }
-  std::erase_if(shutdowns_, [&](const Shutdown& s) { return is_gone(s.component); });
+  finish_trials(now);
+  finish_shutdowns(now);
   something_ended_.notify_all();
 }
 
-void Supervisor::end_member(Member& member) {
-  // What the process had started must not live on beside its successor. While it is not reaped, no
-  // other group can have its number.
-  if (member.relation == Relation::kChild) member.process.kill_group();
-  const std::string remark = member.process.reap();
-  inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), remark});
+void Supervisor::finish_shutdowns(Time now) {
+  for (Shutdown& shutdown : shutdowns_) {
+    if (!is_gone(shutdown.component)) {
+      if (shutdown.escalate <= now) escalate(shutdown, now);
+    } else if (shutdown.command != CommandId{}) {
+      answer(shutdown.command, Outcome::kDone, "");
+    }
+  }
+  std::erase_if(shutdowns_, [&](const Shutdown& s) { return is_gone(s.component); });
 }
 
 void Supervisor::escalate(Shutdown& shutdown, Time now) {

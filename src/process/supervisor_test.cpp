@@ -1,10 +1,16 @@
 #include "process/supervisor.h"
 
+#include <array>
+#include <fcntl.h>
 #include <fstream>
 #include <linux/capability.h>
 #include <optional>
+#include <poll.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <thread>
@@ -13,6 +19,7 @@
 #include <gtest/gtest.h>
 
 #include "language/checker.h"
+#include "process/proc.h"
 #include "process/spawn.h"
 
 namespace culprit::process {
@@ -26,8 +33,15 @@ class Supervised {
   explicit Supervised(const std::string& launch, const std::string& robot = "")
       : folder_(std::filesystem::temp_directory_path() /
                 ("culprit-test-" + std::to_string(getpid()))),
-        rules_(*check(Source("test.rules", "COMPONENT c LAUNCH \"" + launch + "\"\n")).rules) {
-    supervisor.emplace(rules_, Supervisor::Options{folder_, {}, robot}, inbox);
+        rules_(*check(Source("test.rules", "COMPONENT c LAUNCH \"" + launch + "\"\n")).rules),
+        robot_(robot) {
+    supervise();
+  }
+  // Anew, as after a restart of culprit.
+  void supervise(const std::filesystem::path& logs = {}) {
+    supervisor.reset();
+    supervisor.emplace(rules_, Supervisor::Options{logs.empty() ? folder_ : logs, {}, robot_},
+                       inbox);
   }
   ~Supervised() {
     if (supervisor) supervisor->stop_all();
@@ -43,9 +57,17 @@ class Supervised {
     return pid == nullptr ? 0 : static_cast<int>(std::get<std::int64_t>(*pid));
   }
   void stop() {
-    supervisor->stop({2}, ComponentId(0));
+    supervisor->stop({2}, ComponentId(0), Ending::kForGood);
     EXPECT_EQ(reply_to({2}).outcome, Outcome::kDone);
   }
+  std::string trouble() {
+    return wait<LinkTrouble>([](const LinkTrouble&) { return true; }).text;
+  }
+  Reply stop_to_start_again() {
+    supervisor->stop({7}, ComponentId(0), Ending::kToStartAgain);
+    return reply_to({7});
+  }
+  const std::filesystem::path& folder() const { return folder_; }
   Reply reply_to(CommandId command) {
     return wait<Reply>([&](const Reply& r) { return r.command == command; });
   }
@@ -86,6 +108,7 @@ class Supervised {
 
   std::filesystem::path folder_;
   RuleSet rules_;
+  std::string robot_;
   std::vector<Observation> seen_;
 };
 
@@ -96,7 +119,7 @@ TEST(Supervisor, StartsAndStopsPolitely) {
   const int pid = c.start();
   EXPECT_TRUE(exists(pid));
   EXPECT_EQ(getpgid(pid), pid) << "it leads its own process group";
-  c.supervisor->stop({2}, ComponentId(0));
+  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
   EXPECT_EQ(c.state(ProcessState::kGone).remark, "killed by signal 2");
   EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
 }
@@ -180,7 +203,7 @@ TEST(Supervisor, AdoptsAndEndsAProcessThatWasThere) {
   ASSERT_TRUE(foreign);
   c.supervisor->adopt(ComponentId(0), *foreign, live_now());
   EXPECT_EQ(c.state(ProcessState::kRunning).pid, *foreign);
-  c.supervisor->stop({2}, ComponentId(0));
+  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
   EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(*foreign)) << "what is a child of this program is reaped, too";
 }
@@ -193,9 +216,11 @@ TEST(Supervisor, LeavesItsProcessesRunningWhenItEnds) {
     Supervisor supervisor(rules, {std::filesystem::temp_directory_path(), {}}, inbox);
     supervisor.start({1}, ComponentId(0));
     std::vector<Observation> seen;
-    inbox.take(live_now() + 10s, seen);
-    for (const Observation& o : seen) {
-      if (const auto* process = std::get_if<ProcessSeen>(&o.what)) pid = process->pid;
+    for (const Time end = live_now() + 30s; pid == 0 && live_now() < end;) {
+      inbox.take(end, seen);
+      for (const Observation& o : seen) {
+        if (const auto* process = std::get_if<ProcessSeen>(&o.what)) pid = process->pid;
+      }
     }
   }
   ASSERT_NE(pid, 0);
@@ -219,7 +244,7 @@ TEST(Supervisor, TakesOverWhatAnotherOneOfTheSameRobotStarted) {
   EXPECT_EQ(second.state(ProcessState::kRunning).pid, pid);
   second.supervisor->start({3}, ComponentId(0));
   EXPECT_EQ(second.reply_to({3}).outcome, Outcome::kRefused);
-  second.supervisor->stop({2}, ComponentId(0));
+  second.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
   EXPECT_EQ(second.reply_to({2}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(pid));
   EXPECT_NE(second.start(), pid);
@@ -252,7 +277,7 @@ TEST(Supervisor, AdoptsAProcessAgainOnlyIfItIsTheSameOne) {
   c.supervisor->adopt_again(ComponentId(0), *foreign, live_now());
   c.supervisor->start({3}, ComponentId(0));
   EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused);
-  c.supervisor->stop({4}, ComponentId(0));
+  c.supervisor->stop({4}, ComponentId(0), Ending::kForGood);
   EXPECT_EQ(c.reply_to({4}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(*foreign));
 }
@@ -267,6 +292,272 @@ TEST(Supervisor, AProcessThatBeganLaterIsAnother) {
   EXPECT_TRUE(exists(*stranger)) << "it is nobody's business";
   kill(*stranger, SIGKILL);
   waitpid(*stranger, nullptr, 0);
+}
+
+// ---- proof before harm
+
+// No more than `count`, for as long as it lives.
+class DescriptorsLeft {
+ public:
+  explicit DescriptorsLeft(std::size_t count) {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    rlimit few = before_;
+    few.rlim_cur = 200;
+    setrlimit(RLIMIT_NOFILE, &few);
+    for (int fd = 0; (fd = fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)) >= 0;) taken_.emplace_back(fd);
+    taken_.resize(taken_.size() - count);
+  }
+  ~DescriptorsLeft() { setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+  std::vector<FileDescriptor> taken_;
+};
+
+// Runs the program as somebody else's: neither our child nor marked.
+int start_by_others(const std::string& command) {
+  std::array<int, 2> told{};
+  EXPECT_EQ(pipe(told.data()), 0);
+  const int between = fork();
+  if (between == 0) {
+    const int pid = fork();
+    if (pid == 0) {
+      setsid();
+      execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+      _exit(127);
+    }
+    [[maybe_unused]] const auto written = write(told[1], &pid, sizeof pid);
+    _exit(0);
+  }
+  int pid = 0;
+  EXPECT_EQ(read(told[0], &pid, sizeof pid), static_cast<ssize_t>(sizeof pid));
+  close(told[0]);
+  close(told[1]);
+  waitpid(between, nullptr, 0);
+  return pid;
+}
+
+bool runs(int pid) {
+  const auto letter = state_letter(pid);
+  return letter && *letter != 'Z';
+}
+
+bool becomes(int pid, const std::string& program) {
+  for (int tries = 0; tries < 3000; ++tries) {
+    const auto identity = identity_of(pid);
+    if (identity && identity->program.ends_with(program)) return true;
+    std::this_thread::sleep_for(10ms);
+  }
+  return false;
+}
+
+TEST(Supervisor, EndsAndStartsAgainWhatCanBeStartedAgain) {
+  Supervised c("sleep 1000");
+  const int pid = c.start();
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
+  EXPECT_FALSE(exists(pid));
+  EXPECT_NE(c.start(), pid);
+}
+
+TEST(Supervisor, DoesNotEndWhatItCannotStartAgain) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("culprit-gone-" + std::to_string(getpid()));
+  std::filesystem::create_directory(folder);
+  std::filesystem::copy_file("/bin/sleep", folder / "node");
+  {
+    Supervised c((folder / "node").string() + " 1000", "test/again/" + std::to_string(getpid()));
+    const int pid = c.start();
+    {
+      const DescriptorsLeft none(0);
+      const Reply reply = c.stop_to_start_again();
+      EXPECT_EQ(reply.outcome, Outcome::kRefused);
+      EXPECT_NE(reply.text.find("Too many open files"), std::string::npos) << reply.text;
+    }
+    EXPECT_TRUE(exists(pid));
+
+    std::ofstream(folder / "no folder") << "";
+    c.supervise(folder / "no folder");  // where no log can be written
+    const Reply no_log = c.stop_to_start_again();
+    EXPECT_EQ(no_log.outcome, Outcome::kRefused);
+    EXPECT_NE(no_log.text.find("cannot be written: Not a directory"), std::string::npos)
+        << no_log.text;
+    EXPECT_TRUE(exists(pid));
+
+    c.supervise();
+    std::filesystem::remove(folder / "node");
+    const Reply no_program = c.stop_to_start_again();
+    EXPECT_EQ(no_program.outcome, Outcome::kRefused);
+    EXPECT_EQ(no_program.text,
+              "c is not ended, for it could not be started again: there is no program '" +
+                  (folder / "node").string() + "', or it is not executable");
+    EXPECT_TRUE(exists(pid));
+
+    std::ofstream(folder / "node") << "#!/no/such/interpreter\n";
+    std::filesystem::permissions(folder / "node", std::filesystem::perms::owner_all);
+    EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kRefused);
+    EXPECT_TRUE(exists(pid));
+    c.stop();
+    EXPECT_FALSE(exists(pid)) << "for good, it is ended all the same";
+  }
+  std::filesystem::remove_all(folder);
+}
+
+// What others started is known by what it ran when it was found first.
+TEST(Supervisor, DoesNotEndAnotherProgramThanTheComponentWas) {
+  Supervised c("sleep 1000");
+  const int node = start_by_others("exec sleep 1000");
+  const int victim = start_by_others("exec tail -f /dev/null");
+  ASSERT_TRUE(becomes(node, "sleep"));
+  ASSERT_TRUE(becomes(victim, "tail"));
+  c.supervisor->adopt(ComponentId(0), node, live_now());
+  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
+  EXPECT_FALSE(runs(node));
+
+  c.supervisor->adopt(ComponentId(0), victim, live_now());
+  c.supervisor->stop({3}, ComponentId(0), Ending::kForGood);
+  const Reply reply = c.reply_to({3});
+  EXPECT_EQ(reply.outcome, Outcome::kRefused);
+  EXPECT_NE(reply.text.find("tail of user"), std::string::npos) << reply.text;
+  EXPECT_NE(reply.text.find("sleep of user"), std::string::npos) << reply.text;
+  EXPECT_TRUE(runs(victim));
+  kill(victim, SIGKILL);
+}
+
+TEST(Supervisor, LeavesTheGroupOfSomebodyElseAloneAndSaysWhatStays) {
+  Supervised c("sleep 1000");
+  const int node = start_by_others("sleep 1000 & wait");
+  std::vector<Relative> started;
+  for (int tries = 0; tries < 3000 && started.empty(); ++tries) {
+    started = descendants_of(node);
+    std::this_thread::sleep_for(10ms);
+  }
+  ASSERT_EQ(started.size(), 1u);
+  const int child = started.front().pid;
+  ASSERT_TRUE(becomes(child, "sleep"));
+  c.supervisor->adopt(ComponentId(0), node, live_now());
+  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  const std::string told = c.trouble();
+  EXPECT_EQ(told, "c was ended, and what it had started goes on: process " + std::to_string(child) +
+                      " (sleep)");
+  EXPECT_FALSE(runs(node));
+  EXPECT_TRUE(runs(child));
+  kill(child, SIGKILL);
+}
+
+// A culprit that was killed had started it: nobody's child any more, and the group is ours.
+TEST(Supervisor, EndsTheGroupThatAnEarlierOneHadMade) {
+  const std::string robot = "test/group/" + std::to_string(getpid());
+  Supervised c("sleep 1000", robot);
+  std::string marks = "CULPRIT_COMPONENT=" + robot + "/c CULPRIT_PROCESS_COUNTS_IN='" +
+                      pid_namespace_of(getpid()) + "' ";
+  const int node = start_by_others("exec env " + marks +
+                                   "sh -c 'export CULPRIT_PROCESS=$$; exec sh -c \"sleep 1000 & "
+                                   "sleep 1000 & wait\"'");
+  std::vector<Relative> started;
+  for (int tries = 0; tries < 3000 && started.size() < 2; ++tries) {
+    started = descendants_of(node);
+    std::this_thread::sleep_for(10ms);
+  }
+  ASSERT_EQ(started.size(), 2u);
+  c.supervise();
+  EXPECT_EQ(c.state(ProcessState::kRunning).pid, node);
+  kill(node, SIGKILL);  // by itself, as a node crashes
+  EXPECT_EQ(c.state(ProcessState::kGone).pid, node);
+  for (const Relative& each : started) {
+    for (int tries = 0; tries < 3000 && runs(each.pid); ++tries) std::this_thread::sleep_for(10ms);
+    EXPECT_FALSE(runs(each.pid)) << "it would live on beside the successor";
+  }
+}
+
+// In another PID namespace the same number is another process.
+TEST(Supervisor, AMarkCountsOnlyWhereItsNumberDoes) {
+  const std::string robot = "test/namespace/" + std::to_string(getpid());
+  Supervised c("sleep 1000", robot);
+  const int stranger = start_by_others(
+      "exec env CULPRIT_COMPONENT=" + robot +
+      "/c CULPRIT_PROCESS_COUNTS_IN='pid:[1]' sh -c 'export CULPRIT_PROCESS=$$; exec sleep 1000'");
+  ASSERT_TRUE(becomes(stranger, "sleep"));
+  c.supervise();
+  EXPECT_NE(c.start(), stranger);
+  EXPECT_TRUE(runs(stranger));
+  kill(stranger, SIGKILL);
+}
+
+// Between fork() and execve() a process carries no mark yet.
+TEST(Supervisor, StartsNothingWhileAnotherCulpritStartsIt) {
+  Supervised c("sleep 1000");
+  std::filesystem::create_directories(c.folder());
+  const int lock = open((c.folder() / "c.log").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  ASSERT_EQ(flock(lock, LOCK_EX), 0);
+  c.supervisor->start({1}, ComponentId(0));
+  const Reply reply = c.reply_to({1});
+  EXPECT_EQ(reply.outcome, Outcome::kUnreachable);
+  EXPECT_NE(reply.text.find("is being started already"), std::string::npos) << reply.text;
+  close(lock);
+  EXPECT_NE(c.start(), 0);
+}
+
+// As on a file system that does not answer: a script whose interpreter is a pipe nobody writes to
+// would hang; so does a program on a stopped server. Here the log is what the child waits for.
+TEST(Supervisor, WaitsForNoFileSystemOfAProgram) {
+  Supervised c("sleep 1000");
+  Program program{{"sleep", "1000"}, {}, c.folder() / "pipe", {}, {}};
+  std::filesystem::create_directories(c.folder());
+  ASSERT_EQ(mkfifo(program.log.c_str(), 0600), 0);  // opening it waits for a reader
+  auto launch = Launch::begin(program, Until::kItRuns);
+  ASSERT_TRUE(launch) << launch.error();
+  pollfd report{launch->descriptor(), POLLIN, 0};
+  EXPECT_EQ(poll(&report, 1, 100), 0) << "it is not there yet, and we are here";
+  const int pid = launch->pid();
+  *launch = std::move(*Launch::begin({{"true"}, {}, c.folder() / "log"}, Until::kItCouldRun));
+  for (int tries = 0; tries < 3000 && runs(pid); ++tries) std::this_thread::sleep_for(10ms);
+  EXPECT_FALSE(runs(pid)) << "what is given up is killed";
+  EXPECT_TRUE(launch->outcome());
+}
+
+TEST(Supervisor, NothingRunsThatCannotBeWatched) {
+  while (waitpid(-1, nullptr, WNOHANG) > 0) continue;  // what other tests gave up
+  Supervised c("sleep 1000");
+  for (const std::size_t left : {0, 1, 2, 3, 4, 5}) {
+    const DescriptorsLeft few(left);
+    c.supervisor->start({4}, ComponentId(0));
+    if (c.reply_to({4}).outcome == Outcome::kDone) {
+      c.stop();
+    } else {
+      EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "there is no child with " << left;
+    }
+  }
+}
+
+TEST(Supervisor, AProcessWhoseMainThreadEndedRuns) {
+  const int pid = fork();
+  if (pid == 0) {
+    std::thread([] { pause(); }).detach();
+    syscall(SYS_exit, 0);  // of this thread alone
+  }
+  for (int tries = 0; tries < 3000 && state_letter(pid) != 'Z'; ++tries)
+    std::this_thread::sleep_for(10ms);
+  const auto process = WatchedProcess::watch(pid, Relation::kAdopted);
+  ASSERT_TRUE(process);
+  EXPECT_EQ(process->state(), ProcessState::kRunning);
+  kill(pid, SIGKILL);
+  siginfo_t info{};
+  waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOWAIT);
+  EXPECT_EQ(process->state(), ProcessState::kGone) << "a zombie is no process";
+  waitpid(pid, nullptr, 0);
+}
+
+TEST(Proc, APythonNodeIsItsScript) {
+  const auto script =
+      std::filesystem::temp_directory_path() / ("culprit-script-" + std::to_string(getpid()));
+  std::ofstream(script) << "sleep 1000; true\n";
+  const int pid = start_by_others("exec bash -e " + script.string());
+  ASSERT_TRUE(becomes(pid, "bash"));
+  EXPECT_EQ(identity_of(pid)->script, script.string());
+  EXPECT_EQ(identity_of(pid)->user, geteuid());
+  kill(-pid, SIGKILL);
+  std::filesystem::remove(script);
 }
 
 TEST(Spawn, PassesArgumentsAsTheyAre) {

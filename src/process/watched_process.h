@@ -12,7 +12,8 @@ namespace culprit::process {
 
 enum class Relation : std::uint8_t {
   kChild,   // we started it: we reap it and learn how it ended
-  kAdopted  // it was there
+  kMarked,  // an earlier culprit started it, as its mark proves
+  kAdopted  // somebody else's
 };
 
 class WatchedProcess {
@@ -27,24 +28,28 @@ class WatchedProcess {
   // Running or stopped; kGone if it has ended.
   ProcessState state() const;
 
-  // To the process, and to its whole process group if it leads one.
+  // To the process, and to the whole process group that it got from us. The group of somebody
+  // else's process is somebody else's.
   void signal(int number) const;
 
   // @pre the process has ended. Reaps a child. In words: "exit code 1", "killed by signal 9",
   // "ended".
   std::string reap();
 
-  // Ends what is left of the process group that it led: it may have started others.
+  // Ends what is left of the process group that it got from us: it may have started others.
+  // @pre it is not reaped
   void kill_group() const;
 
+  Relation relation() const { return relation_; }
+
  private:
-  WatchedProcess(int pid, FileDescriptor pidfd, Relation relation, bool leads_group)
-      : pid_(pid), pidfd_(std::move(pidfd)), relation_(relation), leads_group_(leads_group) {}
+  WatchedProcess(int pid, FileDescriptor pidfd, Relation relation);
+  void signal_group(int number) const;
 
   int pid_;
   FileDescriptor pidfd_;
   Relation relation_;
-  bool leads_group_;
+  std::string mark_;  // of kMarked: what its group has in its environment
 };
 
 }  // namespace culprit::process
