@@ -1,6 +1,5 @@
 #include "cli/rule_trust.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -8,6 +7,7 @@
 #include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -56,20 +56,43 @@ std::string weakness_up_from(fs::path path) {
   return why;
 }
 
-}  // namespace
-
-Expected<void> trust_launches(const RuleSet& rules, const std::string& path) {
-  const bool launches = std::any_of(rules.components.begin(), rules.components.end(),
-                                    [](const Component& c) { return !c.launch.empty(); });
-  if (!launches) return {};
+// A link could be replaced as well as what it leads to.
+std::string weakness_of_all(const fs::path& path) {
   std::error_code error;
   const fs::path file = fs::canonical(path, error);
-  if (error) return Error{fmt::format("cannot find {}: {}", path, error.message())};
-  // A link could be replaced as well as what it leads to.
-  for (const fs::path& start : {file, fs::absolute(path)}) {
-    if (const std::string why = weakness_up_from(start); !why.empty())
-      return Error{fmt::format(
-          "{} says which programs are started, and somebody else could change it: {}", path, why)};
+  if (error) return fmt::format("cannot find {}: {}", path.string(), error.message());
+  std::string why = weakness_up_from(file);
+  return why.empty() ? weakness_up_from(fs::absolute(path)) : why;
+}
+
+}  // namespace
+
+Expected<void> trust_rules(const std::string& path) {
+  if (const std::string why = weakness_of_all(path); !why.empty())
+    return Error{fmt::format(
+        "{} says what is done to the robot, and somebody else could change it: {}", path, why)};
+  return {};
+}
+
+Expected<void> trust_state(const fs::path& folder, const fs::path& journal) {
+  std::error_code error;
+  std::vector<fs::path> all = {folder, folder / "log", journal};
+  // What is kept beside the journal begins with its name: the lock, the last writes.
+  fs::path beside = journal.parent_path();
+  if (beside.empty()) beside = ".";
+  for (fs::directory_iterator i(beside, error); !error && i != fs::directory_iterator();
+       i.increment(error)) {
+    if (i->path().filename().native().starts_with(journal.filename().native()))
+      all.push_back(i->path());
+  }
+  for (fs::path each : all) {
+    // What is not there yet is made where it will be.
+    each = fs::absolute(each);
+    while (!fs::exists(each, error) && each != each.parent_path()) each = each.parent_path();
+    if (const std::string why = weakness_of_all(each); !why.empty())
+      return Error{
+          fmt::format("culprit does what it finds in {}, and somebody else could change it: {}",
+                      folder.string(), why)};
   }
   return {};
 }

@@ -7,15 +7,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "language/checker.h"
-
 namespace culprit::cli {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-constexpr const char* kLaunches = "COMPONENT c LAUNCH \"c --on\"\n";
 
 struct RuleTrust : testing::Test {
   RuleTrust() {
@@ -23,7 +19,7 @@ struct RuleTrust : testing::Test {
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
     folder = name;
     file = folder / "my.rules";
-    std::ofstream(file) << kLaunches;
+    std::ofstream(file) << "COMPONENT c NODE /c\n";
     allow(file, 0644);
   }
   ~RuleTrust() override { fs::remove_all(folder); }
@@ -32,8 +28,12 @@ struct RuleTrust : testing::Test {
     fs::permissions(path, static_cast<fs::perms>(mode));
   }
   // Empty: it is trusted.
-  std::string objection(const char* rules = kLaunches) const {
-    const auto trusted = trust_launches(*check(Source("my.rules", rules)).rules, file);
+  std::string objection() const {
+    const auto trusted = trust_rules(file);
+    return trusted ? "" : trusted.error();
+  }
+  std::string objection_to_state() const {
+    const auto trusted = trust_state(folder / "state", folder / "state/my.journal");
     return trusted ? "" : trusted.error();
   }
 
@@ -46,10 +46,8 @@ TEST_F(RuleTrust, AFileThatOnlyItsOwnerWritesIsGood) { EXPECT_EQ(objection(), ""
 TEST_F(RuleTrust, AFileThatOthersMayWriteIsNot) {
   allow(file, 0666);
   EXPECT_EQ(objection(),
-            file.string() +
-                " says which programs are started, and somebody else could change it: " +
+            file.string() + " says what is done to the robot, and somebody else could change it: " +
                 file.string() + " is writable by others; chmod go-w " + file.string());
-  EXPECT_EQ(objection("COMPONENT c NODE /c\n"), "") << "nothing is started by it";
 }
 
 TEST_F(RuleTrust, NorOneThatOthersMayReplace) {
@@ -79,6 +77,37 @@ TEST_F(RuleTrust, ALinkIsAsGoodAsWhatItLeadsTo) {
   EXPECT_EQ(objection(), "");
   allow(target, 0666);
   EXPECT_THAT(objection(), HasSubstr(target.string() + " is writable by others"));
+}
+
+TEST_F(RuleTrust, StateThatOthersMayWriteIsNotTaken) {
+  EXPECT_EQ(objection_to_state(), "") << "it will be made where only we write";
+  fs::create_directories(folder / "state/log");
+  std::ofstream(folder / "state/my.journal") << "";
+  std::ofstream(folder / "state/my.journal-lock") << "";
+  for (const auto& each : fs::recursive_directory_iterator(folder / "state"))
+    allow(each.path(), each.is_directory() ? 0755 : 0644);
+  allow(folder / "state", 0755);
+  EXPECT_EQ(objection_to_state(), "");
+  for (const char* each : {"state", "state/log", "state/my.journal", "state/my.journal-lock"}) {
+    const auto before = fs::status(folder / each).permissions();
+    allow(folder / each, 0777);
+    EXPECT_THAT(objection_to_state(),
+                HasSubstr((folder / each).string() + " is writable by others; chmod go-w"));
+    fs::permissions(folder / each, before);
+  }
+  EXPECT_EQ(objection_to_state(), "");
+}
+
+TEST_F(RuleTrust, NorStateThatOthersMayMake) {
+  allow(folder, 0777);
+  EXPECT_THAT(objection_to_state(), HasSubstr(folder.string() + " is writable by others"));
+}
+
+TEST_F(RuleTrust, NorStateOfAnotherUser) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give files away";
+  fs::create_directory(folder / "state");
+  ASSERT_EQ(chown((folder / "state").c_str(), 12345, 12345), 0);
+  EXPECT_THAT(objection_to_state(), HasSubstr("belongs to user 12345"));
 }
 
 }  // namespace

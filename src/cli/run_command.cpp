@@ -42,8 +42,7 @@ std::string name_of(const RuleSet& rules) {
 Expected<LoadedRules> rules_for(const RunOptions& options, Colour colour) {
   auto loaded = read_rules(options.rules, Strictness::kLenient, colour);
   if (!loaded) return loaded;
-  if (const auto trusted = trust_launches(loaded->rules, options.rules); !trusted)
-    return Error{trusted.error()};
+  if (const auto trusted = trust_rules(options.rules); !trusted) return Error{trusted.error()};
   if (!options.improvise) return loaded;
   return improvised(std::move(*loaded), options.rules);
 }
@@ -195,6 +194,8 @@ int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, Role
 int run(const RunOptions& options) {
   auto rules = rules_for(options, colour_of(STDERR_FILENO));
   if (!rules) return complain(rules.error());
+  const auto trusted = trust_state(options.state_path(), options.journal_path(rules->rules));
+  if (!trusted) return complain(trusted.error());
   fmt::print(stderr, "{}", rules->remarks);
   const auto governor = options.governor.options();
   if (!governor) return complain(governor.error()), kUsage;

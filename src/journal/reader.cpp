@@ -5,7 +5,12 @@
 namespace culprit::journal {
 namespace {
 
-constexpr std::string_view kColumns = "SELECT id, at, kind, body, hash FROM entry ";
+// The last one is the hash of the row before.
+constexpr std::string_view kColumns =
+    "SELECT id, at, kind, body, hash, coalesce("
+    "(SELECT before.hash FROM entry AS before WHERE before.id = entry.id - 1), "
+    "(SELECT dropped.hash FROM anchor AS dropped WHERE dropped.id = entry.id - 1), "
+    "zeroblob(32)) FROM entry ";
 
 }  // namespace
 
@@ -17,6 +22,12 @@ Expected<bool> Cursor::next(Entry& entry) {
   entry.kind = statement_.bytes(2);
   entry.body = statement_.bytes(3);
   return true;
+}
+
+bool Cursor::is_as_written(const Entry& entry) const {
+  const auto before = hash_from(statement_.bytes(5));
+  const auto stored = hash_from(statement_.bytes(4));
+  return before && stored && Hasher().link(*before, entry) == *stored;
 }
 
 Expected<Reader> Reader::open(const std::filesystem::path& path) {

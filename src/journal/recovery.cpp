@@ -148,18 +148,27 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Mo
   if (!last) return Error{last.error()};
   if (!*last) return recovery;
   recovery.had_run = true;
+  auto rows = journal.entries(Which::kReadable, (*last)->id);
+  if (!rows) return Error{rows.error()};
+  Entry entry;
+  auto row = rows->next(entry);
+  const auto is_good = [&] {
+    if (rows->is_as_written(entry)) return true;
+    recovery.given_up.push_back("row " + std::to_string(entry.id) + " (" + entry.kind +
+                                ") is not what was written; nothing is done because of it");
+    return false;
+  };
+  if (!row) return Error{row.error()};
+  // A row that somebody else could have written must not say which process is whose.
+  if (!is_good()) return recovery;
   const Json begin = from_text((*last)->body);
   recovery.was_other_boot = text_of(begin, "boot") != boot_id();
   recovery.orders_kept = flag_of(begin, "orders_kept");
   Trail trail(rules, recovery.given_up);
   trail.begin_with(begin);
-  auto rows = journal.entries(Which::kReadable, (*last)->id + 1);
-  if (!rows) return Error{rows.error()};
-  Entry entry;
-  auto row = rows->next(entry);
-  for (; row && *row; row = rows->next(entry)) {
+  for (row = rows->next(entry); row && *row; row = rows->next(entry)) {
     recovery.was_stopped = entry.kind == kind::kEnd;
-    trail.follow(entry);
+    if (is_good()) trail.follow(entry);
   }
   if (!row) return Error{row.error()};
   recovery.is_paused = trail.is_paused();
