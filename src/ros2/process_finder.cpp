@@ -164,8 +164,13 @@ ProcessFinder::ProcessFinder(fs::path proc) : proc_(std::move(proc)) {}
 
 FoundProcess ProcessFinder::find(const ParticipantInfo& participant) const {
   std::vector<UdpAddress> addresses;
+  bool may_be_elsewhere = false;
   for (const UdpAddress& each : participant.metatraffic) {
-    if (is_local(each.ip)) addresses.push_back(each);
+    if (is_local(each.ip)) {
+      addresses.push_back(each);
+    } else {
+      may_be_elsewhere = true;
+    }
   }
   if (addresses.empty()) return {};
   if (!participant.origin.is_complete)
@@ -173,6 +178,8 @@ FoundProcess ProcessFinder::find(const ParticipantInfo& participant) const {
                    ? "nothing is known of where its datagrams come from"
                    : "its datagrams come from more places than one process has"};
   for (const UdpAddress& each : participant.origin.addresses) {
+    // Every machine with containers has the address of a bridge, and it is the same one.
+    if (!is_local(each.ip) && may_be_elsewhere) return {};
     if (!is_local(each.ip))
       return {0, "it says that it is on this machine, but datagrams in its name come from " +
                      to_text(each)};

@@ -114,6 +114,17 @@ TEST(ProcessFinder, KnowsNothingOfOtherMachines) {
   EXPECT_EQ(found.missing, "") << "it does not say that it is here";
 }
 
+// Its bridge for containers has the address that ours has.
+TEST(ProcessFinder, WhoIsElsewhereMayHaveAnAddressOfOurs) {
+  const Sockets sockets;
+  ParticipantInfo info = sockets.participant(getpid());
+  info.metatraffic.push_back({kElsewhere, 7410});
+  info.origin.addresses = {{kElsewhere, 4321}};
+  const FoundProcess found = ProcessFinder().find(info);
+  EXPECT_EQ(found.pid, 0);
+  EXPECT_EQ(found.missing, "");
+}
+
 // Somebody on the network announces a port of this machine as his own.
 TEST(ProcessFinder, AnAnnouncedPortAloneProvesNothing) {
   const Sockets sockets;
