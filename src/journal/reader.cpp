@@ -24,10 +24,10 @@ Expected<bool> Cursor::next(Entry& entry) {
   return true;
 }
 
-bool Cursor::is_as_written(const Entry& entry) const {
+bool Cursor::is_as_written(const Entry& entry, Hasher& hasher) const {
   const auto before = hash_from(statement_.bytes(5));
   const auto stored = hash_from(statement_.bytes(4));
-  return before && stored && Hasher().link(*before, entry) == *stored;
+  return before && stored && hasher.link(*before, entry) == *stored;
 }
 
 Expected<Reader> Reader::open(const std::filesystem::path& path) {

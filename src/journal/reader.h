@@ -21,7 +21,7 @@ class Cursor {
   // Of the row that next() gave.
   std::string_view hash() const { return statement_.bytes(4); }
   // Whether its hash is that of what it says, after the row before: what is acted on has to be.
-  bool is_as_written(const Entry& entry) const;
+  bool is_as_written(const Entry& entry, Hasher& hasher) const;
 
  private:
   friend class Reader;

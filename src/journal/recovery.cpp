@@ -152,10 +152,12 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Mo
   if (!rows) return Error{rows.error()};
   Entry entry;
   auto row = rows->next(entry);
+  Hasher hasher;
   const auto is_good = [&] {
-    if (rows->is_as_written(entry)) return true;
+    if (rows->is_as_written(entry, hasher)) return true;
     recovery.given_up.push_back("row " + std::to_string(entry.id) + " (" + entry.kind +
                                 ") is not what was written; nothing is done because of it");
+    recovery.orders_kept = true;  // it may have been one: the rows alone do not count
     return false;
   };
   if (!row) return Error{row.error()};
@@ -163,7 +165,7 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Mo
   if (!is_good()) return recovery;
   const Json begin = from_text((*last)->body);
   recovery.was_other_boot = text_of(begin, "boot") != boot_id();
-  recovery.orders_kept = flag_of(begin, "orders_kept");
+  recovery.orders_kept |= flag_of(begin, "orders_kept");
   Trail trail(rules, recovery.given_up);
   trail.begin_with(begin);
   for (row = rows->next(entry); row && *row; row = rows->next(entry)) {

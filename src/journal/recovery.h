@@ -1,8 +1,8 @@
 // What the last run of culprit left behind: told from its intents, and from what it said since.
 //
 // A strategy was under way if it was chosen or resumed, at least one change for it was about to be
-// asked for, and neither its success nor the end of its undoing is on record. Only rows that are what
-// was written count (Cursor::is_as_written()).
+// asked for, and neither its success nor the end of its undoing is on record. Only rows that are
+// what was written count (Cursor::is_as_written()).
 #pragma once
 
 #include <vector>
