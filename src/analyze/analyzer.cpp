@@ -40,6 +40,23 @@ void Analyzer::advance(Time now) {
   outcomes_.advance(now);
 }
 
+void Analyzer::restart(Time now) {
+  couplings_.restart();
+  outcomes_.restart();
+  for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
+    const RuleId id(r);
+    RuleState& state = knowledge_.states.state(id);
+    if (state.trigger_since != kLongAgo) state.trigger_since = now;
+    state.history.assign(state.history.size(), false);
+    state.true_in_history = 0;
+    if (state.attempt) {
+      state.attempt->is_ambiguous = true;
+      if (state.attempt->stage == Attempt::Stage::kWaiting) state.attempt->effective = now;
+    }
+    look_at(id, now);
+  }
+}
+
 std::vector<RuleId> Analyzer::plannable(Time now) const {
   std::vector<RuleId> ids;
   for (const RuleId id : knowledge_.states.active()) {

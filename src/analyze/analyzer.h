@@ -60,6 +60,10 @@ class Analyzer {
   // What earlier processes tried. Before the first advance().
   void remember(const Past& past);
 
+  // Nobody watched until `now`: whatever has to last begins anew (FOR, HOLD, a strategy's waiting
+  // time), and the strategies under way prove nothing, however they end.
+  void restart(Time now);
+
   // Looks at every rule that the monitor touched and at those whose time has come.
   void advance(Time now);
   Time next_deadline() const {

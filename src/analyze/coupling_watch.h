@@ -41,6 +41,9 @@ class CouplingWatch {
   // Can a change that was made for another failure just before `attempt` have resolved its own?
   bool is_echo(const Attempt& attempt) const;
 
+  // Nobody watched for a while: what went away meanwhile went away with nothing.
+  void restart() { questions_.clear(); }
+
   void advance(Time now);
   Time next_deadline() const;
 

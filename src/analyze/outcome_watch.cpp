@@ -33,6 +33,10 @@ void OutcomeWatch::detected(RuleId rule, Time now) {
   }
 }
 
+void OutcomeWatch::restart() {
+  for (PendingOutcome& outcome : knowledge_.outcomes.open) outcome.is_void = true;
+}
+
 void OutcomeWatch::remember(const Event& event) {
   auto& open = knowledge_.outcomes.open;
   if (const auto* pending = std::get_if<OutcomePending>(&event.what)) {

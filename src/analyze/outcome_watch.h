@@ -4,6 +4,7 @@
 //   - while the strategy was under way something else could have had the same effect
 //   (is_ambiguous),
 //   - a failure upstream came after the verdict: a second fault blames nobody,
+//   - nobody watched for a while before it was due (culprit slept, or was deaf),
 //   - when it is due nobody can see whether the failure is there.
 // If the failure is back before that by itself, the strategy did not help.
 #pragma once
@@ -21,6 +22,8 @@ class OutcomeWatch {
   void judged(const Attempt& attempt, bool has_helped, Time now);
   // A failure came, or came back.
   void detected(RuleId rule, Time now);
+  // Nobody watched for a while: what came out meanwhile counts for nothing.
+  void restart();
   // What an earlier process waited for.
   void remember(const Event& event);
 

@@ -50,6 +50,9 @@ struct Labels {
   Label operator()(const SilenceEnded&) const { return {"silence", "\033[35m"}; }
   Label operator()(const StormBegan&) const { return {"STORM", "\033[1;31m"}; }
   Label operator()(const StormEnded&) const { return {"calm", "\033[32m"}; }
+  Label operator()(const JudgementSuspended&) const { return {"DEAF", "\033[1;31m"}; }
+  Label operator()(const JudgementResumed&) const { return {"hears", "\033[32m"}; }
+  Label operator()(const SleepNoticed&) const { return {"slept", "\033[33m"}; }
 };
 
 sigset_t awaited(Hangup hangup) {

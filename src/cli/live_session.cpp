@@ -19,7 +19,8 @@ ros2::Severity severity_of(const Event& event) {
   if (std::holds_alternative<RuleExhausted>(event.what) ||
       std::holds_alternative<LastResortReached>(event.what) ||
       std::holds_alternative<FailureFlaps>(event.what) ||
-      std::holds_alternative<StormBegan>(event.what))
+      std::holds_alternative<StormBegan>(event.what) ||
+      std::holds_alternative<JudgementSuspended>(event.what))
     return ros2::Severity::kError;
   const bool is_bad = std::holds_alternative<FailureDetected>(event.what) ||
                       std::holds_alternative<StrategyFailed>(event.what) ||
@@ -29,6 +30,7 @@ ros2::Severity severity_of(const Event& event) {
                       std::holds_alternative<ApprovalAsked>(event.what) ||
                       std::holds_alternative<StrategyAbandoned>(event.what) ||
                       std::holds_alternative<RivalSeen>(event.what) ||
+                      std::holds_alternative<SleepNoticed>(event.what) ||
                       std::holds_alternative<Trouble>(event.what);
   return is_bad ? ros2::Severity::kWarn : ros2::Severity::kInfo;
 }

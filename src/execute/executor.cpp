@@ -64,6 +64,12 @@ bool Executor::take_up(Run& run, Time now) {
   return false;
 }
 
+void Executor::restart(Time now) {
+  for (Run& run : runs_) {
+    if (run.pursuit) run.pursuit->restart(now);
+  }
+}
+
 void Executor::answered(const Reply& reply, Time now) {
   for (Run& run : runs_) {
     if (run.pursuit && run.pending == reply.command) {

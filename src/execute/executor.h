@@ -27,6 +27,10 @@ class Executor {
   // @pre nothing was begun yet
   void resume(Interrupted interrupted, Time now, Time from);
 
+  // Answers until `now` could not be heard: every goal under way has its whole time again, and
+  // looks before it acts.
+  void restart(Time now);
+
   // An answer; one that nobody waits for any more is ignored.
   void answered(const Reply& reply, Time now);
 

@@ -104,6 +104,13 @@ void Pursuit::answered(const Reply& reply, Time) {
   }
 }
 
+void Pursuit::restart(Time now) {
+  deadline_ = later(now, patience(goal_));
+  const bool heard_nothing = step_ == Step::kDecide && seen_ && did_not_come(*seen_);
+  if (step_ == Step::kLooking || heard_nothing) step_ = Step::kLook;
+  if (step_ == Step::kChanging) wake_ = std::max(wake_, later(now, timeout(sent_.back()) + 1s));
+}
+
 std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Time now) {
   // An adapter that never answers must not hold a component for ever.
   if (wake_ <= now && (step_ == Step::kLooking || step_ == Step::kChanging)) {

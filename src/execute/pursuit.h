@@ -28,6 +28,9 @@ class Pursuit {
   // @pre is_under_way()
   std::optional<Request> advance(const Knowledge& knowledge, Time now);
 
+  // Answers until `now` may have been lost.
+  void restart(Time now);
+
   // The answer to the last request.
   void answered(const Reply& reply, Time now);
 

@@ -160,6 +160,13 @@ class EventWriter {
   Json operator()(const FailureFlaps& e) const {
     return {{"type", "failure_flaps"}, {"rule", name(e.rule)}, {"times", e.times}};
   }
+  Json operator()(const JudgementSuspended& e) const {
+    return {{"type", "judgement_suspended"}, {"reason", e.reason}};
+  }
+  Json operator()(const JudgementResumed&) const { return {{"type", "judgement_resumed"}}; }
+  Json operator()(const SleepNoticed& e) const {
+    return {{"type", "sleep_noticed"}, {"time_ns", e.time.count()}};
+  }
   Json operator()(const LastResortReached& e) const {
     return {{"type", "last_resort_reached"}, {"rule", name(e.rule)}};
   }

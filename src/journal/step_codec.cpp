@@ -19,7 +19,10 @@ enum class Tag : std::uint8_t {
   kReply = 12,
   kLinkTrouble = 13,
   kOrder = 14,
-  kNamesakesSeen = 15
+  kNamesakesSeen = 15,
+  kHearingLost = 16,
+  kHearingRegained = 17,
+  kOverslept = 18
 };
 
 enum class OrderTag : std::uint8_t {
@@ -148,6 +151,15 @@ class Encoder {
     head(Tag::kNamesakesSeen, age);
     out_.text(o.node);
     out_.natural(static_cast<std::uint64_t>(o.others));
+  }
+  void write(const HearingLost& o, Duration age) {
+    head(Tag::kHearingLost, age);
+    out_.text(o.reason);
+  }
+  void write(const HearingRegained&, Duration age) { head(Tag::kHearingRegained, age); }
+  void write(const Overslept& o, Duration age) {
+    head(Tag::kOverslept, age);
+    out_.integer(o.by.count());
   }
   void write(const Order& o, Duration age) {
     head(Tag::kOrder, age);
@@ -293,6 +305,12 @@ class Decoder {
         std::string node = in_.text();
         return NamesakesSeen{std::move(node), static_cast<int>(below(1ull << 31))};
       }
+      case Tag::kHearingLost:
+        return HearingLost{in_.text()};
+      case Tag::kHearingRegained:
+        return HearingRegained{};
+      case Tag::kOverslept:
+        return Overslept{Duration(in_.integer())};
     }
     in_.fail();
     return LinkTrouble{};

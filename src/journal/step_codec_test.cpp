@@ -69,7 +69,7 @@ decltype(Order::what) any_order() {
 decltype(Observation::what) anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 14)) {
+  switch (*rc::gen::inRange(0, 17)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -100,6 +100,12 @@ decltype(Observation::what) anything() {
     }
     case 12:
       return Order{3, "ann", text, any_order()};
+    case 13:
+      return HearingLost{text};
+    case 14:
+      return HearingRegained{};
+    case 15:
+      return Overslept{Duration(*rc::gen::arbitrary<std::int64_t>())};
     default:
       return LinkTrouble{text};
   }

@@ -148,6 +148,15 @@ class Describer {
     return "nothing more is done, a person must look: " + e.reason;
   }
   std::string operator()(const StormEnded&) const { return "action is allowed again"; }
+  std::string operator()(const JudgementSuspended& e) const {
+    return "nothing is judged until the robot can be heard again: " + e.reason;
+  }
+  std::string operator()(const JudgementResumed&) const {
+    return "the robot can be heard again; all ages begin anew";
+  }
+  std::string operator()(const SleepNoticed& e) const {
+    return "culprit stood still for " + to_string(e.time) + "; all ages begin anew";
+  }
 
   std::string operator()(const Pause&) const { return "pause"; }
   std::string operator()(const Resume&) const { return "resume"; }

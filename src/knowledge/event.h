@@ -252,6 +252,17 @@ struct StormBegan {
 };
 struct StormEnded {};
 
+// Nothing is judged from now on, since nobody knows what would have been heard.
+struct JudgementSuspended {
+  std::string reason;
+};
+// All ages, and all times that something has to last, begin anew.
+struct JudgementResumed {};
+// Likewise, after culprit stood still for so long.
+struct SleepNoticed {
+  Duration time{};
+};
+
 struct Event {
   Time at;
   std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
@@ -259,7 +270,8 @@ struct Event {
                RoundSpent, RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble,
                OrderAccepted, OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed,
                StrategyAbandoned, OrderCarriedOut, SilenceEnded, StormBegan, StormEnded,
-               LastResortReached, LifecycleIntended, OutcomePending, OutcomeCounted, FailureFlaps>
+               LastResortReached, LifecycleIntended, OutcomePending, OutcomeCounted, FailureFlaps,
+               JudgementSuspended, JudgementResumed, SleepNoticed>
       what;
 };
 

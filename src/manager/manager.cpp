@@ -57,7 +57,9 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
   knowledge_.events.clear();
   take_in(now, observations);
   std::vector<Command> commands;
-  if (analyzer_.anything_active()) {
+  if (!hears_) {
+    next_plan_ = kNever;
+  } else if (analyzer_.anything_active()) {
     react(commands);
   } else {
     executor_.advance(now_, commands);  // lets go of what has just succeeded
@@ -71,19 +73,38 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
   for (const Observation& observation : observations) {
     // Late observations of an earlier time count for now: time does not go back.
     now_ = std::max(now_, std::min(observation.at, now));
+    if (const auto* slept = std::get_if<Overslept>(&observation.what); slept && hears_) {
+      knowledge_.tell(now_, SleepNoticed{slept->by});
+      restart(now_);
+    } else if (const auto* lost = std::get_if<HearingLost>(&observation.what); lost && hears_) {
+      hears_ = false;
+      knowledge_.tell(now_, JudgementSuspended{lost->reason});
+    } else if (std::holds_alternative<HearingRegained>(observation.what) && !hears_) {
+      hears_ = true;
+      knowledge_.tell(now_, JudgementResumed{});
+      restart(now_);
+    }
     monitor_.advance(now_);
     monitor_.observe(observation, now_);
     if (const auto* reply = std::get_if<Reply>(&observation.what)) executor_.answered(*reply, now_);
     if (const auto* order = std::get_if<Order>(&observation.what)) obey(*order, now_);
     news_ |= is_news(observation);
-    analyzer_.advance(now_);
+    if (hears_) analyzer_.advance(now_);
   }
   now_ = std::max(now_, now);
   knowledge_.now = now_;
   monitor_.advance(now_);
-  analyzer_.advance(now_);
+  if (hears_) analyzer_.advance(now_);
   governor_.advance(now_);
   news_ |= !knowledge_.events.empty();
+}
+
+// Nobody listened until `now`, so that no silence, no delay and no late answer proves anything.
+void Manager::restart(Time now) {
+  monitor_.restart(now);
+  analyzer_.restart(now);
+  executor_.restart(now);
+  news_ = true;
 }
 
 void Manager::react(std::vector<Command>& commands) {
@@ -105,6 +126,8 @@ void Manager::react(std::vector<Command>& commands) {
 void Manager::obey(const Order& order, Time now) {
   if (const auto* run = std::get_if<RunStrategy>(&order.what))
     refresh_conditions(run->strategy, now);
+  if (!hears_ && std::holds_alternative<RunStrategy>(order.what))
+    return knowledge_.tell(now, OrderRefused{order, "the robot cannot be heard"});
   if (auto reason = governor_.objection(order, autonomy_))
     return knowledge_.tell(now, OrderRefused{order, std::move(*reason)});
   knowledge_.tell(now, OrderAccepted{order});
@@ -253,6 +276,7 @@ void Manager::hold_back(const Verdict& verdict, Time now) {
 }
 
 Time Manager::next_deadline() const {
+  if (!hears_) return std::min(monitor_.next_deadline(), governor_.next_deadline());
   return std::min({monitor_.next_deadline(), analyzer_.next_deadline(), executor_.next_deadline(),
                    governor_.next_deadline(), next_plan_});
 }

@@ -45,6 +45,8 @@ class Manager : public ManagingSystem {
   const Knowledge& knowledge() const { return knowledge_; }
   const Governor& governor() const { return governor_; }
   Autonomy autonomy() const { return autonomy_; }
+  // Whether the robot would be heard if it spoke. If not, nothing is judged.
+  bool hears() const { return hears_; }
   // When the robot has had its time to show itself (Options::settling).
   Time settled() const { return settled_; }
 
@@ -65,6 +67,7 @@ class Manager : public ManagingSystem {
 
  private:
   void take_in(Time now, std::span<const Observation> observations);
+  void restart(Time now);
   void react(std::vector<Command>& commands);
   void obey(const Order& order, Time now);
   void refresh_conditions(StrategyId strategy, Time now);
@@ -87,6 +90,7 @@ class Manager : public ManagingSystem {
   Autonomy autonomy_;
   Time settled_;  // until then nothing is called absent
   Time now_;
+  bool hears_ = true;
   bool news_ = false;        // something a plan depends on changed since the last plan
   Time next_plan_ = kNever;  // while failures are held back
   struct Said {

@@ -8,14 +8,18 @@ void Runtime::run(const std::atomic<bool>& stop, Time end) {
   std::vector<Observation> observations;
   while (!stop && robot_.now() < end) {
     observations.clear();
+    const Time due = std::max(stepped_, manager_.next_deadline());
     robot_.observe(std::min(end, manager_.next_deadline()), observations);
+    const Time now = robot_.now();
+    if (now > later(due, kLate) && stepped_ != kLongAgo)
+      observations.insert(observations.begin(), {now, Overslept{now - due}});
     take_orders(observations);
     step(observations);
   }
 }
 
 void Runtime::step(std::vector<Observation>& observations) {
-  const Time now = robot_.now();
+  const Time now = stepped_ = robot_.now();
   const std::vector<Command> commands = manager_.step(now, observations);
   if (on_step) on_step({now, observations, commands, manager_.events()});
   for (const Command& command : commands) robot_.execute(command);

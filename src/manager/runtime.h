@@ -17,6 +17,10 @@ namespace culprit {
 
 class Runtime {
  public:
+  // Whoever comes round so much later than it was asked to stood still, or was kept from the
+  // processor: the manager is told (Overslept). Less is within what rules can be written for.
+  static constexpr Duration kLate = std::chrono::milliseconds(250);
+
   // Both must outlive the runtime.
   Runtime(ManagingSystem& manager, Robot& robot) : manager_(manager), robot_(robot) {}
 
@@ -49,6 +53,7 @@ class Runtime {
 
   ManagingSystem& manager_;
   Robot& robot_;
+  Time stepped_ = kLongAgo;  // when the last step began
   std::mutex mutex_;
   std::vector<Order> orders_;  // guarded by mutex_
 };

@@ -121,6 +121,14 @@ void TestRobot::run_for(Duration time) {
   }
 }
 
+void TestRobot::freeze(Duration time) {
+  now += time;
+  for (Topic& topic : topics_) topic.next += time;
+  std::multimap<Time, std::function<void()>> agenda;
+  for (auto& [at, action] : agenda_) agenda.emplace(at + time, std::move(action));
+  agenda_ = std::move(agenda);
+}
+
 void TestRobot::step() {
   const std::vector<Command> commands = manager_->step(now, inbox_);
   for (const Event& event : manager_->events()) {

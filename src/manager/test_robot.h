@@ -60,6 +60,8 @@ class TestRobot {
       const std::string& name);  // -9: its process is gone, its node lingers until its lease ends
   void stop(const std::string& name);  // -STOP
   void run_for(Duration time);
+  // All stands still, the manager too.
+  void freeze(Duration time);
   void order(Order order) { tell(std::move(order)); }
   // An observation that comes now.
   template <class What>

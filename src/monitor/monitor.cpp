@@ -32,7 +32,7 @@ Monitor::Monitor(Knowledge& knowledge, Time start, Time settled)
       parameter_inputs_(knowledge.rules.parameters.size()),
       parameter_signals_(knowledge.rules.parameters.size()),
       diagnostic_inputs_(knowledge.rules.diagnostics.size()),
-      deadlines_(knowledge.rules.inputs.size() + 1) {
+      deadlines_(knowledge.rules.inputs.size() + 2) {
   const RuleSet& rules = knowledge.rules;
   for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
     const Input& input = rules.inputs[i];
@@ -85,6 +85,20 @@ void Monitor::observe(const Observation& observation, Time at) {
   std::visit([&](const auto& seen) { on(at, seen); }, observation.what);
 }
 
+void Monitor::restart(Time now) {
+  is_deaf_ = false;
+  awake_ = now;
+  graced_ = later(now, kGrace);
+  deadlines_.set(knowledge_.rules.inputs.size() + 1, graced_);
+  for (Topic& topic : topics_) topic.phi.restart(now);
+  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c)
+    knowledge_.components[ComponentId(c)].missed_probes = 0;
+  for (std::size_t i = 0; i < knowledge_.rules.inputs.size(); ++i) {
+    const Kind kind = knowledge_.rules.inputs[i].kind;
+    if (kind == Kind::kRate || kind == Kind::kAge || kind == Kind::kPhi) update(InputId(i), now);
+  }
+}
+
 void Monitor::advance(Time now) {
   while (const auto due = deadlines_.pop_due(now)) {
     if (*due < knowledge_.rules.inputs.size()) {
@@ -92,7 +106,7 @@ void Monitor::advance(Time now) {
       continue;
     }
     for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c)
-      update_alive(ComponentId(c), now, "");
+      update_alive(ComponentId(c), now, "its node left the graph");
   }
 }
 

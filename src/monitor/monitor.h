@@ -27,6 +27,8 @@ class Monitor {
   // What a signal usually is: its last readings, once there are enough.
   static constexpr std::size_t kReadings = 32;
   static constexpr std::size_t kLeastReadings = 4;
+  // Participants announce themselves every 3 s.
+  static constexpr Duration kGrace = std::chrono::seconds(5);
 
   // `knowledge` must outlive the monitor. Watching begins at `start`. Until `settled`, what was not
   // seen is unknown: it may still be discovered. From then on it is absent: a component that is not
@@ -38,6 +40,11 @@ class Monitor {
 
   // Takes in an observation as of `at`, which never goes back.
   void observe(const Observation& observation, Time at);
+
+  // What was not heard until `now` could not have been heard, as when nobody listened: every
+  // silence begins anew. For kGrace, a node that leaves the graph is not taken for dead unless the
+  // operating system says so: it may only have to be discovered anew.
+  void restart(Time now);
 
   // Lets time pass: updates every value whose deadline has come.
   void advance(Time now);
@@ -84,6 +91,9 @@ class Monitor {
   void on(Time, const Reply&) {}  // the executor's
   void on(Time, const Order&) {}  // the governor's
   void on(Time at, const LinkTrouble& seen);
+  void on(Time, const HearingRegained&) {}  // the manager's: restart()
+  void on(Time, const Overslept&) {}        // likewise
+  void on(Time, const HearingLost&) { is_deaf_ = true; }
 
   void read_signal(SignalId signal, const Value& value, Time at);
   void update(InputId id, Time now);
@@ -100,10 +110,17 @@ class Monitor {
 
   void forget_process(ComponentId component, Time at);
   void update_alive(ComponentId component, Time at, const std::string& remark);
+  void update_alive_inputs(ComponentId component, const Slot& value);
 
   Knowledge& knowledge_;
+  // Since when a silence counts that began at `since`.
+  Time heard_since(Time since) const { return std::max(since, awake_); }
+
   Time start_;
   Time settled_;
+  Time awake_ = kLongAgo;   // no silence counts from before
+  Time graced_ = kLongAgo;  // until then nodes may have to be discovered anew
+  bool is_deaf_ = false;
   std::vector<Topic> topics_;
   std::vector<Signal> signals_;
   std::vector<Derived> derived_;
@@ -111,7 +128,7 @@ class Monitor {
   std::vector<std::vector<InputId>> parameter_inputs_;
   std::vector<std::vector<SignalId>> parameter_signals_;
   std::vector<std::vector<InputId>> diagnostic_inputs_;
-  Deadlines deadlines_;  // by InputId; one more for `settled`
+  Deadlines deadlines_;  // by InputId; then `settled_`, then `graced_`
 };
 
 }  // namespace culprit

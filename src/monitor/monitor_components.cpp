@@ -82,6 +82,7 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
 }
 
 void Monitor::on(Time at, const Probed& seen) {
+  if (is_deaf_ && !seen.answered) return;
   ComponentState& state = knowledge_.components[seen.component];
   state.missed_probes = seen.answered ? 0 : state.missed_probes + 1;
   update_alive(seen.component, at, "it does not answer");
@@ -108,16 +109,27 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   const bool is_alive = state.in_graph && state.process == ProcessState::kRunning &&
                         state.missed_probes < kMissedProbes;
   if (!is_alive && !state.alive && at < settled_) return;  // it may still be discovered
+  const bool may_be_unheard = is_deaf_ || at < graced_;
+  if (!is_alive && may_be_unheard && state.process == ProcessState::kRunning) {
+    state.alive.reset();
+    return update_alive_inputs(component, Slot());
+  }
   if (state.alive == is_alive) return;
   const bool was_known = state.alive.has_value();
   state.alive = is_alive;
   if (is_alive) {
     knowledge_.tell(at, ComponentFound{component, state.node_pid});
   } else {
-    knowledge_.tell(at, ComponentLost{component, was_known ? remark : "it was never seen"});
+    knowledge_.tell(
+        at, ComponentLost{component,
+                          was_known || state.node_seen != kLongAgo ? remark : "it was never seen"});
   }
+  update_alive_inputs(component, Slot::of(is_alive));
+}
+
+void Monitor::update_alive_inputs(ComponentId component, const Slot& value) {
   for (const InputId id : component_inputs_[component.index]) {
-    if (knowledge_.rules[id].kind == Kind::kAlive) knowledge_.signals.set(id, Slot::of(is_alive));
+    if (knowledge_.rules[id].kind == Kind::kAlive) knowledge_.signals.set(id, value);
   }
 }
 

@@ -21,7 +21,7 @@ void Monitor::on(Time at, const SampleArrived& seen) {
   Topic& topic = topics_[seen.topic.index];
   if (!topic.first) topic.first = at;
   SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(seen.topic);
-  if (rhythm.last) {
+  if (rhythm.last && *rhythm.last >= awake_) {
     const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
     rhythm.interval = smoothed(rhythm.interval, interval);
     rhythm.silence = usual_silence(rhythm.silence, interval);
@@ -40,14 +40,14 @@ void Monitor::on(Time at, const SampleArrived& seen) {
 
 Slot Monitor::age(InputId id, Time now) const {
   const Topic& topic = topics_[knowledge_.rules[id].topic.index];
-  if (topic.last) return Slot::of(now - *topic.last);
-  return now >= settled_ ? Slot::of(now - start_) : Slot();
+  if (topic.last) return Slot::of(now - heard_since(*topic.last));
+  return now >= settled_ ? Slot::of(now - heard_since(start_)) : Slot();
 }
 
 Slot Monitor::rate(InputId id, Time now) {
   const Input& input = knowledge_.rules[id];
   const Topic& topic = topics_[input.topic.index];
-  const bool window_is_full = topic.first && later(*topic.first, input.window) <= now;
+  const bool window_is_full = topic.first && later(heard_since(*topic.first), input.window) <= now;
   if (topic.first ? !window_is_full : now < settled_) return {};
   derived_[id.index].count.advance(now);
   return Slot::of(derived_[id.index].count.rate());
@@ -71,14 +71,14 @@ Time Monitor::next_crossing(InputId id, Time now) const {
     case Kind::kPhi:
       return next_phi(id, now);
     default:
-      if (topic.first && now < later(*topic.first, input.window))
-        return later(*topic.first, input.window);
+      if (topic.first && now < later(heard_since(*topic.first), input.window))
+        return later(heard_since(*topic.first), input.window);
       return next_rate(id);
   }
 }
 
 Time Monitor::next_age(const Input& input, Time now) const {
-  const Time since = topics_[input.topic.index].last.value_or(start_);
+  const Time since = heard_since(topics_[input.topic.index].last.value_or(start_));
   for (const double threshold : input.thresholds) {
     // One nanosecond on: `age > threshold` must hold then.
     const Time crossing = later(since, from_seconds(threshold) + Duration(1));

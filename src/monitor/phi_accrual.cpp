@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace culprit::monitor {
 namespace {
@@ -31,7 +32,7 @@ void PhiAccrual::add(Time at, std::uint32_t count) {
   const std::optional<Time> before = last_;
   const std::optional<double> suspected = phi(at);
   last_ = at;
-  if (!before || count == 0) return;
+  if (std::exchange(is_restarted_, false) || !before || count == 0) return;
   outages_ = suspected && *suspected > kOutage ? outages_ + 1 : 0;
   if (outages_ > 0 && outages_ < kNewRhythm) return;
   if (outages_ == kNewRhythm) intervals_.clear();
@@ -50,6 +51,12 @@ void PhiAccrual::add(Time at, std::uint32_t count) {
 
 double PhiAccrual::deviation() const {
   return std::max({std::sqrt(variance_), kLeastDeviation * mean_, 1e-9});
+}
+
+void PhiAccrual::restart(Time now) {
+  if (!last_) return;
+  last_ = now;
+  is_restarted_ = true;
 }
 
 std::optional<double> PhiAccrual::phi(Time now) const {

@@ -32,6 +32,9 @@ class PhiAccrual {
   // `count` messages came at `at`, evenly spread since the last ones. Times never go back.
   void add(Time at, std::uint32_t count);
 
+  // Nobody listened until `now`: the silence begins anew, and its length tells nothing.
+  void restart(Time now);
+
   // Nothing while the rhythm is unknown.
   std::optional<double> phi(Time now) const;
 
@@ -49,6 +52,7 @@ class PhiAccrual {
   double variance_ = 0;
   std::optional<Time> last_;
   int outages_ = 0;  // in a row
+  bool is_restarted_ = false;
 };
 
 }  // namespace culprit::monitor

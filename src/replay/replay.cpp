@@ -118,7 +118,10 @@ Expected<std::vector<std::string>> advise(Recording& recording, const RuleSet& r
   for (; more && *more; more = recording.next(step)) {
     // Other rules have other deadlines. A damaged clock may leap over millions of them.
     constexpr int kMostDeadlines = 100'000;
-    for (int i = 0; i < kMostDeadlines && manager->next_deadline() < step.now; ++i) {
+    // Nobody would have decided anything in a sleep.
+    const bool has_slept = !step.observations.empty() &&
+                           std::holds_alternative<Overslept>(step.observations.front().what);
+    for (int i = 0; !has_slept && i < kMostDeadlines && manager->next_deadline() < step.now; ++i) {
       manager->step(manager->next_deadline(), {});
       tell();
     }

@@ -144,11 +144,24 @@ struct LinkTrouble {
   std::string text;
 };
 
+// What we say to ourselves, on the way that the robot's messages take, does not come back: nothing
+// that is missing from now on is missing on the robot. Until HearingRegained.
+struct HearingLost {
+  std::string reason;
+};
+struct HearingRegained {};
+
+// Whoever drives the manager came round this much later than the manager asked for: culprit, or the
+// whole computer, stood still.
+struct Overslept {
+  Duration by{};
+};
+
 struct Observation {
   Time at;
   std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived,
                SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply,
-               LinkTrouble, Order, NamesakesSeen>
+               LinkTrouble, Order, NamesakesSeen, HearingLost, HearingRegained, Overslept>
       what;
 };
 

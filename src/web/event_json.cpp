@@ -132,6 +132,9 @@ struct AsJson {
   Json operator()(const SilenceEnded&) const { return {{"kind", "silence_ended"}}; }
   Json operator()(const StormBegan&) const { return {{"kind", "storm"}}; }
   Json operator()(const StormEnded&) const { return {{"kind", "calm"}}; }
+  Json operator()(const JudgementSuspended&) const { return {{"kind", "deaf"}}; }
+  Json operator()(const JudgementResumed&) const { return {{"kind", "hears"}}; }
+  Json operator()(const SleepNoticed&) const { return {{"kind", "slept"}}; }
 
   static Json of_order(const char* kind, const Order& order) {
     return {{"kind", kind},

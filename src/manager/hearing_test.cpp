@@ -1,0 +1,206 @@
+// Silence counts only while the robot would have been heard: after a sleep, and while it is deaf,
+// the manager judges nothing.
+#include <gtest/gtest.h>
+
+#include "manager/runtime.h"
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+constexpr const char* kRules = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT lidar  NODE /lidar  LAUNCH "lidar"
+RULE CameraSilent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 500ms
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 10
+RULE LidarSlow
+  POLICIES ERROR
+  TRIGGER rate(/scan) < 5 || phi(/scan) > 8
+    STRATEGY redeploy 90 10
+      ADAPTATION lidar redeploy 10
+RULE LidarDead
+  POLICIES ERROR
+  TRIGGER !alive(lidar)
+    STRATEGY redeploy 90 10
+      ADAPTATION lidar redeploy 10
+RULE Blurred
+  POLICIES ERROR FOR 2s
+  TRIGGER blur > 1
+    STRATEGY refocus 60 10
+      ADAPTATION camera set_parameter focus 1 5
+)";
+
+TestRobot robot() {
+  TestRobot robot(kRules);
+  robot.add("camera", {}, "/rgb");
+  robot.add("lidar", {}, "/scan");
+  robot["camera"].parameters["focus"] = Value(std::int64_t{0});
+  robot.discover();
+  robot.run_for(3s);
+  EXPECT_TRUE(robot.said.size() < 3) << transcript(robot);
+  robot.said.clear();
+  return robot;
+}
+
+// All stands still for so long: the robot, and culprit with it.
+void freeze(TestRobot& robot, Duration time) {
+  robot.freeze(time);
+  robot.tell(Overslept{time});
+}
+
+TEST(Hearing, AFrozenRobotIsNotJudgedByItsSleep) {
+  TestRobot robot = test::robot();
+  freeze(robot, 20s);
+  robot.run_for(10s);
+  EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(robot.count("stood still for 20s"), 1u) << transcript(robot);
+}
+
+TEST(Hearing, WhatIsSilentAfterASleepIsFoundSilent) {
+  TestRobot robot = test::robot();
+  robot["camera"].fault = "redeploy";
+  freeze(robot, 20s);
+  robot.run_for(450ms);
+  EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("lidar"), 0u) << transcript(robot);
+}
+
+// Two seconds of every three culprit does not run, while the robot does.
+TEST(Hearing, AStarvedManagerDecidesNothing) {
+  TestRobot robot = test::robot();
+  for (int i = 0; i < 20; ++i) {
+    freeze(robot, 2s);
+    robot.run_for(1s);
+  }
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+}
+
+// Leases run out while nobody announces itself, and that is noticed at waking.
+TEST(Hearing, ANodeWhoseLeaseRanOutInASleepIsNotDead) {
+  TestRobot robot = test::robot();
+  freeze(robot, 20s);
+  robot.tell(NodeVanished{"/lidar"});
+  robot.run_for(3s);
+  robot.tell(NodeAppeared{"/lidar", robot["lidar"].pid});
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+}
+
+TEST(Hearing, ANodeThatDoesNotComeBackAfterASleepIsDead) {
+  TestRobot robot = test::robot();
+  freeze(robot, 20s);
+  robot.tell(NodeVanished{"/lidar"});
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.was_asked("lidar: ")) << transcript(robot);
+}
+
+TEST(Hearing, AProcessKnownToBeDeadIsDeadAtOnce) {
+  TestRobot robot = test::robot();
+  freeze(robot, 20s);
+  robot.kill("lidar");
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("LidarDead detected"), 1u) << transcript(robot);
+}
+
+TEST(Hearing, WhatHasToLastBeginsAnewAfterASleep) {
+  TestRobot robot = test::robot();
+  robot.signal("blur", Value(2.0));
+  robot.run_for(1s);
+  freeze(robot, 20s);
+  robot.run_for(1900ms);
+  EXPECT_EQ(robot.count("Blurred detected"), 0u) << transcript(robot);
+  robot.run_for(200ms);
+  EXPECT_EQ(robot.count("Blurred detected"), 1u) << transcript(robot);
+}
+
+TEST(Hearing, NothingIsJudgedWhileDeaf) {
+  TestRobot robot = test::robot();
+  robot.tell(HearingLost{"nothing came back"});
+  EXPECT_FALSE(robot.manager().hears());
+  robot["camera"].fault = "deaf";  // as culprit sees it
+  robot["lidar"].fault = "deaf";
+  robot.tell(NodeVanished{"/lidar"});
+  robot.run_for(60s);
+  EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  robot["camera"].fault = robot["lidar"].fault = "";
+  robot.tell(HearingRegained{});
+  robot.tell(NodeAppeared{"/lidar", robot["lidar"].pid});
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.manager().hears());
+  EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("nothing came back"), 1u) << transcript(robot);
+}
+
+TEST(Hearing, AStrategyUnderWayIsNotBlamedForWhatWasNotHeard) {
+  TestRobot robot = test::robot();
+  robot["camera"].fault = "redeploy";
+  while (!robot.was_asked("camera: start")) robot.run_for(50ms);
+  const Belief before = robot.manager().knowledge().beliefs[StrategyId(0)];
+  robot.tell(HearingLost{"nothing came back"});
+  robot["lidar"].fault = "deaf";
+  robot.run_for(60s);
+  EXPECT_EQ(robot.count("did not"), 0u) << transcript(robot);
+  robot["lidar"].fault = "";
+  robot.tell(HearingRegained{});
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("camera"));
+  EXPECT_EQ(robot.count("CameraSilent"), 3u) << transcript(robot);
+  const Belief after = robot.manager().knowledge().beliefs[StrategyId(0)];
+  EXPECT_EQ(after.alpha, before.alpha) << "its outcome proves nothing";
+  EXPECT_EQ(after.beta, before.beta);
+}
+
+TEST(Hearing, NothingIsRunByHandWhileDeaf) {
+  TestRobot robot = test::robot();
+  robot.tell(HearingLost{"nothing came back"});
+  robot.order({1, "ada", "", RunStrategy{StrategyId(0)}});
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("cannot be heard"), 1u) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty());
+}
+
+// A robot whose computer stands still in the middle of a wait.
+class SleepyRobot : public Robot {
+ public:
+  Time now() const override { return now_; }
+  void observe(Time until, std::vector<Observation>& observations) override {
+    now_ = std::min(until, later(now_, 100ms));
+    if (now_ >= Time(5s) && !std::exchange(has_slept_, true)) now_ += 20s;
+    observations.push_back({now_, SampleArrived{TopicId(0), 1}});
+  }
+  void execute(const Command&) override {}
+
+ private:
+  Time now_{};
+  bool has_slept_ = false;
+};
+
+TEST(Runtime, TellsTheManagerThatItOverslept) {
+  const Checked checked = check(Source("test.rules", kRules));
+  Manager manager(*checked.rules, std::make_unique<BayesPlanner>(), {});
+  SleepyRobot robot;
+  Runtime runtime(manager, robot);
+  std::vector<Duration> slept;
+  runtime.on_step = [&](const Runtime::Step& step) {
+    for (const Observation& each : step.observations) {
+      if (const auto* overslept = std::get_if<Overslept>(&each.what))
+        slept.push_back(overslept->by);
+    }
+  };
+  const std::atomic<bool> stop = false;
+  runtime.run(stop, Time(40s));
+  ASSERT_EQ(slept.size(), 1u);
+  EXPECT_GT(slept[0], 19s);
+  EXPECT_LE(slept[0], 20s);
+}
+
+}  // namespace
+}  // namespace culprit::test
