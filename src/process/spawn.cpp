@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <poll.h>
 #include <pthread.h>
 #include <sstream>
 #include <string_view>
@@ -233,6 +234,12 @@ Launch& Launch::operator=(Launch&& other) noexcept {
 
 Launch::~Launch() {
   if (pid_ == 0) return;
+  pollfd report{report_.get(), POLLIN, 0};
+  const bool is_decided = poll(&report, 1, 0) > 0;
+  if (is_decided) {
+    (void)outcome();
+    return;
+  }
   kill(pid_, SIGKILL);
   // One that hangs in a file system dies when that lets it go: nobody can wait for it.
   waitpid(pid_, nullptr, WNOHANG);

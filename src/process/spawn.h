@@ -38,7 +38,7 @@ class Launch {
   static Expected<Launch> begin(const Program& program, Until until);
   Launch(Launch&& other) noexcept;
   Launch& operator=(Launch&& other) noexcept;
-  // One whose outcome was not taken is killed.
+  // A start that is not over yet is given up. What runs goes on.
   ~Launch();
 
   int pid() const { return pid_; }

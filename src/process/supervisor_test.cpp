@@ -229,6 +229,24 @@ TEST(Supervisor, LeavesItsProcessesRunningWhenItEnds) {
   waitpid(pid, nullptr, 0);
 }
 
+TEST(Launch, WhatRunsGoesOnWhetherOrNotAnybodyAsked) {
+  const auto log =
+      std::filesystem::temp_directory_path() / ("culprit-launch-" + std::to_string(getpid()));
+  int pid = 0;
+  {
+    const auto launch = Launch::begin({{"sleep", "1000"}, {}, log}, Until::kItRuns);
+    ASSERT_TRUE(launch) << launch.error();
+    pid = launch->pid();
+    pollfd report{launch->descriptor(), POLLIN, 0};
+    ASSERT_EQ(poll(&report, 1, 30'000), 1);
+  }
+  EXPECT_EQ(state_letter(pid).value_or('X') == 'Z', false);
+  kill(pid, SIGKILL);
+  siginfo_t info{};
+  ASSERT_EQ(waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED), 0) << "it is ours to reap";
+  std::filesystem::remove(log);
+}
+
 // As after a crash: nothing is known but what the operating system says.
 TEST(Supervisor, TakesOverWhatAnotherOneOfTheSameRobotStarted) {
   const std::string robot = "test/" + std::to_string(getpid());
