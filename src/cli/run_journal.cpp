@@ -105,28 +105,34 @@ RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rul
   RunBeginning beginning;
   std::error_code error;
   const bool was_there = std::filesystem::exists(path, error);
-  auto writer = journal::Writer::open(path, {});
-  bool is_set_aside = false;
-  if (writer) {
-    is_set_aside = !writer->remark().empty();
-    if (is_set_aside) beginning.findings.push_back(writer->remark());
+  std::filesystem::path rows = path;  // where those of the last run are
+  const auto open = [&](journal::Writer::Options options) {
+    beginning.writer.reset();
+    auto writer = journal::Writer::open(path, options);
+    if (!writer) return writer.error();
+    if (!writer->remark().empty()) beginning.findings.push_back(writer->remark());
+    if (!writer->aside().empty()) rows = writer->aside();
     beginning.writer = std::move(*writer);
-  } else {
-    beginning.findings.push_back(writer.error());
+    return std::string();
+  };
+  if (const std::string why = open({}); !why.empty()) {
+    beginning.findings.push_back(why);
     beginning.findings.emplace_back(
         "the robot is managed all the same; what happens is kept and written as soon as that is "
         "possible");
     beginning.is_of_another = is_locked(path);
   }
   std::optional<Recovery> recovery;
-  if (std::filesystem::exists(path, error)) {
-    if (const auto reader = journal::Reader::open(path))
-      recovery = take_over(*reader, rules, now, beginning);
+  if (const auto reader = journal::Reader::open(rows)) {
+    recovery = take_over(*reader, rules, now, beginning);
+    // A row that cannot be read now can never be dropped either.
+    if (!recovery && beginning.writer && rows == path) (void)open({.is_damaged = true});
   }
-  const Rows rows = !was_there                  ? Rows::kNone
-                    : recovery && !is_set_aside ? Rows::kRead
-                                                : Rows::kUnreadable;
-  find_orders(path, rows, recovery.value_or(Recovery()), rules, now.robot, beginning);
+  // Of a file that was set aside, what was learned is known better.
+  if (const auto learned = beginning.writer ? beginning.writer->learned() : Error{}; learned)
+    beginning.learned = *learned;
+  const Rows found = !was_there ? Rows::kNone : recovery ? Rows::kRead : Rows::kUnreadable;
+  find_orders(path, found, recovery.value_or(Recovery()), rules, now.robot, beginning);
   return beginning;
 }
 

@@ -27,6 +27,23 @@ std::string why(int code, const char* message) {
   }
 }
 
+bool is_of_the_file(int code) {
+  switch (code & 0xff) {
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+    case SQLITE_ERROR:  // a table is not there, or is another one
+    case SQLITE_CONSTRAINT:
+    case SQLITE_MISMATCH:
+    case SQLITE_TOOBIG:
+      return true;
+    case SQLITE_IOERR:
+      return code == SQLITE_IOERR_READ || code == SQLITE_IOERR_SHORT_READ ||
+             code == SQLITE_IOERR_CORRUPTFS;
+    default:
+      return false;
+  }
+}
+
 // As a URI, in which '?', '#' and '%' would mean something.
 std::string uri_of(const std::filesystem::path& path, const char* query) {
   std::string uri = "file:";
@@ -73,8 +90,10 @@ Expected<bool> Statement::step() {
   if (code == SQLITE_ROW) return true;
   sqlite3* connection = sqlite3_db_handle(statement_.get());
   const std::string message = sqlite3_errmsg(connection);
+  const int extended = sqlite3_extended_errcode(connection);
   sqlite3_reset(statement_.get());
   if (code == SQLITE_DONE) return false;
+  *blames_file_ = is_of_the_file(extended);
   return Error{why(code, message.c_str())};
 }
 
@@ -122,12 +141,16 @@ Expected<void> Database::run(const std::string& sql) {
   return error();
 }
 
+void Database::roll_back() {
+  sqlite3_exec(connection_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
 Expected<Statement> Database::prepare(std::string_view sql) const {
   sqlite3_stmt* statement = nullptr;
   const int code = sqlite3_prepare_v2(connection_.get(), sql.data(), static_cast<int>(sql.size()),
                                       &statement, nullptr);
   if (code != SQLITE_OK) return error();
-  return Statement(statement);
+  return Statement(statement, blames_file_.get());
 }
 
 Expected<std::int64_t> Database::number(const std::string& sql) const {
@@ -138,17 +161,25 @@ Expected<std::int64_t> Database::number(const std::string& sql) const {
   return *row ? statement->integer(0) : 0;
 }
 
-bool Database::is_damaged(const std::filesystem::path& path, const char* look) {
+bool Database::is_damaged(const std::filesystem::path& path, std::span<const char* const> looks) {
   sqlite3* connection = nullptr;
   int code = sqlite3_open_v2(uri_of(path, "").c_str(), &connection,
                              SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);
   const Database database(connection);
-  if (code == SQLITE_OK) code = sqlite3_exec(connection, look, nullptr, nullptr, nullptr);
-  return (code & 0xff) == SQLITE_CORRUPT || (code & 0xff) == SQLITE_NOTADB;
+  if (connection != nullptr) {
+    sqlite3_extended_result_codes(connection, 1);
+    sqlite3_busy_timeout(connection, kBusyMilliseconds);
+  }
+  for (const char* look : looks) {
+    if (code == SQLITE_OK) code = sqlite3_exec(connection, look, nullptr, nullptr, nullptr);
+  }
+  return code != SQLITE_OK && is_of_the_file(code);
 }
 
 Error Database::error() const {
-  return {why(sqlite3_extended_errcode(connection_.get()), sqlite3_errmsg(connection_.get()))};
+  const int code = sqlite3_extended_errcode(connection_.get());
+  *blames_file_ = is_of_the_file(code);
+  return {why(code, sqlite3_errmsg(connection_.get()))};
 }
 
 }  // namespace culprit::journal

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -42,9 +43,11 @@ class Statement {
   struct Finalize {
     void operator()(sqlite3_stmt* statement) const;
   };
-  explicit Statement(sqlite3_stmt* statement) : statement_(statement) {}
+  Statement(sqlite3_stmt* statement, bool* blames_file)
+      : statement_(statement), blames_file_(blames_file) {}
 
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  bool* blames_file_;  // of the database
 };
 
 class Database {
@@ -56,23 +59,31 @@ class Database {
   static Expected<Database> open(const std::filesystem::path& path, Mode mode);
 
   Expected<void> run(const std::string& sql);
+  // Ends a transaction that failed; SQLite may have done so already.
+  void roll_back();
   Expected<Statement> prepare(std::string_view sql) const;
 
   // The one number that `sql` selects.
   Expected<std::int64_t> number(const std::string& sql) const;
 
-  // Whether the file itself is broken, or is no database: SQLite's result codes say so when it
-  // runs `look`. False if something else is in the way.
-  static bool is_damaged(const std::filesystem::path& path, const char* look);
+  // Whether what failed last is to be blamed on what stands in the file: it is broken, cannot be
+  // read, or is not what it should be. False if something else was in the way: the disk is full,
+  // the file is locked or may not be written.
+  bool blames_file() const { return *blames_file_; }
+
+  // Likewise of a file that cannot be opened, or in which one of `looks` fails.
+  static bool is_damaged(const std::filesystem::path& path, std::span<const char* const> looks);
 
  private:
   struct Close {
     void operator()(sqlite3* connection) const;
   };
-  explicit Database(sqlite3* connection) : connection_(connection) {}
+  explicit Database(sqlite3* connection)
+      : connection_(connection), blames_file_(std::make_unique<bool>(false)) {}
   Error error() const;
 
   std::unique_ptr<sqlite3, Close> connection_;
+  std::unique_ptr<bool> blames_file_;  // also written by statements
 };
 
 }  // namespace culprit::journal

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "journal/recovery.h"
 #include "journal/requests.h"
 
 namespace culprit::journal {
@@ -71,7 +72,7 @@ Recorder::Recorder(std::optional<Writer> writer, Options options, const Session&
 Recorder::~Recorder() { finish(); }
 
 Expected<void> Recorder::end() {
-  hand_over(false);
+  hand_over(Urgency::kNone);
   {
     const std::lock_guard lock(mutex_);
     Pending& pending = queue_.next();
@@ -86,7 +87,7 @@ Expected<void> Recorder::end() {
 
 void Recorder::finish() {
   if (!thread_.joinable()) return;
-  hand_over(false);
+  hand_over(Urgency::kNone);
   {
     const std::lock_guard lock(mutex_);
     is_ending_ = true;
@@ -114,23 +115,25 @@ void Recorder::Queue::clear() {
 void Recorder::hand_over(Pending& step, std::span<const Command> commands,
                          std::span<const Event> events) {
   bool wait = false;
-  if (!commands.empty() || !events.empty()) {
+  const bool decides = !commands.empty() || !events.empty();
+  if (decides) {
     step.decided = decision_of(commands, events);
     wait = !is_nothing(step.decided->learned) ||
            std::any_of(commands.begin(), commands.end(), changes_something) ||
            std::any_of(events.begin(), events.end(), is_order);
   }
-  hand_over(wait);
+  hand_over(wait ? Urgency::kNow : decides ? Urgency::kSoon : Urgency::kNone);
   if (wait) wait_until_written();
 }
 
-void Recorder::hand_over(bool is_wanted_now) {
+void Recorder::hand_over(Urgency urgency) {
   constexpr std::size_t kMaxQueued = 1 << 17;
   if (kept_ == 0) return;
   const auto kept = std::span(places_).first(std::exchange(kept_, 0));
   const std::int64_t wall_offset =
       options_.wall_clock() - kept.back().now.time_since_epoch().count();
   const std::lock_guard lock(mutex_);
+  if (queue_.used == 0) first_queued_ = kept.front().now;
   for (Pending& step : kept) {
     if (queued_observations_ > kMaxQueued && step.decided == nullptr) {
       ++lost_steps_;
@@ -139,10 +142,13 @@ void Recorder::hand_over(bool is_wanted_now) {
     }
     step.wall = step.now.time_since_epoch().count() + wall_offset;
     queued_observations_ += step.observations.size();
+    now_of_queue_ = step.now;
     std::swap(queue_.next(), step);
     ++handed_over_;
   }
-  is_wanted_now_ |= is_wanted_now;
+  const bool is_due = now_of_queue_ - first_queued_ >= kPeriod || queued_observations_ >= kMany;
+  urgency_ = std::max({urgency_, urgency, is_due ? Urgency::kSoon : Urgency::kNone});
+  if (urgency_ == Urgency::kSoon) work_.notify_one();
 }
 
 std::unique_ptr<const Recorder::Decided> Recorder::decision_of(std::span<const Command> commands,
@@ -187,14 +193,19 @@ Learned Recorder::changes() {
 
 void Recorder::run() {
   Queue taken;
+  auto written_at = std::chrono::steady_clock::now() - kSoon;
   std::unique_lock lock(mutex_);
   while (true) {
-    work_.wait_for(lock, is_failing_ ? kRetry : kPeriod,
-                   [&] { return is_ending_ || (is_wanted_now_ && !is_failing_); });
+    const auto is_wanted = [this](Urgency urgency) {
+      return is_ending_ || (urgency_ >= urgency && !is_failing_);
+    };
+    work_.wait_for(lock, is_failing_ ? kRetry : kPeriod, [&] { return is_wanted(Urgency::kSoon); });
+    work_.wait_until(lock, written_at + kSoon, [&] { return is_wanted(Urgency::kNow); });
     std::swap(taken, queue_);
     queued_observations_ = 0;
     const std::uint64_t upto = handed_over_;
-    const bool is_durable = std::exchange(is_wanted_now_, false);
+    const bool is_durable = std::exchange(urgency_, Urgency::kNone) == Urgency::kNow;
+    if (taken.used > 0) now_ = now_of_queue_;
     gap_steps_ += std::exchange(lost_steps_, 0);
     const bool is_last = is_ending_;
     lock.unlock();
@@ -204,6 +215,7 @@ void Recorder::run() {
     close_steps();
     const auto written = write(is_durable || is_last);
     last_error_ = written ? std::nullopt : std::optional(Error{written.error()});
+    written_at = std::chrono::steady_clock::now();
 
     lock.lock();
     written_ = upto;
@@ -274,19 +286,43 @@ void Recorder::add(std::string_view kind, std::int64_t at, const Json& body) {
 
 // In a file that takes the place of one that was removed or damaged, the run goes on.
 Expected<void> Recorder::open_anew() {
-  auto opened = Writer::open(options_.path, options_.writer);
+  Writer::Options options = options_.writer;
+  options.is_damaged = is_damaged_;
+  auto opened = Writer::open(options_.path, options);
   if (!opened) return Error{opened.error()};
   writer_ = std::move(*opened);
+  is_damaged_ = false;
   if (!writer_->remark().empty() && options_.on_trouble) options_.on_trouble(writer_->remark());
   const auto sessions = writer_->database().number(
       "SELECT count(*) FROM entry WHERE kind <> 'steps' AND kind = 'session'");
   if (!is_begun_ || (sessions && *sessions > 0)) return {};
-  session_["continued"] = true;
-  unsaved_.entries.insert(
-      unsaved_.entries.begin(),
-      {0, options_.wall_clock(), std::string(kind::kSession), to_text(session_)});
+  begin_session_anew(writer_->aside());
   unsaved_.learned = known_;
   return {};
+}
+
+// A row from which on the next run finds all that it has to know, without those before it. `rows`:
+// the file that they are in; empty: there is none.
+void Recorder::begin_session_anew(const std::filesystem::path& rows) {
+  const std::int64_t wall = options_.wall_clock();
+  std::optional<Recovery> known;
+  if (const auto reader = rows.empty() ? Expected<Reader>(Error{}) : Reader::open(rows)) {
+    if (auto recovery = recover(*reader, rules_, {now_, wall})) known = std::move(*recovery);
+  }
+  // Without them nobody knows what is under way by now; what was at the beginning is not.
+  Json interrupted = Json::array();
+  if (known) {
+    for (const Interrupted& each : known->interrupted) interrupted.push_back(to_json(each, rules_));
+    session_["past"] = to_json(known->past, rules_);
+    session_["paused"] = known->is_paused;
+    session_["dry_run"] = known->is_dry_run;
+  }
+  session_["interrupted"] = std::move(interrupted);
+  session_["learned"] = to_json(known_);
+  session_["start"] = now_.time_since_epoch().count();
+  session_["continued"] = true;
+  unsaved_.entries.insert(unsaved_.entries.begin(),
+                          {0, wall, std::string(kind::kSession), to_text(session_)});
 }
 
 Expected<void> Recorder::write(bool is_durable) {
@@ -294,6 +330,7 @@ Expected<void> Recorder::write(bool is_durable) {
     if (const auto opened = open_anew(); !opened) return failed({opened.error()});
   }
   const std::int64_t now = options_.wall_clock();
+  if (writer_->wants_new_session()) begin_session_anew(options_.path);
   if (gap_steps_ + gap_rows_ > 0) {
     const std::string text =
         "not recorded, for the journal could not be written: " + std::to_string(gap_steps_) +
@@ -322,6 +359,7 @@ Expected<void> Recorder::write(bool is_durable) {
 
 Expected<void> Recorder::failed(Error error) {
   // A file that cannot be written now may be another one next time: it is opened anew.
+  if (writer_) is_damaged_ = writer_->is_damaged();
   writer_.reset();
   bound_unsaved();
   bool is_new = false;

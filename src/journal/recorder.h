@@ -1,9 +1,11 @@
 // Writes down what the manager is stepped with and what it does, while it runs.
 //
 // The manager's thread keeps the steps that decide nothing, hands them over several at a time and
-// goes on; a thread of the recorder's own turns them into rows and writes them several times a
-// second. Only a step that asks for changes on the robot, that learned something or took an order
-// waits: its rows are on the disk before anything is asked for or said.
+// goes on; a thread of the recorder's own turns them into rows. Steps that decide nothing wait for
+// others, because each write costs whole pages of the disk, however little it is about; what was
+// said or asked is written soon. Only a step that asks for changes on the robot, that learned
+// something or took an order is waited for: its rows are on the disk before anything is asked for
+// or said.
 //
 // If the file cannot be written, nothing waits for it: the robot is managed all the same. Rows are
 // kept and written as soon as it is possible again. If they become too many, the oldest `steps` go
@@ -34,7 +36,10 @@ std::optional<Digest> digest_of(std::span<const Command> commands, std::span<con
 
 class Recorder {
  public:
-  static constexpr Duration kPeriod = std::chrono::milliseconds(200);  // between two writes
+  // How long steps that decide nothing wait to be written, by the robot's clock.
+  static constexpr Duration kPeriod = std::chrono::seconds(20);
+  static constexpr Duration kSoon = std::chrono::milliseconds(200);  // between two writes
+  static constexpr std::size_t kMany = 1 << 13;  // observations that do not wait for so long
   // How long, and how many, steps that decide nothing are kept before they are handed over.
   static constexpr Duration kKept = std::chrono::milliseconds(100);
   static constexpr std::size_t kMaxKept = 16;
@@ -102,7 +107,8 @@ class Recorder {
 
   // What is kept, the last of which is `step`.
   void hand_over(Pending& step, std::span<const Command> commands, std::span<const Event> events);
-  void hand_over(bool is_wanted_now);
+  enum class Urgency : std::uint8_t { kNone, kSoon, kNow };
+  void hand_over(Urgency urgency);
   std::unique_ptr<const Decided> decision_of(std::span<const Command> commands,
                                              std::span<const Event> events);
   void wait_until_written();
@@ -115,6 +121,7 @@ class Recorder {
   void add(std::string_view kind, std::int64_t at, const Json& body);
   Expected<void> write(bool is_durable);
   Expected<void> open_anew();
+  void begin_session_anew(const std::filesystem::path& rows);
   void finish();
   Expected<void> failed(Error error);
   void bound_unsaved();
@@ -133,7 +140,9 @@ class Recorder {
 
   // Of both threads, under the mutex.
   alignas(64) std::mutex mutex_;
-  bool is_wanted_now_ = false;
+  Urgency urgency_ = Urgency::kNone;
+  Time first_queued_{};  // steps that wait, from here
+  Time now_of_queue_{};  // to here
   Queue queue_;
   std::size_t queued_observations_ = 0;
   std::uint64_t handed_over_ = 0;
@@ -146,6 +155,8 @@ class Recorder {
 
   // Of the recorder's thread.
   std::optional<Writer> writer_;
+  bool is_damaged_ = false;  // the file, which cannot be written any more
+  Time now_{};               // of the newest step
   Batch unsaved_;
   std::size_t unsaved_bytes_ = 0;
   std::string steps_;  // of the row that is being made

@@ -80,4 +80,14 @@ Expected<void> check_schema(const Database& database) {
   return {};
 }
 
+bool has_damaged_head(const Database& database) {
+  constexpr int kNoCulpritYet = 1000;
+  const auto tables = database.number(
+      "SELECT count(*) FROM sqlite_schema WHERE name IN ('entry', 'anchor', 'belief', 'coupling')");
+  const auto application = database.number("PRAGMA application_id");
+  const auto version = database.number("PRAGMA user_version");
+  if (!tables || *tables < 4 || !application || !version) return false;
+  return *application != kApplication || *version < 1 || *version > kNoCulpritYet;
+}
+
 }  // namespace culprit::journal

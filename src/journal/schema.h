@@ -15,4 +15,8 @@ Expected<void> prepare_schema(Database& database);
 // Whether this is a journal that this culprit can read.
 Expected<void> check_schema(const Database& database);
 
+// Whether it has the tables of a journal, but not the numbers in its head that say so: not those of
+// any culprit that there may be.
+bool has_damaged_head(const Database& database);
+
 }  // namespace culprit::journal

@@ -1,5 +1,8 @@
 #include "journal/writer.h"
 
+#include <array>
+#include <chrono>
+#include <fstream>
 #include <sys/stat.h>
 #include <system_error>
 
@@ -36,35 +39,55 @@ Expected<fs::path> set_aside(const fs::path& path) {
 Expected<Database> open_database(const fs::path& path) {
   auto database = Database::open(path, Database::Mode::kWrite);
   if (!database) return database;
-  for (const char* setting : {"PRAGMA journal_mode = WAL", "PRAGMA synchronous = NORMAL"}) {
+  for (const char* setting : {"PRAGMA journal_mode = WAL", "PRAGMA synchronous = NORMAL",
+                              "PRAGMA wal_autocheckpoint = 0"}) {
     if (const auto set = database->run(setting); !set) return Error{set.error()};
   }
   if (const auto ready = prepare_schema(*database); !ready) return Error{ready.error()};
   return database;
 }
 
+// A file that would be written by a later SQLite counts as one that may not be written.
+bool has_damaged_beginning(const fs::path& path) {
+  std::array<char, 20> head{};
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(head.data(), head.size())) return false;
+  const auto is_known = [](char version) { return version == 1 || version == 2; };
+  return !is_known(head[18]) || !is_known(head[19]);
+}
+
 // Whether there is a journal of ours that cannot be read any more. A file of another program is
 // none of our business.
 bool is_damaged(const fs::path& path) {
-  if (Database::is_damaged(path, "SELECT count(*) FROM sqlite_schema")) return true;
+  constexpr std::array kTables = {"SELECT count(*) FROM sqlite_schema"};
+  if (Database::is_damaged(path, kTables)) return true;
+  if (has_damaged_beginning(path)) return true;
   const auto database = Database::open(path, Database::Mode::kRead);
-  return database && check_schema(*database) &&
-         Database::is_damaged(path, "SELECT id, hash FROM entry ORDER BY id DESC LIMIT 1");
+  if (!database) return false;
+  if (has_damaged_head(*database)) return true;
+  if (!check_schema(*database)) return false;
+  constexpr std::array kLooks = {
+      "SELECT id, hash FROM entry ORDER BY id DESC LIMIT 1",
+      "SELECT body FROM entry WHERE kind <> 'steps' AND kind = 'session' ORDER BY id DESC LIMIT 1",
+      "SELECT * FROM anchor", "SELECT * FROM belief", "SELECT * FROM coupling"};
+  const auto hash =
+      database->number("SELECT length(hash) FROM entry WHERE id = (SELECT max(id) FROM entry)");
+  const bool has_hash = !hash || *hash == 0 || *hash == sizeof(Hash);
+  return !has_hash || Database::is_damaged(path, kLooks);
 }
 
-Json body_of(const LearnedBelief& learned) {
-  return {{"rule", learned.rule},
-          {"strategy", learned.strategy},
-          {"alpha", learned.belief.alpha},
-          {"beta", learned.belief.beta},
-          {"prior", {learned.prior.alpha, learned.prior.beta}}};
-}
-
-Json body_of(const LearnedCoupling& learned) {
-  return {{"cause", learned.cause},
-          {"effect", learned.effect},
-          {"cleared", learned.coupling.cleared},
-          {"stayed", learned.coupling.stayed}};
+// What was learned, of a file that is damaged; nothing: that is lost.
+std::optional<Learned> saved_from(const fs::path& path,
+                                  const Expected<std::optional<LearnedCopy>>& copy) {
+  const auto old = Database::open(path, Database::Mode::kRead);
+  if (copy && *copy) {
+    if (!old) return (*copy)->learned;
+    const auto newest = brought_up_to_date(**copy, *old);
+    return newest ? *newest : (*copy)->learned;
+  }
+  if (!old) return std::nullopt;
+  const auto learned = read_learned(*old);
+  return learned ? std::optional(*learned) : std::nullopt;
 }
 
 }  // namespace
@@ -84,35 +107,47 @@ Expected<Writer> Writer::open(const fs::path& path, Options options) {
   if (!lock) return failure(path, lock.error());
   if (!*lock) return failure(path, "another culprit writes it; choose another with --journal");
 
+  const auto copy = read_copy(learned_beside(path));
   std::string remark;
-  Learned saved;
+  fs::path aside;
+  std::optional<Learned> saved;
   // A text that somebody named by mistake is no database either: only what is called a journal is
   // moved.
-  if (path.extension() == ".journal" && fs::exists(path) && is_damaged(path)) {
-    if (const auto old = Database::open(path, Database::Mode::kRead)) {
-      if (const auto learned = read_learned(*old)) saved = *learned;
-    }
-    const auto aside = set_aside(path);
-    if (!aside) return failure(path, "it is damaged, and cannot be moved: " + aside.error());
-    remark = "the journal was damaged; it is kept as '" + aside->string() +
-             "' and a new one begun" + (saved.beliefs.empty() ? "" : ", with what was learned");
+  const bool looks_damaged = path.extension() == ".journal" && journal::is_damaged(path);
+  if (fs::exists(path) && (options.is_damaged || looks_damaged)) {
+    saved = saved_from(path, copy);
+    const auto moved = set_aside(path);
+    if (!moved) return failure(path, "it is damaged, and cannot be moved: " + moved.error());
+    aside = *moved;
+    remark = "the journal was damaged; it is kept as '" + aside.string() +
+             "' and a new one begun, " +
+             (saved ? "with what was learned" : "and what was learned is lost");
   }
+  options.is_damaged = false;
   auto database = open_database(path);
   if (!database) return failure(path, database.error());
   Writer writer(path, options, std::move(**lock), std::move(*database));
   writer.remark_ = std::move(remark);
-  if (const auto begun = writer.begin(); !begun) return failure(path, begun.error());
-  if (!saved.beliefs.empty() || !saved.couplings.empty()) {
-    const auto kept = writer.append({{}, saved}, 0, Durability::kPowerFailure);
-    if (!kept) return Error{kept.error()};
-  }
-  return writer;
+  writer.aside_ = std::move(aside);
+  auto begun = writer.begin();
+  const bool is_first_try = writer.aside_.empty();
+  if (begun && !is_first_try) begun = writer.restore(saved.value_or(Learned()));
+  if (begun && is_first_try) begun = writer.compare(copy);
+  if (begun) return writer;
+  if (!is_first_try || !writer.database_.blames_file()) return failure(path, begun.error());
+  options.is_damaged = true;
+  { const Writer useless = std::move(writer); }  // lets go of the file and its lock
+  return open(path, options);
 }
 
 Expected<void> Writer::begin() {
   const auto newest = newest_link(database_);
   if (!newest) return Error{newest.error()};
   newest_ = *newest;
+  const auto session = database_.number(
+      "SELECT coalesce(max(id), 0) FROM entry WHERE kind <> 'steps' AND kind = 'session'");
+  if (!session) return Error{session.error()};
+  session_ = *session;
   auto statement =
       database_.prepare("INSERT INTO entry(id, at, kind, body, hash) VALUES(?, ?, ?, ?, ?)");
   if (!statement) return Error{statement.error()};
@@ -120,21 +155,100 @@ Expected<void> Writer::begin() {
   return {};
 }
 
+// The tables have no checksum: that a bit of them changed shows beside the copy only.
+Expected<void> Writer::compare(const Expected<std::optional<LearnedCopy>>& copy) {
+  if (!copy) {
+    remark_ = "the second copy of what was learned is written anew: " + copy.error();
+    return {};
+  }
+  if (!*copy) return {};
+  const LearnedCopy& second = **copy;
+  if (second.newest.id > newest_.id) {
+    remark_ = newest_.id == 0
+                  ? "the journal is gone; a new one is begun, with what was learned"
+                  : "the end of the journal is lost, all after row " + std::to_string(newest_.id) +
+                        " (row " + std::to_string(second.newest.id) +
+                        " was there): was its -wal file removed? What was learned is known from "
+                        "its second copy";
+    return restore(second.learned);
+  }
+  auto hash = database_.prepare("SELECT hash FROM entry WHERE id = ?1");
+  if (!hash) return Error{hash.error()};
+  const auto row = hash->bind(1, second.newest.id).step();
+  if (!row) return Error{row.error()};
+  // The copy is of another journal, which was replaced by this one.
+  if (*row && hash_from(hash->bytes(0)) != second.newest.hash) return {};
+  const auto expected = brought_up_to_date(second, database_);
+  const auto stored = learned();
+  if (!expected || !stored) return Error{expected ? stored.error() : expected.error()};
+  if (is_same(*expected, *stored)) return {};
+  remark_ = "what was learned was damaged in the journal; it is known from its second copy";
+  return restore(*expected);
+}
+
+// Makes it what is believed, and leaves a row about why.
+Expected<void> Writer::restore(const Learned& learned) {
+  const Link before = newest_;
+  auto done = database_.run("BEGIN IMMEDIATE; DELETE FROM belief; DELETE FROM coupling");
+  const std::int64_t now = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                               std::chrono::system_clock::now().time_since_epoch())
+                               .count();
+  if (done) done = insert({0, now, std::string(kind::kGap), to_text({{"text", remark_}})});
+  if (done) done = keep(learned, now);
+  if (done) done = database_.run("COMMIT");
+  if (!done) {
+    database_.roll_back();
+    newest_ = before;
+    return done;
+  }
+  copy_learned();
+  return {};
+}
+
+void Writer::copy_learned() {
+  const auto all = learned();
+  is_copy_due_ = !all || !write_copy(learned_beside(path_), {newest_, *all});
+}
+
+// By ourselves, because with the first row that stands in the -wal file alone the copy has to be
+// written: it names that row, and so tells when the -wal file is lost.
+void Writer::move_wal() {
+  const fs::path wal = path_.string() + "-wal";
+  std::error_code error;
+  const auto size = fs::file_size(wal, error);
+  if (error || size < static_cast<std::uintmax_t>(options_.max_wal_bytes)) return;
+  // Not now if somebody reads; then with a later batch.
+  (void)database_.run("PRAGMA wal_checkpoint(TRUNCATE)");
+  is_copy_due_ = fs::file_size(wal, error) == 0;
+}
+
 Expected<void> Writer::append(const Batch& batch, std::int64_t now, Durability durability) {
+  is_damaged_ = false;
   if (const auto there = check_name(); !there) return there;
   const bool is_durable = durability == Durability::kPowerFailure;
   if (is_durable) (void)database_.run("PRAGMA synchronous = FULL");
   const Link before = newest_;
+  const std::int64_t session_before = session_;
   auto written = database_.run("BEGIN IMMEDIATE");
   if (written) {
     written = write(batch, now);
     if (written) written = database_.run("COMMIT");
-    if (!written) (void)database_.run("ROLLBACK");
+  }
+  if (!written) {
+    is_damaged_ = database_.blames_file();
+    database_.roll_back();
   }
   if (is_durable) (void)database_.run("PRAGMA synchronous = NORMAL");
-  if (written) return {};
-  newest_ = before;
-  return failure(path_, written.error());
+  if (!written) {
+    newest_ = before;
+    session_ = session_before;
+    return failure(path_, written.error());
+  }
+  const bool is_learned = !batch.learned.beliefs.empty() || !batch.learned.couplings.empty();
+  if (is_copy_due_ || is_learned) copy_learned();
+  // Somebody may wait for what has to be durable.
+  if (!is_durable) move_wal();
+  return {};
 }
 
 Expected<void> Writer::write(const Batch& batch, std::int64_t now) {
@@ -157,6 +271,7 @@ Expected<void> Writer::insert(Entry entry) {
   insert_->bind_blob(5, {reinterpret_cast<const char*>(hash.data()), hash.size()});
   if (const auto inserted = insert_->step(); !inserted) return Error{inserted.error()};
   newest_ = {entry.id, hash};
+  if (entry.kind == kind::kSession) session_ = entry.id;
   return {};
 }
 
@@ -205,8 +320,11 @@ Expected<int> Writer::forget(const std::string& rule, std::int64_t now) {
     if (done && !deleted) done = Error{deleted.error()};
   }
   if (done) done = database_.run("COMMIT");
-  if (done) return count;
-  (void)database_.run("ROLLBACK");
+  if (done) {
+    copy_learned();
+    return count;
+  }
+  database_.roll_back();
   newest_ = before;
   return failure(path_, done.error());
 }
@@ -223,12 +341,15 @@ Expected<void> Writer::drop_old(std::int64_t now) {
   const std::int64_t last = std::min(*oldest + kAtOnce - 1, newest_.id - 1);
   std::int64_t end = last;
   if (*pages <= options_.max_bytes) {
-    const auto old =
-        database_.number("SELECT max(id) FROM entry WHERE id <= " + std::to_string(last) +
-                         " AND at < " + std::to_string(now - options_.max_age_ns));
-    if (!old) return Error{old.error()};
-    end = *old;
+    // Up to the first that is not old: a row may bear a time from before the clock was set.
+    const auto young =
+        database_.number("SELECT min(id) FROM entry WHERE id <= " + std::to_string(last) +
+                         " AND at >= " + std::to_string(now - options_.max_age_ns));
+    if (!young) return Error{young.error()};
+    if (*young > 0) end = *young - 1;
   }
+  wants_new_session_ = end >= *oldest && session_ == *oldest;
+  if (session_ > 0) end = std::min(end, session_ - 1);
   if (end < *oldest) return {};
   const std::string id = std::to_string(end);
   return database_.run(

@@ -4,7 +4,9 @@
 // of the process, however it ends; with Durability::kPowerFailure it survives that of the machine.
 //
 // A file that is damaged is never written on and never thrown away: it is set aside under another
-// name, and what was learned is carried over if it can still be read.
+// name. What was learned has a second copy (learned_copy.h), and is carried over.
+//
+// The oldest rows go, but never those from the newest `session` row on: the next run needs them.
 #pragma once
 
 #include <span>
@@ -14,6 +16,7 @@
 #include "journal/entry.h"
 #include "journal/file_lock.h"
 #include "journal/learned.h"
+#include "journal/learned_copy.h"
 #include "journal/tables.h"
 
 namespace culprit::journal {
@@ -28,8 +31,11 @@ struct Batch {
 class Writer {
  public:
   struct Options {
-    std::int64_t max_bytes = std::int64_t{256} << 20;   // the oldest rows go beyond that
-    std::int64_t max_age_ns = 30 * 86'400'000'000'000;  // and those that are older
+    std::int64_t max_bytes = std::int64_t{256} << 20;    // the oldest rows go beyond that
+    std::int64_t max_age_ns = 30 * 86'400'000'000'000;   // and those that are older
+    std::int64_t max_wal_bytes = std::int64_t{4} << 20;  // then what is in the -wal file moves
+    // It is known to be damaged, however it looks: a row could not be read or written.
+    bool is_damaged = false;
   };
 
   // Errors say why, with the path and what to do.
@@ -38,6 +44,15 @@ class Writer {
   // What was odd about the file and what was done about it; empty if nothing was.
   const std::string& remark() const { return remark_; }
   const std::filesystem::path& path() const { return path_; }
+  // Where the file that was damaged is now; empty if it was not.
+  const std::filesystem::path& aside() const { return aside_; }
+
+  // Whether the error that append() gave comes from damage: then the writer is of no use any more,
+  // and the file has to be opened anew with Options::is_damaged.
+  bool is_damaged() const { return is_damaged_; }
+  // Whether rows should go that the next run needs. They go once there is a newer `session` row
+  // with all that is to be known of them.
+  bool wants_new_session() const { return wants_new_session_; }
 
   // `now`: nanoseconds since 1970. After an error nothing of the batch is in the file.
   Expected<void> append(const Batch& batch, std::int64_t now, Durability durability);
@@ -54,6 +69,10 @@ class Writer {
   Writer(std::filesystem::path path, Options options, FileLock lock, Database database);
 
   Expected<void> begin();
+  Expected<void> compare(const Expected<std::optional<LearnedCopy>>& copy);
+  Expected<void> restore(const Learned& learned);
+  void copy_learned();
+  void move_wal();
   Expected<void> write(const Batch& batch, std::int64_t now);
   Expected<void> insert(Entry entry);
   Expected<void> keep(const Learned& learned, std::int64_t now);
@@ -67,7 +86,12 @@ class Writer {
   std::optional<Statement> insert_;
   Hasher hasher_;
   Link newest_;
+  std::int64_t session_ = 0;  // the newest of its rows; 0: there is none
+  bool wants_new_session_ = false;
+  bool is_copy_due_ = true;
+  bool is_damaged_ = false;
   std::string remark_;
+  std::filesystem::path aside_;
   std::uint64_t inode_ = 0;
 };
 

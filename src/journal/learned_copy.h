@@ -1,0 +1,36 @@
+// A second copy of what was learned, in a file of its own beside the journal: "a.journal-learned".
+// It tells when the tables of the journal are not what they were, and what they were then; and,
+// because it names a row that the journal had, when the end of the journal is lost.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "journal/json.h"
+#include "journal/tables.h"
+
+namespace culprit::journal {
+
+struct LearnedCopy {
+  Link newest;  // the newest row of the journal when this was written
+  Learned learned;
+};
+
+std::filesystem::path learned_beside(const std::filesystem::path& journal);
+
+// On the disk when it returns.
+Expected<void> write_copy(const std::filesystem::path& path, const LearnedCopy& copy);
+// Nothing: there is no such file. Errors: it cannot be read, or is damaged.
+Expected<std::optional<LearnedCopy>> read_copy(const std::filesystem::path& path);
+
+// The bodies of rows that say what is believed from then on.
+Json body_of(const LearnedBelief& learned);
+Json body_of(const LearnedCoupling& learned);
+
+// What the copy says, and what the rows of `journal` that are newer say after it.
+Expected<Learned> brought_up_to_date(const LearnedCopy& copy, const Database& journal);
+
+// Whether both say the same, in whatever order.
+bool is_same(Learned a, Learned b);
+
+}  // namespace culprit::journal
