@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "analyze/undoes.h"
 #include "language/evaluate.h"
 
 namespace culprit {
@@ -253,6 +254,11 @@ void Analyzer::judge(RuleId id, Time now) {
       return fail(id, now);
     case Attempt::Stage::kWaiting:
       break;
+    case Attempt::Stage::kSuspended:
+      if (!has_components_back(attempt)) break;
+      attempt.stage = Attempt::Stage::kWaiting;
+      attempt.effective = now;
+      break;
     case Attempt::Stage::kUndoing:
       return;
     case Attempt::Stage::kOver: {
@@ -273,7 +279,8 @@ void Analyzer::judge(RuleId id, Time now) {
   const Duration impact = duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
   attempt.deadline = later(later(attempt.effective, impact), knowledge_.signals.latency(id));
   if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
-  if (now < attempt.deadline || is_false(state.trigger)) return;
+  const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
+  if (is_suspended || now < attempt.deadline || is_false(state.trigger)) return;
   if (state.trigger.known || now >= later(attempt.deadline, kLostAfter) ||
       holds_up_more_critical(attempt.strategy))
     fail(id, now);
@@ -308,6 +315,22 @@ void Analyzer::abandon(RuleId id, Time now) {
   look_at(id, now);  // the failure may be gone already
 }
 
+void Analyzer::make_way(RuleId id, StrategyId other, Time now) {
+  Attempt& attempt = *knowledge_.states.state(id).attempt;
+  const RuleSet& rules = knowledge_.rules;
+  if (attempt.has_no_failure || undoes(rules[other], rules[attempt.strategy]))
+    return abandon(id, now);
+  attempt.stage = Attempt::Stage::kSuspended;
+  attempt.is_ambiguous = true;
+  schedule(id, now);
+}
+
+bool Analyzer::has_components_back(const Attempt& attempt) const {
+  const auto& components = knowledge_.rules[attempt.strategy].components;
+  return std::all_of(components.begin(), components.end(),
+                     [&](ComponentId c) { return knowledge_.states.reservation(c) == nullptr; });
+}
+
 // Was the failure gone before the attempt had changed anything?
 bool Analyzer::went_away_before(const Attempt& attempt) const {
   const RuleId id = knowledge_.rules[attempt.strategy].rule;
@@ -319,7 +342,9 @@ bool Analyzer::went_away_before(const Attempt& attempt) const {
 void Analyzer::succeed(RuleId id, Time now) {
   RuleState& state = knowledge_.states.state(id);
   const Attempt attempt = *std::exchange(state.attempt, std::nullopt);
-  const bool caused = !went_away_before(attempt);
+  // Whoever has its components meanwhile is as likely.
+  const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
+  const bool caused = !is_suspended && !went_away_before(attempt);
   if (caused) couplings_.resolved(attempt, !attempt.is_ambiguous, now);
   couplings_.ended(attempt, now);
   if (caused) {
@@ -383,11 +408,17 @@ void Analyzer::exhaust_if_spent(RuleId id, Time now) {
   const int limit = knowledge_.rules[id].policies.attempts;
   // The last resorts end with their round.
   if (state.is_at_last_resort || (state.attempts < limit && state.round < limit)) return;
+  turn_to_last_resort(id, now);
+  if (!state.is_at_last_resort) exhaust(id, now);
+}
+
+void Analyzer::turn_to_last_resort(RuleId id, Time now) {
+  RuleState& state = knowledge_.states.state(id);
   const auto& strategies = knowledge_.rules[id].strategies;
   const bool has_last_resort = std::any_of(strategies.begin(), strategies.end(), [&](StrategyId s) {
     return knowledge_.rules[s].is_last_resort;
   });
-  if (!has_last_resort) return exhaust(id, now);
+  if (!has_last_resort || state.is_at_last_resort) return;
   state.is_at_last_resort = true;
   state.retry_at = now;
   std::fill(state.tried.begin(), state.tried.end(), false);
@@ -422,6 +453,8 @@ void Analyzer::schedule(RuleId id, Time now) {
     // Until nobody waits any longer; a more critical failure may come before.
     if (!state.trigger.known) want(later(now, knowledge_.rules.cycle));
   }
+  if (state.attempt && state.attempt->stage == Attempt::Stage::kSuspended)
+    want(later(now, knowledge_.rules.cycle));
   const auto window = static_cast<int>(state.history.size());
   if (window > 0 && state.true_in_history != (is_true(state.trigger) ? window : 0)) {
     want(later(state.sampled, knowledge_.rules.cycle));

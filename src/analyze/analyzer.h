@@ -79,6 +79,15 @@ class Analyzer {
   // The rule's strategy under way ends without a verdict.
   void abandon(RuleId id, Time now);
 
+  // The rule's strategy under way, which has taken effect, leaves its components to `other`. If
+  // what it brought about stays, it is judged when it has them back; else it ends without a
+  // verdict.
+  void make_way(RuleId id, StrategyId other, Time now);
+
+  // The rule waits for a person with the cause of its failure: of its strategies only the last
+  // resorts are left, if it has any.
+  void turn_to_last_resort(RuleId id, Time now);
+
   // No untried strategy of the rule is valid: its round is over.
   void round_is_spent(RuleId id, Time now);
 
@@ -104,6 +113,7 @@ class Analyzer {
   void fail(RuleId id, Time now);
   void resolve(RuleId id, FailureResolved how, Time now);
   void exhaust_if_spent(RuleId id, Time now);
+  bool has_components_back(const Attempt& attempt) const;
   void exhaust(RuleId id, Time now);
   bool went_away_before(const Attempt& attempt) const;
   // Is there a more critical failure for which the same component would be adapted?

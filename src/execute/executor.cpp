@@ -93,7 +93,9 @@ void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
     run.is_undoing = true;
     run.pursuit.reset();
   }
-  if (stage == Attempt::Stage::kWaiting || stage == Attempt::Stage::kOver) return;
+  if (stage == Attempt::Stage::kWaiting || stage == Attempt::Stage::kSuspended ||
+      stage == Attempt::Stage::kOver)
+    return;
   // The analysis has not taken it from here yet.
   if (!attempt_of(run)->obstacle.empty() && !run.is_undoing) return;
   while (run.pursuit || (run.is_undoing ? next_undo(run, now) : next_goal(run, now))) {

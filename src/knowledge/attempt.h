@@ -11,10 +11,11 @@ namespace culprit {
 
 struct Attempt {
   enum class Stage : std::uint8_t {
-    kAdapting,  // its adaptations are being carried out and read back
-    kWaiting,   // all took effect; does the symptom go away?
-    kUndoing,   // it failed; what can be undone is being undone
-    kOver       // nothing of it is left to do
+    kAdapting,   // its adaptations are being carried out and read back
+    kWaiting,    // all took effect; does the symptom go away?
+    kSuspended,  // all took effect, and a more critical failure has the component: judged later
+    kUndoing,    // it failed; what can be undone is being undone
+    kOver        // nothing of it is left to do
   };
   StrategyId strategy;
   Stage stage = Stage::kAdapting;

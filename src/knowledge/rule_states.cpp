@@ -13,10 +13,15 @@ RuleStates::RuleStates(const RuleSet& rules)
     if (window > 1) states_[r].history.assign(static_cast<std::size_t>(window), false);
   }
   active_.reserve(rules.rules.size());
+  exhausted_.reserve(rules.rules.size());
 }
 
 RuleStates::RuleStates(const RuleSet& rules, const RuleStates& other)
-    : rules_(rules), states_(other.states_), active_(other.active_), failing_(other.failing_) {}
+    : rules_(rules),
+      states_(other.states_),
+      active_(other.active_),
+      exhausted_(other.exhausted_),
+      failing_(other.failing_) {}
 
 std::size_t RuleStates::place_of(StrategyId id) const {
   const auto& siblings = rules_[rules_[id].rule].strategies;
@@ -58,18 +63,28 @@ void RuleStates::go_on_searching(RuleId id, Time now) {
   ++state.times;
 }
 
-void RuleStates::enter(RuleId id, RulePhase phase) {
-  RuleState& state = states_[id.index];
-  const bool was = is_active(state.phase);
-  const bool is = is_active(phase);
-  state.phase = phase;
-  if (was == is) return;
-  const auto place = std::lower_bound(active_.begin(), active_.end(), id);
-  if (is) {
-    active_.insert(place, id);
+namespace {
+
+void change(std::vector<RuleId>& set, RuleId id, bool is_in) {
+  const auto place = std::lower_bound(set.begin(), set.end(), id);
+  if (is_in) {
+    set.insert(place, id);
   } else {
-    active_.erase(place);
+    set.erase(place);
   }
+}
+
+}  // namespace
+
+void RuleStates::enter(RuleId id, RulePhase phase) {
+  const RulePhase before = std::exchange(states_[id.index].phase, phase);
+  const bool was_exhausted = before == RulePhase::kExhausted;
+  const bool is_exhausted = phase == RulePhase::kExhausted;
+  if (was_exhausted != is_exhausted) change(exhausted_, id, is_exhausted);
+  const bool was = is_active(before);
+  const bool is = is_active(phase);
+  if (was == is) return;
+  change(active_, id, is);
   const auto level = static_cast<std::size_t>(rules_[id].policies.criticality);
   for (const ComponentId component : rules_[id].components)
     failing_[component.index][level] += is ? 1 : -1;
@@ -88,8 +103,27 @@ bool RuleStates::is_sick(ComponentId component, Criticality level, RuleId except
 
 std::optional<RuleId> RuleStates::sickness(ComponentId component, Criticality level,
                                            RuleId except) const {
+  return worst_at(component, level, except, active_);
+}
+
+bool RuleStates::awaits_person(RuleId id) const {
+  const RuleState& state = states_[id.index];
+  return state.phase == RulePhase::kExhausted && state.trigger.known && state.trigger.b;
+}
+
+std::optional<RuleId> RuleStates::awaiting_person_at(ComponentId component, Criticality level,
+                                                     RuleId except) const {
+  if (exhausted_.empty()) return std::nullopt;
+  std::vector<RuleId> waiting;
+  std::copy_if(exhausted_.begin(), exhausted_.end(), std::back_inserter(waiting),
+               [this](RuleId id) { return awaits_person(id); });
+  return worst_at(component, level, except, waiting);
+}
+
+std::optional<RuleId> RuleStates::worst_at(ComponentId component, Criticality level, RuleId except,
+                                           const std::vector<RuleId>& among) const {
   std::optional<RuleId> worst;
-  for (const RuleId id : active_) {
+  for (const RuleId id : among) {
     const Rule& rule = rules_[id];
     if (id == except || rule.policies.criticality < level) continue;
     if (!std::binary_search(rule.components.begin(), rule.components.end(), component)) continue;
@@ -104,7 +138,7 @@ std::optional<RuleId> RuleStates::sickness(ComponentId component, Criticality le
 const Attempt* RuleStates::reservation(ComponentId component) const {
   for (const RuleId id : active_) {
     const auto& attempt = states_[id.index].attempt;
-    if (!attempt) continue;
+    if (!attempt || attempt->stage == Attempt::Stage::kSuspended) continue;
     const auto& adapted = rules_[attempt->strategy].components;
     if (std::binary_search(adapted.begin(), adapted.end(), component)) return &*attempt;
   }

@@ -3,8 +3,8 @@
 //
 // And the health of components that follows from it. Health is a set: a component is as sick as the
 // most critical failing rule that touches it, and one rule's recovery never wipes another's. An
-// exhausted rule no longer counts: nothing more will be done about it, so nobody should wait for
-// it.
+// exhausted rule is none of these: nothing more will be done about it. But while its trigger is
+// true it still is the cause of what it explains, which waits for a person with it.
 #pragma once
 
 #include <algorithm>
@@ -107,6 +107,15 @@ class RuleStates {
   // Rules that are failing or attempting, ascending.
   const std::vector<RuleId>& active() const { return active_; }
 
+  // Exhausted rules, ascending.
+  const std::vector<RuleId>& exhausted() const { return exhausted_; }
+  // Is the rule exhausted, and its failure there for sure?
+  bool awaits_person(RuleId id) const;
+  // A rule other than `except` that awaits a person, touches `component` and is at least as
+  // critical as `level`; the most critical, the first by name among equals.
+  std::optional<RuleId> awaiting_person_at(ComponentId component, Criticality level,
+                                           RuleId except) const;
+
   // Is there a failing rule other than `except` that touches `component` and is at least as
   // critical as `level`?
   bool is_sick(ComponentId component, Criticality level, RuleId except) const;
@@ -114,16 +123,19 @@ class RuleStates {
   std::optional<RuleId> sickness(ComponentId component, Criticality level, RuleId except) const;
 
   // The strategy attempt that has `component` reserved, if any: from its choice until its verdict
-  // and undoing.
+  // and undoing, but while it is suspended.
   const Attempt* reservation(ComponentId component) const;
 
  private:
+  std::optional<RuleId> worst_at(ComponentId component, Criticality level, RuleId except,
+                                 const std::vector<RuleId>& among) const;
   static bool is_active(RulePhase phase) {
     return phase == RulePhase::kFailing || phase == RulePhase::kAttempting;
   }
   const RuleSet& rules_;
   std::vector<RuleState> states_;
   std::vector<RuleId> active_;
+  std::vector<RuleId> exhausted_;
   std::vector<std::array<int, 3>>
       failing_;  // by component, by criticality: how many active rules touch it
 };

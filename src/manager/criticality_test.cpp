@@ -56,9 +56,47 @@ TEST(Criticality, LetsNoErrorWaitForAVerdictOnALesserFailure) {
   robot.signal("brightness", Value(1.0));
   robot.run_for(1s);
   EXPECT_EQ(robot.count("Dark resolved by light"), 1u) << transcript(robot);
+  robot.run_for(200ms);
+  robot.signal("blur", Value(0.0));
   robot.run_for(3s);
-  EXPECT_EQ(robot.count("camera is held responsible for Blurred"), 2u)
-      << "it is tried again" << transcript(robot);
+  EXPECT_EQ(robot.count("Blurred resolved by focus"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: set angle"), 1u)
+      << "it had taken effect" << transcript(robot);
+  EXPECT_EQ(robot.manager().knowledge().beliefs[focus], before) << "either may have helped";
+}
+
+TEST(Criticality, LetsALesserStrategyThatGaveWayFailIfItDidNotHelp) {
+  TestRobot robot = camera("set_parameter angle 1 5");
+  robot.signal("blur", Value(1.0));
+  robot.run_for(100ms);
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(100ms);
+  robot.signal("brightness", Value(1.0));
+  robot.run_for(1500ms);
+  robot.signal("blur", Value(1.0));
+  robot.run_for(4s);
+  EXPECT_EQ(robot.count("focus did not resolve Blurred"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: set angle to 0"), 1u)
+      << "and is undone" << transcript(robot);
+}
+
+// The process that it was set in is replaced.
+TEST(Criticality, LetsALesserStrategyThatWasTakenBackBeTriedAgain) {
+  std::string text = rules("set_parameter angle 1 5");
+  text.replace(text.find("set_parameter on 1 5"), 20, "redeploy 5");
+  TestRobot robot(text);
+  robot.add("camera").parameters["angle"] = Value(std::int64_t{0});
+  robot.discover();
+  robot.signal("blur", Value(1.0));
+  robot.signal("brightness", Value(1.0));
+  robot.run_for(100ms);
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(1s);
+  robot.signal("brightness", Value(1.0));
+  robot.run_for(3s);
+  robot.signal("blur", Value(1.0));
+  robot.run_for(3s);
+  EXPECT_EQ(robot.count("camera is held responsible for Blurred"), 2u) << transcript(robot);
 }
 
 TEST(Criticality, LetsAnErrorWaitUntilTheAdaptationOfALesserFailureIsDone) {

@@ -75,10 +75,19 @@ void break_it(TestRobot& robot, const std::vector<Broken>& all) {
   }
 }
 
+// With an exhausted failure upstream of it.
+bool waits_for_person(RuleId rule, const Knowledge& knowledge) {
+  const auto& upstream = knowledge.graph.upstream(knowledge.rules[rule].components.front());
+  return std::any_of(upstream.begin(), upstream.end(), [&](ComponentId c) {
+    return knowledge.states.awaiting_person_at(c, Criticality::kNonCritical, rule).has_value();
+  });
+}
+
 bool is_settled(const TestRobot& robot, const Knowledge& knowledge) {
   for (std::size_t r = 0; r < robot.rules().rules.size(); ++r) {
     const RulePhase phase = knowledge.states[RuleId(r)].phase;
-    if (phase != RulePhase::kQuiet && phase != RulePhase::kExhausted) return false;
+    if (phase == RulePhase::kAttempting) return false;
+    if (phase == RulePhase::kFailing && !waits_for_person(RuleId(r), knowledge)) return false;
   }
   return true;
 }
@@ -113,6 +122,7 @@ RC_GTEST_PROP(Invariants, NoStrategyWorksWhereAnotherDoesOrDownstreamOfIt, ()) {
       for (const RuleId id : knowledge.states.active()) {
         const auto& other = knowledge.states[id].attempt;
         if (!other || other->strategy == chosen->strategy || other->chosen == event.at) continue;
+        if (other->stage == Attempt::Stage::kSuspended) continue;
         const ComponentId taken = rules[other->strategy].components.front();
         const ComponentId own = strategy.components.front();
         RC_ASSERT(taken != own);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "plan/beside_exhausted.h"
 #include "plan/explained_by.h"
 
 namespace culprit {
@@ -174,7 +175,8 @@ void Manager::abandon_all(const std::string& reason, Time now) {
   }
 }
 
-// Whoever only waits for a verdict gives way to a more critical failure, and learns nothing.
+// Whoever only waits for a verdict gives way to a more critical failure, and learns nothing. It is
+// judged afterwards, unless what it did is taken back.
 void Manager::make_way_for(StrategyId strategy, Time now) {
   const RuleId rule = knowledge_.rules[strategy].rule;
   for (const ComponentId component : knowledge_.rules[strategy].components) {
@@ -184,7 +186,7 @@ void Manager::make_way_for(StrategyId strategy, Time now) {
     knowledge_.tell(
         now, StrategyAbandoned{holding, knowledge_.rules[component].name + " is needed for " +
                                             knowledge_.rules[rule].name});
-    analyzer_.abandon(knowledge_.rules[holding].rule, now);
+    analyzer_.make_way(knowledge_.rules[holding].rule, strategy, now);
   }
 }
 
@@ -205,6 +207,8 @@ void Manager::plan(Time now) {
       analyzer_.round_is_spent(verdict.rule, now);
     } else {
       hold_back(verdict, now);
+      if (plan::waits_for_person(verdict, knowledge_))
+        analyzer_.turn_to_last_resort(verdict.rule, now);
     }
   }
   news_ = false;

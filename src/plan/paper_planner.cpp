@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "plan/beside_exhausted.h"
 #include "plan/cost.h"
 #include "plan/ties.h"
 #include "plan/validity.h"
@@ -117,11 +118,24 @@ void PaperPlanner::examine(Candidate& candidate, Criticality level, const Knowle
 bool PaperPlanner::depends_on_cause(Candidate& candidate, Criticality level,
                                     const Knowledge& knowledge) const {
   const Strategy& strategy = knowledge.rules[candidate.strategy];
+  if (strategy.is_last_resort) return false;
   for (const ComponentId component : strategy.components) {
     for (const ComponentId upstream : knowledge.graph.upstream(component)) {
       if (!knowledge.states.is_sick(upstream, level, strategy.rule)) continue;
       candidate.component = upstream;
       candidate.because = knowledge.states.sickness(upstream, level, strategy.rule);
+      return true;
+    }
+  }
+  const bool has_to_wait = !knowledge.states.exhausted().empty() &&
+                           !plan::may_be_tried_beside_exhausted(candidate.strategy, knowledge);
+  if (!has_to_wait) return false;
+  for (const ComponentId component : strategy.components) {
+    for (const ComponentId upstream : knowledge.graph.upstream(component)) {
+      const auto cause = knowledge.states.awaiting_person_at(upstream, level, strategy.rule);
+      if (!cause) continue;
+      candidate.component = upstream;
+      candidate.because = cause;
       return true;
     }
   }

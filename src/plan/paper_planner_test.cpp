@@ -177,10 +177,24 @@ TEST_F(PaperPlannerTest, AFailureDoesNotHoldBackItself) {
   EXPECT_EQ(plan({"Bad"}), "Bad.first");
 }
 
-TEST_F(PaperPlannerTest, AnExhaustedFailureHoldsBackNobody) {
-  plan({"A"});
+TEST_F(PaperPlannerTest, Condition5HoldsForAnExhaustedFailureWhileItIsThere) {
   knowledge_.states.enter(rule("A"), RulePhase::kExhausted);
+  knowledge_.states.state(rule("A")).trigger = Slot::of(true);
+  EXPECT_EQ(plan({"B"}), "");
+  EXPECT_EQ(candidate("B", "cheap").excluded, Condition::kDependency);
+  EXPECT_EQ(candidate("B", "cheap").because, rule("A"));
+  EXPECT_FALSE(verdicts_[0].is_spent) << "it waits for a person";
+  EXPECT_EQ(plan({"B"}, {.dependencies = false}), "B.cheap") << "who knows no causes";
+  knowledge_.states.state(rule("A")).trigger = Slot::of(false);
   EXPECT_EQ(plan({"B"}), "B.cheap");
+}
+
+TEST_F(PaperPlannerTest, TriesOneReconfigurationBesideAnExhaustedCause) {
+  knowledge_.states.enter(rule("A"), RulePhase::kExhausted);
+  knowledge_.states.state(rule("A")).trigger = Slot::of(true);
+  EXPECT_EQ(plan({"Bad"}), "Bad.first");
+  knowledge_.states.state(rule("Bad")).tried[0] = true;
+  EXPECT_EQ(plan({"Bad"}), "") << "once";
 }
 
 TEST_F(PaperPlannerTest, FollowsBeliefsAsTheyChange) {

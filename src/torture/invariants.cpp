@@ -79,7 +79,7 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
     int busy = 0;
     for (const RuleId id : manager.knowledge().states.active()) {
       const auto& attempt = manager.knowledge().states[id].attempt;
-      if (!attempt) continue;
+      if (!attempt || attempt->stage == Attempt::Stage::kSuspended) continue;
       const auto& adapted = rules_[attempt->strategy].components;
       if (std::binary_search(adapted.begin(), adapted.end(), component)) ++busy;
     }

@@ -44,7 +44,7 @@ std::string_view word_of(RulePhase phase) {
 }
 
 std::string_view word_of(Attempt::Stage stage) {
-  constexpr std::string_view kWords[] = {"adapting", "waiting", "undoing", "over"};
+  constexpr std::string_view kWords[] = {"adapting", "waiting", "suspended", "undoing", "over"};
   return kWords[static_cast<std::size_t>(stage)];
 }
 

@@ -285,6 +285,22 @@ RC_GTEST_PROP(BayesPlannerOnRandomRobots, ReplacesAllThatIsKnownToBeDeadAtOnce, 
     RC_ASSERT(robot.chosen_for(rule) == robot.scene.strategy(name_of('R', rule) + ".redeploy"));
 }
 
+RC_GTEST_PROP(BayesPlannerOnRandomRobots, ReplacesNothingWhoseFailureAnExhaustedOneExplains, ()) {
+  RandomPipeline robot = random_pipeline();
+  const int exhausted =
+      *rc::gen::inRange(0, static_cast<int>(robot.scene.rules().components.size()));
+  robot.scene.exhaust(name_of('R', exhausted));
+  robot.scene.plan(BayesPlanner(random_objective()));
+  const ComponentId cause = robot.scene.component(name_of('c', exhausted));
+  for (const Verdict& verdict : robot.scene.verdicts()) {
+    const ComponentId touched = robot.scene.rules()[verdict.rule].components.front();
+    const auto& upstream = robot.scene->graph.upstream(touched);
+    const bool is_explained = std::find(upstream.begin(), upstream.end(), cause) != upstream.end();
+    RC_ASSERT(!is_explained || !verdict.chosen);
+    RC_ASSERT(!is_explained || !verdict.is_spent);
+  }
+}
+
 RC_GTEST_PROP(BayesPlannerOnRandomRobots, DecidesTheSameInWhateverOrderRulesAreDeclaredAndLinksCome,
               ()) {
   const RandomRobot robot = random_robot();

@@ -241,6 +241,32 @@ TEST(BayesPlanner, PrefersTheStrategyThatClearsMore) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "AToo.restart");
 }
 
+// Its effect waits for a person with it, and one reconfiguration may lead round it.
+TEST(BayesPlanner, RepairsNothingThatAnExhaustedFailureExplains) {
+  Scene scene(failure_of("a", "A", "WARNING") + failure_of("b", "B") + failure_of("c", "C") +
+              "STRATEGY other 5 10\nADAPTATION c change_communication in /other 2\n" +
+              failure_of("d", "D"));
+  scene.link("a", "b").link("b", "c").exhaust("A").fail("B").fail("C").fail("D");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "C.other D.restart");
+  EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kDependency);
+  EXPECT_EQ(scene.candidate("B.restart").because, scene.rule("A"));
+  EXPECT_FALSE(scene.verdict("B").is_spent);
+  scene.tried("C.other");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "D.restart") << "once";
+  scene->states.state(scene.rule("A")).trigger = Slot::of(false);
+  EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart D.restart") << "it no longer explains them";
+}
+
+TEST(BayesPlanner, StopsSafelyThoughAnExhaustedFailureExplainsIt) {
+  Scene scene(failure_of("a", "A") + failure_of("b", "B") +
+              "STRATEGY safe 99 10 LASTRESORT\nADAPTATION b set_parameter speed 0 1\n");
+  scene.link("a", "b").exhaust("A").fail("B");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "");
+  EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kDependency);
+  scene->states.state(scene.rule("B")).is_at_last_resort = true;
+  EXPECT_EQ(scene.plan(kFewRedeployments), "B.safe");
+}
+
 TEST(BayesPlanner, SaysWhoIsSuspectedAndWhatItIsWorth) {
   Scene scene = robot();
   scene.fail("A").fail("B");

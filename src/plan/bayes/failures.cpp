@@ -7,6 +7,9 @@ namespace {
 
 std::vector<RuleId> by_name(const Knowledge& knowledge) {
   std::vector<RuleId> rules = knowledge.states.active();
+  std::copy_if(knowledge.states.exhausted().begin(), knowledge.states.exhausted().end(),
+               std::back_inserter(rules),
+               [&](RuleId id) { return knowledge.states.awaits_person(id); });
   std::sort(rules.begin(), rules.end(),
             [&](RuleId a, RuleId b) { return knowledge.rules[a].name < knowledge.rules[b].name; });
   return rules;

@@ -1,4 +1,5 @@
-// The failures that are there now, and which may be the cause of which.
+// The failures that are there now, and which may be the cause of which. Also exhausted ones whose
+// trigger is true: they still explain others.
 //
 // Failure j may be the cause of failure i if a component that j touches is upstream of one that i
 // touches, by a way that i can have taken (plan/bayes/ways.h), however critical either is: how bad
@@ -18,7 +19,7 @@ namespace culprit::plan {
 
 class Failures {
  public:
-  // `reach` holds all components that the active rules touch; `ways` are made of it.
+  // `reach` holds all components that these rules touch; `ways` are made of it.
   Failures(const Knowledge& knowledge, const Reach& reach, const Ways& ways);
 
   std::size_t size() const { return rules_.size(); }

@@ -9,6 +9,7 @@
 #include "plan/bayes/seen_down.h"
 #include "plan/bayes/side_by_side.h"
 #include "plan/bayes/suspicion.h"
+#include "plan/beside_exhausted.h"
 #include "plan/ties.h"
 
 namespace culprit::plan {
@@ -162,8 +163,8 @@ double PlanningStep::disruption(const Strategy& strategy) const {
 void PlanningStep::exclude(Entry& entry, double chance) const {
   const RuleId rule = failures_[entry.failure];
   const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
-  // What is known to be dead waits for nobody but who replaces it already.
-  if (only_revives(strategy, knowledge_)) {
+  // What is known to be dead, and a safe stop, wait for nobody but who has the component already.
+  if (only_revives(strategy, knowledge_) || strategy.is_last_resort) {
     if (const auto held = surroundings_.reserved(strategy)) exclude(entry, *held);
     return;
   }
@@ -221,7 +222,9 @@ void PlanningStep::exclude_effect(Entry& entry) const {
   responsibility_.for_each_share(entry.failure, [&](std::size_t j, double share) {
     if (parts(share) > most) std::tie(most, cause) = std::pair(parts(share), failures_[j]);
   });
-  exclude(entry, {Condition::kDependency, likeliest_component(cause), cause});
+  const bool goes_round = knowledge_.states.awaits_person(cause) &&
+                          may_be_tried_beside_exhausted(entry.candidate.strategy, knowledge_);
+  if (!goes_round) exclude(entry, {Condition::kDependency, likeliest_component(cause), cause});
 }
 
 // The dead are replaced side by side, whatever depends on whatever and however critical it is.

@@ -59,6 +59,7 @@ std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
     all.insert(all.end(), touched.begin(), touched.end());
   };
   std::for_each(knowledge.states.active().begin(), knowledge.states.active().end(), add);
+  std::for_each(knowledge.states.exhausted().begin(), knowledge.states.exhausted().end(), add);
   std::for_each(suspicious.begin(), suspicious.end(), add);
   return all;
 }
@@ -86,7 +87,7 @@ Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach, const
   };
   for (const RuleId rule : knowledge.states.active()) {
     const auto& attempt = knowledge.states[rule].attempt;
-    if (!attempt) continue;
+    if (!attempt || attempt->stage == Attempt::Stage::kSuspended) continue;
     const auto& adapted = knowledge.rules[attempt->strategy].components;
     const bool has_effect = attempt->stage == Attempt::Stage::kWaiting;
     mark_below(has_effect ? judged_ : urgent_, rule);

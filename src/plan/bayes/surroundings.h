@@ -8,7 +8,7 @@
 
 namespace culprit::plan {
 
-// Which components a plan looks at: those that active rules and attempts touch, and those of
+// Which components a plan looks at: those that active and exhausted rules touch, and those of
 // suspicious rules while anyone waits for a verdict.
 std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
                                                 std::span<const RuleId> suspicious);

@@ -53,6 +53,12 @@ Scene& Scene::attempt(const std::string& name, Attempt::Stage stage) {
   return *this;
 }
 
+Scene& Scene::exhaust(const std::string& name) {
+  fail(name);
+  knowledge_->states.enter(rule(name), RulePhase::kExhausted);
+  return *this;
+}
+
 Scene& Scene::tried(const std::string& name) {
   const StrategyId id = strategy(name);
   const auto& siblings = (*rules_)[(*rules_)[id].rule].strategies;

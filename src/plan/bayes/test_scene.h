@@ -21,6 +21,8 @@ class Scene {
   Scene& fail(const std::string& rule, Duration delay = {});
   // Its strategy is under way, in this stage.
   Scene& attempt(const std::string& strategy, Attempt::Stage stage = Attempt::Stage::kAdapting);
+  // It is there, and all was tried in vain.
+  Scene& exhaust(const std::string& rule);
   Scene& tried(const std::string& strategy);
   void process(const std::string& component, ProcessState state);
 

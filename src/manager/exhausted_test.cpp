@@ -1,0 +1,84 @@
+// What becomes of the failures that an exhausted one explains: they wait for a person with it.
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+#include "plan/paper_planner.h"
+
+namespace culprit::test {
+namespace {
+
+std::unique_ptr<const Planner> paper() { return std::make_unique<PaperPlanner>(); }
+std::unique_ptr<const Planner> bayes() { return std::make_unique<BayesPlanner>(); }
+
+class ExhaustedCause : public testing::TestWithParam<PlannerFactory> {};
+INSTANTIATE_TEST_SUITE_P(EachPlanner, ExhaustedCause, testing::Values(paper, bayes),
+                         [](const auto& test) { return test.index == 0 ? "paper" : "bayes"; });
+
+std::string node(int i) { return "c" + std::to_string(i); }
+
+std::string rule(int i) {
+  return "COMPONENT " + node(i) + " NODE /" + node(i) + " LAUNCH \"" + node(i) + "\"\nRULE Silent" +
+         std::to_string(i) + "\nPOLICIES ERROR ATTEMPTS 2\nTRIGGER age(/" + node(i) +
+         ") > 350ms\nSTRATEGY restart 50 10\nADAPTATION " + node(i) +
+         " restart 3\nSTRATEGY redeploy 90 10\nADAPTATION " + node(i) + " redeploy 10\n";
+}
+
+// A chain of five whose first only a person can fix.
+TEST_P(ExhaustedCause, LeavesItsEffectsToThePersonToo) {
+  std::string rules;
+  for (int i = 0; i < 5; ++i) rules += rule(i);
+  TestRobot robot(rules, GetParam()());
+  for (int i = 0; i < 5; ++i) {
+    const std::vector<std::string> needs =
+        i == 0 ? std::vector<std::string>{} : std::vector{node(i - 1)};
+    robot.add(node(i), needs, "/" + node(i));
+  }
+  robot.discover();
+  robot.run_for(2s);
+  robot["c0"].fault = "a person";
+  robot.run_for(120s);
+  EXPECT_EQ(robot.count("Silent0 is exhausted"), 1u) << transcript(robot);
+  for (int i = 1; i < 5; ++i) EXPECT_FALSE(robot.was_asked(node(i) + ":")) << transcript(robot);
+  EXPECT_EQ(robot.count("is exhausted"), 1u) << "once is enough";
+  robot["c0"].fault.clear();
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("c4"));
+  EXPECT_EQ(robot.count("went away without a strategy of its own"), 5u) << transcript(robot);
+}
+
+// What it explains may have a fault of its own, which shows once the person was there.
+TEST_P(ExhaustedCause, LetsItsEffectsBeRepairedOnceItIsGone) {
+  TestRobot robot(rule(0) + rule(1), GetParam()());
+  robot.add("c0", {}, "/c0");
+  robot.add("c1", {"c0"}, "/c1");
+  robot.discover();
+  robot.run_for(2s);
+  robot["c0"].fault = "a person";
+  robot["c1"].fault = "redeploy";
+  robot.run_for(60s);
+  EXPECT_FALSE(robot.was_asked("c1:")) << transcript(robot);
+  robot["c0"].fault.clear();
+  robot.run_for(30s);
+  EXPECT_TRUE(robot.works("c1")) << transcript(robot);
+}
+
+// The robot stops at once when nobody can help the camera any more.
+TEST_P(ExhaustedCause, MakesTheRobotStopSafely) {
+  TestRobot robot(rule(0) +
+                      "COMPONENT drive NODE /drive\nRULE Blind\nPOLICIES ERROR\nTRIGGER "
+                      "age(/drive) > 350ms\nSTRATEGY restart 50 10\nADAPTATION drive restart "
+                      "3\nSTRATEGY halt 99 10 LASTRESORT\nADAPTATION drive set_parameter speed "
+                      "0 1\n",
+                  GetParam()());
+  robot.add("c0", {}, "/c0");
+  robot.add("drive", {"c0"}, "/drive").parameters["speed"] = Value(std::int64_t{1});
+  robot.discover();
+  robot.run_for(2s);
+  robot["c0"].fault = "a person";
+  robot.run_for(60s);
+  EXPECT_EQ(robot["drive"].parameters["speed"], Value(std::int64_t{0})) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("drive: deactivate")) << transcript(robot);
+}
+
+}  // namespace
+}  // namespace culprit::test

@@ -1,0 +1,52 @@
+#include "plan/beside_exhausted.h"
+
+#include <algorithm>
+
+namespace culprit::plan {
+namespace {
+
+bool reconfigures(const Adaptation& adaptation) {
+  switch (adaptation.type) {
+    case AdaptationType::kRestart:
+    case AdaptationType::kRedeploy:
+    case AdaptationType::kDeactivate:
+    case AdaptationType::kStart:
+    case AdaptationType::kStop:
+      return false;
+    default:
+      return true;
+  }
+}
+
+bool reconfigures(const Strategy& strategy) {
+  return std::all_of(strategy.adaptations.begin(), strategy.adaptations.end(),
+                     [](const Adaptation& a) { return reconfigures(a); });
+}
+
+}  // namespace
+
+bool may_be_tried_beside_exhausted(StrategyId strategy, const Knowledge& knowledge) {
+  const Strategy& asked = knowledge.rules[strategy];
+  if (asked.is_last_resort) return true;
+  if (!reconfigures(asked) || knowledge.states[asked.rule].round > 0) return false;
+  const auto& all = knowledge.rules[asked.rule].strategies;
+  return std::none_of(all.begin(), all.end(), [&](StrategyId other) {
+    return knowledge.states.is_tried(other) && reconfigures(knowledge.rules[other]);
+  });
+}
+
+bool waits_for_person(const Verdict& verdict, const Knowledge& knowledge) {
+  const auto is_out = [](const Candidate& c) {
+    return c.excluded == Condition::kTried || c.excluded == Condition::kInvalid;
+  };
+  const auto waits = [&](const Candidate& c) {
+    return c.excluded == Condition::kDependency && c.because &&
+           knowledge.states.awaits_person(*c.because);
+  };
+  const auto& all = verdict.candidates;
+  return std::any_of(all.begin(), all.end(), waits) &&
+         std::all_of(all.begin(), all.end(),
+                     [&](const Candidate& c) { return is_out(c) || waits(c); });
+}
+
+}  // namespace culprit::plan
