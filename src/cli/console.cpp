@@ -110,11 +110,27 @@ void StopSignals::stop() {
   if (stop_) stop_();
 }
 
-void StopSignals::wait() {
+// Waits for it; once the program is to end, not for ever.
+int StopSignals::next_signal() {
   const sigset_t signals = awaited(hangup_);
-  while (true) {
-    int signal = 0;
+  int signal = 0;
+  if (!stopped_ || patience_.load() == Duration::max()) {
     sigwait(&signals, &signal);
+    return signal;
+  }
+  const Duration patience = patience_;
+  const timespec limit{patience.count() / 1'000'000'000, patience.count() % 1'000'000'000};
+  while ((signal = sigtimedwait(&signals, nullptr, &limit)) < 0 && errno == EINTR) {
+  }
+  if (signal > 0) return signal;
+  fmt::print(stderr, "culprit: something does not end; it is left behind\n");
+  std::fflush(nullptr);
+  std::_Exit(1);
+}
+
+void StopSignals::wait() {
+  while (true) {
+    const int signal = next_signal();
     if (signal == SIGUSR1) return;
     const bool is_terminal_gone = has_terminal_ && isatty(STDOUT_FILENO) == 0;
     if (signal != SIGHUP || is_terminal_gone) {

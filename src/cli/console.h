@@ -36,6 +36,8 @@ class StopSignals {
   // What to do on SIGHUP, if that means to reload; called on another thread. A SIGHUP because the
   // terminal is gone still stops.
   void on_reload(std::function<void()> reload);
+  // Ends the program the hard way if it has not ended so long after the first signal to stop.
+  void end_within(Duration patience) { patience_ = patience; }
   const std::atomic<bool>& stopped() const { return stopped_; }
   // For commands that have nothing else to wait for.
   void wait_until_stopped() const { stopped_.wait(false); }
@@ -44,7 +46,10 @@ class StopSignals {
   void wait();
   void stop();
 
+  int next_signal();
+
   const Hangup hangup_;
+  std::atomic<Duration> patience_ = Duration::max();
   const bool has_terminal_;
   std::atomic<bool> stopped_ = false;
   std::mutex mutex_;

@@ -1,5 +1,7 @@
 #include "cli/live_robot.h"
 
+#include <algorithm>
+
 namespace culprit::cli {
 
 Expected<std::unique_ptr<LiveRobot>> LiveRobot::open(const RuleSet& rules, Options options) {
@@ -14,7 +16,8 @@ Expected<std::unique_ptr<LiveRobot>> LiveRobot::open(const RuleSet& rules, Optio
 
 void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
   const std::size_t before = observations.size();
-  inbox_.take(until, observations);
+  listen(until, observations);
+  witness(before, observations);
   // A component whose process was found is watched from now on, whoever started it.
   for (std::size_t i = before; i < observations.size(); ++i) {
     const auto* appeared = std::get_if<NodeAppeared>(&observations[i].what);
@@ -22,6 +25,38 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
     if (const auto component = binding_.bind(appeared->node))
       supervisor_->adopt(*component, appeared->pid, observations[i].at);
   }
+}
+
+// Until then, or until it becomes doubtful whether anything is heard, or no longer is. Between two
+// heartbeats there is nothing to tell.
+void LiveRobot::listen(Time until, std::vector<Observation>& observations) {
+  const std::size_t before = observations.size();
+  while (true) {
+    const Time now = live_now();
+    const bool hears = link_->doubtful() > now;
+    if (hears == deaf_since_.has_value()) return inbox_.take(now, observations);
+    const Time look = hears ? link_->doubtful() : later(now, ros2::Hearing::kPeriod);
+    inbox_.take(std::min(until, look), observations);
+    const bool was_woken = observations.size() > before || live_now() < std::min(until, look);
+    if (was_woken || live_now() >= until) return;
+  }
+}
+
+// What silence means is clear before anything that was observed is judged.
+void LiveRobot::witness(std::size_t before, std::vector<Observation>& observations) {
+  const Time now = live_now();
+  const bool hears = link_->doubtful() > now;
+  if (hears == !deaf_since_) return;
+  Observation observation{now, HearingRegained{}};
+  if (!hears) {
+    observation.what =
+        HearingLost{"what culprit says to itself over the network does not come back"};
+    deaf_since_ = now;
+  } else {
+    deaf_since_.reset();
+  }
+  observations.insert(observations.begin() + static_cast<std::ptrdiff_t>(before),
+                      std::move(observation));
 }
 
 void LiveRobot::execute(const Command& command) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "process/supervisor.h"
 #include "robot/inbox.h"
@@ -26,6 +27,9 @@ class LiveRobot : public Robot {
 
   void interrupt() override { inbox_.interrupt(); }
 
+  // Since when it is not sure that what the robot says is heard; nothing: it is.
+  std::optional<Time> deaf_since() const { return deaf_since_; }
+
   // Something about culprit itself that a person should know. From any thread.
   void report(std::string trouble) { inbox_.put(LinkTrouble{std::move(trouble)}); }
 
@@ -35,11 +39,15 @@ class LiveRobot : public Robot {
  private:
   explicit LiveRobot(const RuleSet& rules) : rules_(rules), binding_(rules) {}
 
+  void listen(Time until, std::vector<Observation>& observations);
+  void witness(std::size_t before, std::vector<Observation>& observations);
+
   const RuleSet& rules_;
   Inbox inbox_;
   ComponentBinding binding_;
   std::unique_ptr<process::Supervisor> supervisor_;
   std::unique_ptr<ros2::Link> link_;
+  std::optional<Time> deaf_since_;
 };
 
 }  // namespace culprit::cli

@@ -66,6 +66,8 @@ class LiveSession {
   LoadedRules loaded_rules() const { return {rules_, rules_text_, ""}; }
   const ros2::Link& link() const { return robot_->link(); }
   Time now() const { return robot_->now(); }
+  // Since when the robot cannot be heard; nothing: it can. On the thread of run().
+  std::optional<Time> deaf_since() const { return robot_->deaf_since(); }
   // Whether a strategy is under way.
   bool is_adapting() const;
 

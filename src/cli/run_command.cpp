@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include "cli/begin_anew.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/journal_file.h"
@@ -158,6 +159,12 @@ std::unique_ptr<LiveSession> in_role(const RoleOfCulprit& role, std::unique_ptr<
   return std::move(*session);
 }
 
+// How long nothing is heard before culprit begins anew. A cut cable is no reason: what it says to
+// itself does not leave the computer.
+constexpr Duration kDeafAtMost = std::chrono::seconds(20);
+// After Ctrl-C. The middleware can hang with its locks held.
+constexpr Duration kEndsWithin = std::chrono::seconds(8);
+
 // One session after the other, as often as the rules are reloaded or the role is another one.
 int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, RoleOfCulprit& role,
            Stage& stage, web::OrderDesk& orders, const std::atomic<bool>& stopped) {
@@ -171,7 +178,19 @@ int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, Role
       if (session == nullptr) return kFailed;
       joined = session->now();
     }
-    systemd.feed(session->now());
+    // Whoever stays deaf is not fed, and begins anew.
+    const auto deaf_since = session->deaf_since();
+    if (!deaf_since) {
+      systemd.feed(session->now());
+    } else if (session->now() >= later(*deaf_since, kDeafAtMost)) {
+      session->announce("deaf", "the robot was not heard for " + to_string(kDeafAtMost) +
+                                    "; culprit begins anew");
+      orders.close();
+      stage.enter(nullptr);
+      session->end();
+      complain(begin_anew());
+      std::_Exit(kFailed);
+    }
     // Without a journal nobody would know what is under way: then the new rules wait for its end.
     const bool has_to_wait = next && !frame.records && session->is_adapting();
     if (next && !has_to_wait) {
@@ -181,7 +200,7 @@ int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, Role
     constexpr Duration kLook = std::chrono::milliseconds(100);
     constexpr Duration kLookAtRole = std::chrono::milliseconds(500);
     const Time until = later(session->now(), has_to_wait ? kLook : kLookAtRole);
-    session->run(std::min(until, systemd.next_feeding()));
+    session->run(deaf_since ? until : std::min(until, systemd.next_feeding()));
     if (auto newest = stage.take_next()) next = std::move(newest);
   }
   systemd.stopping();
@@ -203,6 +222,7 @@ int run(const RunOptions& options) {
   if (!role) return complain(role.error()), kUsage;
   if (!role->reason().empty()) fmt::print("culprit: {}\n", role->reason());
   StopSignals signals(Hangup::kReloads);
+  signals.end_within(kEndsWithin);
   Stage stage(options);
   web::Hub hub([&] { stage.interrupt(); });
   web::Metrics metrics;

@@ -1,10 +1,12 @@
-// A transport over another one, which spares a participant two faults of Fast DDS, and writes down
+// A transport over another one, which spares a participant some faults of Fast DDS, and writes down
 // where datagrams come from.
 //
 // It is quiet until it can hear. Fast DDS announces a participant while its receivers are still
 // being opened. Whoever answers at once, as every peer on the same machine does, answers into the
 // void, and repeats itself only when a heartbeat comes round, 1 to 3 s later. So nothing is sent
 // before create_participant() has returned; the announcements that follow are the first ones heard.
+//
+// It passes on only what the filter lets through (datagram_filter.h).
 //
 // In a secured domain it hears one datagram at a time. A goodbye goes to a participant's unicast
 // and multicast ports, each of which has a thread; Fast DDS 2.9 frees what it knows of whoever
@@ -22,6 +24,7 @@
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 
+#include "ros2/datagram_filter.h"
 #include "ros2/datagram_sources.h"
 
 namespace culprit::ros2::fast_dds {
@@ -32,10 +35,12 @@ using Listens = std::shared_ptr<std::atomic<bool>>;
 class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport {
  public:
   CarefulTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
-                   Listens listens, std::shared_ptr<DatagramSources> sources, bool is_secured)
+                   Listens listens, std::shared_ptr<DatagramSources> sources,
+                   std::shared_ptr<DatagramFilter> filter, bool is_secured)
       : ChainingTransport(descriptor),
         listens_(std::move(listens)),
         sources_(std::move(sources)),
+        filter_(std::move(filter)),
         is_secured_(is_secured) {}
 
   eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override {
@@ -57,7 +62,10 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     sources_->heard({bytes, size}, address_of(remote));
     std::unique_lock lock(one_at_a_time_, std::defer_lock);
     if (is_secured_) lock.lock();
-    next->OnDataReceived(bytes, size, local, remote);
+    thread_local Bytes scratch;
+    const ByteView passed = filter_->pass({bytes, size}, scratch, DatagramFilter::Clock::now());
+    if (passed.empty()) return;
+    next->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local, remote);
   }
 
  private:
@@ -70,6 +78,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
 
   const Listens listens_;
   const std::shared_ptr<DatagramSources> sources_;
+  const std::shared_ptr<DatagramFilter> filter_;
   const bool is_secured_;
   std::mutex one_at_a_time_;
 };
@@ -77,18 +86,21 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
 struct CarefulTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   CarefulTransportDescriptor(
       std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> transport,
-      Listens flag, std::shared_ptr<DatagramSources> origins, bool secured)
+      Listens flag, std::shared_ptr<DatagramSources> origins,
+      std::shared_ptr<DatagramFilter> datagrams, bool secured)
       : ChainingTransportDescriptor(std::move(transport)),
         listens(std::move(flag)),
         sources(std::move(origins)),
+        filter(std::move(datagrams)),
         is_secured(secured) {}
 
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override {
-    return new CarefulTransport(*this, listens, sources, is_secured);
+    return new CarefulTransport(*this, listens, sources, filter, is_secured);
   }
 
   const Listens listens;
   const std::shared_ptr<DatagramSources> sources;
+  const std::shared_ptr<DatagramFilter> filter;
   const bool is_secured;
 };
 

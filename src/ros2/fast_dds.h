@@ -26,7 +26,9 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <fastdds/rtps/common/WriteParams.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/attributes/LibrarySettingsAttributes.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 
 #include "ros2/careful_transport.h"
 #include "ros2/participant.h"
@@ -213,12 +215,22 @@ inline rtps::Locator_t locator(const std::string& ip, std::uint32_t port) {
   return out;
 }
 
+// Participants of one process, and the endpoints of one, would else hand each other their samples
+// without any socket. Nobody could tell then whether the sockets still work. Before the first
+// participant.
+inline void speak_through_sockets() {
+  eprosima::fastrtps::LibrarySettingsAttributes settings;
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+}
+
 // `peers` are IPv4 addresses. Nothing is sent before `listens`. Where datagrams come from is
-// written into `sources`.
+// written into `sources`; what they bring goes through `filter`.
 inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& options,
                                                  const std::vector<std::string>& peers,
                                                  Listens listens,
-                                                 std::shared_ptr<DatagramSources> sources) {
+                                                 std::shared_ptr<DatagramSources> sources,
+                                                 std::shared_ptr<DatagramFilter> filter) {
   dds::DomainParticipantQos out;
   out.name(options.enclave);
   const std::string user_data = "enclave=" + options.enclave + ";";
@@ -254,7 +266,8 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
       32;  // participants of one machine that are announced to, as ROS 2 Iron and newer
   out.transport().use_builtin_transports = false;
   out.transport().user_transports.push_back(std::make_shared<CarefulTransportDescriptor>(
-      std::move(udp), std::move(listens), std::move(sources), options.security.has_value()));
+      std::move(udp), std::move(listens), std::move(sources), std::move(filter),
+      options.security.has_value()));
   return out;
 }
 

@@ -55,6 +55,7 @@ Link::~Link() {
   // Clients and readers go before the node that they belong to.
   probing_.reset();
   publishing_.reset();
+  hearing_.reset();
   parameter_events_.reset();
   diagnostics_watch_.reset();
   watches_.clear();
@@ -92,7 +93,13 @@ Expected<void> Link::start() {
   if (!watch) return Error{watch.error()};
   diagnostics_watch_ = std::move(*watch);
   if (auto watched = watch_parameter_events(); !watched) return watched;
-  publishing_ = std::make_unique<Timer>(executor_, kPublishPeriod, [this] { publish_again(); });
+  publishing_ = std::make_unique<Timer>(executor_, kPublishPeriod, [this] {
+    publish_again();
+    tell_of_refused();
+  });
+  auto hearing = Hearing::begin(context_->participant(), executor_);
+  if (!hearing) return Error{hearing.error()};
+  hearing_ = std::move(*hearing);
   probing_ = std::make_unique<Timer>(executor_, kProbePeriod, [this] { probe(); });
   thread_ = std::thread([this] { executor_.run(); });
   return {};
@@ -241,6 +248,15 @@ void Link::probe() {
     if (input.kind != Input::Kind::kLifecycle) continue;
     if (ComponentLink* link = link_of(input.component)) link->check_lifecycle();
   }
+}
+
+// Once for each tenfold: a flood of them is not to be a flood of messages.
+void Link::tell_of_refused() {
+  const DatagramFilter::Refused refused = context_->participant().refused();
+  if (refused.count == 0 || refused.count < 10 * refused_) return;
+  refused_ = refused.count;
+  inbox_.put(LinkTrouble{std::to_string(refused.count) + " datagrams were kept out so far: " +
+                         refused.why + "; who on this network sends that?"});
 }
 
 // ---- commands

@@ -23,6 +23,7 @@
 #include "robot/inbox.h"
 #include "ros2/component_link.h"
 #include "ros2/diagnostics_watch.h"
+#include "ros2/hearing.h"
 #include "ros2/manager_lease.h"
 #include "ros2/node.h"
 #include "ros2/timer.h"
@@ -62,6 +63,9 @@ class Link {
   void publish(std::vector<Health> health);
   void log(Severity severity, std::string text);
 
+  // Until when it is sure that what the robot says is heard (hearing.h). From any thread.
+  Time doubtful() const { return hearing_->doubtful(); }
+
   // Where the culprit runs that goes before this one: a host's name, or "another machine" where it
   // does not say. Nothing: there is none. From any thread.
   std::optional<std::string> elder() const;
@@ -83,6 +87,7 @@ class Link {
   void on_parameter_event(const msg::ParameterEvent& event);
   void probe();
   void publish_again();
+  void tell_of_refused();
 
   ComponentLink* link_of(ComponentId component);
   ComponentLink* make_link(ComponentId component, const std::string& node);
@@ -105,6 +110,8 @@ class Link {
   std::map<std::string, std::vector<std::string>> systems_;  // by the mode manager's node
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;
+  std::unique_ptr<Hearing> hearing_;
+  std::uint64_t refused_ = 0;  // datagrams that were told of
   std::optional<ManagerLease> lease_;
   std::unique_ptr<Writer> lease_writer_;
 

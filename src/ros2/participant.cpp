@@ -2,6 +2,7 @@
 
 #include <map>
 #include <mutex>
+#include <set>
 #include <utility>
 
 #include "ros2/fast_dds.h"
@@ -77,6 +78,42 @@ class Gate {
   bool open_ = true;
 };
 
+// The writers that one reader hears, which the filter has to know.
+class HeardWriters {
+ public:
+  HeardWriters(DatagramFilter& filter, const Qos& qos, std::function<void()> on_unheard)
+      : filter_(filter),
+        how_(qos.reliability == Reliability::kReliable ? DatagramFilter::Reading::kReliable
+                                                       : DatagramFilter::Reading::kBestEffort),
+        on_unheard_(on_unheard
+                        ? std::make_shared<const std::function<void()>>(
+                              [gate = gate_, call = std::move(on_unheard)] { gate->pass(call); })
+                        : nullptr) {}
+  ~HeardWriters() {
+    gate_->close();
+    for (const Guid& writer : writers_) filter_.end_hearing(writer, how_);
+  }
+  HeardWriters(const HeardWriters&) = delete;
+
+  void note(const Guid& writer, Match match) {
+    const std::lock_guard lock(mutex_);
+    if (match == Match::kMade && writers_.insert(writer).second)
+      filter_.begin_hearing(writer, how_, on_unheard_);
+    if (match == Match::kLost && writers_.erase(writer) > 0) filter_.end_hearing(writer, how_);
+  }
+  void delivered(const Guid& writer) {
+    if (on_unheard_) filter_.delivered(writer);
+  }
+
+ private:
+  DatagramFilter& filter_;
+  const DatagramFilter::Reading how_;
+  const std::shared_ptr<Gate> gate_ = std::make_shared<Gate>();
+  const DatagramFilter::OnUnheard on_unheard_;
+  std::mutex mutex_;
+  std::set<Guid> writers_;
+};
+
 // Why the middleware may refuse a reader or writer, as far as one can tell.
 std::string likely_refusal(const std::optional<Security>& security) {
   if (!security) return "";
@@ -93,9 +130,11 @@ Match match_of(const Status& status) {
 
 class Reader::Impl final : public dds::DataReaderListener {
  public:
-  Impl(dds::Subscriber& subscriber, Topics& topics, ReaderOptions options, SampleCallback on_sample)
+  Impl(dds::Subscriber& subscriber, Topics& topics, DatagramFilter& filter, ReaderOptions options,
+       SampleCallback on_sample)
       : subscriber_(subscriber),
         topics_(topics),
+        heard_(filter, options.qos, options.on_unheard),
         options_(std::move(options)),
         on_sample_(std::move(on_sample)) {
     incoming_.use = options_.payload;
@@ -137,8 +176,9 @@ class Reader::Impl final : public dds::DataReaderListener {
 
   void on_subscription_matched(dds::DataReader*,
                                const dds::SubscriptionMatchedStatus& status) noexcept override {
-    if (!options_.on_match) return;
     const Guid writer = fast_dds::to_guid(rtps::iHandle2GUID(status.last_publication_handle));
+    heard_.note(writer, match_of(status));
+    if (!options_.on_match) return;
     gate_.pass([&] { options_.on_match(writer, match_of(status)); });
   }
 
@@ -146,6 +186,7 @@ class Reader::Impl final : public dds::DataReaderListener {
 
  private:
   void deliver(const dds::SampleInfo& info) {
+    heard_.delivered(fast_dds::to_identity(info.sample_identity).writer);
     on_sample_(
         {.payload = options_.payload == PayloadUse::kWhole ? ByteView(incoming_.bytes) : ByteView(),
          .size = incoming_.size,
@@ -157,6 +198,7 @@ class Reader::Impl final : public dds::DataReaderListener {
 
   dds::Subscriber& subscriber_;
   Topics& topics_;
+  HeardWriters heard_;  // outlives the middleware's reader
   const ReaderOptions options_;
   const SampleCallback on_sample_;
   Gate gate_;
@@ -235,10 +277,14 @@ class Participant::Impl {
  public:
   explicit Impl(DiscoveryCallback on_discovery)
       : listener_([this, callback = std::move(on_discovery)](DiscoveryEvent event) {
-          if (const auto* info = std::get_if<ParticipantInfo>(&event))
-            sources_->keep(info->guid.prefix());
-          if (const auto* gone = std::get_if<ParticipantGone>(&event))
+          if (const auto* there = std::get_if<ParticipantInfo>(&event)) {
+            sources_->keep(there->guid.prefix());
+            filter_->know(there->guid.prefix());
+          }
+          if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
             sources_->forget(gone->guid.prefix());
+            filter_->forget(gone->guid.prefix());
+          }
           gate_.pass([&] { callback(std::move(event)); });
         }) {}
 
@@ -249,10 +295,12 @@ class Participant::Impl {
       if (!address) return Error{address.error()};
       peers.push_back(std::move(*address));
     }
+    static std::once_flag is_set_up;
+    std::call_once(is_set_up, fast_dds::speak_through_sockets);
     const auto listens = std::make_shared<std::atomic<bool>>(false);
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
-        options.domain, fast_dds::participant_qos(options, peers, listens, sources_), &listener_,
-        dds::StatusMask::none());
+        options.domain, fast_dds::participant_qos(options, peers, listens, sources_, filter_),
+        &listener_, dds::StatusMask::none());
     if (participant_ == nullptr) {
       return Error{"cannot join DDS domain " + std::to_string(options.domain) +
                    (options.security
@@ -278,8 +326,8 @@ class Participant::Impl {
   }
 
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample) {
-    auto reader = std::make_unique<Reader::Impl>(*subscriber_, *topics_, std::move(options),
-                                                 std::move(on_sample));
+    auto reader = std::make_unique<Reader::Impl>(*subscriber_, *topics_, *filter_,
+                                                 std::move(options), std::move(on_sample));
     if (auto opened = reader->open(likely_refusal_); !opened) return Error{opened.error()};
     return std::make_unique<Reader>(std::move(reader));
   }
@@ -292,10 +340,12 @@ class Participant::Impl {
 
   const Guid& guid() const { return guid_; }
   const DatagramSources& sources() const { return *sources_; }
+  const DatagramFilter& filter() const { return *filter_; }
 
  private:
   Gate gate_;
   const std::shared_ptr<DatagramSources> sources_ = std::make_shared<DatagramSources>();
+  const std::shared_ptr<DatagramFilter> filter_ = std::make_shared<DatagramFilter>();
   fast_dds::DiscoveryListener listener_;
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;
@@ -311,6 +361,7 @@ const Guid& Participant::guid() const { return impl_->guid(); }
 DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) const {
   return impl_->sources().of(participant);
 }
+DatagramFilter::Refused Participant::refused() const { return impl_->filter().refused(); }
 
 Expected<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,
                                                            DiscoveryCallback on_discovery) {

@@ -22,6 +22,7 @@
 
 #include "language/expected.h"
 #include "ros2/cdr.h"
+#include "ros2/datagram_filter.h"
 #include "ros2/datagram_sources.h"
 #include "ros2/guid.h"
 #include "ros2/options.h"
@@ -91,6 +92,10 @@ struct ReaderOptions {
   PayloadUse payload = PayloadUse::kWhole;
   std::string user_data;
   MatchCallback on_match;  // may be empty
+  // Of best effort readers: a writer lives and writes, but its samples cannot be put together, for
+  // they are too large, or lost in part, or somebody forged their numbers. May be empty; called
+  // like SampleCallback, once for each such sample, after a few.
+  std::function<void()> on_unheard{};
 };
 
 struct WriterOptions {
@@ -145,6 +150,8 @@ class Participant {
 
   // Where the datagrams of another participant came from so far.
   DatagramSources::Origin origin_of(const GuidPrefix& participant) const;
+  // What came and was kept from the middleware.
+  DatagramFilter::Refused refused() const;
 
   // An error when the middleware refuses: one participant cannot have a topic with two types.
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample);

@@ -6,6 +6,7 @@
 #include "ros2/component_needs.h"
 #include "ros2/diagnostics_reading.h"
 #include "ros2/discovery_info.h"
+#include "ros2/hearing.h"
 #include "ros2/manager_lease.h"
 
 namespace culprit::ros2 {
@@ -84,7 +85,9 @@ void criteria(std::string& xml, const char* verb, std::vector<std::vector<std::s
 Rights rights_of(const RuleSet& rules, const NodeName& self) {
   Rights rights;
   const auto lease = demangle_topic(ManagerLease::kTopic);
-  rights.publishes = {"/diagnostics", "/parameter_events", "/rosout", lease->name};
+  const auto hearing = demangle_topic(Hearing::kTopic);
+  rights.publishes = {"/diagnostics", "/parameter_events", "/rosout", lease->name, hearing->name};
+  rights.subscribes = {hearing->name};
   for (const char* service : {"describe_parameters", "get_parameter_types", "get_parameters",
                               "list_parameters", "set_parameters", "set_parameters_atomically"})
     rights.offers.push_back(self.full() + "/" + service);

@@ -2,11 +2,9 @@
 
 namespace culprit::ros2 {
 
-Expected<std::unique_ptr<RawSubscription>> RawSubscription::create(NodeEntry& node,
-                                                                   std::string_view topic,
-                                                                   std::string_view type,
-                                                                   const Qos& qos, PayloadUse use,
-                                                                   SampleCallback on_sample) {
+Expected<std::unique_ptr<RawSubscription>> RawSubscription::create(
+    NodeEntry& node, std::string_view topic, std::string_view type, const Qos& qos, PayloadUse use,
+    SampleCallback on_sample, std::function<void()> on_unheard) {
   const auto name = resolve_name(topic, node.name());
   if (!name) return Error{name.error()};
   if (!is_valid_type_name(type))
@@ -17,7 +15,8 @@ Expected<std::unique_ptr<RawSubscription>> RawSubscription::create(NodeEntry& no
                                                   .qos = qos,
                                                   .payload = use,
                                                   .user_data = {},
-                                                  .on_match = {}},
+                                                  .on_match = {},
+                                                  .on_unheard = std::move(on_unheard)},
                                                  std::move(on_sample));
   if (!reader) return Error{reader.error()};
   return std::make_unique<RawSubscription>(node, std::move(*reader));

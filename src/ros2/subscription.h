@@ -22,11 +22,11 @@ namespace culprit::ros2 {
 class RawSubscription {
  public:
   // `topic` as resolve_name takes it; `type` is "package/msg/Type". The node entry outlives the
-  // subscription.
+  // subscription. `on_unheard` is ReaderOptions'.
   static Expected<std::unique_ptr<RawSubscription>> create(NodeEntry& node, std::string_view topic,
                                                            std::string_view type, const Qos& qos,
-                                                           PayloadUse use,
-                                                           SampleCallback on_sample);
+                                                           PayloadUse use, SampleCallback on_sample,
+                                                           std::function<void()> on_unheard = {});
   RawSubscription(NodeEntry& node, std::unique_ptr<Reader> reader);
   ~RawSubscription();
   RawSubscription(const RawSubscription&) = delete;

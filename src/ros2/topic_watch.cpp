@@ -36,7 +36,7 @@ void TopicWatch::publisher_seen(const std::string& type, MessageLibrary& library
   constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
   auto subscription = RawSubscription::create(
       self_, name, type, kQos, fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
-      [this](const Sample& sample) { on_sample(sample); });
+      [this](const Sample& sample) { on_sample(sample); }, [this] { on_unheard(); });
   if (!subscription) {
     fields_.clear();
     inbox_.put(LinkTrouble{"cannot watch " + name + ": " + subscription.error()});
@@ -56,6 +56,16 @@ void TopicWatch::on_sample(const Sample& sample) {
     field.last = value;
     inbox_.put(SignalRead{field.signal, std::move(value)}, urgency);
   }
+}
+
+// What we cannot put together was published all the same: nobody is silent.
+void TopicWatch::on_unheard() {
+  if (!told_unheard_.exchange(true)) {
+    inbox_.put(LinkTrouble{"messages of " + rules_[topic_].name +
+                           " come, but cannot be put together: they are too large, or lost in "
+                           "part; only that they come is known"});
+  }
+  if (counts_) inbox_.put(SampleArrived{topic_, 1}, Urgency::kSoon);
 }
 
 // How many samples the writer wrote since the last one that came here, this one included.

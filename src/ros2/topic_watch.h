@@ -4,6 +4,7 @@
 // read no field, payloads are not even copied: watching a camera costs what receiving it costs.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,7 @@ class TopicWatch {
     std::optional<Value> last;
   };
   void on_sample(const Sample& sample);
+  void on_unheard();
   std::uint32_t published_since(const SampleIdentity& identity);
 
   NodeEntry& self_;
@@ -45,6 +47,9 @@ class TopicWatch {
   // Of the receive thread, once the subscription exists.
   std::vector<Field> fields_;
   std::unordered_map<Guid, std::int64_t> last_sequence_;  // by writer
+
+  std::atomic<bool> told_unheard_ =
+      false;  // receive threads come one at a time, but not always one
 
   std::unique_ptr<RawSubscription> subscription_;
 };

@@ -77,6 +77,7 @@ void Metrics::stepped(Duration took, std::size_t observations, const Manager& ma
   step_times_[static_cast<std::size_t>(bound - kStepBounds.begin())].fetch_add(1, kRelaxed);
   step_nanoseconds_.fetch_add(static_cast<std::uint64_t>(took.count()), kRelaxed);
   observations_.fetch_add(observations, kRelaxed);
+  hears_ = manager.hears();
   is_settled_ = manager.knowledge().now >= manager.settled();
   if (!manager.events().empty()) {
     const std::lock_guard lock(mutex_);

@@ -33,6 +33,8 @@ class Metrics {
   std::uint64_t steps() const { return steps_; }
   // The robot had its time to show itself.
   bool is_settled() const { return is_settled_; }
+  // The robot can be heard.
+  bool hears() const { return hears_; }
   // All of it, with what the operating system says of this process.
   std::string text() const;
 
@@ -64,6 +66,7 @@ class Metrics {
   std::atomic<std::uint64_t> step_nanoseconds_ = 0;
   std::atomic<std::uint64_t> observations_ = 0;
   std::atomic<bool> is_settled_ = false;
+  std::atomic<bool> hears_ = true;
 
   mutable std::mutex mutex_;
   Counts counts_;  // guarded by mutex_

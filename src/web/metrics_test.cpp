@@ -107,6 +107,11 @@ TEST_F(Counted, IsAliveAsLongAsTheLoopComesRoundWhenAskedTo) {
   robot.discover();
   robot.run_for(10s);
   EXPECT_EQ(ask(hub, 1).status, 200);
+  robot.tell(HearingLost{"nothing comes back"});
+  EXPECT_EQ(ask(hub, 0).status, 503);
+  EXPECT_EQ(ask(hub, 1).status, 503);
+  robot.tell(HearingRegained{});
+  EXPECT_EQ(ask(hub, 0).status, 200);
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include "web/server.h"
 
+#include <algorithm>
 #include <atomic>
 #include <sys/socket.h>
 
 #include <fmt/core.h>
 
 #include "web/app.h"
+#include "web/budgeted_server.h"
 #include "web/connection_threads.h"
 #include "web/event_stream.h"
 #include "web/openapi.h"
@@ -79,14 +81,11 @@ class Server::Http {
         routes_(std::move(routes)),
         hub_(hub),
         limit_(kRequestsPerSecond, kBurst),
-        owner_limit_(kRequestsPerSecond, kBurst) {
-    using std::chrono::seconds;
-    server_.new_task_queue = [] { return new ConnectionThreads(kMostConnections); };
+        owner_limit_(kRequestsPerSecond, kBurst),
+        most_connections_(affordable_connections(kMostConnections)),
+        server_({.body_bytes = kMostBytes}) {
+    server_.new_task_queue = [this] { return new ConnectionThreads(most_connections_); };
     server_.set_socket_options(take_port_alone);
-    server_.set_keep_alive_timeout(2);
-    server_.set_keep_alive_max_count(1000);
-    server_.set_read_timeout(seconds(5));
-    server_.set_write_timeout(seconds(5));
     server_.set_tcp_nodelay(true);
     server_.set_payload_max_length(kMostBytes);
     server_.set_default_headers(kHeaders);
@@ -220,7 +219,9 @@ class Server::Http {
   }
 
   void stream(const httplib::Request& q, httplib::Response& r) {
-    if (++streams_ > static_cast<int>(kMostStreams)) {
+    // Whoever asks for something else needs a connection, too.
+    const std::size_t most = std::min(kMostStreams, (most_connections_ + 1) / 2);
+    if (++streams_ > static_cast<int>(most)) {
       --streams_;
       r.set_header("Retry-After", "5");
       return give(r, refuse(503, "too many pages are open; close some"));
@@ -243,7 +244,8 @@ class Server::Http {
   RateLimit owner_limit_;
   std::atomic<int> streams_ = 0;
   std::atomic<bool> is_over_ = false;  // it does not listen any more
-  httplib::Server server_;
+  const std::size_t most_connections_;
+  BudgetedServer server_;
   int port_ = 0;
 };
 

@@ -18,6 +18,7 @@ namespace culprit::web {
 
 class Server {
  public:
+  // Fewer where the limit of descriptors (ulimit -n) is low: those are the manager's first.
   static constexpr std::size_t kMostConnections = 128;
   static constexpr std::size_t kMostStreams = 64;
   static constexpr std::size_t kMostBytes = 1 << 20;  // of a request's body

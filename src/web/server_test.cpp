@@ -1,9 +1,14 @@
 // The server as browsers, scripts and attackers meet it: real sockets on loopback.
 #include "web/server.h"
 
+#include <algorithm>
 #include <arpa/inet.h>
+#include <csignal>
+#include <filesystem>
 #include <httplib.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <gmock/gmock.h>
@@ -64,8 +69,9 @@ class Raw {
   ~Raw() { close(socket_); }
   Raw(const Raw&) = delete;
 
-  void send(const std::string& bytes) const {
-    ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  // Whether the server takes it.
+  bool send(const std::string& bytes) const {
+    return ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) >= 0;
   }
   // All that comes until the server closes, or `text` has come.
   std::string receive(const std::string& text = "") const {
@@ -238,6 +244,61 @@ TEST_F(WebServer, GoesOnAfterAThousandConnections) {
   const auto answer = patient.Get("/api/echo");
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->status, 200);
+}
+
+// Headers without end, and a line without end: cut off before they are kept.
+TEST_F(WebServer, CutsOffHeadersThatDoNotEnd) {
+  for (const std::string& endless : {std::string("a: b\r\n"), std::string("aaaaaaaa")}) {
+    const Raw raw(server->port());
+    raw.send("GET /api/echo HTTP/1.1\r\n");
+    std::string block;
+    while (block.size() < 64 * 1024) block += endless;
+    std::size_t sent = 0;
+    while (sent < (64u << 20) && raw.send(block)) sent += block.size();
+    EXPECT_LT(sent, 64u << 20) << endless;
+  }
+  EXPECT_EQ(client().Get("/api/echo")->status, 200);
+}
+
+TEST_F(WebServer, TakesHeadersOfAnOrdinarySize) {
+  EXPECT_EQ(client().Get("/api/echo", {{"Cookie", std::string(6000, 'c')}})->status, 200);
+}
+
+int open_descriptors() {
+  const std::filesystem::directory_iterator all("/proc/self/fd");
+  return static_cast<int>(std::distance(begin(all), end(all)));
+}
+
+// Under a low limit of descriptors, a hundred connections leave the manager enough of them.
+TEST(WebServerStart, LeavesDescriptorsToTheManager) {
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  rlimit low = before;
+  low.rlim_cur = static_cast<rlim_t>(open_descriptors()) + 48;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &low), 0);
+  auto server = start();
+  const pid_t flood = fork();
+  if (flood == 0) {  // with descriptors of its own
+    setrlimit(RLIMIT_NOFILE, &before);
+    std::vector<std::unique_ptr<Raw>> connections;
+    for (int i = 0; i < 100; ++i) {
+      connections.push_back(std::make_unique<Raw>(server->port(), SOCK_NONBLOCK));
+      connections.back()->send("GET /api/");
+    }
+    pause();
+    _exit(0);
+  }
+  // The flood is there when nobody else is served any more.
+  httplib::Client impatient("127.0.0.1", server->port());
+  impatient.set_read_timeout(std::chrono::milliseconds(200));
+  for (int i = 0; i < 100 && impatient.Get("/api/echo"); ++i) usleep(20'000);
+  std::vector<int> opened;
+  for (int i = 0; i < 24; ++i) opened.push_back(dup(0));
+  EXPECT_TRUE(std::none_of(opened.begin(), opened.end(), [](int each) { return each < 0; }));
+  for (const int each : opened) close(each);
+  kill(flood, SIGKILL);
+  waitpid(flood, nullptr, 0);
+  setrlimit(RLIMIT_NOFILE, &before);
 }
 
 TEST(WebServerStart, SaysWhenThePortIsTaken) {

@@ -20,13 +20,14 @@ bool steps(Hub& hub, const Metrics& metrics, std::chrono::milliseconds patience)
   return true;
 }
 
-Answer health(bool does_step) {
+Answer health(bool does_step, const Metrics& metrics) {
   if (!does_step) return refuse(503, "the decision loop does not come round");
+  if (!metrics.hears()) return refuse(503, "the robot cannot be heard, and nothing is judged");
   return {200, {{"status", "ok"}}};
 }
 
 Answer readiness(bool does_step, const Metrics& metrics) {
-  if (!does_step) return health(does_step);
+  if (const Answer healthy = health(does_step, metrics); healthy.status != 200) return healthy;
   if (!metrics.is_settled())
     return refuse(503, "the robot is still given its time to show itself (--settle)");
   return {200, {{"status", "ready"}}};
@@ -37,7 +38,8 @@ Answer readiness(bool does_step, const Metrics& metrics) {
 std::vector<Route> status_routes(Hub& hub, const Metrics& metrics,
                                  std::chrono::milliseconds patience) {
   const auto does_step = [&hub, &metrics, patience] { return steps(hub, metrics, patience); };
-  return {{Method::kGet, "/healthz", [=](const Json&) { return health(does_step()); }},
+  return {{Method::kGet, "/healthz",
+           [=, &metrics](const Json&) { return health(does_step(), metrics); }},
           {Method::kGet, "/readyz",
            [=, &metrics](const Json&) { return readiness(does_step(), metrics); }},
           {Method::kGet, "/metrics", [&metrics](const Json&) {

@@ -1,0 +1,438 @@
+#include "ros2/datagram_filter.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+namespace culprit::ros2 {
+namespace {
+
+enum Kind : std::uint8_t {
+  kPad = 0x01,
+  kAckNack = 0x06,
+  kHeartbeat = 0x07,
+  kGap = 0x08,
+  kInfoTime = 0x09,
+  kInfoSource = 0x0c,
+  kInfoDestination = 0x0e,
+  kNackFragment = 0x12,
+  kHeartbeatFragment = 0x13,
+  kData = 0x15,
+  kDataFragment = 0x16
+};
+
+constexpr std::size_t kHeader = 20;
+constexpr std::size_t kSubmessageHeader = 4;
+constexpr std::uint16_t kSentinel = 1;  // of a list of parameters
+constexpr std::size_t kMostFragments = 1 << 16;
+
+bool is_header(ByteView datagram) {
+  return datagram.size() >= kHeader && std::memcmp(datagram.data(), "RTPS", 4) == 0 &&
+         datagram[4] == 2;
+}
+
+bool is_builtin(const Guid& writer) { return (writer.bytes[15] & 0xc0) == 0xc0; }
+
+}  // namespace
+
+// One submessage: a cursor over its body. What is read beyond the end is zero, and makes it not
+// ok().
+class DatagramFilter::Submessage {
+ public:
+  Submessage(ByteView header, ByteView body, const GuidPrefix& source)
+      : kind(header[0]), flags(header[1]), body_(body), source_(source) {}
+
+  const std::uint8_t kind;
+  const std::uint8_t flags;
+
+  bool ok() const { return is_ok_; }
+  std::size_t left() const { return is_ok_ ? body_.size() - at_ : 0; }
+  std::size_t size() const { return body_.size(); }
+  std::size_t at() const { return at_; }
+  void skip(std::size_t bytes) {
+    is_ok_ = is_ok_ && bytes <= body_.size() - at_;
+    if (is_ok_) at_ += bytes;
+  }
+  template <class T>
+  T read() {
+    if (left() < sizeof(T)) {
+      is_ok_ = false;
+      return {};
+    }
+    T value{};
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+      const std::size_t place = (flags & 1) != 0 ? sizeof(T) - 1 - i : i;
+      value = static_cast<T>((static_cast<std::uint64_t>(value) << 8) | body_[at_ + place]);
+    }
+    at_ += sizeof(T);
+    return value;
+  }
+  std::int64_t read_sequence() {
+    const auto high = read<std::uint32_t>();
+    const auto low = read<std::uint32_t>();
+    return static_cast<std::int64_t>((std::uint64_t{high} << 32) | low);
+  }
+  // A writer of the participant that sent the datagram.
+  Guid read_writer() {
+    Guid guid;
+    std::copy(source_.bytes.begin(), source_.bytes.end(), guid.bytes.begin());
+    if (left() >= 4) std::copy_n(body_.data() + at_, 4, guid.bytes.data() + 12);
+    skip(4);
+    return guid;
+  }
+  // Whether a bitmap follows that its own length and the body hold.
+  bool skip_bitmap() {
+    const auto bits = read<std::uint32_t>();
+    if (bits > 256) return false;
+    skip((bits + 31) / 32 * 4);
+    return ok();
+  }
+  // Whether a list of parameters follows that ends within the body.
+  bool skip_parameters() {
+    while (is_ok_) {
+      const auto id = read<std::uint16_t>();
+      const auto length = read<std::uint16_t>();
+      if (id == kSentinel) return ok();
+      skip((length + 3u) & ~3u);
+    }
+    return false;
+  }
+
+ private:
+  const ByteView body_;
+  const GuidPrefix& source_;
+  std::size_t at_ = 0;
+  bool is_ok_ = true;
+};
+
+ByteView DatagramFilter::pass(ByteView datagram, Bytes& scratch, Clock::time_point now) {
+  std::vector<OnUnheard> unheard;
+  ByteView passed;
+  {
+    const std::lock_guard lock(mutex_);
+    passed = look_at(datagram, scratch, now);
+    unheard.swap(unheard_);
+  }
+  for (const OnUnheard& each : unheard) (*each)();
+  return passed;
+}
+
+ByteView DatagramFilter::look_at(ByteView datagram, Bytes& scratch, Clock::time_point now) {
+  if (!is_header(datagram)) {
+    refused_ = {refused_.count + 1, "it is no RTPS message"};
+    return {};
+  }
+  GuidPrefix source;
+  std::copy_n(datagram.data() + 8, source.bytes.size(), source.bytes.begin());
+  bool is_changed = false;
+  std::size_t end = datagram.size();
+  for (std::size_t at = kHeader; at < end;) {
+    const ByteView rest = datagram.subspan(at, end - at);
+    const char* objection = nullptr;
+    std::size_t length = 0;
+    bool is_last = false;
+    if (rest.size() < kSubmessageHeader) {
+      objection = "a submessage is cut";
+      is_last = true;
+    } else {
+      length = (rest[1] & 1) != 0 ? rest[2] | (rest[3] << 8) : (rest[2] << 8) | rest[3];
+      is_last = length == 0 && rest[0] != kPad && rest[0] != kInfoTime;
+      if (is_last) length = rest.size() - kSubmessageHeader;
+      if (length > rest.size() - kSubmessageHeader) {
+        objection = "a submessage is longer than its datagram";
+        is_last = true;
+      } else {
+        const ByteView body = rest.subspan(kSubmessageHeader, length);
+        objection = this->objection(Submessage(rest, body, source), now);
+        if (rest[0] == kInfoSource && objection == nullptr)
+          std::copy_n(body.data() + 8, source.bytes.size(), source.bytes.begin());
+      }
+    }
+    if (objection != nullptr) {
+      refused_ = {refused_.count + 1, objection};
+      // What has no length of its own, or a false one, is cut off; the rest becomes padding.
+      if (is_last) {
+        end = at;
+        break;
+      }
+      if (!is_changed) scratch.assign(datagram.begin(), datagram.end());
+      is_changed = true;
+      scratch[at] = kPad;
+    }
+    at += kSubmessageHeader + ((length + 3) & ~std::size_t{3});
+  }
+  if (end <= kHeader && datagram.size() > kHeader) return {};
+  return is_changed ? ByteView(scratch).first(end) : datagram.first(end);
+}
+
+const char* DatagramFilter::objection(const Submessage& submessage, Clock::time_point now) {
+  Submessage body = submessage;
+  switch (submessage.kind) {
+    case kData:
+      return objection_to_data(submessage, now);
+    case kDataFragment:
+      return objection_to_fragment(submessage, now);
+    case kHeartbeat:
+      return objection_to_heartbeat(submessage, now);
+    case kGap:
+      return objection_to_gap(submessage);
+    case kAckNack:
+    case kNackFragment: {
+      body.skip(8);
+      const std::int64_t base = body.read_sequence();
+      // The fragments of a sample have shorter numbers.
+      if (submessage.kind == kNackFragment) body.skip(4);
+      if (base < 0 || base > kFirst) return "an acknowledgement of what nobody wrote";
+      if (!body.skip_bitmap() || body.left() < 4) return "a damaged acknowledgement";
+      return nullptr;
+    }
+    case kHeartbeatFragment:
+      body.skip(24);
+      return body.ok() ? nullptr : "a damaged heartbeat";
+    case kInfoSource:
+      return submessage.size() == 20 ? nullptr : "a damaged source";
+    case kInfoDestination:
+      return submessage.size() >= 12 ? nullptr : "a damaged destination";
+    case kInfoTime:
+      return (submessage.flags & 2) != 0 || submessage.size() >= 8 ? nullptr : "a damaged time";
+    default:
+      return nullptr;
+  }
+}
+
+const char* DatagramFilter::objection_to_data(const Submessage& submessage, Clock::time_point now) {
+  constexpr const char* kDamaged = "a damaged sample";
+  Submessage body = submessage;
+  body.skip(2);
+  const auto to_parameters = body.read<std::uint16_t>();
+  const std::size_t counted_from = body.at();
+  body.skip(4);
+  const Guid writer = body.read_writer();
+  const std::int64_t sequence = body.read_sequence();
+  if (!body.ok() || to_parameters < body.at() - counted_from) return kDamaged;
+  body.skip(to_parameters - (body.at() - counted_from));
+  if ((body.flags & 2) != 0 && !body.skip_parameters()) return kDamaged;
+  const bool has_payload = (body.flags & 4) != 0;
+  const bool has_key = (body.flags & 8) != 0;
+  if (!body.ok() || (has_payload && has_key)) return kDamaged;
+  if ((has_payload || has_key) && body.left() < kEncapsulationSize) return kDamaged;
+  if (sequence < 1 || is_far(writer, sequence, now)) return "a sample with an absurd number";
+  learn(writer, sequence, now);
+  came_by(writer, sequence);
+  return nullptr;
+}
+
+const char* DatagramFilter::objection_to_fragment(const Submessage& submessage,
+                                                  Clock::time_point now) {
+  constexpr const char* kDamaged = "a damaged fragment";
+  Submessage body = submessage;
+  body.skip(2);
+  const auto to_parameters = body.read<std::uint16_t>();
+  const std::size_t counted_from = body.at();
+  body.skip(4);
+  const Guid writer = body.read_writer();
+  const std::int64_t sequence = body.read_sequence();
+  const auto first = body.read<std::uint32_t>();
+  const std::uint32_t count = body.read<std::uint16_t>();
+  Assembly assembly;
+  assembly.fragment_size = body.read<std::uint16_t>();
+  assembly.size = body.read<std::uint32_t>();
+  if (!body.ok() || to_parameters < body.at() - counted_from) return kDamaged;
+  body.skip(to_parameters - (body.at() - counted_from));
+  if ((body.flags & 2) != 0 && !body.skip_parameters()) return kDamaged;
+  if (!body.ok() || first < 1 || count < 1 || assembly.fragment_size < 1 || assembly.size < 1)
+    return kDamaged;
+  const std::size_t all = (assembly.size + assembly.fragment_size - 1) / assembly.fragment_size;
+  const std::size_t last = std::size_t{first} - 1 + count;
+  if (all > kMostFragments || last > all) return kDamaged;
+  const std::size_t bytes = std::min(assembly.size, last * assembly.fragment_size) -
+                            (std::size_t{first} - 1) * assembly.fragment_size;
+  // No more than was announced, but for the padding of the last one.
+  if (body.left() < bytes || body.left() > bytes + 3) return kDamaged;
+  if (sequence < 1 || is_far(writer, sequence, now)) return "a fragment with an absurd number";
+  came_by(writer, sequence);
+  assembly.missing = all;
+  if (const char* reason = reserve(writer, sequence, assembly, first, count)) return reason;
+  learn(writer, sequence, now);
+  return nullptr;
+}
+
+// A reliable reader keeps what it has of each sample; one that is best effort what it has of the
+// newest, and its memory for the next.
+const char* DatagramFilter::reserve(const Guid& guid, std::int64_t sequence, const Assembly& wanted,
+                                    std::uint32_t first, std::uint32_t count) {
+  constexpr const char* kTooMuch = "fragments of more than fits the memory";
+  if (!is_heard(guid)) return nullptr;
+  const bool keeps_all = is_reliable(guid);
+  Writer& writer = writers_[guid];
+  auto found = writer.assemblies.find(sequence);
+  if (found == writer.assemblies.end()) {
+    const std::size_t of_one = keeps_all ? kReliableOfOne : kLargest;
+    const std::size_t of_all = keeps_all ? kReliableOfAll : kLargestOfAll;
+    if (!keeps_all && !writer.assemblies.empty() && writer.assemblies.begin()->first > sequence)
+      return nullptr;  // of an older sample, which the reader passes over
+    const std::size_t reserved =
+        keeps_all ? writer.reserved + wanted.size : std::max(writer.reserved, wanted.size);
+    if (reserved > of_one || total(guid) - writer.reserved + reserved > of_all) return kTooMuch;
+    total(guid) += reserved - writer.reserved;
+    writer.reserved = reserved;
+    if (!keeps_all) writer.assemblies.clear();
+    found = writer.assemblies.emplace(sequence, wanted).first;
+    if (keeps_all) found->second.seen.resize(wanted.missing);
+  }
+  Assembly& assembly = found->second;
+  if (assembly.size != wanted.size || assembly.fragment_size != wanted.fragment_size)
+    return "fragments that contradict one another";
+  if (!keeps_all || assembly.seen.empty()) return nullptr;
+  for (std::size_t i = first - 1; i < std::size_t{first} - 1 + count; ++i) {
+    if (assembly.seen[i]) continue;
+    assembly.seen[i] = true;
+    --assembly.missing;
+  }
+  if (assembly.missing == 0) release(guid, writer, found);
+  return nullptr;
+}
+
+const char* DatagramFilter::objection_to_heartbeat(const Submessage& submessage,
+                                                   Clock::time_point now) {
+  Submessage body = submessage;
+  body.skip(4);
+  const Guid guid = body.read_writer();
+  const std::int64_t first = body.read_sequence();
+  const std::int64_t last = body.read_sequence();
+  body.skip(4);
+  if (!body.ok()) return "a damaged heartbeat";
+  // Best effort readers do not hear it, and a reliable one counts up to it.
+  if (first < 1 || last < first - 1 || is_far(guid, last, now) ||
+      (is_reliable(guid) && is_far(guid, first, now)))
+    return "a heartbeat with an absurd number";
+  learn(guid, last, now);
+  const auto known = writers_.find(guid);
+  if (known == writers_.end() || !is_reliable(guid)) return nullptr;
+  auto& assemblies = known->second.assemblies;
+  while (!assemblies.empty() && assemblies.begin()->first < first)
+    release(guid, known->second, assemblies.begin());
+  return nullptr;
+}
+
+// A gap is of samples that were written, so a heartbeat or a sample has told of them.
+const char* DatagramFilter::objection_to_gap(const Submessage& submessage) {
+  Submessage body = submessage;
+  body.skip(4);
+  const Guid guid = body.read_writer();
+  const std::int64_t first = body.read_sequence();
+  const std::int64_t base = body.read_sequence();
+  if (!body.skip_bitmap()) return "a damaged gap";
+  if (!is_heard(guid)) return nullptr;
+  const auto known = writers_.find(guid);
+  const std::int64_t last = known == writers_.end() ? 0 : known->second.last;
+  if (first < 1 || base < first || base > last + 1) return "a gap with an absurd number";
+  return nullptr;
+}
+
+// ---- what is known of writers
+
+bool DatagramFilter::is_heard(const Guid& writer) const {
+  return is_builtin(writer) ? participants_.contains(writer.prefix()) : readers_.contains(writer);
+}
+
+bool DatagramFilter::is_reliable(const Guid& writer) const {
+  if (is_builtin(writer)) return true;
+  const auto readers = readers_.find(writer);
+  return readers != readers_.end() && readers->second.reliable > 0;
+}
+
+bool DatagramFilter::is_far(const Guid& guid, std::int64_t sequence, Clock::time_point now) const {
+  const auto known = writers_.find(guid);
+  if (known == writers_.end() || known->second.last == 0)
+    return sequence > (is_heard(guid) && is_reliable(guid) ? kFirstReliable : kFirst);
+  const auto silence = std::chrono::duration<double>(now - known->second.heard).count();
+  const auto ahead = static_cast<std::int64_t>(std::clamp(silence, 0.0, 1e6) * kPerSecond);
+  return sequence > known->second.last + kAhead + ahead;
+}
+
+void DatagramFilter::learn(const Guid& guid, std::int64_t sequence, Clock::time_point now) {
+  if (!is_heard(guid)) return;
+  Writer& writer = writers_[guid];
+  writer.last = std::max(writer.last, sequence);
+  writer.heard = now;
+}
+
+std::size_t& DatagramFilter::total(const Guid& writer) {
+  return is_reliable(writer) ? reserved_reliable_ : reserved_best_effort_;
+}
+
+void DatagramFilter::release(const Guid& guid, Writer& writer,
+                             std::map<std::int64_t, Assembly>::iterator which) {
+  total(guid) -= which->second.size;
+  writer.reserved -= which->second.size;
+  writer.assemblies.erase(which);
+}
+
+void DatagramFilter::came_by(const Guid& writer, std::int64_t sequence) {
+  const auto found = readers_.find(writer);
+  if (found == readers_.end() || !found->second.on_unheard || found->second.sample == sequence)
+    return;
+  found->second.sample = sequence;
+  if (++found->second.unheard > kUnheard) unheard_.push_back(found->second.on_unheard);
+}
+
+void DatagramFilter::delivered(const Guid& writer) {
+  const std::lock_guard lock(mutex_);
+  const auto found = readers_.find(writer);
+  if (found != readers_.end()) found->second.unheard = 0;
+}
+
+// What was reserved of the writer is free again, and nothing is known of it.
+void DatagramFilter::drop(const Guid& guid) {
+  const auto known = writers_.find(guid);
+  if (known == writers_.end()) return;
+  total(guid) -= known->second.reserved;
+  writers_.erase(known);
+}
+
+void DatagramFilter::begin_hearing(const Guid& writer, Reading how, OnUnheard on_unheard) {
+  const std::lock_guard lock(mutex_);
+  if (how == Reading::kReliable && !is_reliable(writer)) drop(writer);
+  Readers& readers = readers_[writer];
+  ++(how == Reading::kReliable ? readers.reliable : readers.best_effort);
+  if (on_unheard) readers.on_unheard = std::move(on_unheard);
+}
+
+void DatagramFilter::end_hearing(const Guid& writer, Reading how) {
+  const std::lock_guard lock(mutex_);
+  const auto found = readers_.find(writer);
+  if (found == readers_.end()) return;
+  Readers readers = found->second;
+  --(how == Reading::kReliable ? readers.reliable : readers.best_effort);
+  const bool is_last = readers.reliable <= 0 && readers.best_effort <= 0;
+  if (is_last || (how == Reading::kReliable && readers.reliable == 0)) drop(writer);
+  if (is_last) {
+    readers_.erase(found);
+  } else {
+    found->second = readers;
+  }
+}
+
+void DatagramFilter::know(const GuidPrefix& participant) {
+  const std::lock_guard lock(mutex_);
+  participants_.insert(participant);
+}
+
+void DatagramFilter::forget(const GuidPrefix& participant) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(writers_, [&](const auto& each) {
+    if (each.first.prefix() != participant) return false;
+    total(each.first) -= each.second.reserved;
+    return true;
+  });
+  std::erase_if(readers_, [&](const auto& each) { return each.first.prefix() == participant; });
+  participants_.erase(participant);
+}
+
+DatagramFilter::Refused DatagramFilter::refused() const {
+  const std::lock_guard lock(mutex_);
+  return refused_;
+}
+
+}  // namespace culprit::ros2

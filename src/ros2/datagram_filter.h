@@ -1,0 +1,131 @@
+// What a participant's middleware gets to see of the datagrams that come.
+//
+// Fast DDS trusts what claims to come from a known writer. One GAP or HEARTBEAT with an absurd
+// sequence number has it count up to that number with its locks held, so that it is deaf for good
+// and cannot even be ended; a fragment makes it reserve as much memory as the fragment says that
+// its sample has. So each submessage is looked at first. One that no participant sends is replaced
+// by padding, and a datagram that is no RTPS message is dropped. What is refused is (RTPS 2.3 §8.3,
+// §9.4):
+//
+//   structure         lengths that do not fit, lists that do not end, bitmaps of more than 256 bits
+//   sequence numbers  further ahead of what the writer was known to have written than it can have
+//                     written since: kAhead, and kPerSecond for each second that it was not heard;
+//                     gaps only of what a sample or a heartbeat told of
+//   fragments         of samples that are larger than the budgets below, or that contradict what
+//                     was said of the same sample before
+//
+// What secured submessages contain cannot be seen here; they are proven by their signatures.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "ros2/cdr.h"
+#include "ros2/guid.h"
+
+namespace culprit::ros2 {
+
+// All members may be called from any thread.
+class DatagramFilter {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  static constexpr std::int64_t kAhead = 256;
+  static constexpr std::int64_t kPerSecond = 10'000;
+  // Of a writer of which nothing is known. A reliable reader counts through what came before.
+  static constexpr std::int64_t kFirst = std::int64_t{1} << 40;
+  static constexpr std::int64_t kFirstReliable = std::int64_t{1} << 20;
+
+  // Bytes of samples that come in fragments. What reliable readers keep until it is complete, of
+  // one writer and of all; the largest samples of best effort writers, of one and of all.
+  static constexpr std::size_t kReliableOfOne = 4u << 20;
+  static constexpr std::size_t kReliableOfAll = 8u << 20;
+  static constexpr std::size_t kLargest = 32u << 20;
+  static constexpr std::size_t kLargestOfAll = 32u << 20;
+
+  // What may be passed on: `datagram` itself, or `scratch`, which it uses if something had to be
+  // taken out; empty if nothing may. `now` never goes back by much.
+  ByteView pass(ByteView datagram, Bytes& scratch, Clock::time_point now);
+
+  // A reader of this participant begins to hear the writer, or ends. Of a writer that no reader
+  // hears nothing is known, and nothing has to be: the middleware passes over what it says.
+  using OnUnheard = std::shared_ptr<const std::function<void()>>;
+  static constexpr int kUnheard = 3;
+  enum class Reading : std::uint8_t { kBestEffort, kReliable };
+  // Best effort: `on_unheard` is called from pass(), without locks, for each further sample of
+  // which something came by after kUnheard others of which none was delivered. So the writer lives.
+  void begin_hearing(const Guid& writer, Reading how, OnUnheard on_unheard = {});
+  void end_hearing(const Guid& writer, Reading how);
+  // A sample of the writer reached its reader.
+  void delivered(const Guid& writer);
+  // The participant is there: its discovery is heard. Or it is gone, and what it took is free
+  // again.
+  void know(const GuidPrefix& participant);
+  void forget(const GuidPrefix& participant);
+
+  // Submessages and datagrams that were taken out so far, and why the last one was; empty: none.
+  struct Refused {
+    std::uint64_t count = 0;
+    std::string why;
+  };
+  Refused refused() const;
+
+ private:
+  struct Assembly {
+    std::size_t size = 0;
+    std::uint16_t fragment_size = 0;
+    std::vector<bool> seen;  // by fragment; of reliable writers only
+    std::size_t missing = 0;
+  };
+  struct Writer {
+    std::int64_t last = 0;  // written, as far as is known
+    Clock::time_point heard;
+    std::map<std::int64_t, Assembly> assemblies;  // by sequence number; of best effort writers one
+    std::size_t reserved = 0;                     // bytes
+  };
+  class Submessage;
+
+  ByteView look_at(ByteView datagram, Bytes& scratch, Clock::time_point now);
+  const char* objection(const Submessage& submessage, Clock::time_point now);
+  const char* objection_to_data(const Submessage& submessage, Clock::time_point now);
+  const char* objection_to_fragment(const Submessage& submessage, Clock::time_point now);
+  const char* objection_to_heartbeat(const Submessage& submessage, Clock::time_point now);
+  const char* objection_to_gap(const Submessage& submessage);
+  const char* reserve(const Guid& guid, std::int64_t sequence, const Assembly& wanted,
+                      std::uint32_t first, std::uint32_t count);
+
+  struct Readers {
+    int best_effort = 0;
+    int reliable = 0;
+    OnUnheard on_unheard{};
+    std::int64_t sample = 0;  // of which something came by last
+    int unheard = 0;          // so many in a row were not delivered
+  };
+  bool is_heard(const Guid& writer) const;
+  bool is_reliable(const Guid& writer) const;
+  bool is_far(const Guid& writer, std::int64_t sequence, Clock::time_point now) const;
+  void learn(const Guid& writer, std::int64_t sequence, Clock::time_point now);
+  void drop(const Guid& writer);
+  void came_by(const Guid& writer, std::int64_t sequence);
+  void release(const Guid& guid, Writer& writer, std::map<std::int64_t, Assembly>::iterator which);
+  std::size_t& total(const Guid& writer);
+
+  mutable std::mutex mutex_;                     // guards all that follows
+  std::unordered_map<Guid, Writer> writers_;     // that are heard
+  std::unordered_map<Guid, Readers> readers_;    // by writer that they hear
+  std::unordered_set<GuidPrefix> participants_;  // that are there
+  std::size_t reserved_reliable_ = 0;
+  std::size_t reserved_best_effort_ = 0;
+  Refused refused_;
+  std::vector<OnUnheard> unheard_;  // to be called when this datagram was looked at
+};
+
+}  // namespace culprit::ros2

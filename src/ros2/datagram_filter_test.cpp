@@ -1,0 +1,236 @@
+#include "ros2/datagram_filter.h"
+
+#include <gtest/gtest.h>
+
+#include "ros2/test_datagram.h"
+
+namespace culprit::ros2 {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kAbsurd = std::int64_t{1} << 60;
+
+Guid writer(std::uint8_t kind, std::uint8_t participant = 1) {
+  Guid guid;
+  guid.bytes[0] = 1;
+  guid.bytes[11] = participant;
+  guid.bytes[14] = 1;
+  guid.bytes[15] = kind;
+  return guid;
+}
+const Guid kCamera = writer(0x03);
+const Guid kDiscovery = writer(0xc2);
+const Guid kService = writer(0x03, 2);
+
+class Filter : public testing::Test {
+ protected:
+  Filter() {
+    filter.begin_hearing(kCamera, DatagramFilter::Reading::kBestEffort);
+    filter.begin_hearing(kService, DatagramFilter::Reading::kReliable);
+    filter.know(kDiscovery.prefix());
+  }
+
+  TestDatagram from(const Guid& guid) const { return TestDatagram(guid.prefix()); }
+  // How many bytes of it are passed on; 0: none.
+  std::size_t pass(const TestDatagram& datagram) {
+    passed = filter.pass(datagram.bytes(), scratch, now);
+    return passed.size();
+  }
+  // Whether it is passed on as it is.
+  bool passes(const TestDatagram& datagram) {
+    const auto before = filter.refused().count;
+    return pass(datagram) == datagram.bytes().size() && filter.refused().count == before;
+  }
+
+  DatagramFilter filter;
+  DatagramFilter::Clock::time_point now{};
+  Bytes scratch;
+  ByteView passed;
+};
+
+TEST_F(Filter, PassesOnWhatParticipantsSend) {
+  for (const Guid& guid : {kCamera, kDiscovery, kService}) {
+    EXPECT_TRUE(passes(from(guid).data(guid, 1).heartbeat(guid, 1, 1)));
+    EXPECT_TRUE(passes(from(guid).heartbeat(guid, 2, 5).gap(guid, 2, 5)));
+    EXPECT_TRUE(passes(from(guid).heartbeat(guid, 1, 0))) << "nothing was written yet";
+    EXPECT_TRUE(
+        passes(from(guid).fragment(guid, 6, 1, 1000, 1500).fragment(guid, 6, 2, 1000, 1500)));
+  }
+}
+
+TEST_F(Filter, DropsWhatIsNoMessage) {
+  EXPECT_TRUE(filter.pass(Bytes{}, scratch, now).empty());
+  EXPECT_TRUE(filter.pass(Bytes(19, 'R'), scratch, now).empty());
+  EXPECT_TRUE(filter.pass(Bytes(100, 'R'), scratch, now).empty());
+  EXPECT_EQ(filter.refused().count, 3u);
+}
+
+// A sample and the heartbeat behind it come in one datagram: the sample is heard all the same.
+TEST_F(Filter, TakesOutTheSubmessageAndNotTheRest) {
+  EXPECT_EQ(
+      pass(from(kCamera).data(kCamera, 1).heartbeat(kCamera, 1, kAbsurd).data(kCamera, 2)),
+      from(kCamera).data(kCamera, 1).heartbeat(kCamera, 1, 1).data(kCamera, 2).bytes().size());
+  EXPECT_EQ(passed[20], 0x15);
+  EXPECT_EQ(passed[20 + 32], 0x01) << "padding";
+  EXPECT_EQ(passed[20 + 32 + 32], 0x15);
+}
+
+TEST_F(Filter, RefusesAbsurdSequenceNumbers) {
+  for (const Guid& guid : {kCamera, kDiscovery, kService}) {
+    EXPECT_FALSE(passes(from(guid).gap(guid, 1, kAbsurd))) << "nothing is known of it";
+    EXPECT_FALSE(passes(from(guid).heartbeat(guid, kAbsurd, kAbsurd)));
+    EXPECT_FALSE(passes(from(guid).data(guid, kAbsurd)));
+    EXPECT_TRUE(passes(from(guid).data(guid, 10)));
+    EXPECT_FALSE(passes(from(guid).gap(guid, 1, kAbsurd)));
+    EXPECT_FALSE(passes(from(guid).gap(guid, 1, 1000)));
+    EXPECT_FALSE(passes(from(guid).heartbeat(guid, 1, 1000)));
+    EXPECT_FALSE(passes(from(guid).heartbeat(guid, 5, 3)));
+    EXPECT_FALSE(passes(from(guid).data(guid, 1000)));
+    EXPECT_FALSE(passes(from(guid).fragment(guid, 1000, 1, 1000, 1500)));
+    EXPECT_FALSE(passes(from(guid).data(guid, 0)));
+    EXPECT_FALSE(passes(from(guid).data(guid, -7)));
+    EXPECT_TRUE(passes(from(guid).data(guid, 11)));
+  }
+}
+
+TEST_F(Filter, AWriterThatWasNotHeardForLongMayBeFarAhead) {
+  EXPECT_TRUE(passes(from(kCamera).data(kCamera, 10)));
+  now += 1h;
+  EXPECT_TRUE(passes(from(kCamera).data(kCamera, 10 + 3600 * 1000))) << "1 kHz behind a cut cable";
+}
+
+TEST_F(Filter, AWriterThatHasWrittenForYearsIsHeard) {
+  EXPECT_TRUE(passes(from(kCamera).data(kCamera, 300'000'000'000)));
+}
+
+TEST_F(Filter, RefusesDamagedSubmessages) {
+  for (const int kind : {0x06, 0x07, 0x08, 0x0c, 0x0e, 0x12, 0x13, 0x15, 0x16}) {
+    const auto datagram = from(kCamera)
+                              .submessage(static_cast<std::uint8_t>(kind), 0, Bytes(4))
+                              .heartbeat(kCamera, 1, 1);
+    EXPECT_FALSE(passes(datagram)) << kind;
+  }
+  const Bytes whole = from(kCamera).data(kCamera, 1).bytes();
+  for (std::size_t length = 21; length < whole.size(); ++length) {
+    EXPECT_TRUE(filter.pass(ByteView(whole).first(length), scratch, now).empty()) << length;
+  }
+}
+
+TEST_F(Filter, BitmapsHaveAtMost256Bits) {
+  Bytes body(20 + 4 + 400);
+  body[16 + 3] = 1;  // base
+  body[20] = 0xff, body[21] = 0xff;
+  EXPECT_FALSE(passes(from(kCamera).submessage(0x06, 0, body)));
+}
+
+TEST_F(Filter, WhatFragmentsTakeIsBounded) {
+  std::size_t passed = 0;
+  for (std::int64_t sequence = 1; sequence <= 600; ++sequence)
+    passed += passes(from(kDiscovery).fragment(kDiscovery, sequence, 1, 1000, 1'000'000)) ? 1 : 0;
+  EXPECT_EQ(passed, DatagramFilter::kReliableOfOne / 1'000'000);
+  EXPECT_TRUE(passes(from(kDiscovery).data(kDiscovery, passed + 1))) << "it is still heard";
+  for (std::uint8_t participant = 3; participant < 200; ++participant) {
+    const Guid other = writer(0xc2, participant);
+    filter.know(other.prefix());
+    passed += passes(from(other).fragment(other, 1, 1, 1000, 3'000'000)) ? 3 : 0;
+  }
+  EXPECT_LE(passed, DatagramFilter::kReliableOfAll / 1'000'000);
+}
+
+TEST_F(Filter, WhatIsCompleteOrGivenUpIsFreeAgain) {
+  for (std::int64_t sequence = 1; sequence <= 100; ++sequence) {
+    for (const std::uint32_t number : {1u, 3u, 2u}) {
+      EXPECT_TRUE(passes(from(kService).fragment(kService, sequence, number, 50'000, 150'000)));
+    }
+  }
+  for (std::int64_t sequence = 101; sequence <= 200; ++sequence) {
+    EXPECT_TRUE(passes(from(kService).fragment(kService, sequence, 1, 50'000, 3'000'000)));
+    EXPECT_TRUE(passes(from(kService).heartbeat(kService, sequence + 1, sequence)));
+  }
+  EXPECT_TRUE(passes(from(kService).fragment(kService, 201, 1, 50'000, 3'000'000)));
+  EXPECT_FALSE(passes(from(kService).fragment(kService, 202, 1, 50'000, 3'000'000)));
+  filter.forget(kService.prefix());
+  filter.begin_hearing(kService, DatagramFilter::Reading::kReliable);
+  EXPECT_TRUE(passes(from(kService).fragment(kService, 1, 1, 50'000, 3'000'000)));
+}
+
+// Most fragments of a big topic may be lost on the way.
+TEST_F(Filter, ALossyCameraIsNeverTooMuch) {
+  for (std::int64_t sequence = 1; sequence <= 10'000; ++sequence)
+    EXPECT_TRUE(
+        passes(from(kCamera).fragment(kCamera, sequence, 1 + sequence % 90, 60'000, 6'000'000)));
+  EXPECT_FALSE(passes(from(kCamera).fragment(kCamera, 10'001, 1, 65'000, 1'000'000'000)));
+}
+
+TEST_F(Filter, AllCamerasTogetherAreBounded) {
+  int passed = 0;
+  for (std::uint8_t participant = 3; participant < 100; ++participant) {
+    const Guid camera = writer(0x03, participant);
+    filter.begin_hearing(camera, DatagramFilter::Reading::kBestEffort);
+    passed += passes(from(camera).fragment(camera, 1, 1, 60'000, 6'000'000)) ? 1 : 0;
+  }
+  EXPECT_EQ(passed, 5);
+}
+
+// It is silent only for us: too large, or lost in part, or behind a forged number.
+TEST_F(Filter, AWriterWhoseSamplesAreNotDeliveredIsNotSilent) {
+  int signs = 0;
+  const Guid lidar = writer(0x03, 9);
+  filter.begin_hearing(lidar, DatagramFilter::Reading::kBestEffort,
+                       std::make_shared<const std::function<void()>>([&] { ++signs; }));
+  for (std::int64_t sequence = 1; sequence <= 10; ++sequence) {
+    pass(from(lidar).data(lidar, sequence));
+    filter.delivered(lidar);
+  }
+  EXPECT_EQ(signs, 0);
+  for (std::int64_t sequence = 11; sequence <= 20; ++sequence) {
+    pass(from(lidar).fragment(lidar, sequence, 1, 60'000, 500'000'000));
+    pass(from(lidar).fragment(lidar, sequence, 2, 60'000, 500'000'000));
+  }
+  EXPECT_EQ(signs, 10 - DatagramFilter::kUnheard);
+}
+
+// Else strangers could use the budget up.
+TEST_F(Filter, WritersThatNobodyHearsTakeNothing) {
+  for (std::uint8_t participant = 3; participant < 200; ++participant) {
+    const Guid stranger = writer(participant % 2 == 0 ? 0x03 : 0xc2, participant);
+    EXPECT_TRUE(passes(from(stranger).fragment(stranger, 1, 1, 60'000, 3'000'000)));
+  }
+  EXPECT_TRUE(passes(from(kCamera).fragment(kCamera, 1, 1, 60'000, 30'000'000)));
+  EXPECT_TRUE(passes(from(kDiscovery).fragment(kDiscovery, 1, 1, 60'000, 4'000'000)));
+}
+
+TEST_F(Filter, AWriterThatIsHeardNoMoreFreesWhatItTook) {
+  const Guid other = writer(0x03, 9);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_TRUE(passes(from(kCamera).fragment(kCamera, 1, 1, 60'000, 30'000'000)));
+    filter.end_hearing(kCamera, DatagramFilter::Reading::kBestEffort);
+    filter.begin_hearing(other, DatagramFilter::Reading::kBestEffort);
+    EXPECT_TRUE(passes(from(other).fragment(other, 1, 1, 60'000, 30'000'000)));
+    filter.end_hearing(other, DatagramFilter::Reading::kBestEffort);
+    filter.begin_hearing(kCamera, DatagramFilter::Reading::kBestEffort);
+  }
+}
+
+TEST_F(Filter, FragmentsMustNotContradictOneAnother) {
+  EXPECT_TRUE(passes(from(kCamera).fragment(kCamera, 1, 1, 1000, 5000)));
+  EXPECT_FALSE(passes(from(kCamera).fragment(kCamera, 1, 2, 500, 5000)));
+  EXPECT_FALSE(passes(from(kCamera).fragment(kCamera, 1, 2, 1000, 9000)));
+  EXPECT_FALSE(passes(from(kCamera).fragment(kCamera, 1, 6, 1000, 5000))) << "beyond the end";
+  EXPECT_FALSE(passes(from(kCamera).fragment(kCamera, 1, 0, 1000, 5000)));
+  EXPECT_FALSE(passes(from(kCamera).fragment(kCamera, 2, 1, 0, 5000)));
+  EXPECT_TRUE(passes(from(kCamera).fragment(kCamera, 1, 2, 1000, 5000)));
+}
+
+TEST_F(Filter, WritersAreKnownByTheirSource) {
+  EXPECT_TRUE(passes(from(kCamera).data(kCamera, 10)));
+  Bytes source(20);
+  std::copy_n(kService.bytes.begin(), 12, source.begin() + 8);
+  // The second sample is another participant's.
+  const auto datagram = from(kCamera).submessage(0x0c, 0, source).data(kService, 1000);
+  EXPECT_TRUE(passes(datagram));
+}
+
+}  // namespace
+}  // namespace culprit::ros2

@@ -1,0 +1,50 @@
+// A witness of our own hearing: what we say to ourselves, through sockets like everything that the
+// robot says, and when it came back last.
+//
+// It is said on the executor's thread and heard on a receive thread, so that it also tells of these
+// threads, and of the network interfaces.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "language/expected.h"
+#include "robot/time.h"
+#include "ros2/participant.h"
+#include "ros2/timer.h"
+
+namespace culprit::ros2 {
+
+class Hearing {
+ public:
+  static constexpr const char* kTopic = "rt/_culprit_hearing";
+  static constexpr const char* kType = "culprit::msg::dds_::Heartbeat_";
+  static constexpr Duration kPeriod = std::chrono::milliseconds(100);
+  // Whoever does not hear itself for so long does not hear others either. Shorter than the silences
+  // that rules usually wait for.
+  static constexpr Duration kPatience = std::chrono::milliseconds(400);
+  // The first time, since the endpoints have to find each other.
+  static constexpr Duration kFirstPatience = std::chrono::seconds(3);
+
+  // Both outlive it. An error when the middleware, or the domain's permissions, refuse.
+  static Expected<std::unique_ptr<Hearing>> begin(Participant& participant, Executor& executor);
+
+  // When it came back last. From any thread.
+  Time heard() const { return Time(Duration(heard_->load())); }
+  // Until when it has to come back again.
+  Time doubtful() const { return later(heard(), kPatience); }
+
+ private:
+  Hearing() = default;
+  void say();
+
+  // Shared with the reader's callback, which runs before there is a Hearing.
+  std::shared_ptr<std::atomic<std::int64_t>> heard_;
+  std::uint64_t secret_ = 0;  // nobody else says it
+  std::unique_ptr<Reader> reader_;
+  std::unique_ptr<Writer> writer_;
+  std::unique_ptr<Timer> timer_;
+};
+
+}  // namespace culprit::ros2

@@ -1,0 +1,162 @@
+// Datagrams that no participant sends, thrown at a live one: it goes on hearing, stays small, and
+// can be ended.
+#include <arpa/inet.h>
+#include <fstream>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "robot/inbox.h"
+#include "ros2/hearing.h"
+#include "ros2/live_test.h"
+#include "ros2/test_datagram.h"
+
+namespace culprit::ros2 {
+namespace {
+
+constexpr std::int64_t kAbsurd = std::int64_t{1} << 60;
+const Bytes kSmall{0, 1, 0, 0, 1, 2, 3, 4};
+
+std::size_t resident_bytes() {
+  std::size_t total = 0;
+  std::size_t resident = 0;
+  std::ifstream("/proc/self/statm") >> total >> resident;
+  return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+// Sends to all ports at which participants of the domain may listen.
+class Attacker {
+ public:
+  explicit Attacker(std::uint32_t domain) : domain_(domain) {}
+  ~Attacker() { close(socket_); }
+  Attacker(const Attacker&) = delete;
+
+  void send(const Bytes& bytes) const {
+    for (std::uint32_t port = 10; port < 10 + 2 * kParticipants; ++port) {
+      sockaddr_in to{};
+      to.sin_family = AF_INET;
+      to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+      to.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * domain_ + port));
+      sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kParticipants = 4;
+  const std::uint32_t domain_;
+  const int socket_ = socket(AF_INET, SOCK_DGRAM, 0);
+};
+
+std::unique_ptr<Participant> join(const TestDomain& domain) {
+  auto participant = Participant::create(domain.options(), [](DiscoveryEvent) {});
+  if (!participant) throw std::runtime_error(participant.error());
+  return std::move(*participant);
+}
+
+class HostileDatagrams : public testing::Test {
+ protected:
+  HostileDatagrams() : attacker(domain.number()) {
+    writer = std::move(*robot->create_writer({"t", "T", qos::kDiscoveryInfoWriter, "", {}}));
+    reader = std::move(*victim->create_reader(
+        {"t", "T", qos::kDiscoveryInfoReader, PayloadUse::kWhole, "", {}},
+        [this](const Sample& sample) { samples.add(sample.identity.sequence); }));
+    EXPECT_TRUE(speaks());
+  }
+
+  // The robot's writers, as the attacker knows them: its own, and those that tell of endpoints.
+  std::vector<Guid> writers() const {
+    std::vector<Guid> all{writer->guid()};
+    for (const std::uint8_t entity : {3, 4}) {
+      Guid guid = robot->guid();
+      guid.bytes[13] = 0, guid.bytes[14] = entity, guid.bytes[15] = 0xc2;
+      all.push_back(guid);
+    }
+    return all;
+  }
+  // Whether what the robot writes is heard.
+  bool speaks() {
+    const auto sequence = writer->write(kSmall);
+    return sequence && samples.wait_for_one([&](std::int64_t heard) { return heard == *sequence; });
+  }
+  // Whether another writer of the robot is found.
+  bool discovers() {
+    EventLog<int> matches;
+    const std::string topic = "topic" + std::to_string(++topics_);
+    const auto own = victim->create_reader({topic, "T", qos::kSensorData, PayloadUse::kWhole, "",
+                                            [&](const Guid&, Match) { matches.add(1); }},
+                                           [](const Sample&) {});
+    const auto other = robot->create_writer({topic, "T", {}, "", {}});
+    return own && other && matches.wait_for_count(1);
+  }
+
+  EventLog<std::int64_t> samples;
+  TestDomain domain;
+  std::unique_ptr<Participant> robot = join(domain);
+  std::unique_ptr<Participant> victim = join(domain);
+  std::unique_ptr<Writer> writer;
+  std::unique_ptr<Reader> reader;
+  Attacker attacker;
+
+ private:
+  int topics_ = 0;
+};
+
+TEST_F(HostileDatagrams, AbsurdSequenceNumbersMakeNobodyDeaf) {
+  for (const Guid& each : writers()) {
+    attacker.send(TestDatagram(each.prefix()).gap(each, 1, kAbsurd).bytes());
+    attacker.send(TestDatagram(each.prefix()).heartbeat(each, kAbsurd, kAbsurd, 1 << 30).bytes());
+    attacker.send(TestDatagram(each.prefix()).heartbeat(each, 1, kAbsurd, 1 << 29).bytes());
+    attacker.send(TestDatagram(each.prefix()).data(each, kAbsurd).bytes());
+  }
+  EXPECT_TRUE(speaks());
+  EXPECT_TRUE(discovers());
+  EXPECT_GE(victim->refused().count, 12u);
+}
+
+TEST_F(HostileDatagrams, FragmentsOfHugeSamplesTakeNoMemory) {
+  const std::size_t before = resident_bytes();
+  for (const Guid& each : writers()) {
+    for (std::int64_t sequence = 2; sequence < 252; ++sequence)
+      attacker.send(
+          TestDatagram(each.prefix()).fragment(each, sequence, 1, 1000, 20'000'000).bytes());
+  }
+  EXPECT_TRUE(discovers());
+  EXPECT_LT(resident_bytes(), before + (64u << 20));
+}
+
+TEST_F(HostileDatagrams, FragmentsWithinTheBudgetTakeNoMoreThanIt) {
+  const std::size_t before = resident_bytes();
+  for (const Guid& each : writers()) {
+    for (std::int64_t sequence = 2; sequence < 252; ++sequence)
+      attacker.send(
+          TestDatagram(each.prefix()).fragment(each, sequence, 1, 1000, 1'000'000).bytes());
+  }
+  EXPECT_TRUE(discovers());
+  EXPECT_LT(resident_bytes(), before + (64u << 20));
+}
+
+// What is said through the middleware comes back only through sockets and threads that live.
+TEST(Hearing, IsDoubtfulWithoutTheThreadThatSpeaks) {
+  const TestDomain domain;
+  const auto participant = join(domain);
+  Executor executor;
+  const auto hearing = Hearing::begin(*participant, executor);
+  ASSERT_TRUE(hearing);
+  const auto is_within = [&](auto condition) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!condition() && std::chrono::steady_clock::now() < end)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return condition();
+  };
+  const Time first = (*hearing)->heard();
+  std::thread speaker([&] { executor.run(); });
+  EXPECT_TRUE(is_within([&] { return (*hearing)->heard() != first; }));
+  EXPECT_TRUE(is_within([&] { return (*hearing)->doubtful() > live_now(); }));
+  executor.stop();
+  speaker.join();
+  EXPECT_TRUE(is_within([&] { return (*hearing)->doubtful() < live_now(); }));
+}
+
+}  // namespace
+}  // namespace culprit::ros2

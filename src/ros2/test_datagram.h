@@ -1,0 +1,89 @@
+// For tests: RTPS messages byte by byte, right ones and such as no participant sends.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "ros2/cdr.h"
+#include "ros2/guid.h"
+
+namespace culprit::ros2 {
+
+// Little endian. Each member function adds a submessage.
+class TestDatagram {
+ public:
+  // From the participant of `source`.
+  explicit TestDatagram(const GuidPrefix& source) {
+    bytes_ = {'R', 'T', 'P', 'S', 2, 3, 1, 15};
+    append(source.bytes);
+  }
+
+  TestDatagram& heartbeat(const Guid& writer, std::int64_t first, std::int64_t last,
+                          std::uint32_t count = 1) {
+    return begin(0x07).readers().entity(writer).sequence(first).sequence(last).u32(count).end();
+  }
+  // Of first ... base - 1.
+  TestDatagram& gap(const Guid& writer, std::int64_t first, std::int64_t base) {
+    return begin(0x08).readers().entity(writer).sequence(first).sequence(base).u32(0).end();
+  }
+  TestDatagram& data(const Guid& writer, std::int64_t sequence) {
+    begin(0x15, 4).u16(0).u16(16).readers().entity(writer).sequence(sequence);
+    return u32(0x0000'0100).u32(7).end();
+  }
+  // The fragment `number`, from 1 on, of `size` bytes each, of a sample of `whole` bytes.
+  TestDatagram& fragment(const Guid& writer, std::int64_t sequence, std::uint32_t number,
+                         std::uint16_t size, std::uint32_t whole) {
+    begin(0x16).u16(0).u16(28).readers().entity(writer).sequence(sequence).u32(number);
+    u16(1).u16(size).u32(whole);
+    const std::size_t begin = std::size_t{number - 1} * size;
+    bytes_.resize(bytes_.size() + (begin < whole ? std::min<std::size_t>(size, whole - begin) : 0));
+    return end();
+  }
+  // Anything.
+  TestDatagram& submessage(std::uint8_t kind, std::uint8_t flags, const Bytes& body) {
+    begin(kind, flags);
+    append(body);
+    return end();
+  }
+
+  const Bytes& bytes() const { return bytes_; }
+
+ private:
+  TestDatagram& begin(std::uint8_t kind, std::uint8_t flags = 0) {
+    start_ = bytes_.size();
+    append(Bytes{kind, static_cast<std::uint8_t>(flags | 1), 0, 0});
+    return *this;
+  }
+  TestDatagram& end() {
+    while (bytes_.size() % 4 != 0) bytes_.push_back(0);
+    const std::size_t length = bytes_.size() - start_ - 4;
+    bytes_[start_ + 2] = static_cast<std::uint8_t>(length);
+    bytes_[start_ + 3] = static_cast<std::uint8_t>(length >> 8);
+    return *this;
+  }
+  TestDatagram& readers() { return u32(0); }  // all that hear the writer
+  TestDatagram& entity(const Guid& guid) {
+    bytes_.insert(bytes_.end(), guid.bytes.begin() + 12, guid.bytes.end());
+    return *this;
+  }
+  TestDatagram& sequence(std::int64_t number) {
+    const auto bits = static_cast<std::uint64_t>(number);
+    return u32(static_cast<std::uint32_t>(bits >> 32)).u32(static_cast<std::uint32_t>(bits));
+  }
+  TestDatagram& u16(std::uint16_t value) {
+    append(Bytes{static_cast<std::uint8_t>(value), static_cast<std::uint8_t>(value >> 8)});
+    return *this;
+  }
+  TestDatagram& u32(std::uint32_t value) {
+    return u16(static_cast<std::uint16_t>(value)).u16(static_cast<std::uint16_t>(value >> 16));
+  }
+  template <class Range>
+  void append(const Range& range) {
+    bytes_.insert(bytes_.end(), range.begin(), range.end());
+  }
+
+  Bytes bytes_;
+  std::size_t start_ = 0;
+};
+
+}  // namespace culprit::ros2

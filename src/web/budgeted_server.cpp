@@ -1,0 +1,157 @@
+#include "web/budgeted_server.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <climits>
+#include <filesystem>
+#include <netdb.h>
+#include <poll.h>
+#include <string>
+#include <string_view>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace culprit::web {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Whether `events` come within `patience`.
+bool wait_for(int socket, short events, Clock::duration patience) {
+  const auto end = Clock::now() + patience;
+  while (true) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
+    pollfd wanted{socket, events, 0};
+    const int ready =
+        poll(&wanted, 1, static_cast<int>(std::clamp<std::int64_t>(left, 0, INT_MAX)));
+    if (ready > 0) return (wanted.revents & events) != 0;
+    if (ready == 0 || errno != EINTR) return false;
+  }
+}
+
+void name_of(int socket, int (*ask)(int, sockaddr*, socklen_t*), std::string& ip, int& port) {
+  sockaddr_storage address{};
+  socklen_t length = sizeof address;
+  std::array<char, NI_MAXHOST> host{};
+  std::array<char, NI_MAXSERV> service{};
+  auto* const raw = reinterpret_cast<sockaddr*>(&address);
+  if (ask(socket, raw, &length) != 0 ||
+      getnameinfo(raw, length, host.data(), host.size(), service.data(), service.size(),
+                  NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+    return;
+  ip = host.data();
+  port = std::atoi(service.data());
+}
+
+class Connection final : public httplib::Stream {
+ public:
+  Connection(int socket, const ConnectionBudget& budget) : socket_(socket), budget_(budget) {}
+
+  // Whether another request comes. Its budget begins.
+  bool begins_request() {
+    if (at_ == end_ && !wait_for(socket_, POLLIN, budget_.idle)) return false;
+    deadline_ = Clock::now() + budget_.request;
+    header_ = body_ = 0;
+    line_ends_ = 0;
+    return true;
+  }
+
+  bool is_readable() const override {
+    return at_ < end_ || wait_for(socket_, POLLIN, deadline_ - Clock::now());
+  }
+  bool is_writable() const override { return wait_for(socket_, POLLOUT, budget_.write); }
+
+  ssize_t read(char* to, std::size_t size) override {
+    if (at_ == end_ && !fill()) return is_over_ ? 0 : -1;
+    size = std::min(size, end_ - at_);
+    // Of a header no more than to its end, for what follows counts as the body.
+    if (line_ends_ < kEndOfHeader.size()) size = 1;
+    std::size_t& spent = line_ends_ < kEndOfHeader.size() ? header_ : body_;
+    const std::size_t limit =
+        line_ends_ < kEndOfHeader.size() ? budget_.header_bytes : budget_.body_bytes;
+    if (spent >= limit) return -1;
+    size = std::min(size, limit - spent);
+    spent += size;
+    std::copy_n(buffer_.data() + at_, size, to);
+    if (line_ends_ < kEndOfHeader.size()) {
+      const char c = buffer_[at_];
+      line_ends_ = c == kEndOfHeader[line_ends_] ? line_ends_ + 1 : (c == '\r' ? 1 : 0);
+    }
+    at_ += size;
+    return static_cast<ssize_t>(size);
+  }
+
+  ssize_t write(const char* bytes, std::size_t size) override {
+    if (!is_writable()) return -1;
+    return send(socket_, bytes, size, MSG_NOSIGNAL);
+  }
+
+  void get_remote_ip_and_port(std::string& ip, int& port) const override {
+    name_of(socket_, getpeername, ip, port);
+  }
+  void get_local_ip_and_port(std::string& ip, int& port) const override {
+    name_of(socket_, getsockname, ip, port);
+  }
+  socket_t socket() const override { return socket_; }
+
+ private:
+  static constexpr std::string_view kEndOfHeader = "\r\n\r\n";
+
+  bool fill() {
+    if (!is_readable()) return false;
+    const ssize_t received = recv(socket_, buffer_.data(), buffer_.size(), 0);
+    is_over_ = received == 0;
+    if (received <= 0) return false;
+    at_ = 0;
+    end_ = static_cast<std::size_t>(received);
+    return true;
+  }
+
+  const int socket_;
+  const ConnectionBudget& budget_;
+  std::array<char, 4096> buffer_;
+  std::size_t at_ = 0;
+  std::size_t end_ = 0;
+  bool is_over_ = false;  // the client sends no more
+  Clock::time_point deadline_;
+  std::size_t header_ = 0;     // bytes of this request
+  std::size_t body_ = 0;       // likewise
+  std::size_t line_ends_ = 0;  // of the end of the header, so many bytes came last
+};
+
+}  // namespace
+
+bool BudgetedServer::process_and_close_socket(socket_t socket) {
+  Connection connection(socket, budget_);
+  bool is_well = true;
+  for (int left = budget_.requests; left > 0 && svr_sock_ != INVALID_SOCKET; --left) {
+    if (!connection.begins_request()) break;
+    bool is_closed = false;
+    is_well = process_request(connection, left == 1, is_closed, nullptr);
+    if (!is_well || is_closed) break;
+  }
+  shutdown(socket, SHUT_RDWR);
+  close(socket);
+  return is_well;
+}
+
+std::size_t affordable_connections(std::size_t wanted) {
+  // Processes that are started and watched, subscriptions, the journal: what a manager opens when
+  // it is needed most.
+  constexpr std::size_t kReserved = 32;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return wanted;
+  std::error_code error;
+  std::size_t open = 0;
+  for (const auto& each : std::filesystem::directory_iterator("/proc/self/fd", error)) {
+    static_cast<void>(each);
+    ++open;
+  }
+  const std::size_t taken = open + kReserved;
+  const std::size_t left = limit.rlim_cur > taken ? limit.rlim_cur - taken : 0;
+  return std::clamp<std::size_t>(left / 2, 1, wanted);
+}
+
+}  // namespace culprit::web
