@@ -122,9 +122,9 @@ class Forger {
  public:
   Forger(const ParticipantOptions& options, std::uint16_t victims_port) {
     const std::uint16_t decoy = free_port();
-    dds::DomainParticipantQos qos =
-        fast_dds::participant_qos(options, {}, std::make_shared<std::atomic<bool>>(true),
-                                  std::make_shared<DatagramSources>());
+    dds::DomainParticipantQos qos = fast_dds::participant_qos(
+        options, {}, std::make_shared<std::atomic<bool>>(true), std::make_shared<DatagramSources>(),
+        std::make_shared<DatagramFilter>());
     auto udp = std::make_shared<transport::UDPv4TransportDescriptor>();
     udp->interfaceWhiteList.emplace_back("127.0.0.1");
     udp->maxInitialPeersRange = 32;
