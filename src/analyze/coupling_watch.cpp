@@ -20,10 +20,11 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
     const RuleState& state = knowledge_.states[effect];
     if (effect == cause || state.attempt) continue;
     if (!is_proven || questions_.size() >= kMostWatched) continue;
-    const Time due = later(later(now, delay(cause, effect)),
-                           std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle));
-    questions_.push_back(
-        {strategy, effect, attempt.first_change, state.failing_since, due, later(now, kPatience)});
+    const Time shown = later(now, delay(cause, effect));
+    const Time due =
+        later(shown, std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle));
+    questions_.push_back({strategy, effect, attempt.first_change, state.failing_since, shown, due,
+                          later(now, kPatience)});
   }
 }
 
@@ -120,7 +121,7 @@ void CouplingWatch::ended(const Attempt& attempt, Time now) {
 
 void CouplingWatch::advance(Time now) {
   std::erase_if(questions_, [&](Question& q) {
-    if (now < q.due) return false;
+    if (now < q.due && !knowledge_.signals.is_read_since(q.effect, q.shown)) return false;
     const RuleState& state = knowledge_.states[q.effect];
     const bool is_other = state.phase == RulePhase::kQuiet || state.failing_since != q.detected;
     if (is_other || now >= q.abandoned) return true;
@@ -175,8 +176,12 @@ bool CouplingWatch::is_only_cause(StrategyId strategy, RuleId effect, Time since
 bool CouplingWatch::is_echo(const Attempt& attempt) const {
   const RuleId rule = knowledge_.rules[attempt.strategy].rule;
   const Sources sources(knowledge_, rule);
+  const Time detected = knowledge_.states[rule].failing_since;
+  const Duration latency = knowledge_.signals.latency(rule);
   return std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
+    // What was seen only after the change cannot be about to go away with it.
     return knowledge_.rules[change.strategy].rule != rule &&
+           detected < later(change.effective, latency) &&
            shown(change, rule) > attempt.first_change &&
            is_rival(knowledge_, change.strategy, sources, rule);
   });

@@ -1,11 +1,11 @@
 // Which failures go away with which: learns the couplings, and says who is expected to settle.
 //
 // When a strategy has resolved failure j, every other failure i that is there has until its signals
-// would show it to go away too. If it does, i is coupled to j; if it is still there, it is not. An
-// outcome counts only if nothing but j's strategy can have caused it: no other change of the system
-// between that strategy's first request and the outcome could resolve i, none was made for i
-// itself, none that had just been made can have had its effect only now, and nothing else upstream
-// of i went away by itself.
+// would show it to go away too, or until the first fresh reading, upon which planners act as well.
+// If it does, i is coupled to j; if it is still there, it is not. An outcome counts only if nothing
+// but j's strategy can have caused it: no other change of the system between that strategy's first
+// request and the outcome could resolve i, none was made for i itself, none that had just been made
+// can have had its effect only now, and nothing else upstream of i went away by itself.
 //
 // A failure goes as it came: if i was detected some time after j, it may take as long to go after j
 // is gone, and half as long again. So long it is given to settle, and so long nobody asks. What
@@ -54,7 +54,8 @@ class CouplingWatch {
     RuleId effect;        // i
     Time since;           // the strategy's first request
     Time detected;        // when i was
-    Time due;
+    Time shown;           // from then on a fresh reading answers it
+    Time due;             // or at the latest this
     Time abandoned;
   };
   struct Change {

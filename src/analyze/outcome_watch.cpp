@@ -13,23 +13,25 @@ void OutcomeWatch::judged(const Attempt& attempt, bool has_helped, Time now) {
   // A rule with ON_CHANGE expects its condition to last: there is nothing to wait for.
   const bool is_at_once = knowledge_.rules[rule].policies.on_change;
   const Time decided = attempt.deadline == kNever ? now : std::max(now, attempt.deadline);
+  const auto& active = knowledge_.states.active();
+  const bool is_hidden = std::any_of(active.begin(), active.end(), [&](RuleId other) {
+    return may_hide(knowledge_, other, rule);
+  });
   const PendingOutcome outcome{attempt.strategy, has_helped, now,
                                is_at_once ? now : later(decided, knowledge_.outcomes.healthy),
-                               attempt.is_ambiguous || changed_nothing};
-  if (outcome.due <= now) return count(outcome, now);
+                               attempt.is_ambiguous || changed_nothing || is_hidden};
+  if (outcome.is_void || outcome.due <= now) return count(outcome, now);
   knowledge_.outcomes.open.push_back(outcome);
   knowledge_.tell(now, OutcomePending{attempt.strategy, has_helped, outcome.due});
 }
 
 void OutcomeWatch::detected(RuleId rule, Time now) {
-  const auto& touched = knowledge_.rules[rule].components;
   for (PendingOutcome& outcome : knowledge_.outcomes.open) {
     const RuleId own = knowledge_.rules[outcome.strategy].rule;
-    if (own == rule) {
-      outcome.has_helped = false;
-    } else if (outcome.judged < now && is_upstream_of(knowledge_, touched, own)) {
-      outcome.is_void = true;
-    }
+    outcome.is_back |= own == rule;
+    if (own == rule || outcome.judged == now) continue;
+    outcome.is_void |= may_hide(knowledge_, rule, own);
+    outcome.has_second_fault |= may_bring_back(knowledge_, rule, own);
   }
 }
 
@@ -61,9 +63,10 @@ void OutcomeWatch::advance(Time now) {
 
 void OutcomeWatch::count(const PendingOutcome& outcome, Time now) {
   const RuleId rule = knowledge_.rules[outcome.strategy].rule;
-  if (outcome.is_void || !knowledge_.states[rule].trigger.known) {
+  const bool blames_nobody = outcome.has_helped && outcome.is_back && outcome.has_second_fault;
+  if (outcome.is_void || blames_nobody || !knowledge_.states[rule].trigger.known) {
     knowledge_.tell(now, OutcomeCounted{outcome.strategy, OutcomeCounted::As::kNothing});
-  } else if (outcome.has_helped) {
+  } else if (outcome.has_helped && !outcome.is_back) {
     knowledge_.beliefs.helped(outcome.strategy);
     knowledge_.tell(now, OutcomeCounted{outcome.strategy, OutcomeCounted::As::kSuccess});
   } else {

@@ -3,10 +3,12 @@
 // An outcome counts for nothing if
 //   - while the strategy was under way something else could have had the same effect
 //   (is_ambiguous),
-//   - a failure upstream came after the verdict: a second fault blames nobody,
+//   - a more critical failure that it is connected with is there, or comes before it is due: nobody
+//     sees through that,
+//   - the failure is back, and one upstream came as well: a second fault blames nobody,
 //   - nobody watched for a while before it was due (culprit slept, or was deaf),
 //   - when it is due nobody can see whether the failure is there.
-// If the failure is back before that by itself, the strategy did not help.
+// If the failure is back by itself, the strategy did not help.
 #pragma once
 
 #include "knowledge/knowledge.h"

@@ -37,13 +37,23 @@ bool is_rival(const Knowledge& knowledge, StrategyId strategy, const Sources& so
   return (begins_anew || !is_lesser) && sources.have(other.components);
 }
 
-bool is_upstream_of(const Knowledge& knowledge, const std::vector<ComponentId>& components,
-                    RuleId rule) {
-  const auto& own = knowledge.rules[rule].components;
+bool may_bring_back(const Knowledge& knowledge, RuleId other, RuleId rule) {
+  const Rule& theirs = knowledge.rules[other];
+  const Rule& ours = knowledge.rules[rule];
+  if (theirs.policies.criticality < ours.policies.criticality) return false;
   const Sources sources(knowledge, rule);
-  return std::any_of(components.begin(), components.end(), [&](ComponentId c) {
-    return !std::binary_search(own.begin(), own.end(), c) && sources.have({c});
+  return std::any_of(theirs.components.begin(), theirs.components.end(), [&](ComponentId c) {
+    return !std::binary_search(ours.components.begin(), ours.components.end(), c) &&
+           sources.have({c});
   });
+}
+
+bool may_hide(const Knowledge& knowledge, RuleId other, RuleId rule) {
+  const Rule& theirs = knowledge.rules[other];
+  const Rule& ours = knowledge.rules[rule];
+  return theirs.policies.criticality > ours.policies.criticality &&
+         (can_resolve(knowledge, theirs.components, rule) ||
+          can_resolve(knowledge, ours.components, other));
 }
 
 void mark_ambiguous(Knowledge& knowledge, RuleId changed) {

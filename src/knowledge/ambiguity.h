@@ -26,10 +26,13 @@ bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& ada
 // come, and does more there than reconfigure it for the sake of something less critical.
 bool is_rival(const Knowledge& knowledge, StrategyId strategy, const Sources& sources, RuleId rule);
 
-// Do these components stand upstream of all that the rule touches? Then what fails there may bring
-// the rule's failure back.
-bool is_upstream_of(const Knowledge& knowledge, const std::vector<ComponentId>& components,
-                    RuleId rule);
+// May the failure of `other` have brought that of `rule` back? It is as critical, and touches what
+// stands upstream.
+bool may_bring_back(const Knowledge& knowledge, RuleId other, RuleId rule);
+
+// May the failure of `other` hide whether that of `rule` is still there? It is more critical, and
+// one of them is upstream of the other.
+bool may_hide(const Knowledge& knowledge, RuleId other, RuleId rule);
 
 // The strategy under way for `changed` begins to change the system. Marks every attempt whose
 // outcome it can cause, and its own if another one's changes can cause that: those that touch the

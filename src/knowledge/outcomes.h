@@ -16,11 +16,13 @@ namespace culprit {
 
 struct PendingOutcome {
   StrategyId strategy;
-  bool has_helped = false;  // as far as is known: turns to false if the failure comes back
+  bool has_helped = false;  // as the verdict says
   Time judged;              // when the verdict came
   Time due;                 // when it counts
-  // Something else can have had the same effect, or brought the failure back: it blames nobody.
+  // Something else can have had the same effect, or hidden it: it proves nothing.
   bool is_void = false;
+  bool is_back = false;           // the failure came back
+  bool has_second_fault = false;  // and another one that may have brought it
 };
 
 struct PendingOutcomes {

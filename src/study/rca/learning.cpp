@@ -7,6 +7,7 @@
 #include "manager/manager.h"
 #include "manager/runtime.h"
 #include "plan/bayes/bayes_planner.h"
+#include "plan/paper_planner.h"
 #include "simulation/random.h"
 #include "study/rca/rca_robot.h"
 #include "study/rca/rules.h"
@@ -20,7 +21,9 @@ class Learner {
       : campaign_(campaign),
         scenario_(generate(campaign.setting, simulation::mix(campaign.seed))),
         rules_(rules_of(scenario_)) {
+    believe(campaign.priors);
     const Beliefs initial(rules_);
+    truths_.resize(rules_.strategies.size());
     for (std::size_t s = 0; s < rules_.strategies.size(); ++s)
       beliefs_.push_back(initial[StrategyId(s)]);
   }
@@ -42,24 +45,123 @@ class Learner {
   void play(std::uint64_t seed, LearningResult* result) {
     scenario_.seed = seed;
     scenario_.faults = random_faults(campaign_.setting, simulation::mix(seed));
-    RcaRobot robot(scenario_, rules_);
+    RcaRobot robot(scenario_, rules_, kQuiet);
     Manager::Options options;
     options.settling = Duration::zero();
     options.forgetting = campaign_.forgetting;
-    Manager manager(rules_, std::make_unique<BayesPlanner>(campaign_.objective), options);
+    options.governor.limits.backoff.healthy = kHealthy;
+    Manager manager(rules_, planner(), options);
     for (std::size_t s = 0; s < beliefs_.size(); ++s)
       manager.set_belief(StrategyId(s), beliefs_[s]);
     for (const auto& [pair, coupling] : couplings_)
       manager.set_coupling(pair.first, pair.second, coupling);
     Runtime runtime(manager, robot);
-    runtime.on_events = [&](std::span<const Event>) {
+    robot.on_effect = [&](std::size_t component, Repair repair, bool has_helped) {
+      note_effect(component, repair, has_helped);
+    };
+    runtime.on_events = [&](std::span<const Event> events) {
+      note_events(events, manager.knowledge(), robot.plant());
       take_beliefs(manager.knowledge(), result);
       take_couplings(manager.knowledge(), result);
     };
     runtime.run(robot.is_over(), Time(from_seconds(scenario_.horizon_s)));
   }
 
+  void tell(LearningResult& result) const {
+    const Beliefs initial(rules_);
+    for (std::size_t s = 0; s < beliefs_.size(); ++s) {
+      const Strategy& strategy = rules_.strategies[s];
+      const Belief before = initial[StrategyId(s)];
+      result.strategies.push_back(
+          {rules_[strategy.components.front()].name + "." + strategy.name, before.mean().value,
+           truths_[s].first, truths_[s].second, beliefs_[s].mean().value,
+           beliefs_[s].alpha + beliefs_[s].beta - before.alpha - before.beta});
+    }
+    for (const auto& [pair, truth] : coupled_) {
+      const auto found = couplings_.find(pair);
+      const Coupling learned = found == couplings_.end() ? Coupling() : found->second;
+      result.couplings.push_back({rules_[pair.first].name, rules_[pair.second].name, truth.first,
+                                  truth.second, learned.cleared + learned.stayed, learned.cleared});
+    }
+  }
+
  private:
+  // Long enough for a fault that shows now and then, and for each outcome to count before the end.
+  static constexpr Duration kHealthy = std::chrono::seconds(3);
+  static constexpr Duration kQuiet = std::chrono::seconds(12);
+
+  std::unique_ptr<const Planner> planner() const {
+    if (campaign_.uses_paper_planner) return std::make_unique<PaperPlanner>();
+    return std::make_unique<BayesPlanner>(campaign_.objective);
+  }
+
+  void believe(Priors priors) {
+    if (priors == Priors::kRight) return;
+    double factor = 1.2;
+    for (Strategy& strategy : rules_.strategies) {
+      const bool is_flat = priors == Priors::kFlat;
+      strategy.success.value = is_flat ? 0.5 : std::min(1.0, factor * strategy.success.value);
+      if (is_flat) strategy.confidence = 2;
+      factor = factor > 1 ? 0.8 : 1.2;
+    }
+  }
+
+  // Component i has rule i, and a rule's strategies are called as the repairs are.
+  void note_effect(std::size_t component, Repair repair, bool has_helped) {
+    if (!has_helped) return;
+    for (const StrategyId id : rules_.rules[component].strategies) {
+      if (rules_[id].name == to_string(repair)) ++truths_[id.index].second;
+    }
+  }
+
+  void note_events(std::span<const Event> events, const Knowledge& knowledge, const Plant& plant) {
+    for (const Event& event : events) {
+      if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
+        ++truths_[chosen->strategy.index].first;
+        early_.erase(rules_[chosen->strategy].rule);
+      }
+      const auto* resolved = std::get_if<FailureResolved>(&event.what);
+      if (resolved == nullptr) continue;
+      if (!resolved->strategy) {
+        note_early(resolved->rule, knowledge, plant);
+        continue;
+      }
+      if (plant.fault(resolved->rule.index)) continue;
+      for (const RuleId effect : early_[resolved->rule]) {
+        auto& [asked, cleared] = coupled_[{resolved->rule, effect}];
+        ++asked;
+        ++cleared;
+      }
+      early_.erase(resolved->rule);
+      for (const RuleId effect : knowledge.states.active()) {
+        const RuleState& state = knowledge.states[effect];
+        if (effect == resolved->rule || state.attempt ||
+            !plant.passes(resolved->rule.index, effect.index))
+          continue;
+        // Kappa is of a cause that is alone (plan/bayes/responsibility.h).
+        const auto& active = knowledge.states.active();
+        const bool is_alone = std::none_of(active.begin(), active.end(), [&](RuleId other) {
+          return other != effect && other != resolved->rule &&
+                 plant.passes(other.index, effect.index);
+        });
+        if (!is_alone) continue;
+        const bool stays = plant.fault(effect.index).has_value();
+        auto& [asked, cleared] = coupled_[{resolved->rule, effect}];
+        ++asked;
+        cleared += stays ? 0 : 1;
+      }
+    }
+  }
+
+  // Some failures show it before their cause does that it was repaired.
+  void note_early(RuleId effect, const Knowledge& knowledge, const Plant& plant) {
+    for (const RuleId cause : knowledge.states.active()) {
+      const auto& attempt = knowledge.states[cause].attempt;
+      if (attempt && attempt->first_change != kNever && plant.passes(cause.index, effect.index))
+        early_[cause].push_back(effect);
+    }
+  }
+
   // Was this count, among those that fade, raised by an outcome?
   bool is_raised(double now, double before) const {
     return now > campaign_.forgetting * before + 0.5;
@@ -95,7 +197,10 @@ class Learner {
   RcaScenario scenario_;
   RuleSet rules_;
   std::vector<Belief> beliefs_;
-  std::map<std::pair<RuleId, RuleId>, Coupling> couplings_;  // by cause and effect
+  std::vector<std::pair<int, int>> truths_;      // by strategy: executed, helped
+  std::map<RuleId, std::vector<RuleId>> early_;  // by cause: effects that were gone before it
+  std::map<std::pair<RuleId, RuleId>, std::pair<int, int>> coupled_;  // asked, cleared
+  std::map<std::pair<RuleId, RuleId>, Coupling> couplings_;           // by cause and effect
 };
 
 }  // namespace
@@ -118,6 +223,7 @@ std::optional<LearningResult> learn(const LearningCampaign& campaign,
                  is_measured ? &result : nullptr);
     (is_measured ? result.measured : result.learned) += each;
   }
+  learner.tell(result);
   return result;
 }
 

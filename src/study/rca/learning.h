@@ -9,16 +9,28 @@
 
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "plan/bayes/objective.h"
 #include "study/rca/calibration.h"
 #include "study/rca/generator.h"
+#include "study/rca/scenario.h"
 
 namespace culprit::study::rca {
+
+// What the rules say at first.
+enum class Priors : std::uint8_t {
+  kRight,  // what the author knows of other robots, near the truth
+  kOff,    // 20 % off, up and down by turns
+  kFlat    // half, and hardly believed
+};
 
 struct LearningCampaign {
   RcaSetting setting{10, 1, 0, false};
   Objective objective = Objective::kBalanced;
+  bool uses_paper_planner = false;
+  Priors priors = Priors::kRight;
   std::uint32_t faults = 500;  // to learn from before anything is measured
   double forgetting = 1;
   // For the last quarter of these, and from then on, a restart helps as little as a configuration
@@ -30,12 +42,36 @@ struct LearningCampaign {
   std::uint32_t measured() const { return has_drift ? faults : 4 * faults; }
 };
 
+// What became of one strategy in all episodes, beside what is believed of it.
+struct LearnedRate {
+  std::string strategy;  // "c3.restart"
+  double prior = 0;
+  int executed = 0;
+  int helped = 0;  // in truth
+  double believed = 0;
+  double counted = 0;  // outcomes that were learned from
+
+  double truth() const { return executed == 0 ? 0 : static_cast<double>(helped) / executed; }
+};
+
+// Of one failure that others were there with when it was resolved: did they go away with it?
+struct LearnedCoupling {
+  std::string cause;
+  std::string effect;
+  int asked = 0;
+  int cleared = 0;  // in truth
+  double counted = 0;
+  double counted_cleared = 0;
+};
+
 struct LearningResult {
   std::uint32_t learned = 0;   // faults
   std::uint32_t measured = 0;  // faults
   Calibration success;
   Calibration rates;  // the same by strategy: is each believed in as often as it helps?
   Calibration kappa;
+  std::vector<LearnedRate> strategies;
+  std::vector<LearnedCoupling> couplings;
 };
 
 // Depends on nothing but the campaign. `is_stopped` is asked after each episode (null: never);

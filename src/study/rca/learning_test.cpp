@@ -1,5 +1,7 @@
 #include "study/rca/learning.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "study/rca/learning_report.h"
@@ -32,6 +34,51 @@ TEST(Learning, ComesNearTheTruth) {
   EXPECT_EQ(result.measured, 480u);
   EXPECT_LT(result.success.error(), 0.06) << "of a few hundred outcomes, by chance 0.03";
   EXPECT_LT(result.kappa.error(), 0.06);
+}
+
+// Of so many outcomes.
+double standard_error(double rate, double outcomes) {
+  return std::sqrt(rate * (1 - rate) / std::max(1.0, outcomes));
+}
+
+TEST(Learning, FindsTheTrueRatesWhateverWasBelievedAtFirst) {
+  for (const Priors priors : {Priors::kRight, Priors::kOff, Priors::kFlat}) {
+    for (const std::size_t faults : {1u, 2u}) {
+      LearningCampaign campaign;
+      campaign.setting = {4, faults, 0, false};
+      campaign.faults = 300;
+      campaign.priors = priors;
+      const LearningResult result = *learn(campaign, nullptr);
+      int judged = 0;
+      for (const LearnedRate& rate : result.strategies) {
+        if (rate.executed < 100) continue;
+        ++judged;
+        const double of_prior = 10 * std::abs(rate.prior - rate.truth()) / (10 + rate.counted);
+        EXPECT_LE(std::abs(rate.believed - rate.truth()),
+                  3 * standard_error(rate.truth(), rate.executed) + of_prior)
+            << rate.strategy << ", executed " << rate.executed << " times, helped " << rate.helped
+            << " times";
+      }
+      EXPECT_GE(judged, 10);
+    }
+  }
+}
+
+TEST(Learning, FindsHowSurelyAFailureGoesWithItsCause) {
+  for (const std::uint64_t seed : {1u, 3u}) {
+    LearningCampaign campaign;
+    campaign.setting = {4, 2, 0, false};
+    campaign.faults = 400;
+    campaign.seed = seed;
+    const LearningResult result = *learn(campaign, nullptr);
+    ASSERT_FALSE(result.couplings.empty());
+    for (const LearnedCoupling& coupling : result.couplings) {
+      const double truth = static_cast<double>(coupling.cleared) / coupling.asked;
+      EXPECT_NEAR(coupling.counted_cleared / coupling.counted, truth,
+                  3 * standard_error(truth, std::min<double>(coupling.asked, coupling.counted)))
+          << coupling.cause << " -> " << coupling.effect;
+    }
+  }
 }
 
 TEST(Learning, FollowsADriftWithForgettingOnly) {

@@ -14,8 +14,9 @@ std::string node_of(const RcaComponent& component) { return "/" + component.name
 
 }  // namespace
 
-RcaRobot::RcaRobot(const RcaScenario& scenario, const RuleSet& rules)
+RcaRobot::RcaRobot(const RcaScenario& scenario, const RuleSet& rules, Duration quiet)
     : scenario_(scenario),
+      quiet_(quiet),
       plant_(scenario),
       noise_(simulation::mix(scenario.seed + 1)),
       luck_(simulation::mix(scenario.seed + 2)),
@@ -61,7 +62,7 @@ void RcaRobot::read_detectors() {
   }
   if (!plant_.is_well()) well_since_.reset();
   if (plant_.is_well() && !well_since_) well_since_ = now();
-  const bool is_quiet = well_since_ && now() >= later(*well_since_, kQuiet);
+  const bool is_quiet = well_since_ && now() >= later(*well_since_, quiet_);
   is_over_ = is_quiet || now() >= Time(from_seconds(scenario_.horizon_s));
   if (!is_over_) plant_.after(from_seconds(scenario_.reading_s), [this] { read_detectors(); });
 }
@@ -165,11 +166,13 @@ void RcaRobot::start(const Command& command) {
 // Each attempt has its own luck.
 void RcaRobot::take_effect(std::size_t component, Repair repair) {
   const auto kind = plant_.fault(component);
-  if (!kind) return;
+  bool has_helped = false;
   for (const Treatment& t : scenario_.components[component].treatments) {
-    if (t.repair == repair && luck_.chance(t.helps[static_cast<std::size_t>(*kind)]))
-      plant_.repair(component);
+    has_helped |=
+        kind && t.repair == repair && luck_.chance(t.helps[static_cast<std::size_t>(*kind)]);
   }
+  if (has_helped) plant_.repair(component);
+  if (on_effect) on_effect(component, repair, has_helped);
 }
 
 Duration RcaRobot::duration(std::size_t component, Repair repair) const {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <set>
 
 #include "robot/robot.h"
@@ -19,7 +20,7 @@ class RcaRobot : public Robot {
   static constexpr Duration kQuiet = std::chrono::seconds(5);
 
   // `scenario` must outlive it; `rules` are those of the scenario.
-  RcaRobot(const RcaScenario& scenario, const RuleSet& rules);
+  RcaRobot(const RcaScenario& scenario, const RuleSet& rules, Duration quiet = kQuiet);
 
   Time now() const override { return plant_.now(); }
   void observe(Time until, std::vector<Observation>& observations) override;
@@ -27,6 +28,8 @@ class RcaRobot : public Robot {
 
   const Plant& plant() const { return plant_; }
   Plant& plant() { return plant_; }
+  // Called when what was done to a component took effect, and whether that ended its fault.
+  std::function<void(std::size_t component, Repair repair, bool has_helped)> on_effect;
   // Set when all was well for a while, or the time of the scenario is over.
   const std::atomic<bool>& is_over() const { return is_over_; }
 
@@ -55,6 +58,7 @@ class RcaRobot : public Robot {
   }
 
   const RcaScenario& scenario_;
+  Duration quiet_;
   Plant plant_;
   simulation::Random noise_;
   simulation::Random luck_;
