@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "process/bounded_log.h"
 #include "process/mark.h"
 
 namespace culprit::process {
@@ -316,6 +317,7 @@ void Supervisor::wake() {
 void Supervisor::run() {
   std::unique_lock lock(mutex_);
   Time next_look = live_now();
+  std::vector<std::filesystem::path> logs;
   while (!is_ending_) {
     std::vector<pollfd> watched{{wake_.get(), POLLIN, 0}};
     for (const Member& member : members_) {
@@ -327,6 +329,8 @@ void Supervisor::run() {
     const auto wait =
         until == kNever ? Duration(-1) : std::max(Duration::zero(), until - live_now());
     lock.unlock();
+    // Without the lock: nobody waits for a disk.
+    for (const std::filesystem::path& log : std::exchange(logs, {})) bound_log(log);
     // Round up: a deadline that is a fraction of a millisecond away must not be polled for in a
     // hurry.
     const auto milliseconds =
@@ -339,7 +343,9 @@ void Supervisor::run() {
     lock.lock();
     const Time now = live_now();
     look(now);
-    if (now >= next_look) next_look = later(now, kStatePeriod);
+    if (now < next_look) continue;
+    next_look = later(now, kStatePeriod);
+    for (const Member& member : members_) logs.push_back(program_of(member.component).log);
   }
 }
 

@@ -19,6 +19,7 @@
 #include <gtest/gtest.h>
 
 #include "language/checker.h"
+#include "process/bounded_log.h"
 #include "process/proc.h"
 #include "process/spawn.h"
 
@@ -113,6 +114,22 @@ class Supervised {
 };
 
 bool exists(int pid) { return kill(pid, 0) == 0; }
+
+// A node that writes megabytes a second, for ever.
+TEST(Supervisor, KeepsTheEndOfALogAndNotAllOfIt) {
+  Supervised c("sh -c 'while sleep 0.02; do seq 20000; done'");
+  c.start();
+  const std::filesystem::path older = c.folder() / "c.log.1";
+  for (int tries = 0; tries < 6000 && !std::filesystem::exists(older); ++tries)
+    std::this_thread::sleep_for(10ms);
+  ASSERT_TRUE(std::filesystem::exists(older));
+  std::filesystem::remove(older);
+  for (int tries = 0; tries < 6000 && !std::filesystem::exists(older); ++tries)
+    std::this_thread::sleep_for(10ms);
+  ASSERT_TRUE(std::filesystem::exists(older)) << "again and again";
+  c.stop();
+  EXPECT_LE(std::filesystem::file_size(older), kMostOfLog);
+}
 
 TEST(Supervisor, StartsAndStopsPolitely) {
   Supervised c("sleep 1000");
