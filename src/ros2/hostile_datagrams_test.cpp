@@ -25,38 +25,44 @@ std::size_t resident_bytes() {
   return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-// Sends to all ports at which participants of the domain may listen.
+// Sends to the ports at which one participant listens: for discovery, and the next one for samples.
 class Attacker {
  public:
-  explicit Attacker(std::uint32_t domain) : domain_(domain) {}
   ~Attacker() { close(socket_); }
+  Attacker() = default;
   Attacker(const Attacker&) = delete;
 
+  void aim(const ParticipantInfo& victim) { port_ = victim.metatraffic.front().port; }
   void send(const Bytes& bytes) const {
-    for (std::uint32_t port = 10; port < 10 + 2 * kParticipants; ++port) {
+    for (const int port : {port_, port_ + 1}) {
       sockaddr_in to{};
       to.sin_family = AF_INET;
       to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-      to.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * domain_ + port));
+      to.sin_port = htons(static_cast<std::uint16_t>(port));
       sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
     }
   }
 
  private:
-  static constexpr std::uint32_t kParticipants = 4;
-  const std::uint32_t domain_;
+  int port_ = 0;
   const int socket_ = socket(AF_INET, SOCK_DGRAM, 0);
 };
 
-std::unique_ptr<Participant> join(const TestDomain& domain) {
-  auto participant = Participant::create(domain.options(), [](DiscoveryEvent) {});
+std::unique_ptr<Participant> join(
+    const TestDomain& domain, DiscoveryCallback on_discovery = [](DiscoveryEvent) {}) {
+  auto participant = Participant::create(domain.options(), std::move(on_discovery));
   if (!participant) throw std::runtime_error(participant.error());
   return std::move(*participant);
 }
 
 class HostileDatagrams : public testing::Test {
  protected:
-  HostileDatagrams() : attacker(domain.number()) {
+  HostileDatagrams() {
+    EXPECT_TRUE(seen.wait_for_one([this](const ParticipantInfo& info) {
+      const bool is_victim = info.guid == victim->guid() && !info.metatraffic.empty();
+      if (is_victim) attacker.aim(info);
+      return is_victim;
+    }));
     writer = std::move(*robot->create_writer({"t", "T", qos::kDiscoveryInfoWriter, "", {}}));
     reader = std::move(*victim->create_reader(
         {"t", "T", qos::kDiscoveryInfoReader, PayloadUse::kWhole, "", {}},
@@ -92,7 +98,10 @@ class HostileDatagrams : public testing::Test {
 
   EventLog<std::int64_t> samples;
   TestDomain domain;
-  std::unique_ptr<Participant> robot = join(domain);
+  EventLog<ParticipantInfo> seen;  // by the robot
+  std::unique_ptr<Participant> robot = join(domain, [this](const DiscoveryEvent& event) {
+    if (const auto* info = std::get_if<ParticipantInfo>(&event)) seen.add(*info);
+  });
   std::unique_ptr<Participant> victim = join(domain);
   std::unique_ptr<Writer> writer;
   std::unique_ptr<Reader> reader;
@@ -111,6 +120,7 @@ TEST_F(HostileDatagrams, AbsurdSequenceNumbersMakeNobodyDeaf) {
   }
   EXPECT_TRUE(speaks());
   EXPECT_TRUE(discovers());
+  EXPECT_TRUE(speaks()) << "by now all of them were looked at";
   EXPECT_GE(victim->refused().count, 12u);
 }
 
