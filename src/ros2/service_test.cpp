@@ -21,7 +21,12 @@ using namespace std::chrono_literals;
 const ServiceName kEcho{"/a/echo", std::string(srv::ChangeMode::kType)};
 const ServiceName kProbe{"/a/probe", std::string(srv::Trigger::kType)};
 
-Bytes request(const std::string& text) { return encode(srv::ChangeMode::Request{text}); }
+// Padded as it comes over the wire.
+Bytes request(const std::string& text) {
+  Bytes bytes = encode(srv::ChangeMode::Request{text});
+  bytes.resize((bytes.size() + 3) / 4 * 4);
+  return bytes;
+}
 Bytes probe_request() { return encode(srv::Trigger::Request{}); }
 
 struct Answer {
