@@ -1,7 +1,7 @@
 // Orders to the manager, and who gives them.
 import { signal } from '@preact/signals'
 import { call } from './api'
-import { act } from './faults'
+import { act, notice } from './faults'
 
 const kAuthorKey = 'culprit-author'
 const author = signal(localStorage.getItem(kAuthorKey) ?? '')
@@ -9,8 +9,16 @@ const author = signal(localStorage.getItem(kAuthorKey) ?? '')
 // For the record.
 export const authorName = () => author.value || 'somebody at the page'
 
-export const order = (what: string, body: Record<string, unknown>) =>
-  act(what, () => call('POST', '/api/orders', { author: authorName(), ...body }))
+// What stands (a pause, say) is answered with whether the next culprit will know of it.
+export async function order(what: string, body: Record<string, unknown>): Promise<boolean> {
+  let text = 'done'
+  const isDone = await act(what, async () => {
+    const all = { author: authorName(), ...body }
+    text = (await call<{ text?: string }>('POST', '/api/orders', all)).text ?? text
+  })
+  if (isDone) notice.value = `${what}: ${text}`
+  return isDone
+}
 
 export function Author() {
   return (
