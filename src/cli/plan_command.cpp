@@ -53,7 +53,8 @@ int plan_for_state(const RuleSet& rules, const PlanOptions& options) {
     return kUsage;
   }
   const rule_test::Watched watched = rule_test::watch(state, rules);
-  PlanReport report(*options.planner.planner(), watched.failures, *watched.knowledge);
+  PlanReport report(*options.planner.planner(), watched.failures, *watched.knowledge,
+                    watched.held_back);
   if (state.moment) report.now = watched.now;
   print(report, options);
   return kOk;
@@ -105,6 +106,8 @@ int plan_for_robot(const RuleSet& rules, const PlanOptions& options) {
   Manager::Options manager_options;
   manager_options.start = (*robot)->now();
   manager_options.settling = from_seconds(options.settle_seconds);
+  manager_options.governor = Governor::Options::recommended();
+  manager_options.governor.quiet_at_start = Duration::zero();  // the question is about the robot
   Manager manager(rules, std::make_unique<Onlooker>(), manager_options);
   fmt::print(stderr, "culprit: watching {} for {:g} s or more; nothing is changed on it\n",
              rules.robot.empty() ? "the robot" : rules.robot,
@@ -116,7 +119,8 @@ int plan_for_robot(const RuleSet& rules, const PlanOptions& options) {
     fmt::print(stderr, "culprit: stopped before the robot was seen; nothing is planned\n");
     return kFailed;
   }
-  PlanReport report(*options.planner.planner(), manager.plannable(), manager.knowledge());
+  PlanReport report(*options.planner.planner(), manager.plannable(), manager.knowledge(),
+                    manager.held_back());
   report.now = (*robot)->now();
   print(report, options);
   return kOk;

@@ -31,10 +31,17 @@ struct Plan : testing::Test {
     err = testing::internal::GetCapturedStderr();
     return exit_code;
   }
-  int plan_for(const std::string& state) {
+  int plan_for(const std::string& state, const std::string& rules = kSunset,
+               const std::string& format = "text") {
     const std::string path = testing::TempDir() + "plan_command_test.state";
     std::ofstream(path, std::ios::binary) << state;
-    return plan({kSunset, "--state", path});
+    return plan({rules, "--state", path, "--format", format});
+  }
+  // The rules of SUNSET with `more`.
+  std::string sunset_with(const std::string& more) {
+    const std::string path = testing::TempDir() + "plan_command_test.rules";
+    std::ofstream(path, std::ios::binary) << std::ifstream(kSunset).rdbuf() << more;
+    return path;
   }
 
   std::string out;
@@ -114,6 +121,49 @@ TEST_F(Plan, OfARobotThatIsWellNamesWhatIsNearest) {
 TEST_F(Plan, SaysHowLongAFailureHasBeenThereAtAMoment) {
   ASSERT_EQ(plan_for("TOPIC /managed_subsystem/rgb_camera 10Hz 6s: silent\nRUN 8s\n"), kOk);
   EXPECT_THAT(out, HasSubstr("RGBDead (ERROR, for 1.7 s)"));
+}
+
+TEST_F(Plan, ChoosesNothingWhileTheInterlockIsClosed) {
+  const std::string rules =
+      sunset_with("SIGNAL docked DIAGNOSTIC base KEY docked\nINTERLOCK docked\n");
+  const std::string killed = "COMPONENT camera PUBLISHES /managed_subsystem/rgb_camera KILLED\n";
+  ASSERT_EQ(plan_for(killed + "SIGNAL docked true\n", rules), kOk) << err;
+  EXPECT_THAT(out, HasSubstr("would redeploy camera"));
+  ASSERT_EQ(plan_for(killed + "SIGNAL docked false\n", rules), kOk) << err;
+  EXPECT_THAT(out, HasSubstr("RGBDead.rgb_redeploy is held back: INTERLOCK docked is false"));
+  EXPECT_THAT(out, Not(HasSubstr("would redeploy")));
+  EXPECT_THAT(out, Not(HasSubstr("  chosen\n")));
+  ASSERT_EQ(plan_for(killed, rules, "json"), kOk) << err;
+  for (const auto& failure : nlohmann::json::parse(out)["failures"]) {
+    EXPECT_TRUE(failure["chosen"].is_null());
+    if (failure["rule"] != "RGBDead") continue;
+    EXPECT_EQ(failure["text"], "RGBDead.rgb_redeploy is held back: INTERLOCK docked is unknown");
+    for (const auto& candidate : failure["candidates"]) {
+      EXPECT_FALSE(candidate["chosen"]);
+      if (candidate["strategy"] == "rgb_redeploy")
+        EXPECT_EQ(candidate["excluded"]["condition"], "withheld");
+    }
+  }
+}
+
+// What run would not do for want of evidence is not planned either; what it would do instead is.
+TEST_F(Plan, HearsTheEvidence) {
+  const std::string rules = sunset_with(
+      "RULE SegmentationSuspected\n  POLICIES ERROR\n"
+      "  TRIGGER age(/managed_subsystem/segmentation) > 500ms\n"
+      "    STRATEGY guess 99 50\n      ADAPTATION camera redeploy 1\n");
+  ASSERT_EQ(plan_for("COMPONENT camera PUBLISHES /managed_subsystem/rgb_camera\n"
+                     "COMPONENT segmentation PUBLISHES /managed_subsystem/segmentation\n"
+                     "TOPIC /managed_subsystem/rgb_camera 10Hz\n"
+                     "TOPIC /managed_subsystem/depth_camera 10Hz\n"
+                     "TOPIC /managed_subsystem/sensors_fused 10Hz\n"
+                     "TOPIC /managed_subsystem/segmentation silent\n",
+                     rules),
+            kOk)
+      << err;
+  EXPECT_THAT(out, HasSubstr("SegmentationSuspected.guess is held back: camera runs and publishes "
+                             "/managed_subsystem/rgb_camera; what is silent is not its"));
+  EXPECT_THAT(out, Not(HasSubstr("would redeploy camera")));
 }
 
 TEST_F(Plan, NamesEveryMistakeOfAState) {

@@ -6,6 +6,7 @@
 
 #include "analyze/near_trigger.h"
 #include "knowledge/describe.h"
+#include "manager/restrained_planner.h"
 
 namespace culprit::cli {
 namespace {
@@ -40,7 +41,27 @@ std::string sentence(const plan::Decision& decision, const RuleSet& rules) {
         rules);
   }
   if (verdict.is_spent) return describe(Event{{}, RoundSpent{verdict.rule, {}}}, rules);
-  return describe(Event{{}, FailureHeldBack{verdict.rule, verdict.candidates}}, rules);
+  const auto withheld =
+      std::find_if(verdict.candidates.begin(), verdict.candidates.end(),
+                   [](const Candidate& c) { return c.excluded == Condition::kWithheld; });
+  std::string waits = describe(Event{{}, FailureHeldBack{verdict.rule, verdict.candidates}}, rules);
+  if (!waits.empty() || withheld == verdict.candidates.end()) return waits;
+  ActionHeldBack held;
+  held.strategy = withheld->strategy;
+  held.reason = withheld->remark;
+  return describe(Event{{}, held}, rules);
+}
+
+// Chosen, and not begun.
+void hold_back(plan::Decision& decision, const std::string& reason, const RuleSet& rules) {
+  for (Candidate& candidate : decision.verdict.candidates) {
+    if (candidate.strategy != decision.verdict.chosen) continue;
+    candidate.excluded = Condition::kWithheld;
+    candidate.component = rules[candidate.strategy].components.front();
+    candidate.remark = reason;
+  }
+  decision.verdict.chosen.reset();
+  decision.explains.clear();
 }
 
 std::optional<double> seconds_failing(RuleId rule, const PlanReport& report) {
@@ -193,9 +214,12 @@ Json decision_as_json(const plan::Decision& decision, const PlanReport& report) 
 }  // namespace
 
 PlanReport::PlanReport(const Planner& planner, std::vector<RuleId> failures,
-                       const Knowledge& plan_knowledge)
+                       const Knowledge& plan_knowledge, const std::optional<std::string>& held_back)
     : knowledge(plan_knowledge),
-      decisions(plan::decide(planner, std::move(failures), plan_knowledge)) {}
+      decisions(plan::decide(RestrainedPlanner(planner), std::move(failures), plan_knowledge)) {
+  if (!held_back) return;
+  for (plan::Decision& decision : decisions) hold_back(decision, *held_back, knowledge.rules);
+}
 
 std::string plan_as_text(const PlanReport& report) {
   const RuleSet& rules = report.knowledge.rules;

@@ -12,8 +12,10 @@
 namespace culprit::cli {
 
 struct PlanReport {
-  // Finds the decisions, and what would flip them. `knowledge` must outlive the report.
-  PlanReport(const Planner& planner, std::vector<RuleId> failures, const Knowledge& plan_knowledge);
+  // Finds the decisions, and what would flip them. What the governor withholds is not chosen;
+  // `held_back` says why nothing is begun at all now. `knowledge` must outlive the report.
+  PlanReport(const Planner& planner, std::vector<RuleId> failures, const Knowledge& plan_knowledge,
+             const std::optional<std::string>& held_back);
 
   const Knowledge& knowledge;
   std::vector<plan::Decision> decisions;

@@ -27,7 +27,7 @@ web::Answer what_if(const web::Json& body, const PlannerFactory& planner) {
   const rule_test::State state = rule_test::read_state(state_source, *checked.rules, diagnostics);
   if (!diagnostics.empty()) return web::refuse(422, rendered(diagnostics, state_source));
   const rule_test::Watched watched = rule_test::watch(state, *checked.rules);
-  return {200, plan_as_json({*planner(), watched.failures, *watched.knowledge})};
+  return {200, plan_as_json({*planner(), watched.failures, *watched.knowledge, watched.held_back})};
 }
 
 }  // namespace

@@ -70,4 +70,13 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
   return std::nullopt;
 }
 
+std::optional<std::string> doubt_of_identity(const Strategy& strategy, const Knowledge& knowledge) {
+  for (const ComponentId component : strategy.components) {
+    const ComponentState& state = knowledge.components[component];
+    if (state.in_graph && state.namesakes > 0)
+      return "several nodes have the name " + knowledge.graph.node_name(component);
+  }
+  return std::nullopt;
+}
+
 }  // namespace culprit

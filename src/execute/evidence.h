@@ -1,4 +1,5 @@
-// Does what is known agree with ending a component's process? (docs/governor.md, "Evidence")
+// Is it known who would be hit, and does what is known agree with ending that process?
+// (docs/governor.md, "Evidence", "Who is hit")
 //
 // There are three witnesses: the operating system about the process, the graph about the node, and
 // the component's own topics. That a process runs proves little by itself, for it may be stuck; a
@@ -20,5 +21,9 @@ namespace culprit {
 // it. Nor does a last resort, or `stop`, accuse anybody: it is what is wanted then.
 std::optional<std::string> contradiction(const Strategy& strategy, const Knowledge& knowledge,
                                          Time now);
+
+// Why nobody knows for sure which node the strategy would hit; nothing if that is clear. Requests
+// go to a name, signals to a process.
+std::optional<std::string> doubt_of_identity(const Strategy& strategy, const Knowledge& knowledge);
 
 }  // namespace culprit

@@ -120,7 +120,7 @@ std::optional<std::string> Governor::objection_to_run(StrategyId id, Autonomy au
       return rules[component].name + " is being adapted";
   }
   if (const auto held = interlock()) return held->reason;
-  if (const auto held = doubt_of_identity(strategy)) return held->reason;
+  if (auto doubt = doubt_of_identity(strategy, knowledge_)) return doubt;
   if (strategy.when.empty()) return std::nullopt;
   const Slot when = evaluate(strategy.when, knowledge_.signals.slots());
   return when.known && when.b ? std::nullopt
@@ -201,7 +201,8 @@ std::optional<Governor::Held> Governor::restraint_on_all(Time now) const {
 
 std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) const {
   if (auto held = restraint_by_person(id)) return held;
-  if (auto held = doubt_of_identity(knowledge_.rules[id])) return held;
+  if (auto doubt = doubt_of_identity(knowledge_.rules[id], knowledge_))
+    return Held{Restraint::kIdentity, std::move(*doubt), kNever};
   if (auto held = lack_of_evidence(knowledge_.rules[id], now)) return held;
   return limits_.on(id, now);
 }
@@ -237,19 +238,6 @@ std::optional<Governor::Held> Governor::interlock() const {
     return Held{Restraint::kInterlock,
                 "INTERLOCK " + interlock.text + (value.known ? " is false" : " is unknown"),
                 kNever};
-  }
-  return std::nullopt;
-}
-
-// Requests go to a name, signals to a process: it must be clear which.
-std::optional<Governor::Held> Governor::doubt_of_identity(const Strategy& strategy) const {
-  for (const ComponentId component : strategy.components) {
-    const ComponentState& state = knowledge_.components[component];
-    if (!state.in_graph) continue;
-    if (state.namesakes > 0) {
-      return Held{Restraint::kIdentity,
-                  "several nodes have the name " + knowledge_.graph.node_name(component), kNever};
-    }
   }
   return std::nullopt;
 }

@@ -79,6 +79,8 @@ class Governor {
   bool awaits_approval(const ApprovalAsked& choice, Time now);
   // It is begun.
   void began(StrategyId strategy, Time now);
+  // Why everything has to wait now; nothing if it need not.
+  std::optional<Held> restraint_on_all(Time now) const;
 
   // ---- time
 
@@ -99,13 +101,11 @@ class Governor {
   };
 
   std::optional<std::string> objection_to_run(StrategyId id, Autonomy autonomy) const;
-  std::optional<Held> restraint_on_all(Time now) const;
   std::optional<Held> restraint_on(StrategyId strategy, Time now) const;
   std::optional<Held> restraint_by_person(StrategyId strategy) const;
   std::optional<Held> lack_of_evidence(const Strategy& strategy, Time now) const;
   // What no person can order either.
   std::optional<Held> interlock() const;
-  std::optional<Held> doubt_of_identity(const Strategy& strategy) const;
   void tell(StrategyId strategy, const Held& held, Time now);
   Question* question_of(StrategyId strategy);
   const Question* question_of(StrategyId strategy) const;

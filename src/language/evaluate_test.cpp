@@ -329,6 +329,7 @@ TEST(Evaluate, FollowsThePrecedenceOfCpp) {
   EXPECT_TRUE(constant("10 - 4 - 3 == 3").b);
   EXPECT_TRUE(constant("7 / 2 == 3 && 7 / 2.0 == 3.5").b);
   EXPECT_TRUE(constant("-7 / 2 == -3 && -7 % 2 == -1").b);
+  EXPECT_TRUE(constant("+7 - +2 == 5 && -+2 == +-2 && 1 + +1.5 == 2.5").b);
   EXPECT_TRUE(constant("!false && !!true").b);
   EXPECT_TRUE(constant("false && false || true").b);
   EXPECT_TRUE(constant("1 < 2 == true").b);
@@ -341,6 +342,7 @@ TEST(Evaluate, FollowsThePrecedenceOfCpp) {
 
 TEST(Evaluate, CountsWithDurations) {
   EXPECT_TRUE(constant("500ms + 0.5s == 1s").b);
+  EXPECT_TRUE(constant("+500ms == 0.5s").b);
   EXPECT_TRUE(constant("2 * 500ms == 1s && 1s * 0.5 == 500ms").b);
   EXPECT_TRUE(constant("3s / 2s == 1.5 && 3s / 2 == 1500ms").b);
   EXPECT_TRUE(constant("5s % 2s == 1s && -1s < 0s").b);

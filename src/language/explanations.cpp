@@ -177,8 +177,9 @@ std::vector<Explanation> rule_explanations() {
       {Code::kContradiction, "a strategy contradicts itself",
        "All adaptations of a strategy are applied together. One that undoes or repeats another, or "
        "that reconfigures a process which the same strategy ends, cannot have been meant: the "
-       "robot would be left in whichever state came last. Alternatives are strategies of their "
-       "own.",
+       "robot would be left in whichever state came last. A restart beside a redeploy of the same "
+       "component is in vain. A component may be started again after it was stopped. Alternatives "
+       "are strategies of their own.",
        "RULE CameraFails\n  POLICIES ERROR\n  TRIGGER rate(/robot/image) < 1\n"
        "    STRATEGY again 50 10\n      ADAPTATION camera deactivate 5\n"
        "      ADAPTATION camera activate 5\n",

@@ -87,14 +87,14 @@ class ExpressionParser {
 
   std::optional<Expression> unary(int depth) {
     const Token token = scanner_.peek();
-    if (!token.is("!") && !token.is("-")) return primary(depth);
+    if (!token.is("!") && !token.is("-") && !token.is("+")) return primary(depth);
     if (depth >= kMaxNesting) return too_deep();
     scanner_.next();
     auto operand = unary(depth + 1);
     if (!operand) return std::nullopt;
     Expression e;
     e.kind = Kind::kUnary;
-    e.op = token.is("!") ? Operator::kNot : Operator::kNegate;
+    e.op = token.is("!") ? Operator::kNot : token.is("-") ? Operator::kNegate : Operator::kPlus;
     e.span = {token.span.begin, operand->span.end};
     adopt(e, std::move(*operand));
     return e;

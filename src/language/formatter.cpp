@@ -85,7 +85,8 @@ class Spacing {
   }
 
   bool is_unary(const Lexeme& sign, const Lexeme* before) const {
-    return is(sign, "!") || (is(sign, "-") && (before == nullptr || !ends_operand(*before)));
+    const bool is_sign = is(sign, "-") || is(sign, "+");
+    return is(sign, "!") || (is_sign && (before == nullptr || !ends_operand(*before)));
   }
 
   bool ends_operand(const Lexeme& lexeme) const {

@@ -20,6 +20,7 @@ bool sets_parameter(const Adaptation& a) {
          a.type == kChangeCommunication;
 }
 bool ends_process(const Adaptation& a) { return a.type == kRedeploy || a.type == kStop; }
+bool changes_presence(const Adaptation& a) { return a.type == kStart || a.type == kStop; }
 bool needs_launch(AdaptationType type) { return type == kRedeploy || type == kStart; }
 
 // Why the two cannot be in one strategy; null if they can. Both are about one component, `first`
@@ -28,15 +29,15 @@ const char* contradiction(const Adaptation& first, const Adaptation& second) {
   const auto are = [&](AdaptationType a, AdaptationType b) {
     return (first.type == a && second.type == b) || (first.type == b && second.type == a);
   };
-  if (are(kStart, kStart)) return "this component is started already";
-  if (are(kStop, kStop)) return "this component is stopped already";
-  if (are(kStart, kStop)) return "the component is both started and stopped";
+  if (changes_presence(first) && changes_presence(second)) return nullptr;  // see Presence
   if (are(kActivate, kDeactivate)) return "the component is both activated and deactivated";
   if (are(kActivate, kActivate) || are(kDeactivate, kDeactivate)) return "this is done already";
   const bool lifecycle =
       second.type == kActivate || second.type == kDeactivate || second.type == kRestart;
   if (first.type == kRestart && lifecycle) return "a restart activates the component already";
   if (second.type == kRestart) return "a restart undoes what was done to the component before";
+  if (first.type == kRestart && ends_process(second))
+    return "the restart is in vain, for the component's process is ended after it";
   const bool other_configures = sets_parameter(first) || sets_parameter(second) ||
                                 first.type == kChangeMode || second.type == kChangeMode ||
                                 lifecycle || first.type == kActivate || first.type == kDeactivate;
@@ -53,12 +54,39 @@ const char* contradiction(const Adaptation& first, const Adaptation& second) {
   return nullptr;
 }
 
+// The starts and stops of one component in a strategy. They are carried out in their order, so they
+// may take turns (paper: a node is not added twice "without removing it"): start, stop, start. What
+// is the opposite in the end of what it was in the beginning was not meant.
+class Presence {
+ public:
+  // Why `next` cannot follow; null if it can.
+  const char* contradiction_of(const Adaptation& next) const {
+    if (!changes_presence(next) || last_ == nullptr || next.type != last_->type) return nullptr;
+    return next.type == kStart ? "this component is started already"
+                               : "this component is stopped already";
+  }
+  void add(const Adaptation& adaptation) {
+    if (!changes_presence(adaptation)) return;
+    if (first_ == nullptr) first_ = &adaptation;
+    last_ = &adaptation;
+  }
+  // The last one, if it takes the first one back; else null.
+  const Adaptation* taken_back() const {
+    return first_ != nullptr && first_->type != last_->type ? last_ : nullptr;
+  }
+
+ private:
+  const Adaptation* first_ = nullptr;
+  const Adaptation* last_ = nullptr;
+};
+
 // What a strategy has done to one component so far: of adaptations that contradict the same ones,
 // the first.
 class Done {
  public:
   // Why the earliest of those that contradict `next` does so; null if none does.
   const char* contradiction_of(const Adaptation& next) const {
+    if (const char* why = presence_.contradiction_of(next)) return why;
     const Adaptation* earliest = nullptr;
     const auto consider = [&](const Adaptation* a) {
       if (a != nullptr && (earliest == nullptr || a < earliest) && contradiction(*a, next))
@@ -73,12 +101,15 @@ class Done {
 
   // They are parts of one vector, added in its order.
   void add(const Adaptation& adaptation) {
+    presence_.add(adaptation);
     const Adaptation*& first = of_type_[static_cast<std::size_t>(adaptation.type)];
     if (first == nullptr) first = &adaptation;
     if (sets_parameter(adaptation)) by_parameter_.emplace(adaptation.subject.text, &adaptation);
   }
+  const Presence& presence() const { return presence_; }
 
  private:
+  Presence presence_;
   std::array<const Adaptation*, static_cast<std::size_t>(kCall) + 1> of_type_{};
   std::map<std::string_view, const Adaptation*> by_parameter_;
 };
@@ -86,15 +117,20 @@ class Done {
 }  // namespace
 
 void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnostic>& diagnostics) {
+  const auto report = [&](const syntax::Adaptation& adaptation, const std::string& why) {
+    diagnostics.push_back({Code::kContradiction, Severity::kError, adaptation.span,
+                           "strategy '" + strategy.name.text + "' contradicts itself: " + why,
+                           "split it into two strategies, or remove one of the adaptations"});
+  };
   std::map<std::string_view, Done> done_by_component;
   for (const syntax::Adaptation& adaptation : strategy.adaptations) {
     Done& done = done_by_component[adaptation.component.text];
-    if (const char* why = done.contradiction_of(adaptation)) {
-      diagnostics.push_back({Code::kContradiction, Severity::kError, adaptation.span,
-                             "strategy '" + strategy.name.text + "' contradicts itself: " + why,
-                             "split it into two strategies, or remove one of the adaptations"});
-    }
+    if (const char* why = done.contradiction_of(adaptation)) report(adaptation, why);
     done.add(adaptation);
+  }
+  for (const auto& [component, done] : done_by_component) {
+    if (const syntax::Adaptation* last = done.presence().taken_back())
+      report(*last, "the component is both started and stopped");
   }
 }
 

@@ -59,6 +59,7 @@ std::string_view symbol(Operator op) {
       return "/";
     case Operator::kRemainder:
       return "%";
+    case Operator::kPlus:
     case Operator::kAdd:
       return "+";
     case Operator::kLess:

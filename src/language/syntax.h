@@ -28,6 +28,7 @@ using Literal = std::variant<bool, std::int64_t, double, std::string, Duration>;
 enum class Operator : std::uint8_t {
   kNot,
   kNegate,
+  kPlus,  // the sign: +5
   kMultiply,
   kDivide,
   kRemainder,

@@ -79,7 +79,7 @@ std::string operand(int depth) {
     case 3:
       return "(" + maybe_blanks() + expression(depth - 1) + maybe_blanks() + ")";
     default:
-      return pick({"!", "-"}) + maybe_blanks() + operand(depth - 1);
+      return pick({"!", "-", "+"}) + maybe_blanks() + operand(depth - 1);
   }
 }
 

@@ -153,10 +153,11 @@ class Typer {
       return fail(Code::kTypeMismatch, e.children[0].span,
                   std::string("! needs true or false; this is ") + describe(t), "");
     }
+    if (e.op == Operator::kPlus && (is_exact(t) || t == Type::kDouble)) return operand;
     if (is_exact(t)) return node(Op::kNegateInt, t, std::move(*operand));
     if (t == Type::kDouble) return node(Op::kNegateDouble, t, std::move(*operand));
     return fail(Code::kTypeMismatch, e.children[0].span,
-                std::string("- needs a number; this is ") + describe(t), "");
+                std::string(symbol(e.op)) + " needs a number; this is " + describe(t), "");
   }
 
   std::optional<Typed> conditional(const Expression& e) {

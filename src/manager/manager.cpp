@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "plan/allowed.h"
 #include "plan/beside_exhausted.h"
 #include "plan/explained_by.h"
 
@@ -223,16 +224,10 @@ void Manager::refresh_conditions(StrategyId strategy, Time now) {
     monitor_.refresh(interlock.condition, now);
 }
 
-// A strategy that may not be begun makes room for the next best.
 std::vector<Verdict> Manager::allowed_plan(const std::vector<RuleId>& failures, Time now) {
   governor_.begin_planning();
-  while (true) {
-    std::vector<Verdict> verdicts = planner_->plan(failures, knowledge_);
-    bool is_any_withheld = false;
-    for (const Verdict& verdict : verdicts)
-      is_any_withheld |= verdict.chosen && governor_.withholds(*verdict.chosen, now);
-    if (!is_any_withheld) return verdicts;
-  }
+  return plan::allowed(*planner_, failures, knowledge_,
+                       [&](StrategyId chosen) { return governor_.withholds(chosen, now); });
 }
 
 // While a failure waits for its turn it is planned anew once per cycle, and when its back-off ends.
@@ -277,6 +272,11 @@ void Manager::hold_back(const Verdict& verdict, Time now) {
   if (said.failing_since == since && same_reasons(said.candidates, verdict.candidates)) return;
   said = {since, verdict.candidates};
   knowledge_.tell(now, FailureHeldBack{verdict.rule, verdict.candidates, verdict.suspects});
+}
+
+std::optional<std::string> Manager::held_back() const {
+  const auto held = governor_.restraint_on_all(now_);
+  return held ? std::optional(held->reason) : std::nullopt;
 }
 
 Time Manager::next_deadline() const {

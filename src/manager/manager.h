@@ -53,6 +53,9 @@ class Manager : public ManagingSystem {
   // The failures that wait for a decision now, ascending.
   std::vector<RuleId> plannable() const { return analyzer_.plannable(now_); }
 
+  // Why nothing at all is begun now, whatever was planned; nothing if it is.
+  std::optional<std::string> held_back() const;
+
   // For what was learned in an earlier run.
   void set_belief(StrategyId id, Belief belief) { knowledge_.beliefs.set(id, belief); }
   void set_coupling(RuleId cause, RuleId effect, Coupling coupling) {

@@ -77,6 +77,12 @@ class Matcher {
         return false;
     }
   }
+  // It was preferred to all others, and may not be begun.
+  bool is(const ActionHeldBack& what) const {
+    return e_.kind == Kind::kExcluded && what.strategy == e_.strategy &&
+           e_.condition.value_or(Condition::kWithheld) == Condition::kWithheld &&
+           (!e_.component || contains(rules_[what.strategy].components, *e_.component));
+  }
   bool is(const auto&) const { return false; }
 
   bool weighs(const Event& event) const {
@@ -111,15 +117,20 @@ std::optional<std::string> rank_disappointment(const Expectation& e,
   return at_time(at) + " its cost was number " + std::to_string(rank);
 }
 
+std::string what_is_said_of(const Event& event, StrategyId strategy, const RuleSet& rules) {
+  const auto* held = std::get_if<ActionHeldBack>(&event.what);
+  if (held != nullptr && held->strategy == strategy) return describe(event, rules);
+  const Candidate* candidate = candidate_of(event, strategy);
+  return candidate == nullptr ? "" : describe_exclusion(*candidate, rules);
+}
+
 // What the plans said of the strategy, each reason once.
 std::string what_was_said_of(StrategyId strategy, std::span<const Event> events,
                              const RuleSet& rules) {
   std::vector<std::string> reasons;
   for (const Event& event : events) {
-    const Candidate* candidate = candidate_of(event, strategy);
-    if (candidate == nullptr) continue;
-    std::string reason = describe_exclusion(*candidate, rules);
-    if (!contains(reasons, reason)) reasons.push_back(std::move(reason));
+    std::string reason = what_is_said_of(event, strategy, rules);
+    if (!reason.empty() && !contains(reasons, reason)) reasons.push_back(std::move(reason));
   }
   std::string all;
   for (const std::string& reason : reasons) all += (all.empty() ? "" : "; ") + reason;

@@ -4,6 +4,7 @@
 
 #include "manager/manager.h"
 #include "manager/runtime.h"
+#include "rule_test/restraint.h"
 #include "rule_test/scripted_robot.h"
 
 namespace culprit::rule_test {
@@ -13,7 +14,9 @@ Result run_test(const RuleSet& rules, const Suite& suite, const Test& test,
   Scenario scenario = suite.shared;
   scenario.append(test.scenario);
   ScriptedRobot robot(rules, scenario);
-  Manager manager(rules, std::move(planner), {});
+  Manager::Options options;
+  options.governor = restraint();
+  Manager manager(rules, std::move(planner), options);
   Result result{test.name, test.length, {}, {}};
 
   Runtime runtime(manager, robot);

@@ -124,6 +124,21 @@ TEST(ScriptedRobot, AnswersNothingWhileItHangs) {
   EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
+constexpr const char* kFusionGone =
+    "RULE FusionGone\n  POLICIES ERROR\n  TRIGGER !alive(fusion)\n"
+    "    STRATEGY again 90 10\n      ADAPTATION fusion redeploy 5\n";
+
+TEST(ScriptedRobot, IsNotAliveWhileItHangsThoughItPublishesNothing) {
+  const char* idle = "TOPIC /fused 0s: silent\n";
+  for (const char* story : {"COMPONENT fusion HUNG\n", "AT 2s fusion HUNG\n"}) {
+    const Played played =
+        play(idle + std::string(story) +
+                 "RUN 10s\nEXPECT FusionGone RESOLVED WITH again BY 5s\nEXPECT fusion BLAMED\n",
+             kFusionGone);
+    EXPECT_TRUE(played.result.is_ok()) << played.text();
+  }
+}
+
 TEST(ScriptedRobot, LeavesAComponentOutThatIsAbsent) {
   const Played played = play(
       "COMPONENT camera STATE absent\nRUN 20s\nEXPECT NOT CameraDead DETECTED BY 4s\n"
@@ -140,6 +155,51 @@ TEST(ScriptedRobot, IsSilentWhileItIsInactive) {
 TEST(ScriptedRobot, SurvivesComponentsThatNeedEachOther) {
   const Played played = play(
       "COMPONENT camera NEEDS fusion\nAT 2s camera KILLED\nRUN 10s\nEXPECT FusionDead DETECTED\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
+// ---- the governor, as culprit run has it
+
+constexpr const char* kDocked = "SIGNAL docked DIAGNOSTIC base KEY docked\nINTERLOCK docked\n";
+
+TEST(Runner, BeginsNothingWhileTheInterlockIsClosed) {
+  for (const char* docked : {"SIGNAL docked 0s: false 5s: true\n", "SIGNAL docked 5s: true\n"}) {
+    const Played played =
+        play(std::string(docked) +
+                 "AT 2s camera KILLED\nRUN 10s\nEXPECT NO STRATEGY BY 4.9s\n"
+                 "EXPECT camera_redeploy EXCLUDED BECAUSE withheld ON camera BY 3s\n"
+                 "EXPECT camera_redeploy EXCLUDED\n"
+                 "EXPECT CameraDead RESOLVED WITH camera_redeploy AFTER 5s\n",
+             kDocked);
+    EXPECT_TRUE(played.result.is_ok()) << played.text();
+  }
+}
+
+TEST(Runner, SaysThatTheInterlockWithheldAStrategy) {
+  const Played played = play(
+      "SIGNAL docked 0s: false\nAT 2s camera KILLED\nRUN 10s\n"
+      "EXPECT camera_redeploy EXCLUDED BECAUSE tried\n",
+      kDocked);
+  EXPECT_THAT(played.instead(), ElementsAre(HasSubstr("INTERLOCK docked is false")));
+  const Played open = play(
+      "SIGNAL docked 0s: true\nAT 2s camera KILLED\nRUN 10s\n"
+      "EXPECT NOT camera_redeploy EXCLUDED BECAUSE withheld\n",
+      kDocked);
+  EXPECT_TRUE(open.result.is_ok()) << open.text();
+}
+
+constexpr const char* kMapper =
+    "COMPONENT mapper NODE /mapper LAUNCH \"mapper\"\n"
+    "RULE MapDead\n  POLICIES ERROR\n  TRIGGER age(/map) > 350ms\n"
+    "    STRATEGY mapper_redeploy 90 10\n      ADAPTATION mapper redeploy 5\n"
+    "RULE MapSilentOrBlind\n  POLICIES ERROR\n  TRIGGER age(/rgb) > 350ms\n"
+    "    STRATEGY guess 90 10\n      ADAPTATION mapper redeploy 5\n";
+
+TEST(Runner, DoesNotReplaceAComponentThatIsHeardWhenAnotherIsSilent) {
+  const Played played = play(
+      "COMPONENT mapper PUBLISHES /map\nTOPIC /map 0s: 10Hz\nTOPIC /rgb 2s: silent\nRUN 30s\n"
+      "EXPECT guess EXCLUDED BECAUSE withheld ON mapper\nEXPECT NO STRATEGY OF mapper\n",
+      kMapper);
   EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 

@@ -240,12 +240,23 @@ void ScriptedRobot::incident(const Incident& incident) {
       break;
     case Incident::Kind::kHung:
       component.answers = false;
+      probe(incident.component, component.pid);
       break;
     case Incident::Kind::kState:
       component.lifecycle = incident.lifecycle;
       tell(LifecycleRead{incident.component, component.lifecycle});
       break;
   }
+}
+
+// One that hangs is asked whether it is there, until its process is another.
+void ScriptedRobot::probe(ComponentId id, int pid) {
+  plan(later(now_, kProbePeriod), [this, id, pid] {
+    const Component& component = components_[id.index];
+    if (component.pid != pid || component.process == ProcessState::kGone) return;
+    tell(Probed{id, false});
+    probe(id, pid);
+  });
 }
 
 void ScriptedRobot::heal(const std::vector<Subject>& subjects) {

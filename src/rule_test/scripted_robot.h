@@ -25,6 +25,7 @@ class ScriptedRobot : public Robot {
   static constexpr Duration kAnswerTime = std::chrono::milliseconds(5);
   static constexpr Duration kStartTime = std::chrono::milliseconds(300);
   static constexpr Duration kPeriod = std::chrono::milliseconds(100);  // of signals and levels
+  static constexpr Duration kProbePeriod = std::chrono::milliseconds(400);  // of what does not answer
 
   // Both must outlive the robot.
   ScriptedRobot(const RuleSet& rules, const Scenario& scenario);
@@ -68,6 +69,7 @@ class ScriptedRobot : public Robot {
   void set_default_parameters();
   void appear(ComponentId id);
   void incident(const Incident& incident);
+  void probe(ComponentId id, int pid);
   void heal(const std::vector<Subject>& subjects);
   void follow_parameter(ParameterId id, const Value& value);
   void refresh_voices();

@@ -7,6 +7,7 @@
 #include "manager/runtime.h"
 #include "plan/onlooker.h"
 #include "rule_test/reader.h"
+#include "rule_test/restraint.h"
 #include "rule_test/scripted_robot.h"
 
 namespace culprit::rule_test {
@@ -55,13 +56,15 @@ Duration moment_of(const State& state, const RuleSet& rules) {
 
 Watched watch(const State& state, const RuleSet& rules) {
   ScriptedRobot robot(rules, state.scenario);
-  Manager manager(rules, std::make_unique<Onlooker>(), {});
+  Manager::Options options;
+  options.governor = restraint();
+  Manager manager(rules, std::make_unique<Onlooker>(), options);
   Runtime runtime(manager, robot);
   const std::atomic<bool> never = false;
   runtime.run(never, Time{moment_of(state, rules)});
 
   Watched watched{std::make_unique<Knowledge>(rules, manager.knowledge()), manager.plannable(),
-                  robot.now()};
+                  manager.held_back(), robot.now()};
   Knowledge& knowledge = *watched.knowledge;
   for (const StrategyId strategy : state.tried) knowledge.states.set_tried(strategy, true);
   for (const State::Experience& experience : state.experiences) learn(knowledge, experience);

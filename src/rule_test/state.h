@@ -36,6 +36,7 @@ Duration moment_of(const State& state, const RuleSet& rules);
 struct Watched {
   std::unique_ptr<Knowledge> knowledge;  // of the rules that were given
   std::vector<RuleId> failures;          // that wait for a decision, ascending
+  std::optional<std::string> held_back;  // why nothing would be begun now, whatever is planned
   Time now;
 };
 

@@ -14,8 +14,8 @@ TOPIC /fused 0s: 10Hz
 SIGNAL blur 0s: 0.1
 )";
 
-RuleSet pipeline_rules() {
-  const Source source("pipeline.rules", R"(
+RuleSet pipeline_rules(const std::string& more) {
+  const std::string rules = R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
 COMPONENT fusion NODE /fusion LAUNCH "fusion"
 SIGNAL blur  DIAGNOSTIC camera KEY blur STALE 1s
@@ -38,7 +38,8 @@ RULE Blurred
   TRIGGER blur > 0.5
     STRATEGY focus 90 10
       ADAPTATION camera set_parameter focus true 3
-)");
+)";
+  const Source source("pipeline.rules", rules + more);
   Checked checked = check(source);
   for (const Diagnostic& d : checked.diagnostics) ADD_FAILURE() << render(d, source);
   return checked.rules ? std::move(*checked.rules) : RuleSet{};
@@ -50,9 +51,11 @@ std::vector<std::string> Played::instead() const {
   return lines;
 }
 
-Played play(const std::string& test) {
-  Played played{
-      Source("x.test", std::string(kPipeline) + "TEST t\n" + test), pipeline_rules(), {}, {}};
+Played play(const std::string& test, const std::string& more_rules) {
+  Played played{Source("x.test", std::string(kPipeline) + "TEST t\n" + test),
+                pipeline_rules(more_rules),
+                {},
+                {}};
   std::vector<Diagnostic> diagnostics;
   played.suite = read_suite(played.source, played.rules, diagnostics);
   for (const Diagnostic& d : diagnostics) ADD_FAILURE() << render(d, played.source);

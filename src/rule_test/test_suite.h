@@ -9,7 +9,7 @@ namespace culprit::rule_test {
 
 // A camera and a fusion that needs it, each with a failure that is healed by a restart or else by a
 // redeploy; and a blur that a parameter heals.
-RuleSet pipeline_rules();
+RuleSet pipeline_rules(const std::string& more = "");
 
 // The robot of these rules when it is well, to stand before the tests.
 extern const char* const kPipeline;
@@ -26,6 +26,7 @@ struct Played {
 };
 
 // Reads and runs one test, written without its TEST line. A mistake in it fails the test that asks.
-Played play(const std::string& test);
+// The rules are the pipeline's, with `more_rules` behind them.
+Played play(const std::string& test, const std::string& more_rules = "");
 
 }  // namespace culprit::rule_test

@@ -32,6 +32,7 @@ int precedence(Operator op) {
       return 6;
     case Operator::kNot:
     case Operator::kNegate:
+    case Operator::kPlus:
       return 7;
   }
   return 7;

@@ -1,0 +1,36 @@
+#include "manager/restrained_planner.h"
+
+#include <algorithm>
+
+#include "execute/evidence.h"
+#include "plan/allowed.h"
+
+namespace culprit {
+namespace {
+
+std::optional<std::string> objection(StrategyId id, const Knowledge& knowledge) {
+  const Strategy& strategy = knowledge.rules[id];
+  if (auto doubt = doubt_of_identity(strategy, knowledge)) return doubt;
+  return contradiction(strategy, knowledge, knowledge.now);
+}
+
+}  // namespace
+
+// What is known is copied only where something is withheld: that is seldom, and what-if questions
+// ask for very many plans.
+std::vector<Verdict> RestrainedPlanner::plan(std::span<const RuleId> failures,
+                                             const Knowledge& knowledge) const {
+  std::vector<Verdict> verdicts = planner_.plan(failures, knowledge);
+  const bool is_any_withheld = std::any_of(verdicts.begin(), verdicts.end(), [&](const Verdict& v) {
+    return v.chosen && objection(*v.chosen, knowledge);
+  });
+  if (!is_any_withheld) return verdicts;
+  Knowledge marked(knowledge.rules, knowledge);
+  return plan::allowed(planner_, failures, marked, [&](StrategyId chosen) {
+    auto reason = objection(chosen, marked);
+    if (reason) marked.withheld[chosen.index] = std::move(*reason);
+    return reason.has_value();
+  });
+}
+
+}  // namespace culprit
