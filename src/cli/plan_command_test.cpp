@@ -16,6 +16,12 @@ using testing::Not;
 constexpr const char* kSunset = "rules/sunset.rules";
 constexpr const char* kSunsetState = "rules/tests/sunset.state";
 
+constexpr const char* kAllTopics =
+    "TOPIC /managed_subsystem/rgb_camera    10Hz\n"
+    "TOPIC /managed_subsystem/depth_camera  10Hz\n"
+    "TOPIC /managed_subsystem/sensors_fused 10Hz\n"
+    "TOPIC /managed_subsystem/segmentation  10Hz\n";
+
 struct Plan : testing::Test {
   // Gives the exit code; what was printed is in `out` and `err`.
   int plan(std::vector<std::string> arguments) {
@@ -105,11 +111,7 @@ TEST_F(Plan, TakesTheSwitchesOfRun) {
 }
 
 TEST_F(Plan, OfARobotThatIsWellNamesWhatIsNearest) {
-  ASSERT_EQ(plan_for("TOPIC /managed_subsystem/rgb_camera    10Hz\n"
-                     "TOPIC /managed_subsystem/depth_camera  10Hz\n"
-                     "TOPIC /managed_subsystem/sensors_fused 10Hz\n"
-                     "TOPIC /managed_subsystem/segmentation  10Hz\n"
-                     "SIGNAL segmentation_entropy            0.05\n"),
+  ASSERT_EQ(plan_for(std::string(kAllTopics) + "SIGNAL segmentation_entropy            0.05\n"),
             kOk);
   EXPECT_EQ(out,
             "Nothing waits for a decision.\n"
@@ -126,7 +128,8 @@ TEST_F(Plan, SaysHowLongAFailureHasBeenThereAtAMoment) {
 TEST_F(Plan, ChoosesNothingWhileTheInterlockIsClosed) {
   const std::string rules =
       sunset_with("SIGNAL docked DIAGNOSTIC base KEY docked\nINTERLOCK docked\n");
-  const std::string killed = "COMPONENT camera PUBLISHES /managed_subsystem/rgb_camera KILLED\n";
+  const std::string killed =
+      std::string(kAllTopics) + "COMPONENT camera PUBLISHES /managed_subsystem/rgb_camera KILLED\n";
   ASSERT_EQ(plan_for(killed + "SIGNAL docked true\n", rules), kOk) << err;
   EXPECT_THAT(out, HasSubstr("would redeploy camera"));
   ASSERT_EQ(plan_for(killed + "SIGNAL docked false\n", rules), kOk) << err;
@@ -152,12 +155,10 @@ TEST_F(Plan, HearsTheEvidence) {
       "RULE SegmentationSuspected\n  POLICIES ERROR\n"
       "  TRIGGER age(/managed_subsystem/segmentation) > 500ms\n"
       "    STRATEGY guess 99 50\n      ADAPTATION camera redeploy 1\n");
-  ASSERT_EQ(plan_for("COMPONENT camera PUBLISHES /managed_subsystem/rgb_camera\n"
-                     "COMPONENT segmentation PUBLISHES /managed_subsystem/segmentation\n"
-                     "TOPIC /managed_subsystem/rgb_camera 10Hz\n"
-                     "TOPIC /managed_subsystem/depth_camera 10Hz\n"
-                     "TOPIC /managed_subsystem/sensors_fused 10Hz\n"
-                     "TOPIC /managed_subsystem/segmentation silent\n",
+  ASSERT_EQ(plan_for(std::string(kAllTopics) +
+                         "COMPONENT camera PUBLISHES /managed_subsystem/rgb_camera\n"
+                         "COMPONENT segmentation PUBLISHES /managed_subsystem/segmentation\n"
+                         "TOPIC /managed_subsystem/segmentation silent\n",
                      rules),
             kOk)
       << err;

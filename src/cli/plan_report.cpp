@@ -44,8 +44,8 @@ std::string sentence(const plan::Decision& decision, const RuleSet& rules) {
   const auto withheld =
       std::find_if(verdict.candidates.begin(), verdict.candidates.end(),
                    [](const Candidate& c) { return c.excluded == Condition::kWithheld; });
-  std::string waits = describe(Event{{}, FailureHeldBack{verdict.rule, verdict.candidates}}, rules);
-  if (!waits.empty() || withheld == verdict.candidates.end()) return waits;
+  if (withheld == verdict.candidates.end())
+    return describe(Event{{}, FailureHeldBack{verdict.rule, verdict.candidates}}, rules);
   ActionHeldBack held;
   held.strategy = withheld->strategy;
   held.reason = withheld->remark;
