@@ -1,0 +1,77 @@
+// When a failure counts as gone: not at the first look that does not show it.
+#include <gtest/gtest.h>
+
+#include "analyze/analyzer.h"
+#include "language/checker.h"
+
+namespace culprit {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Watched {
+  explicit Watched(const std::string& policies)
+      : rules(*check(Source("x.rules",
+                            "CYCLE 200ms\nCOMPONENT c NODE /c LAUNCH \"c\"\n"
+                            "SIGNAL x DIAGNOSTIC c KEY x\nRULE Bad\nPOLICIES ERROR " +
+                                policies +
+                                "\nTRIGGER x > 1\nSTRATEGY again 90 10\n"
+                                "ADAPTATION c restart 5\n"))
+                   .rules) {}
+
+  // x is `value` for `time`.
+  void be(double value, Duration time) {
+    knowledge.signals.set(InputId(0), Slot::of(value));
+    for (const Time end = now + time; now < end; now += 50ms) analyzer.advance(now);
+  }
+  template <class What>
+  int told() const {
+    return static_cast<int>(
+        std::count_if(knowledge.events.begin(), knowledge.events.end(),
+                      [](const Event& event) { return std::holds_alternative<What>(event.what); }));
+  }
+
+  RuleSet rules;
+  Knowledge knowledge{rules};
+  Analyzer analyzer{knowledge};
+  Time now{100s};
+};
+
+TEST(Clearing, TakesACycle) {
+  Watched w("");
+  w.be(2, 100ms);
+  ASSERT_EQ(w.told<FailureDetected>(), 1);
+  w.be(0, 200ms);
+  EXPECT_EQ(w.told<FailureResolved>(), 0) << "it was false for less than a cycle";
+  w.be(2, 100ms);
+  w.be(0, 200ms);
+  EXPECT_EQ(w.told<FailureResolved>(), 0) << "what flickers is not gone";
+  w.be(0, 100ms);
+  EXPECT_EQ(w.told<FailureResolved>(), 1);
+  EXPECT_EQ(w.told<FailureDetected>(), 1);
+}
+
+TEST(Clearing, TakesAsLongAsDetecting) {
+  Watched w("FOR 1s");
+  w.be(2, 1100ms);
+  ASSERT_EQ(w.told<FailureDetected>(), 1);
+  w.be(0, 900ms);
+  w.be(2, 50ms);
+  w.be(0, 1s);
+  EXPECT_EQ(w.told<FailureResolved>(), 0);
+  w.be(0, 100ms);
+  EXPECT_EQ(w.told<FailureResolved>(), 1);
+}
+
+TEST(Clearing, TakesSoManyCyclesThatTheRestOfTheWindowCannotHoldIt) {
+  Watched w("HOLD 3/5");
+  w.be(2, 1s);
+  ASSERT_EQ(w.told<FailureDetected>(), 1);
+  w.be(0, 600ms);
+  EXPECT_EQ(w.told<FailureResolved>(), 0);
+  w.be(0, 100ms);
+  EXPECT_EQ(w.told<FailureResolved>(), 1);
+}
+
+}  // namespace
+}  // namespace culprit

@@ -1,0 +1,106 @@
+// Restart intensity, back-off and quiet periods, promise by promise (docs/governor.md).
+#include "execute/limits.h"
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+
+namespace culprit {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time kStart{100s};
+
+struct Two {
+  RuleSet rules =
+      *check(Source("two.rules",
+                    "COMPONENT up NODE /up LAUNCH \"u\"\nCOMPONENT down NODE /down LAUNCH \"d\"\n"
+                    "COMPONENT other NODE /other LAUNCH \"o\"\nDEPENDENCY down ON up\n"
+                    "RULE Up\nPOLICIES ERROR\nTRIGGER !alive(up)\n"
+                    "STRATEGY up_again 90 10\nADAPTATION up redeploy 5\n"
+                    "RULE Down\nPOLICIES ERROR\nTRIGGER !alive(down)\n"
+                    "STRATEGY down_again 90 10\nADAPTATION down redeploy 5\n"
+                    "STRATEGY down_tuned 90 10\nADAPTATION down set_parameter p 1 5\n"
+                    "RULE Other\nPOLICIES ERROR\nTRIGGER !alive(other)\n"
+                    "STRATEGY other_again 90 10\nADAPTATION other redeploy 5\n"))
+           .rules;
+  Knowledge knowledge{rules};
+
+  StrategyId strategy(std::string_view name) const {
+    for (std::size_t s = 0; s < rules.strategies.size(); ++s) {
+      if (rules.strategies[s].name == name) return StrategyId(s);
+    }
+    return {};
+  }
+};
+
+std::optional<Restraint> restraint(const std::optional<Limits::Limit>& limit) {
+  return limit ? std::optional(limit->restraint) : std::nullopt;
+}
+
+TEST(Limits, LetALaunchSettleBeforeTheComponentOrWhatDependsOnItIsTouched) {
+  Two two;
+  Limits::Options options;
+  options.quiet_after_launch = 1s;
+  Limits limits(two.knowledge, options);
+  EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart));
+  limits.note({kStart, AdaptationDone{two.strategy("up_again"), 0, ""}});
+  for (const char* quiet : {"up_again", "down_again", "down_tuned"}) {
+    EXPECT_EQ(restraint(limits.on(two.strategy(quiet), kStart + 999ms)), Restraint::kQuietPeriod)
+        << quiet;
+    EXPECT_FALSE(limits.on(two.strategy(quiet), kStart + 1s)) << quiet;
+  }
+  EXPECT_FALSE(limits.on(two.strategy("other_again"), kStart)) << "it has nothing to do with it";
+}
+
+TEST(Limits, AreQuietOnlyAfterALaunch) {
+  Two two;
+  Limits::Options options;
+  options.quiet_after_launch = 1s;
+  Limits limits(two.knowledge, options);
+  limits.note({kStart, AdaptationDone{two.strategy("down_tuned"), 0, ""}});
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart));
+}
+
+TEST(Limits, RememberTheLaunchOfAnEarlierProcess) {
+  Two two;
+  Limits::Options options;
+  options.quiet_after_launch = 1s;
+  Limits limits(two.knowledge, options);
+  limits.remember({{kStart, AdaptationDone{two.strategy("up_again"), 0, ""}}});
+  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kStart + 500ms)),
+            Restraint::kQuietPeriod);
+}
+
+TEST(Limits, DoubleTheTimeBetweenRestarts) {
+  Two two;
+  Limits::Options options;
+  options.backoff = {1s, 4s, 60s};
+  Limits limits(two.knowledge, options);
+  const StrategyId again = two.strategy("up_again");
+  Time now = kStart;
+  for (const Duration wait : {1s, 2s, 4s, 4s}) {
+    limits.began(again, now);
+    EXPECT_EQ(restraint(limits.on(again, now + wait - 1ms)), Restraint::kBackoff);
+    EXPECT_FALSE(limits.on(again, now + wait));
+    now += wait;
+  }
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), now)) << "each component has its own";
+}
+
+TEST(Limits, BoundWhatIsBegunAtAComponentInItsPeriod) {
+  Two two;
+  Limits::Options options;
+  options.per_component = {2, 60s};
+  Limits limits(two.knowledge, options);
+  limits.began(two.strategy("down_again"), kStart);
+  limits.began(two.strategy("down_tuned"), kStart + 10s);
+  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kStart + 59s)),
+            Restraint::kComponentIntensity);
+  EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart + 59s));
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 60s));
+}
+
+}  // namespace
+}  // namespace culprit

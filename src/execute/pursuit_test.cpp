@@ -1,0 +1,134 @@
+// One goal, request by request: nothing is changed without looking first, and nothing twice.
+#include "execute/pursuit.h"
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+
+namespace culprit::execute {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time kStart{100s};
+
+struct One {
+  RuleSet rules =
+      *check(Source("one.rules",
+                    "COMPONENT c NODE /c LAUNCH \"c\"\nRULE Dead\nPOLICIES ERROR\n"
+                    "TRIGGER !alive(c)\nSTRATEGY again 90 10\nADAPTATION c redeploy 5\n"))
+           .rules;
+  Knowledge knowledge{rules};
+  ComponentId c{0};
+
+  ComponentState& state() { return knowledge.components[c]; }
+  // A process, and whether its node is in the graph.
+  void runs(int pid, bool in_graph) {
+    state().pid = pid;
+    state().process = ProcessState::kRunning;
+    state().in_graph = in_graph;
+    state().node_pid = in_graph ? pid : 0;
+  }
+};
+
+template <class What>
+bool is(const std::optional<Pursuit::Request>& request) {
+  return request && std::holds_alternative<What>(*request);
+}
+
+Reply done(decltype(Reply::value) value = {}) { return {{}, Outcome::kDone, std::move(value), ""}; }
+
+// ---- a process that may have been started before culprit ended
+
+TEST(PursuitOfAProcess, StartsNoneWhereAnotherHasTakenTheOldOnesPlace) {
+  One one;
+  one.runs(8, true);
+  Pursuit pursuit(PresentGoal{7}, one.c, kStart);
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart));
+  EXPECT_TRUE(pursuit.is_reached());
+  EXPECT_FALSE(pursuit.has_changed_anything());
+}
+
+TEST(PursuitOfAProcess, WaitsForOneThatRunsAndIsNotInTheGraphYet) {
+  One one;
+  one.runs(8, false);
+  Pursuit pursuit(PresentGoal{7}, one.c, kStart);
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart));
+  EXPECT_TRUE(pursuit.is_under_way());
+  one.runs(8, true);
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart + 1s));
+  EXPECT_TRUE(pursuit.is_reached());
+  EXPECT_FALSE(pursuit.has_changed_anything());
+}
+
+TEST(PursuitOfAProcess, StartsOneWhereTheOldOneIsGone) {
+  One one;
+  one.runs(7, false);
+  one.state().process = ProcessState::kGone;
+  Pursuit pursuit(PresentGoal{7}, one.c, kStart);
+  EXPECT_TRUE(is<StartProcess>(pursuit.advance(one.knowledge, kStart)));
+}
+
+TEST(PursuitOfAProcess, EndsNoneThatHasTakenTheOldOnesPlace) {
+  One one;
+  one.runs(8, true);
+  Pursuit pursuit(GoneGoal{7}, one.c, kStart);
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart));
+  EXPECT_TRUE(pursuit.is_reached());
+}
+
+TEST(PursuitOfAProcess, BelievesNoAnswerWhileTheOperatingSystemSaysThatItRuns) {
+  One one;
+  one.runs(7, true);
+  Pursuit pursuit(GoneGoal{}, one.c, kStart);
+  ASSERT_TRUE(is<StopProcess>(pursuit.advance(one.knowledge, kStart)));
+  pursuit.answered(done(), kStart + 1ms);
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart + 2ms));
+  EXPECT_FALSE(pursuit.is_reached());
+  one.state().process = ProcessState::kGone;
+  one.state().in_graph = false;
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart + 3ms));
+  EXPECT_TRUE(pursuit.is_reached());
+}
+
+// ---- a state that is looked at before it is changed
+
+TEST(PursuitOfALifecycle, ChangesNothingThatIsSoAlready) {
+  One one;
+  Pursuit pursuit(LifecycleGoal{Lifecycle::kActive, {}}, one.c, kStart);
+  ASSERT_TRUE(is<ReadLifecycle>(pursuit.advance(one.knowledge, kStart)));
+  pursuit.answered(done(Lifecycle::kActive), kStart);
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart));
+  EXPECT_TRUE(pursuit.is_reached());
+  EXPECT_FALSE(pursuit.has_changed_anything());
+}
+
+TEST(PursuitOfALifecycle, AsksForATransitionOnceThoughTheAnswerIsLost) {
+  One one;
+  Pursuit pursuit(LifecycleGoal{Lifecycle::kActive, {}}, one.c, kStart);
+  int asked = 0;
+  for (Time now = kStart; now < kStart + 30s && pursuit.is_under_way(); now += 50ms) {
+    const auto request = pursuit.advance(one.knowledge, now);
+    if (is<ReadLifecycle>(request)) pursuit.answered(done(Lifecycle::kInactive), now);
+    if (is<ChangeLifecycle>(request)) ++asked;
+  }
+  EXPECT_EQ(asked, 1);
+  EXPECT_FALSE(pursuit.is_reached());
+}
+
+TEST(PursuitOfAParameter, RestoresOnlyWhatIsAnother) {
+  One one;
+  const ParameterGoal goal{"gain", Value(0.5), ParameterGoal::Kind::kRestore, {}};
+  Pursuit same(goal, one.c, kStart);
+  ASSERT_TRUE(is<ReadParameter>(same.advance(one.knowledge, kStart)));
+  same.answered(done(Value(0.5)), kStart);
+  EXPECT_FALSE(same.advance(one.knowledge, kStart));
+  EXPECT_TRUE(same.is_reached());
+  Pursuit other(goal, one.c, kStart);
+  ASSERT_TRUE(is<ReadParameter>(other.advance(one.knowledge, kStart)));
+  other.answered(done(Value(0.7)), kStart);
+  EXPECT_TRUE(is<SetParameter>(other.advance(one.knowledge, kStart)));
+}
+
+}  // namespace
+}  // namespace culprit::execute
