@@ -143,8 +143,9 @@ TEST_F(Plan, ChoosesNothingWhileTheInterlockIsClosed) {
     EXPECT_EQ(failure["text"], "RGBDead.rgb_redeploy is held back: INTERLOCK docked is unknown");
     for (const auto& candidate : failure["candidates"]) {
       EXPECT_FALSE(candidate["chosen"]);
-      if (candidate["strategy"] == "rgb_redeploy")
+      if (candidate["strategy"] == "rgb_redeploy") {
         EXPECT_EQ(candidate["excluded"]["condition"], "withheld");
+      }
     }
   }
 }

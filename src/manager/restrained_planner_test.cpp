@@ -1,0 +1,60 @@
+// What is asked about is what would be begun.
+#include "manager/restrained_planner.h"
+
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+#include "plan/onlooker.h"
+
+namespace culprit {
+namespace {
+
+using test::TestRobot;
+using namespace std::chrono_literals;
+
+constexpr const char* kRules = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT lidar NODE /lidar LAUNCH "lidar"
+RULE CameraSilent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY restart 60 10
+      ADAPTATION camera restart 3
+    STRATEGY wrong_one 99 10
+      ADAPTATION lidar redeploy 1
+RULE LidarSilent
+  POLICIES ERROR
+  TRIGGER age(/scan) > 300ms
+    STRATEGY again 90 10
+      ADAPTATION lidar redeploy 5
+)";
+
+// What is chosen for a camera that is silent.
+std::string choice(bool has_namesake) {
+  TestRobot robot(kRules, std::make_unique<Onlooker>());
+  robot.add("camera", {}, "/rgb");
+  robot.add("lidar", {}, "/scan");
+  robot.discover();
+  robot.run_for(6s);
+  robot["camera"].fault = "restart";
+  robot.run_for(1s);
+  if (has_namesake) robot.tell(NamesakesSeen{"/camera", 1});
+  const BayesPlanner planner;
+  const auto verdicts =
+      RestrainedPlanner(planner).plan(robot.manager().plannable(), robot.manager().knowledge());
+  EXPECT_EQ(verdicts.size(), 1u);
+  for (const std::string& reason : robot.manager().knowledge().withheld) EXPECT_EQ(reason, "");
+  if (verdicts.empty() || !verdicts.front().chosen) return "";
+  return robot.rules()[*verdicts.front().chosen].name;
+}
+
+TEST(RestrainedPlanner, ChoosesNoRedeployThatTheEvidenceSpeaksAgainst) {
+  EXPECT_EQ(choice(false), "restart") << "the lidar runs and is heard";
+}
+
+TEST(RestrainedPlanner, ChoosesNothingWhereNobodyKnowsWhoWouldBeHit) {
+  EXPECT_EQ(choice(true), "");
+}
+
+}  // namespace
+}  // namespace culprit
