@@ -23,6 +23,10 @@ bool ends_process(const Adaptation& a) { return a.type == kRedeploy || a.type ==
 bool changes_presence(const Adaptation& a) { return a.type == kStart || a.type == kStop; }
 bool needs_launch(AdaptationType type) { return type == kRedeploy || type == kStart; }
 
+// It does no harm, so it is only a warning.
+constexpr const char* kRestartInVain =
+    "the restart is in vain, for the component's process is ended after it";
+
 // Why the two cannot be in one strategy; null if they can. Both are about one component, `first`
 // stands before.
 const char* contradiction(const Adaptation& first, const Adaptation& second) {
@@ -36,8 +40,7 @@ const char* contradiction(const Adaptation& first, const Adaptation& second) {
       second.type == kActivate || second.type == kDeactivate || second.type == kRestart;
   if (first.type == kRestart && lifecycle) return "a restart activates the component already";
   if (second.type == kRestart) return "a restart undoes what was done to the component before";
-  if (first.type == kRestart && ends_process(second))
-    return "the restart is in vain, for the component's process is ended after it";
+  if (first.type == kRestart && ends_process(second)) return kRestartInVain;
   const bool other_configures = sets_parameter(first) || sets_parameter(second) ||
                                 first.type == kChangeMode || second.type == kChangeMode ||
                                 lifecycle || first.type == kActivate || first.type == kDeactivate;
@@ -117,10 +120,11 @@ class Done {
 }  // namespace
 
 void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnostic>& diagnostics) {
-  const auto report = [&](const syntax::Adaptation& adaptation, const std::string& why) {
-    diagnostics.push_back({Code::kContradiction, Severity::kError, adaptation.span,
-                           "strategy '" + strategy.name.text + "' contradicts itself: " + why,
-                           "split it into two strategies, or remove one of the adaptations"});
+  const auto report = [&](const syntax::Adaptation& adaptation, const char* why) {
+    diagnostics.push_back(
+        {Code::kContradiction, why == kRestartInVain ? Severity::kWarning : Severity::kError,
+         adaptation.span, "strategy '" + strategy.name.text + "' contradicts itself: " + why,
+         "split it into two strategies, or remove one of the adaptations"});
   };
   std::map<std::string_view, Done> done_by_component;
   for (const syntax::Adaptation& adaptation : strategy.adaptations) {
