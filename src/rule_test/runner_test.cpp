@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rule_test/restraint.h"
 #include "rule_test/test_suite.h"
 
 namespace culprit::rule_test {
@@ -12,7 +11,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using namespace std::chrono_literals;
 
 // ---- each kind of expectation can be met, and can fail
 
@@ -203,21 +201,6 @@ TEST(Runner, DoesNotReplaceAComponentThatIsHeardWhenAnotherIsSilent) {
       "EXPECT guess EXCLUDED BECAUSE withheld ON mapper\nEXPECT NO STRATEGY OF mapper\n",
       kMapper);
   EXPECT_TRUE(played.result.is_ok()) << played.text();
-}
-
-TEST(Runner, KeepsToTheBoundOfWhatIsBegunAtAComponentInAMinute) {
-  std::string course = "TOPIC /rgb 0s: 10Hz";
-  for (int at = 2; at < 170; at += 4) course += " " + std::to_string(at) + "s: silent";
-  const Played played =
-      play(course + "\nADAPTATION camera restart HEALS /rgb\nRUN 3min\nEXPECT camera BLAMED\n");
-  std::vector<Time> begun;
-  for (const Event& event : played.result.events) {
-    if (std::holds_alternative<StrategyChosen>(event.what)) begun.push_back(event.at);
-  }
-  EXPECT_GT(begun.size(), 3u) << played.text();
-  const auto bound = static_cast<std::size_t>(restraint().limits.per_component.most);
-  for (std::size_t i = bound; i < begun.size(); ++i)
-    EXPECT_GE(begun[i] - begun[i - bound], 60s) << played.text();
 }
 
 // ---- the same again

@@ -25,7 +25,8 @@ class ScriptedRobot : public Robot {
   static constexpr Duration kAnswerTime = std::chrono::milliseconds(5);
   static constexpr Duration kStartTime = std::chrono::milliseconds(300);
   static constexpr Duration kPeriod = std::chrono::milliseconds(100);  // of signals and levels
-  static constexpr Duration kProbePeriod = std::chrono::milliseconds(400);  // of what does not answer
+  static constexpr Duration kProbePeriod =
+      std::chrono::milliseconds(400);  // of what does not answer
 
   // Both must outlive the robot.
   ScriptedRobot(const RuleSet& rules, const Scenario& scenario);
