@@ -290,6 +290,7 @@ TEST(WebServerStart, LeavesDescriptorsToTheManager) {
   }
   // The flood is there when nobody else is served any more.
   httplib::Client impatient("127.0.0.1", server->port());
+  impatient.set_connection_timeout(std::chrono::milliseconds(200));
   impatient.set_read_timeout(std::chrono::milliseconds(200));
   for (int i = 0; i < 100 && impatient.Get("/api/echo"); ++i) usleep(20'000);
   std::vector<int> opened;
