@@ -125,17 +125,17 @@ TEST_F(Filter, BitmapsHaveAtMost256Bits) {
 }
 
 TEST_F(Filter, WhatFragmentsTakeIsBounded) {
-  std::size_t passed = 0;
+  std::size_t came = 0;
   for (std::int64_t sequence = 1; sequence <= 600; ++sequence)
-    passed += passes(from(kDiscovery).fragment(kDiscovery, sequence, 1, 1000, 1'000'000)) ? 1 : 0;
-  EXPECT_EQ(passed, DatagramFilter::kReliableOfOne / 1'000'000);
-  EXPECT_TRUE(passes(from(kDiscovery).data(kDiscovery, passed + 1))) << "it is still heard";
+    came += passes(from(kDiscovery).fragment(kDiscovery, sequence, 1, 1000, 1'000'000)) ? 1 : 0;
+  EXPECT_EQ(came, DatagramFilter::kReliableOfOne / 1'000'000);
+  EXPECT_TRUE(passes(from(kDiscovery).data(kDiscovery, came + 1))) << "it is still heard";
   for (std::uint8_t participant = 3; participant < 200; ++participant) {
     const Guid other = writer(0xc2, participant);
     filter.know(other.prefix());
-    passed += passes(from(other).fragment(other, 1, 1, 1000, 3'000'000)) ? 3 : 0;
+    came += passes(from(other).fragment(other, 1, 1, 1000, 3'000'000)) ? 3 : 0;
   }
-  EXPECT_LE(passed, DatagramFilter::kReliableOfAll / 1'000'000);
+  EXPECT_LE(came, DatagramFilter::kReliableOfAll / 1'000'000);
 }
 
 TEST_F(Filter, WhatIsCompleteOrGivenUpIsFreeAgain) {
@@ -164,13 +164,13 @@ TEST_F(Filter, ALossyCameraIsNeverTooMuch) {
 }
 
 TEST_F(Filter, AllCamerasTogetherAreBounded) {
-  int passed = 0;
+  int came = 0;
   for (std::uint8_t participant = 3; participant < 100; ++participant) {
     const Guid camera = writer(0x03, participant);
     filter.begin_hearing(camera, DatagramFilter::Reading::kBestEffort);
-    passed += passes(from(camera).fragment(camera, 1, 1, 60'000, 6'000'000)) ? 1 : 0;
+    came += passes(from(camera).fragment(camera, 1, 1, 60'000, 6'000'000)) ? 1 : 0;
   }
-  EXPECT_EQ(passed, 5);
+  EXPECT_EQ(came, 5);
 }
 
 // It is silent only for us: too large, or lost in part, or behind a forged number.
