@@ -7,7 +7,6 @@
 
 #include "plan/bayes/bayes_planner.h"
 #include "plan/bayes/seen_down.h"
-#include "plan/bayes/side_by_side.h"
 #include "plan/bayes/suspicion.h"
 #include "plan/beside_exhausted.h"
 #include "plan/ties.h"
@@ -42,7 +41,8 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
       responsibility_(knowledge, failures_),
       levels_(knowledge, failures_, responsibility_),
       surroundings_(knowledge, reach_, levels_, failures, suspicious_),
-      has_choice_(failures_.size(), false) {}
+      has_choice_(failures_.size(), false),
+      tries_(failures_.size()) {}
 
 std::vector<Verdict> PlanningStep::run() {
   Time until = kLongAgo;
@@ -79,6 +79,14 @@ void PlanningStep::find_stakes() {
     return weight(knowledge_.rules[failures_[i]].policies.criticality);
   };
   for (std::size_t i = 0; i < failures_.size(); ++i) stakes_[i] += weight_of(i);
+  // Whichever member of a circle was first, the others go away with it.
+  for (const auto& circle : failures_.circles()) {
+    for (const std::size_t i : circle) {
+      for (const std::size_t k : circle) {
+        if (k != i) stakes_[i] += responsibility_.kappa(i, k) * weight_of(k);
+      }
+    }
+  }
   for (std::size_t k = 0; k < failures_.size(); ++k) {
     responsibility_.for_each_share(
         k, [&](std::size_t i, double share) { stakes_[i] += share * weight_of(k); });
@@ -111,6 +119,7 @@ void PlanningStep::examine(std::size_t failure) {
     helps += all[s].chance;
   }
   const std::vector<double> costs = expected_costs(possible);
+  tries_[failure] = possible;
   const double root = responsibility_.of(failure);
 
   std::size_t next = 0;
@@ -129,8 +138,8 @@ void PlanningStep::examine(std::size_t failure) {
     } else {
       entry.candidate.resolves = root * all[s].chance;
       entry.candidate.value = root * std::min(1.0, helps) * stakes_[failure];
-      entry.candidate.cost = costs[next++];
-      entry.time = tries[s].time;
+      entry.candidate.cost = costs[next];
+      entry.place = next++;
       entry.worth = worth(entry.candidate.value, entry.candidate.cost, index(tries[s]));
       exclude(entry, all[s].chance);
     }
@@ -245,6 +254,7 @@ void PlanningStep::revive() {
 
 void PlanningStep::choose(const Entry& entry) {
   has_choice_[entry.failure] = true;
+  sides_.push_back({tries_[entry.failure], {entry.place}});
   surroundings_.add(knowledge_.rules[entry.candidate.strategy]);
 }
 
@@ -272,10 +282,19 @@ void PlanningStep::select(Criticality level) {
     if (is_next && !is_taken(entry)) open.push_back(&entry);
   }
 
+  const std::vector<Entry*> chosen = weigh_together(open, chosen_together(open));
+  for (const Entry* entry : chosen) choose(*entry);
+  for (Entry* entry : open) {
+    if (std::find(chosen.begin(), chosen.end(), entry) == chosen.end()) is_taken(*entry);
+  }
+}
+
+// The conflict-free ones of the highest total worth.
+std::vector<PlanningStep::Entry*> PlanningStep::chosen_together(
+    const std::vector<Entry*>& open) const {
   BitRows takes(open.size(), reach_.size());
   BitRows near(open.size(), reach_.size());
   std::vector<Choice> choices;
-  std::vector<Timed> timed;
   for (std::size_t e = 0; e < open.size(); ++e) {
     for (const ComponentId c : knowledge_.rules[open[e]->candidate.strategy].components) {
       const std::size_t place = reach_.place_of(c);
@@ -285,16 +304,35 @@ void PlanningStep::select(Criticality level) {
     }
     add(near[e], takes[e]);
     choices.push_back({open[e]->failure, open[e]->worth, takes[e], near[e]});
-    timed.push_back({open[e]->failure, open[e]->candidate.cost, open[e]->time, takes[e]});
   }
-  std::vector<bool> is_chosen(open.size(), false);
-  for (const std::size_t e : side_by_side(timed, best_conflict_free_set(choices))) {
-    is_chosen[e] = true;
-    choose(*open[e]);
+  std::vector<Entry*> chosen;
+  for (const std::size_t e : best_conflict_free_set(choices)) chosen.push_back(open[e]);
+  return chosen;
+}
+
+// Of the same failures, at the same components, what costs the least beside each other.
+std::vector<PlanningStep::Entry*> PlanningStep::weigh_together(
+    const std::vector<Entry*>& open, const std::vector<Entry*>& chosen) const {
+  std::vector<Side> sides = sides_;
+  std::vector<std::vector<Entry*>> firsts;
+  for (Entry* usual : chosen) {
+    auto& all = firsts.emplace_back(1, usual);
+    const auto& components = knowledge_.rules[usual->candidate.strategy].components;
+    std::copy_if(open.begin(), open.end(), std::back_inserter(all), [&](const Entry* other) {
+      return other != usual && other->failure == usual->failure &&
+             knowledge_.rules[other->candidate.strategy].components == components;
+    });
+    Side& side = sides.emplace_back(Side{tries_[usual->failure], {}});
+    for (const Entry* entry : all) side.firsts.push_back(entry->place);
   }
-  for (std::size_t e = 0; e < open.size(); ++e) {
-    if (!is_chosen[e]) is_taken(*open[e]);
+  const std::vector<std::size_t> begins = side_by_side(sides);
+  std::vector<Entry*> together;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const std::size_t place = begins[sides_.size() + i];
+    together.push_back(*std::find_if(firsts[i].begin(), firsts[i].end(),
+                                     [&](const Entry* entry) { return entry->place == place; }));
   }
+  return together;
 }
 
 // Of the components that the rule's strategies adapt, the one that the untried ones are most likely

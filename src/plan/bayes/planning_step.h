@@ -7,6 +7,7 @@
 #include "plan/bayes/conflict_free_set.h"
 #include "plan/bayes/levels.h"
 #include "plan/bayes/remedies.h"
+#include "plan/bayes/side_by_side.h"
 #include "plan/bayes/surroundings.h"
 #include "plan/bayes/value.h"
 #include "plan/bayes/watchers.h"
@@ -28,7 +29,7 @@ class PlanningStep {
     Candidate candidate;
     std::size_t failure = 0;  // index in failures_
     std::int64_t worth = 0;   // plan/ties.h
-    double time = 0;          // the part of its cost that its own time is
+    std::size_t place = 0;    // among tries_ of the failure
   };
 
   void find_stakes();
@@ -42,6 +43,9 @@ class PlanningStep {
   void revive();
   void select(Criticality level);
   void choose(const Entry& entry);
+  std::vector<Entry*> chosen_together(const std::vector<Entry*>& open) const;
+  std::vector<Entry*> weigh_together(const std::vector<Entry*>& open,
+                                     const std::vector<Entry*>& chosen) const;
   bool is_taken(Entry& entry) const;
   ComponentId likeliest_component(RuleId rule) const;
   std::vector<Suspect> suspects(std::size_t failure) const;
@@ -61,7 +65,9 @@ class PlanningStep {
   Surroundings surroundings_;
   std::vector<double> stakes_;  // by failure: W_i + sum_k share(i -> k) W_k
   std::vector<Entry> entries_;
-  std::vector<bool> has_choice_;  // by failure
+  std::vector<bool> has_choice_;            // by failure
+  std::vector<std::vector<Option>> tries_;  // by failure: what is left, in the order of u/c
+  std::vector<Side> sides_;                 // of what was chosen so far
 };
 
 }  // namespace culprit::plan

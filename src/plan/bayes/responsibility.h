@@ -57,6 +57,8 @@ class Responsibility {
   double of(std::size_t i) const { return root_[i]; }
   // P(root i) alone: what others outside its circle leave unexplained.
   double against_others(std::size_t i) const { return against_others_[i]; }
+  // kappa(j -> i)
+  double kappa(std::size_t j, std::size_t i) const;
   // Is j alone enough for i to have no cause of its own, more likely than not?
   bool is_explained_by(std::size_t i, std::size_t j) const;
   // Of the part 1 - R_i that others explain, what falls to failure j: in proportion to
@@ -69,7 +71,6 @@ class Responsibility {
   }
 
  private:
-  double kappa(std::size_t j, std::size_t i) const;
   double explained(std::size_t i) const;
   double own(std::size_t i) const;
   void divide(const std::vector<std::size_t>& circle);

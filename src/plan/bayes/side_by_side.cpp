@@ -2,36 +2,135 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
+#include <utility>
 
 #include "plan/ties.h"
 
 namespace culprit::plan {
+namespace {
 
-std::vector<std::size_t> side_by_side(std::span<const Timed> options,
-                                      std::vector<std::size_t> chosen) {
-  if (chosen.size() < 2) return chosen;
-  std::vector<double> longest;  // the two longest
-  for (const std::size_t c : chosen) longest.push_back(options[c].time);
-  std::partial_sort(longest.begin(), longest.begin() + 2, longest.end(), std::greater<>());
-  std::multimap<std::size_t, std::size_t> of_failure;
-  for (std::size_t o = 0; o < options.size(); ++o) of_failure.emplace(options[o].failure, o);
+// So many combinations are tried.
+constexpr std::size_t kFew = 256;
+// With more sides only two are compared: a change at one hardly matters.
+constexpr std::size_t kMany = 64;
 
-  for (std::size_t& best : chosen) {
-    const Timed& first = options[best];
-    const double meanwhile = first.time == longest[0] ? longest[1] : longest[0];
-    const auto beyond = [&](const Timed& option) {
-      return parts(option.cost - std::min(option.time, meanwhile));
-    };
-    const auto [begin, end] = of_failure.equal_range(first.failure);
-    for (auto other = begin; other != end; ++other) {
-      const Timed& option = options[other->second];
-      const bool takes_the_same = std::equal(option.takes.begin(), option.takes.end(),
-                                             first.takes.begin(), first.takes.end());
-      if (takes_the_same && beyond(option) < beyond(options[best])) best = other->second;
+// The try of a round: the first comes before all others, which keep their order.
+const Option& try_of(const Side& side, std::size_t begin, std::size_t round) {
+  if (round == 0) return side.tries[begin];
+  return side.tries[round <= begin ? round - 1 : round];
+}
+
+std::vector<std::size_t> usual(std::span<const Side> sides) {
+  std::vector<std::size_t> begins;
+  for (const Side& side : sides) begins.push_back(side.firsts.front());
+  return begins;
+}
+
+// What the side would begin with if time cost nothing, because others take longer anyway.
+std::size_t timeless(Side side) {
+  for (Option& option : side.tries) {
+    option.cost -= option.time;
+    option.time = 0;
+  }
+  const auto cost = [&](std::size_t first) {
+    return parts(joint_cost(std::span(&side, 1), std::span(&first, 1)));
+  };
+  return *std::min_element(side.firsts.begin(), side.firsts.end(),
+                           [&](std::size_t a, std::size_t b) { return cost(a) < cost(b); });
+}
+
+class Search {
+ public:
+  explicit Search(std::span<const Side> sides)
+      : sides_(sides), best_(usual(sides)), cost_(parts(joint_cost(sides, best_))) {}
+
+  std::vector<std::size_t> run() {
+    std::size_t combinations = 1;
+    for (const Side& side : sides_)
+      combinations = std::min(combinations * side.firsts.size(), kFew + 1);
+    if (combinations <= kFew) {
+      std::vector<std::size_t> begins = best_;
+      try_all(0, begins);
+    } else {
+      descend();
+    }
+    return best_;
+  }
+
+ private:
+  bool consider(const std::vector<std::size_t>& begins) {
+    const std::int64_t cost = parts(joint_cost(sides_, begins));
+    if (cost >= cost_) return false;
+    best_ = begins;
+    cost_ = cost;
+    return true;
+  }
+
+  void try_all(std::size_t side, std::vector<std::size_t>& begins) {
+    if (side == sides_.size()) {
+      consider(begins);
+      return;
+    }
+    for (const std::size_t first : sides_[side].firsts) {
+      begins[side] = first;
+      try_all(side + 1, begins);
     }
   }
-  return chosen;
+
+  // From the usual ones, and from what each would begin with if time cost nothing.
+  void descend() {
+    std::vector<std::size_t> begins;
+    for (const Side& side : sides_) begins.push_back(timeless(side));
+    consider(begins);
+    constexpr int kPasses = 3;
+    bool is_better = sides_.size() <= kMany;
+    for (int pass = 0; pass < kPasses && is_better; ++pass) {
+      is_better = false;
+      for (std::size_t side = 0; side < sides_.size(); ++side) {
+        for (const std::size_t first : sides_[side].firsts) {
+          std::vector<std::size_t> begins = best_;
+          begins[side] = first;
+          is_better |= consider(begins);
+        }
+      }
+    }
+  }
+
+  std::span<const Side> sides_;
+  std::vector<std::size_t> best_;
+  std::int64_t cost_;
+};
+
+}  // namespace
+
+double joint_cost(std::span<const Side> sides, std::span<const std::size_t> begins) {
+  std::size_t rounds = 0;
+  for (const Side& side : sides) rounds = std::max(rounds, side.tries.size());
+  std::vector<double> still_there(sides.size(), 1);
+  std::vector<std::pair<double, double>> times;  // t, p
+  double sum = 0;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    times.clear();
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      if (round >= sides[i].tries.size()) continue;
+      const Option& option = try_of(sides[i], begins[i], round);
+      sum += still_there[i] * (option.cost - option.time);
+      times.emplace_back(option.time, still_there[i]);
+      still_there[i] = std::max(0.0, still_there[i] - option.chance);
+    }
+    std::sort(times.begin(), times.end(), std::greater<>());
+    double nobody_longer = 1;
+    for (const auto& [time, p] : times) {
+      sum += time * p * nobody_longer;
+      nobody_longer *= 1 - p;
+    }
+  }
+  return sum;
+}
+
+std::vector<std::size_t> side_by_side(std::span<const Side> sides) {
+  if (sides.size() < 2) return usual(sides);
+  return Search(sides).run();
 }
 
 }  // namespace culprit::plan

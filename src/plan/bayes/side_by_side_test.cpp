@@ -11,30 +11,57 @@ namespace {
 
 using testing::ElementsAre;
 
-constexpr Word kHere = 1;
-constexpr Word kThere = 2;
+// Chance, cost and the part of it that its time is.
+const Option kQuick{0.5, 0.11, 0.1};
+const Option kThorough{0.9, 0.31, 0.3};
 
-std::span<const Word> at(const Word& place) { return {&place, 1}; }
+TEST(JointCost, OfOneSideIsItsExpectedCost) {
+  const std::vector<Side> one = {{{kQuick, kThorough}, {0, 1}}};
+  const std::vector<std::size_t> quick = {0};
+  const std::vector<std::size_t> thorough = {1};
+  EXPECT_NEAR(joint_cost(one, quick), 0.11 + 0.5 * 0.31, 1e-12);
+  EXPECT_NEAR(joint_cost(one, thorough), 0.31 + 0.1 * 0.11, 1e-12);
+}
+
+// By hand: 0.01 for each try, the time of the longest that is still needed.
+TEST(JointCost, OfTwoSidesCountsTheLongerOfTheirTimes) {
+  const std::vector<Side> two = {{{kQuick, kThorough}, {0}}, {{kQuick, kThorough}, {0}}};
+  const std::vector<std::size_t> quick = {0, 0};
+  const double second = 2 * 0.5 * 0.01 + 0.3 * (1 - 0.5 * 0.5);
+  EXPECT_NEAR(joint_cost(two, quick), 2 * 0.01 + 0.1 + second, 1e-12);
+}
+
+TEST(SideBySide, TakesTheUsualOneAlone) {
+  const std::vector<Side> one = {{{kQuick, kThorough}, {0, 1}}};
+  EXPECT_THAT(side_by_side(one), ElementsAre(0));
+}
 
 // A quick try and one that takes long and helps; it is over no later than what is done elsewhere.
 TEST(SideBySide, TakesWhatHelpsWhileTheRobotWaitsAnyway) {
-  const std::vector<Timed> options = {{0, 0.35, 0.1, at(kHere)},  // 0.1, and often 0.3 after it
-                                      {0, 0.40, 0.3, at(kHere)},  // helps
-                                      {1, 0.50, 0.3, at(kThere)}};
-  EXPECT_THAT(side_by_side(options, {0, 2}), ElementsAre(1, 2));
-  EXPECT_THAT(side_by_side(options, {0}), ElementsAre(0)) << "nobody else takes time";
+  const std::vector<Side> sides = {{{kQuick, kThorough}, {0, 1}}, {{kThorough}, {0}}};
+  EXPECT_THAT(side_by_side(sides), ElementsAre(1, 0));
 }
 
-TEST(SideBySide, CountsTheTimeBeyondThatOfTheOthers) {
-  const std::vector<Timed> options = {
-      {0, 0.35, 0.1, at(kHere)}, {0, 0.50, 0.3, at(kHere)}, {1, 0.20, 0.15, at(kThere)}};
-  EXPECT_THAT(side_by_side(options, {0, 2}), ElementsAre(0, 2)) << "0.25 beside 0.35";
+// Alone each would be tried quickly first; neither alone is better, both are.
+TEST(SideBySide, ReplacesTwoAtOnce) {
+  const Option quick{0.55, 0.16, 0.15};
+  const std::vector<Side> sides = {{{quick, kThorough}, {0, 1}}, {{quick, kThorough}, {0, 1}}};
+  EXPECT_THAT(side_by_side(std::span(sides).first(1)), ElementsAre(0));
+  const std::vector<std::size_t> usual = {0, 0};
+  const std::vector<std::size_t> one = {1, 0};
+  EXPECT_LT(joint_cost(sides, usual), joint_cost(sides, one));
+  EXPECT_THAT(side_by_side(sides), ElementsAre(1, 1));
 }
 
-TEST(SideBySide, StaysAtTheComponentsThatWereChosen) {
-  const std::vector<Timed> options = {
-      {0, 0.35, 0.1, at(kHere)}, {0, 0.30, 0.3, at(kThere)}, {1, 0.50, 0.3, at(kThere)}};
-  EXPECT_THAT(side_by_side(options, {0, 2}), ElementsAre(0, 2));
+TEST(SideBySide, BeginsOnlyWithWhatItMay) {
+  const std::vector<Side> sides = {{{kQuick, kThorough}, {0}}, {{kThorough}, {0}}};
+  EXPECT_THAT(side_by_side(sides), ElementsAre(0, 0));
+}
+
+TEST(SideBySide, OfVeryManyFindsWhatIsBetterOneByOne) {
+  std::vector<Side> sides(30, {{kQuick, kThorough}, {0, 1}});
+  sides.push_back({{kThorough}, {0}});
+  for (const std::size_t begin : side_by_side(std::span(sides).first(30))) EXPECT_EQ(begin, 1u);
 }
 
 // a is restarted first if it is alone; while d has to be redeployed, a is, too.

@@ -25,7 +25,9 @@
 //
 //   R_i           its responsibility (plan/bayes/responsibility.h)
 //   W             1, 2 or 4: how much worse each level of criticality is than the one below it
-//   share(i -> k) the part of failure k that falls to i, or what else was seen to go away with it
+//   share(i -> k) the part of failure k that falls to i, or what else was seen to go away with it;
+//   of
+//                 those in the same circle kappa(i -> k), as if i had been the first
 #pragma once
 
 #include <span>

@@ -288,8 +288,11 @@ bool RepairProcess::is_open(const Situation& situation) const {
   return false;
 }
 
-bool RepairProcess::interferes(std::size_t a, std::size_t b) const {
-  return a == b || has(upstream_[a], b) || has(upstream_[b], a);
+bool RepairProcess::interferes(const Situation& situation, std::size_t a, std::size_t b) const {
+  const auto waits_for = [&](std::size_t consumer, std::size_t producer) {
+    return has(upstream_[consumer], producer) && !has(situation.gone, consumer);
+  };
+  return a == b || waits_for(a, b) || waits_for(b, a);
 }
 
 std::vector<Round> RepairProcess::rounds(const Situation& situation) const {
@@ -300,7 +303,7 @@ std::vector<Round> RepairProcess::rounds(const Situation& situation) const {
     const std::size_t before = all.size();
     for (std::size_t r = 0; r < before; ++r) {
       const bool is_free = std::none_of(all[r].begin(), all[r].end(), [&](const Treated& other) {
-        return interferes(c, other.component);
+        return interferes(situation, c, other.component);
       });
       for (std::size_t t = 0; is_free && t < scenario_.components[c].treatments.size(); ++t) {
         if (!has(open, t)) continue;

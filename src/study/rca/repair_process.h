@@ -29,7 +29,8 @@
 //
 // What may begin is what culprit's planners promise: strategies that are valid, were not tried in
 // this round of the rule, one for each component, and none at a component that depends on another's
-// of A. When all were tried they may be tried again, up to kTurns times each; then nothing is left.
+// of A, unless its process is gone. When all were tried they may be tried again, up to kTurns times
+// each; then nothing is left.
 //
 // A round costs, in the weights of the objective (plan/bayes/objective.h),
 //
@@ -141,7 +142,7 @@ class RepairProcess {
   std::vector<int> vain(const Situation& situation, std::size_t component) const;
   Situation settled(Seen seen, std::vector<Situation::Hypothesis> belief,
                     std::vector<Situation::Tries> tries) const;
-  bool interferes(std::size_t a, std::size_t b) const;
+  bool interferes(const Situation& situation, std::size_t a, std::size_t b) const;
 
   const RcaScenario& scenario_;
   const RuleSet& rules_;
