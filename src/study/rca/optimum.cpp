@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "study/rca/rules.h"
 
@@ -137,7 +136,6 @@ const Optimum::Best& Optimum::best(const Situation& situation) {
   Best best;
   if (situation.ill != 0) best.cost = process_.cost_of_leaving_it_ill();
   if (process_.is_open(situation)) {
-    best.cost = std::numeric_limits<double>::infinity();
     for (const Round& round : process_.rounds(situation)) {
       double sum = process_.cost(round);
       if (sum >= best.cost) continue;

@@ -4,6 +4,7 @@
 //     V(x) = cost of leaving it ill                            if nothing is left to try
 //     V(x) = min_A ( cost(A) + sum_o P(o | x, A) V(x_{A,o}) )  otherwise
 //
+// or the cost of leaving it ill, if going on costs more,
 // with the situations x, rounds A and outcomes o of repair_process.h. Each round tries something
 // that may be tried a few times only, so the recursion ends; situations that are reached in several
 // ways are worked out once. The optimum knows how well everything helps against every kind of fault
@@ -37,7 +38,7 @@ class Optimum {
   // The expected cost until all is well, from the beginning, and from a situation on.
   double cost();
   double cost(const Situation& situation) { return best(situation).cost; }
-  // The round to begin; nothing if nothing is left to try, or nobody is ill.
+  // The round to begin; nothing if nothing is left to try or worth it, or nobody is ill.
   const Round& round(const Situation& situation) { return best(situation).round; }
 
   std::size_t situations() const { return known_.size(); }
