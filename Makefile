@@ -7,7 +7,7 @@ build: dependencies
 	cmake --build --preset release --target culprit sunset-node
 
 demo: build
-	build/release/bin/culprit demo
+	build/release/bin/culprit demo --end
 
 test: dependencies
 	scripts/test

@@ -80,8 +80,15 @@ std::string line(const Event& event, const RuleSet& rules, Time start, Colour co
                      text);
 }
 
+void say_text(std::FILE* stream, const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stream);
+  std::fflush(stream);
+  std::clearerr(stream);
+}
+
 StopSignals::StopSignals(Hangup hangup)
     : hangup_(hangup), has_terminal_(isatty(STDOUT_FILENO) != 0) {
+  ::signal(SIGPIPE, SIG_IGN);
   const sigset_t signals = awaited(hangup_);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   thread_ = std::thread([this] { wait(); });

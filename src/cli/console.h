@@ -2,10 +2,14 @@
 #pragma once
 
 #include <atomic>
+#include <cstdio>
 #include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
+
+#include <fmt/core.h>
 
 #include "knowledge/event.h"
 #include "language/diagnostic.h"
@@ -19,12 +23,21 @@ Colour colour_of(int descriptor);
 // for events that are not worth one.
 std::string line(const Event& event, const RuleSet& rules, Time start, Colour colour);
 
+// Prints at once. A reader who is gone, or a full disk, keeps nobody from managing a robot: what
+// cannot be said is left out.
+void say_text(std::FILE* stream, const std::string& text);
+template <class... Args>
+void say(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {
+  say_text(stream, fmt::format(format, std::forward<Args>(args)...));
+}
+
 // What SIGHUP means: that the terminal is gone, which ends the program, or that it is to read its
 // files anew.
 enum class Hangup : std::uint8_t { kEnds, kReloads };
 
 // Waits for SIGINT and SIGTERM on a thread of its own and then calls `stop`, once. Blocks these
-// signals in this thread and in all that it creates from now on: make one first of all.
+// signals in this thread and in all that it creates from now on: make one first of all. From then
+// on SIGPIPE is ignored: who reads the output may go, and the program goes on.
 class StopSignals {
  public:
   explicit StopSignals(Hangup hangup = Hangup::kEnds);

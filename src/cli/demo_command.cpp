@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/demo_setup.h"
 #include "cli/embedded_rules.h"
 #include "cli/paths.h"
 #include "cli/planner_options.h"
@@ -37,7 +38,9 @@ struct DemoOptions {
   double speed = 1;
   std::string json;
   PlannerOptions planner;
+  std::optional<std::uint32_t> domain;
   bool stay = false;
+  bool ends = false;
   WebOptions web;
 };
 
@@ -92,31 +95,31 @@ void print_outcome(const PlayOutcome& o) {
   std::string reactions;
   for (const double t : o.reaction_times)
     reactions += fmt::format("{}{:.2f}", reactions.empty() ? "" : ", ", t);
-  fmt::print("\n  faults                     {}\n", joined(o.faults));
-  fmt::print("  failures                   {}\n", joined(o.failures));
-  fmt::print("  strategies executed        {} ({} resolved a failure)\n", o.strategies.size(),
-             o.strategies_succeeded);
-  fmt::print("  unnecessary redeployments  {}\n", o.unnecessary_redeployments);
-  fmt::print("  reaction times             {} s\n", reactions.empty() ? "-" : reactions);
-  fmt::print("  downtime                   {:.2f} s\n", o.downtime);
-  if (o.mean_iou) fmt::print("  mean IoU                   {:.2f}\n", *o.mean_iou);
-  if (!o.is_resolved()) fmt::print("  NOT RESOLVED               {}\n", o.complaint);
+  say(stdout, "\n  faults                     {}\n", joined(o.faults));
+  say(stdout, "  failures                   {}\n", joined(o.failures));
+  say(stdout, "  strategies executed        {} ({} resolved a failure)\n", o.strategies.size(),
+      o.strategies_succeeded);
+  say(stdout, "  unnecessary redeployments  {}\n", o.unnecessary_redeployments);
+  say(stdout, "  reaction times             {} s\n", reactions.empty() ? "-" : reactions);
+  say(stdout, "  downtime                   {:.2f} s\n", o.downtime);
+  if (o.mean_iou) say(stdout, "  mean IoU                   {:.2f}\n", *o.mean_iou);
+  if (!o.is_resolved()) say(stdout, "  NOT RESOLVED               {}\n", o.complaint);
 }
 
 void print_summary(const std::vector<PlayOutcome>& outcomes) {
-  fmt::print("\n{:<42} {:>8} {:>10} {:>9} {:>9} {:>8} {:>5}\n", "scenario", "failures",
-             "strategies", "redeploys", "reaction", "downtime", "IoU");
+  say(stdout, "\n{:<42} {:>8} {:>10} {:>9} {:>9} {:>8} {:>5}\n", "scenario", "failures",
+      "strategies", "redeploys", "reaction", "downtime", "IoU");
   for (const PlayOutcome& o : outcomes) {
     const double mean = o.reaction_times.empty() ? 0
                                                  : std::accumulate(o.reaction_times.begin(),
                                                                    o.reaction_times.end(), 0.0) /
                                                        static_cast<double>(o.reaction_times.size());
-    fmt::print("{:<42} {:>8} {:>10} {:>9} {:>7.2f} s {:>6.2f} s {:>5}  {}\n", o.name,
-               o.failures.size(), o.strategies.size(), o.unnecessary_redeployments, mean,
-               o.downtime, o.mean_iou ? fmt::format("{:.2f}", *o.mean_iou) : "-",
-               o.is_resolved() ? "healed" : "NOT HEALED");
+    say(stdout, "{:<42} {:>8} {:>10} {:>9} {:>7.2f} s {:>6.2f} s {:>5}  {}\n", o.name,
+        o.failures.size(), o.strategies.size(), o.unnecessary_redeployments, mean, o.downtime,
+        o.mean_iou ? fmt::format("{:.2f}", *o.mean_iou) : "-",
+        o.is_resolved() ? "healed" : "NOT HEALED");
   }
-  fmt::print(
+  say(stdout,
       "redeploys: those that were not necessary. reaction: mean, from detection to resolution.\n");
 }
 
@@ -154,27 +157,27 @@ std::vector<web::Route> web_routes(SunsetDemo& demo, web::OrderDesk& orders, web
 int demo_sunset(const DemoOptions& options) {
   const auto plays = plays_for(options);
   if (!plays) {
-    fmt::print(stderr, "culprit: {}\n", plays.error());
+    say(stderr, "culprit: {}\n", plays.error());
     return kUsage;
   }
   StopSignals signals;
   const Colour colour = colour_of(STDOUT_FILENO);
-  fmt::print("Starting SUNSET: camera, depth, image_enhancement, sensor_fusion, segmentation\n");
-  std::fflush(stdout);
+  say(stdout, "Starting SUNSET: camera, depth, image_enhancement, sensor_fusion, segmentation\n");
   SunsetDemo::Options setup;
   setup.speed = options.speed;
   setup.seed = options.seed;
+  setup.domain = options.domain;
   setup.planner = options.planner.factory();
   setup.on_event = [colour](const Event& event, const RuleSet& rules, Time start) {
     const std::string text = line(event, rules, start, colour);
-    if (!text.empty()) fmt::print("{}\n", text);
-    std::fflush(stdout);
+    if (!text.empty()) say(stdout, "{}\n", text);
   };
   auto demo = SunsetDemo::start(std::move(setup), signals.stopped());
   if (!demo) {
-    fmt::print(stderr, "culprit: {}\n", demo.error());
+    say(stderr, "culprit: {}\n", demo.error());
     return kFailed;
   }
+  say_domain("SUNSET", (*demo)->domain());
   web::RuleDesk desk("sunset.rules", kSunsetRules);
   web::OrderDesk orders(web::keeps_nothing("a demonstration forgets all when it ends"));
   RobotNames names;
@@ -184,24 +187,22 @@ int demo_sunset(const DemoOptions& options) {
       options.web, web_routes(**demo, orders, desk, studies, names, options.planner.factory()),
       &(*demo)->hub());
   if (!server) {
-    fmt::print(stderr, "culprit: {}\n", server.error());
+    say(stderr, "culprit: {}\n", server.error());
     return kUsage;
   }
   if (options.stay) {
-    fmt::print("Break it in the browser, and see what becomes of it; Ctrl-C ends it.\n");
-    std::fflush(stdout);
+    say(stdout, "Break it in the browser, and see what becomes of it; Ctrl-C ends it.\n");
     signals.wait_until_stopped();
     return kOk;
   }
   std::vector<PlayOutcome> outcomes;
   for (std::size_t i = 0; i < plays->size(); ++i) {
     const Play& play = (*plays)[i];
-    fmt::print("\nScenario {} of {}: {}\nInjecting {}\n", i + 1, plays->size(), play.name,
-               joined(play.fault_names()));
-    std::fflush(stdout);
+    say(stdout, "\nScenario {} of {}: {}\nInjecting {}\n", i + 1, plays->size(), play.name,
+        joined(play.fault_names()));
     auto outcome = (*demo)->play(play);
     if (!outcome) {
-      fmt::print(stderr, "culprit: {}\n", outcome.error());
+      say(stderr, "culprit: {}\n", outcome.error());
       return kFailed;
     }
     print_outcome(*outcome);
@@ -211,33 +212,40 @@ int demo_sunset(const DemoOptions& options) {
   const bool all_healed = std::all_of(outcomes.begin(), outcomes.end(),
                                       [](const PlayOutcome& o) { return o.is_resolved(); });
   if (!all_healed)
-    fmt::print("The logs of the nodes are in {}\n", ((*demo)->keep_state() / "log").string());
+    say(stdout, "The logs of the nodes are in {}\n", ((*demo)->keep_state() / "log").string());
   if (!options.json.empty()) {
     const auto written = write_text(options.json, to_json(outcomes).dump(2) + "\n");
     if (!written) {
-      fmt::print(stderr, "culprit: {}\n", written.error());
+      say(stderr, "culprit: {}\n", written.error());
       return kFailed;
     }
+  }
+  const bool is_watched = isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0;
+  if (is_watched && !options.ends) {
+    say(stdout, "\nThe robot flies on: break it in the browser ({}). Ctrl-C ends it.\n",
+        (*server)->address());
+    signals.wait_until_stopped();
   }
   return all_healed ? kOk : kFailed;
 }
 
 int demo(const DemoOptions& options) {
   if (options.robot == "sunset" && options.is_extended) {
-    fmt::print(stderr, "culprit: --extended is for --robot suave\n");
+    say(stderr, "culprit: --extended is for --robot suave\n");
     return kUsage;
   }
   if (options.robot == "sunset") return demo_sunset(options);
   if (!options.scenario.empty() || options.stay) {
-    fmt::print(stderr,
-               "culprit: --scenario and --stay are for --robot sunset; SUAVE has its missions, the "
-               "standard one and --extended\n");
+    say(stderr,
+        "culprit: --scenario and --stay are for --robot sunset; SUAVE has its missions, the "
+        "standard one and --extended\n");
     return kUsage;
   }
   SuaveDemo::Options setup;
   setup.is_extended = options.is_extended;
   setup.speed = options.speed;
   setup.seed = options.seed;
+  setup.domain = options.domain;
   setup.planner = options.planner.factory();
   return demo_suave(std::move(setup), options.json);
 }
@@ -250,6 +258,7 @@ void add_demo(CLI::App& app, int& exit_code) {
       "demo",
       "Let culprit heal a live robot: SUNSET, a drone's segmentation pipeline of real processes.\n"
       "Plays three scenarios, each with an ERROR, a WARNING and a NON_CRITICAL fault at once.\n"
+      "Then it goes on until Ctrl-C if a person watches.\n"
       "With --robot suave: an underwater robot that must find a pipeline in murky water, and loses "
       "a thruster.");
   command->add_option("--robot", options->robot, "Which robot")
@@ -271,9 +280,16 @@ void add_demo(CLI::App& app, int& exit_code) {
   command->add_option("--json", options->json,
                       "Also write the outcome to this file, as one JSON object");
   command
+      ->add_option("--domain", options->domain,
+                   "The DDS domain (default: the first from 1 on that nobody on this machine uses)")
+      ->check(CLI::Range(0, 101));
+  command->add_flag("--end", options->ends,
+                    "End after the scenarios also where a person watches, at a terminal");
+  command
       ->add_flag("--stay", options->stay,
                  "Play no scenario: go on until Ctrl-C, and break the robot in the browser")
-      ->excludes("--scenario");
+      ->excludes("--scenario")
+      ->excludes("--end");
   options->planner.add_to(*command);
   options->web.add_to(*command);
   command->callback([options, &exit_code] { exit_code = demo(*options); });

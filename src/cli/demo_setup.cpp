@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "cli/console.h"
+#include "cli/paths.h"
 #include "language/checker.h"
 
 namespace culprit::cli {
@@ -17,12 +19,26 @@ Expected<std::filesystem::path> make_state_folder() {
   return std::filesystem::path(path);
 }
 
-Expected<ros2::DomainLock> make_own_domain() {
-  auto domain = ros2::DomainLock::reserve();
+Expected<ros2::DomainLock> make_own_domain(std::optional<std::uint32_t> wanted) {
+  auto domain = wanted ? ros2::DomainLock::reserve(*wanted, *wanted) : ros2::DomainLock::reserve();
   if (!domain) return domain;
   setenv("ROS_DOMAIN_ID", std::to_string(domain->domain()).c_str(), 1);
   setenv("ROS_LOCALHOST_ONLY", "1", 1);
   return domain;
+}
+
+process::Supervisor::Options demo_processes(const std::filesystem::path& state) {
+  process::Supervisor::Options options;
+  options.log_folder = state / "log";
+  options.search_first = {own_folder()};
+  options.lifetime = process::Lifetime::kStarter;
+  return options;
+}
+
+void say_domain(const char* robot, std::uint32_t domain) {
+  say(stdout,
+      "{0} is on domain {1}; to look at it: ROS_DOMAIN_ID={1} ROS_LOCALHOST_ONLY=1 culprit graph\n",
+      robot, domain);
 }
 
 void start_all(process::Supervisor& supervisor, const RuleSet& rules) {

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "cli/paths.h"
 #include "journal/json.h"
 
@@ -48,7 +49,7 @@ Expected<journal::Reader> JournalOption::open() const {
 }
 
 int complain(const std::string& what) {
-  fmt::print(stderr, "culprit: {}\n", what);
+  say(stderr, "culprit: {}\n", what);
   return kFailed;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "language/text_file.h"
 #include "modes/mode_manager.h"
 #include "modes/read_model.h"
@@ -19,7 +20,7 @@ void print(const modes::Model& model) {
   for (const modes::Entity& entity : model.entities) {
     std::string names;
     for (const modes::Mode& mode : entity.modes) names += (names.empty() ? "" : ", ") + mode.name;
-    fmt::print("{:<6}  {}: {}\n", entity.is_system ? "system" : "node", entity.name, names);
+    say(stdout, "{:<6}  {}: {}\n", entity.is_system ? "system" : "node", entity.name, names);
   }
 }
 
@@ -37,19 +38,15 @@ int serve(const modes::Model& model, const std::string& file) {
   options.participant = *participant;
   options.model_file = file;
   options.on_change = [](const modes::Inference::Change& change) {
-    fmt::print("{}  {} -> {}\n", change.entity->name, described(change.before),
-               described(change.now));
-    std::fflush(stdout);
+    say(stdout, "{}  {} -> {}\n", change.entity->name, described(change.before),
+        described(change.now));
   };
-  options.on_trouble = [](const std::string& text) {
-    fmt::print("{}\n", text);
-    std::fflush(stdout);
-  };
+  options.on_trouble = [](const std::string& text) { say(stdout, "{}\n", text); };
   const auto manager = modes::ModeManager::create(executor, model, std::move(options));
   if (!manager) return fail(manager.error());
-  fmt::print("culprit: /__mode_manager serves {} systems and nodes; Ctrl-C ends it\n",
-             model.entities.size());
-  std::fflush(stdout);
+  ::signal(SIGPIPE, SIG_IGN);  // as in StopSignals
+  say(stdout, "culprit: /__mode_manager serves {} systems and nodes; Ctrl-C ends it\n",
+      model.entities.size());
   executor.run();
   return kOk;
 }

@@ -8,7 +8,6 @@
 
 #include "cli/demo_setup.h"
 #include "cli/embedded_rules.h"
-#include "cli/paths.h"
 #include "language/text_file.h"
 
 namespace culprit::cli {
@@ -44,7 +43,7 @@ RuleSet rules_of(bool is_extended, const std::filesystem::path& modes) {
 
 Expected<std::unique_ptr<SuaveDemo>> SuaveDemo::start(Options options,
                                                       const std::atomic<bool>& stop) {
-  auto domain = make_own_domain();
+  auto domain = make_own_domain(options.domain);
   if (!domain) return Error{domain.error()};
   auto state = make_state_folder();
   if (!state) return Error{state.error()};
@@ -95,7 +94,7 @@ Expected<void> SuaveDemo::open() {
   observer_ = std::move(*observer);
   LiveRobot::Options robot;
   robot.link.participant = *participant;
-  robot.supervisor = {state_ / "log", {own_folder()}};
+  robot.supervisor = demo_processes(state_);
   auto opened = LiveRobot::open(rules_, std::move(robot));
   if (!opened) return Error{opened.error()};
   robot_ = std::move(*opened);
@@ -117,8 +116,8 @@ Expected<void> SuaveDemo::start_processes() {
   const auto modes = state_ / kModesFile;
   if (auto written = write_text(modes, kSuaveModes); !written) return written;
   processes_ = embedded_rules("processes.rules", processes_with(modes).c_str());
-  supervisor_ = std::make_unique<process::Supervisor>(
-      processes_, process::Supervisor::Options{state_ / "log", {own_folder()}}, processes_inbox_);
+  supervisor_ =
+      std::make_unique<process::Supervisor>(processes_, demo_processes(state_), processes_inbox_);
   start_all(*supervisor_, processes_);
   return {};
 }

@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -39,6 +40,7 @@ class SuaveDemo {
     bool is_extended = false;
     double speed = 1;  // robot seconds in a second
     std::uint64_t seed = 1;
+    std::optional<std::uint32_t> domain{};  // nothing: one that is free
     PlannerFactory planner = [] { return std::make_unique<PaperPlanner>(); };
     // Called for each event of the manager, on its thread, with its time since the start.
     std::function<void(const Event&, const RuleSet&, Time start)> on_event;
@@ -54,6 +56,7 @@ class SuaveDemo {
   Expected<MissionOutcome> fly();
 
   const std::filesystem::path& keep_state();
+  std::uint32_t domain() const { return domain_.domain(); }
 
  private:
   SuaveDemo(Options options, const std::atomic<bool>& stop, ros2::DomainLock domain,

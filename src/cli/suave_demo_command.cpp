@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/demo_setup.h"
 #include "language/text_file.h"
 
 namespace culprit::cli {
@@ -30,18 +31,18 @@ nlohmann::json to_json(const MissionOutcome& outcome, double speed) {
 
 void print(const MissionOutcome& outcome, double speed) {
   const suave::MissionSeen& mission = outcome.mission;
-  fmt::print("\n  pipeline    {}\n",
-             mission.found_s ? fmt::format("found after {:.1f} s", *mission.found_s) : "not found");
-  fmt::print("  inspected   {:.1f} m\n", mission.inspected_m);
-  fmt::print("  mission     {:.0f} s of robot time, {:.1f} s on the clock\n", *mission.done_s,
-             *mission.done_s / speed);
-  fmt::print("  failures    {}, of which {} resolved\n", outcome.failures.size(),
-             outcome.reaction_times.size());
+  say(stdout, "\n  pipeline    {}\n",
+      mission.found_s ? fmt::format("found after {:.1f} s", *mission.found_s) : "not found");
+  say(stdout, "  inspected   {:.1f} m\n", mission.inspected_m);
+  say(stdout, "  mission     {:.0f} s of robot time, {:.1f} s on the clock\n", *mission.done_s,
+      *mission.done_s / speed);
+  say(stdout, "  failures    {}, of which {} resolved\n", outcome.failures.size(),
+      outcome.reaction_times.size());
   if (outcome.reaction_times.empty()) return;
   const auto longest =
       std::max_element(outcome.reaction_times.begin(), outcome.reaction_times.end());
-  fmt::print("  reaction    {:.2f} s on the clock at most, from detection to resolution\n",
-             *longest);
+  say(stdout, "  reaction    {:.2f} s on the clock at most, from detection to resolution\n",
+      *longest);
 }
 
 }  // namespace
@@ -50,27 +51,26 @@ int demo_suave(SuaveDemo::Options options, const std::string& json) {
   StopSignals signals;
   const Colour colour = colour_of(STDOUT_FILENO);
   const double speed = options.speed;
-  fmt::print("Starting SUAVE: vehicle, search, follow, motion, recharge, mode manager, mission\n");
-  std::fflush(stdout);
+  say(stdout, "Starting SUAVE: vehicle, search, follow, motion, recharge, mode manager, mission\n");
   options.on_event = [colour](const Event& event, const RuleSet& rules, Time start) {
     const std::string text = line(event, rules, start, colour);
-    if (!text.empty()) fmt::print("{}\n", text);
-    std::fflush(stdout);
+    if (!text.empty()) say(stdout, "{}\n", text);
   };
   auto demo = SuaveDemo::start(std::move(options), signals.stopped());
   if (!demo) {
-    fmt::print(stderr, "culprit: {}\n", demo.error());
+    say(stderr, "culprit: {}\n", demo.error());
     return kFailed;
   }
+  say_domain("SUAVE", (*demo)->domain());
   const auto outcome = (*demo)->fly();
   if (!outcome) {
-    fmt::print(stderr, "culprit: {}\n", outcome.error());
+    say(stderr, "culprit: {}\n", outcome.error());
     return kFailed;
   }
   print(*outcome, speed);
   if (!json.empty()) {
     if (auto written = write_text(json, to_json(*outcome, speed).dump(2) + "\n"); !written) {
-      fmt::print(stderr, "culprit: {}\n", written.error());
+      say(stderr, "culprit: {}\n", written.error());
       return kFailed;
     }
   }

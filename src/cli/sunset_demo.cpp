@@ -8,7 +8,6 @@
 
 #include "cli/demo_setup.h"
 #include "cli/embedded_rules.h"
-#include "cli/paths.h"
 
 namespace culprit::cli {
 namespace {
@@ -24,7 +23,7 @@ COMPONENT evaluator LAUNCH "sunset-node evaluator"
 
 Expected<std::unique_ptr<SunsetDemo>> SunsetDemo::start(Options options,
                                                         const std::atomic<bool>& stop) {
-  auto domain = make_own_domain();
+  auto domain = make_own_domain(options.domain);
   if (!domain) return Error{domain.error()};
   std::unique_ptr<SunsetDemo> demo(new SunsetDemo(std::move(options), stop, std::move(*domain),
                                                   embedded_rules("sunset.rules", kSunsetRules)));
@@ -69,7 +68,7 @@ Expected<void> SunsetDemo::open() {
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
 
-  const process::Supervisor::Options processes{state_ / "log", {own_folder()}};
+  const process::Supervisor::Options processes = demo_processes(state_);
   LiveRobot::Options robot;
   robot.link.participant = *participant;
   robot.supervisor = processes;

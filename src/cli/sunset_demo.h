@@ -45,6 +45,7 @@ class SunsetDemo {
   struct Options {
     double speed = 1;  // robot seconds in a second
     std::uint64_t seed = 1;
+    std::optional<std::uint32_t> domain{};  // nothing: one that is free
     PlannerFactory planner = [] { return std::make_unique<BayesPlanner>(); };
     // Called for each event of the manager, on its thread, with its time since the start of the
     // demo.
@@ -72,6 +73,7 @@ class SunsetDemo {
 
   const std::filesystem::path& keep_state();
   const RuleSet& rules() const { return rules_; }
+  std::uint32_t domain() const { return domain_.domain(); }
   web::Hub& hub() { return hub_; }
   const web::Metrics& metrics() const { return metrics_; }
   // Gives the manager an order. From any thread.

@@ -69,6 +69,7 @@ struct Preparation {
   char* pid_digits;  // where the pid's are to be written; null: nowhere
   int kept;
   Until until;
+  pid_t ends_with;  // whose end ends it; 0: nobody's
 };
 constexpr std::size_t kPidDigits = 10;
 
@@ -140,6 +141,10 @@ Failure become(const Preparation& ready, int report) {
   if (report != kReport && dup3(report, kReport, O_CLOEXEC) < 0) return {Step::kPrepare, errno};
   if (kept >= 0 && dup3(kept, kKept, O_CLOEXEC) < 0) return {Step::kPrepare, errno};
   setsid();
+  if (ready.ends_with != 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != ready.ends_with) _exit(127);  // it ended before it could be told
+  }
   prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
   // Our DDS sockets are not marked close-on-exec; a child that kept one would keep its port.
   closefrom(kept >= 0 ? kKept + 1 : kReport + 1);
@@ -188,7 +193,8 @@ Expected<Launch> Launch::begin(const Program& program, Until until) {
       environment.data(),
       program.pid_variable.empty() ? nullptr : &added.back()[program.pid_variable.size() + 1],
       program.kept_until_it_runs,
-      until};
+      until,
+      program.lifetime == Lifetime::kStarter ? getpid() : 0};
 
   const std::string& name = program.arguments.front();
   const auto failed = [&](int why) {

@@ -1,6 +1,7 @@
 // Starts a program: an argument vector, never a shell.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,6 +10,12 @@
 #include "process/file_descriptor.h"
 
 namespace culprit::process {
+
+// How long a process lives that nobody ends.
+enum class Lifetime : std::uint8_t {
+  kOwn,     // it outlives whoever started it, however that ends
+  kStarter  // it is killed with the thread that started it: for worlds that are gone with theirs
+};
 
 struct Program {
   std::vector<std::string> arguments;  // the first is the program, with or without a path
@@ -19,6 +26,7 @@ struct Program {
   std::string pid_variable{};
   // A descriptor that the new process keeps until the program runs; -1: none.
   int kept_until_it_runs = -1;
+  Lifetime lifetime = Lifetime::kOwn;
 };
 
 enum class Until : std::uint8_t {
@@ -31,7 +39,7 @@ enum class Until : std::uint8_t {
 class Launch {
  public:
   // The new process leads a session and a process group of its own (a Ctrl-C at culprit's terminal
-  // is not for it, and it outlives culprit), reads nothing, inherits the environment, no open file
+  // is not for it), reads nothing, inherits the environment, no open file
   // and no capability that whoever started this program gave it, and has default signal handling.
   // Does not wait for any file system but that of the log. Errors: the system gives no process or
   // no descriptor.

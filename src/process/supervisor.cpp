@@ -75,6 +75,7 @@ Program Supervisor::program_of(ComponentId component) const {
   const Component& what = rules_[component];
   Program program{
       what.launch, options_.search_first, options_.log_folder / (what.name + ".log"), {}, {}};
+  program.lifetime = options_.lifetime;
   if (!options_.robot.empty()) {
     program.environment = mark_of(marked_as(component));
     program.pid_variable = kPidVariable;

@@ -16,7 +16,8 @@
 // is ended to be started again is ended only if the start was tried, all but its last step. Nobody
 // waits here for a program whose file system does not answer.
 //
-// Whatever it started goes on running when the supervisor ends, unless stop_all() was called.
+// Whatever it started goes on running when the supervisor ends, unless stop_all() was called or its
+// lifetime is the starter's.
 #pragma once
 
 #include <condition_variable>
@@ -55,6 +56,7 @@ class Supervisor {
     // Which robot, of all on this machine: "0/sunset". Empty: nothing is marked, and what other
     // supervisors started is not looked for.
     std::string robot{};
+    Lifetime lifetime = Lifetime::kOwn;  // of what is started
   };
 
   // `rules` and `inbox` must outlive the supervisor. Takes over what carries its mark.

@@ -1,6 +1,9 @@
 #include "ros2/domain_lock.h"
 
+#include <netinet/in.h>
 #include <optional>
+#include <string>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
@@ -30,6 +33,25 @@ TEST(DomainLock, SaysWhenAllAreTakenAndFreesThemAtTheEnd) {
   EXPECT_FALSE(DomainLock::reserve(first, first + 1));
   one.reset();
   EXPECT_TRUE(DomainLock::reserve(first, first + 1));
+}
+
+// Of a demonstration that was killed, say, or of a robot.
+TEST(DomainLock, TakesNoDomainThatSomebodyListensIn) {
+  std::optional<Expected<DomainLock>> lock = DomainLock::reserve();
+  ASSERT_TRUE(*lock);
+  const std::uint32_t domain = (*lock)->domain();
+  const int listener = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * domain + 10));
+  ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  lock.reset();
+  const auto taken = DomainLock::reserve(domain, domain);
+  close(listener);
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error(), "nodes run on the DDS domain " + std::to_string(domain) +
+                               " of this machine already; end them, or take another domain");
 }
 
 }  // namespace
