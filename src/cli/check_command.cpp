@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <memory>
-#include <thread>
 #include <unistd.h>
 
 #include <fmt/core.h>
@@ -8,8 +7,10 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/diagnostic_report.h"
+#include "cli/preflight.h"
 #include "cli/robot_survey.h"
 #include "language/live_checks.h"
+#include "language/live_findings.h"
 
 namespace culprit::cli {
 namespace {
@@ -35,22 +36,24 @@ void print_text(const Source& source, const Checked& checked) {
              rules.strategies.size(), rules.components.size());
 }
 
+void print_findings(const RuleSet& rules, const LiveInventory& robot) {
+  for (const std::string& line : findings(rules, robot)) fmt::print("  {}\n", line);
+}
+
 // What the robot has, of what the files name.
 Expected<LiveInventory> look(const std::vector<Source>& sources, Duration wait) {
-  LiveInterest interest;
-  for (const Source& source : sources) {
-    const Checked checked = check(source);
-    if (checked.rules) interest.nodes.merge(interest_of(*checked.rules).nodes);
+  std::vector<Checked> checked;
+  for (const Source& source : sources) checked.push_back(check(source));
+  std::vector<const RuleSet*> named;
+  for (const Checked& each : checked) {
+    if (each.rules) named.push_back(&*each.rules);
   }
   auto survey = open_survey();
   if (!survey) return Error{survey.error()};
-  (*survey)->ask_for(std::move(interest));
-  std::this_thread::sleep_for(wait);
-  LiveInventory robot = (*survey)->inventory();
-  if (robot.nodes.empty())
-    return Error{
-        "no nodes were seen, so nothing was checked against them; is ROS_DOMAIN_ID the "
-        "robot's?"};
+  LiveInventory robot = look_for(named, **survey, wait);
+  if (!robot.has_robot())
+    return Error{nobody_on(ros2::options_from_environment()->domain) +
+                 " Nothing was checked against them"};
   return robot;
 }
 
@@ -71,6 +74,7 @@ int check_sources(std::vector<Source> sources, const CheckOptions& options) {
     Checked checked = robot ? check_against(*robot, source, strictness) : check(source, strictness);
     if (!checked.rules) exit_code = kFailed;
     if (options.format == "text") {
+      if (robot && checked.rules) print_findings(*checked.rules, *robot);
       print_text(source, checked);
     } else {
       files.push_back({std::move(source), std::move(checked.diagnostics)});

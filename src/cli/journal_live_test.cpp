@@ -81,28 +81,6 @@ TEST_F(Journal, SurvivesAKillAndTellsAndReplaysWhatHappened) {
   EXPECT_THAT(said_by({"replay", journal, "--planner", "bayes"}), HasSubstr("lines differ"));
 }
 
-TEST_F(Journal, IsTakenOverByTheCulpritOfAnotherMachineWhenTheFirstIsGone) {
-  TestProgram camera(world, {"sunset-node", "camera"});
-  TestProgram first = culprit({"run", rules, "--settle", "1", "--state-dir", state});
-  ASSERT_TRUE(first.prints("camera is there")) << first.output();
-  setenv("CULPRIT_LOCK", "another machine's", 1);
-  const std::string other = (world.folder() / "other").string();
-  TestProgram second = culprit({"run", rules, "--settle", "1", "--state-dir", other});
-  unsetenv("CULPRIT_LOCK");
-  ASSERT_TRUE(second.prints("another culprit manages this robot, on ")) << second.output();
-  first.signal(SIGINT);
-  EXPECT_EQ(first.wait(), 0);
-  EXPECT_THAT(first.output(), testing::Not(HasSubstr("another culprit")));
-  ASSERT_TRUE(second.prints("this one manages the robot from now on")) << second.output();
-
-  camera.signal(SIGKILL);
-  camera.wait();
-  ASSERT_TRUE(second.prints("redeploy camera: done")) << second.output();
-  second.signal(SIGINT);
-  EXPECT_EQ(second.wait(), 0);
-  kill(process_that_is_there(second.output()), SIGKILL);
-}
-
 // In the middle of a repair, which goes on.
 TEST_F(Journal, GoesOnWithRulesThatAreReloaded) {
   TestProgram camera(world, {"sunset-node", "camera"});

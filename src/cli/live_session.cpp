@@ -7,6 +7,7 @@
 #include "cli/console.h"
 #include "cli/health.h"
 #include "cli/journal_file.h"
+#include "cli/role.h"
 #include "journal/requests.h"
 #include "knowledge/describe.h"
 #include "replay/replay.h"
@@ -53,9 +54,17 @@ void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Ob
   }
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     if (is_there[c] || rules.components[c].launch.empty()) continue;
-    fmt::print("starting {}\n", rules.components[c].name);
+    say(stdout, "starting {}\n", rules.components[c].name);
     robot.supervisor().start({}, ComponentId(c));
   }
+}
+
+// That no other culprit is to manage, whatever its robot is called.
+std::vector<std::string> claimed_nodes(const RuleSet& rules) {
+  std::vector<std::string> nodes;
+  for (const ComponentId c : adapted_components(rules))
+    nodes.push_back(rules[c].node.empty() ? "*/" + rules[c].name : rules[c].node);
+  return nodes;
 }
 
 // The manager and its journal begin from the same record, so that a replay begins from it too.
@@ -145,6 +154,7 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
   if (!setup) return Error{setup.error()};
   std::unique_ptr<LiveSession> session(new LiveSession(frame, std::move(rules)));
   setup->link.claim = frame.lease;
+  if (setup->link.claim) setup->link.claim->nodes = claimed_nodes(session->rules_);
   setup->supervisor.robot =
       fmt::format("{}/{}", setup->link.participant.domain, session->rules_.robot);
   auto robot = LiveRobot::open(session->rules_, std::move(*setup));
@@ -184,7 +194,7 @@ void LiveSession::hold(RunBeginning& beginning) {
 void LiveSession::begin(const std::atomic<bool>& stop) {
   RunBeginning beginning = look_back();
   hold(beginning);
-  for (const std::string& finding : beginning.findings) fmt::print("culprit: {}\n", finding);
+  for (const std::string& finding : beginning.findings) say(stdout, "culprit: {}\n", finding);
   std::vector<Observation> seen;
   const bool is_held = beginning.orders.pause || beginning.orders.dry_run;
   if (frame_.options.launch && !frame_.advises && !is_held) {
@@ -210,6 +220,9 @@ void LiveSession::begin(Handover before) {
 
 void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
                          std::string occasion) {
+  preflight_ =
+      std::make_unique<Preflight>(frame_.options.rules, rules_text_, frame_.options.message_path,
+                                  [](const std::string& lines) { say_text(stdout, lines); });
   adopt_again(*robot_, beginning.past);
   journal::Session session = session_of(frame_, rules_text_, rules_, robot_->now(), beginning);
   session.occasion = std::move(occasion);
@@ -246,21 +259,50 @@ void LiveSession::tell(std::span<const Event> events) {
   for (const Event& event : events) {
     const std::string text = line(event, rules_, frame_.start, colour);
     if (text.empty()) continue;
-    fmt::print("{}\n", text);
+    say(stdout, "{}\n", text);
     robot_->link().log(severity_of(event), describe(event, rules_));
   }
-  std::fflush(stdout);
   robot_->link().publish(health(manager_->knowledge()));
 }
 
 void LiveSession::announce(const std::string& kind, const std::string& text) {
   const Time now = robot_->now();
-  fmt::print("{:8.3f}  {:<10}  {}\n", seconds(now - frame_.start), kind, text);
-  std::fflush(stdout);
+  say(stdout, "{:8.3f}  {:<10}  {}\n", seconds(now - frame_.start), kind, text);
   frame_.hub.publish(
       web::Kind::kEvent,
       web::to_line({{"t", web::time_to_json(now, frame_.start)}, {"kind", kind}, {"text", text}}));
   robot_->link().log(ros2::Severity::kInfo, text);
+}
+
+std::set<std::string> LiveSession::adapted_nodes() const {
+  std::set<std::string> nodes;
+  for (const ComponentId c : adapted_components(rules_)) {
+    const std::string& seen = manager_->knowledge().graph.node_name(c);
+    nodes.insert(seen.empty() ? rules_[c].node : seen);
+  }
+  nodes.erase("");
+  return nodes;
+}
+
+void LiveSession::leave_alone(const std::map<std::string, std::string>& nodes) {
+  constexpr const char* kAuthor = "another culprit";
+  const auto& silences = manager_->governor().silences();
+  for (const ComponentId c : adapted_components(rules_)) {
+    const std::string& seen = manager_->knowledge().graph.node_name(c);
+    const auto found = nodes.find(seen.empty() ? rules_[c].node : seen);
+    const auto silence = std::find_if(silences.begin(), silences.end(), [&](const auto& each) {
+      return each.what == Silenceable(c);
+    });
+    const bool is_silent = silence != silences.end();
+    const bool is_ours = is_silent && silence->author == kAuthor;
+    if (found == nodes.end()) {
+      if (is_ours) submit({0, kAuthor, "it is gone", LiftSilence{c}});
+      continue;
+    }
+    const std::string why = "it manages " + found->first + ": " + found->second;
+    if (!is_silent || (is_ours && silence->reason != why))
+      submit({0, kAuthor, why, Silence{c, {}}});
+  }
 }
 
 void LiveSession::run(Time until) {
@@ -289,7 +331,7 @@ LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string oc
 void LiveSession::end() {
   if (recorder_ == nullptr) return;
   if (const auto written = recorder_->end(); !written)
-    fmt::print(stderr, "culprit: {}\n", written.error());
+    say(stderr, "culprit: {}\n", written.error());
   recorder_.reset();
 }
 

@@ -4,10 +4,14 @@
 
 #include <atomic>
 #include <functional>
+#include <map>
 #include <memory>
+#include <set>
+#include <string>
 
 #include "cli/live_robot.h"
 #include "cli/order_keeper.h"
+#include "cli/preflight.h"
 #include "cli/rule_file.h"
 #include "cli/run_journal.h"
 #include "cli/run_options.h"
@@ -61,6 +65,11 @@ class LiveSession {
   // Says it to people, wherever they look.
   void announce(const std::string& kind, const std::string& text);
 
+  // The nodes of components that strategies adapt, as far as they are known.
+  std::set<std::string> adapted_nodes() const;
+  // Which of them another culprit manages, and who that is: they are left alone.
+  void leave_alone(const std::map<std::string, std::string>& nodes);
+
   const RuleSet& rules() const { return rules_; }
   // For a session with the same.
   LoadedRules loaded_rules() const { return {rules_, rules_text_, ""}; }
@@ -88,6 +97,7 @@ class LiveSession {
   std::unique_ptr<journal::Recorder> recorder_;
   std::unique_ptr<web::WatchedManager> watched_;
   std::unique_ptr<Runtime> runtime_;
+  std::unique_ptr<Preflight> preflight_;
   std::atomic<bool> is_left_ = false;
 };
 

@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include "cli/paths.h"
 #include "cli/plan_report.h"
 #include "cli/planner_options.h"
+#include "cli/preflight.h"
 #include "cli/rule_file.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
@@ -83,7 +85,8 @@ void watch(Manager& manager, LiveRobot& robot, const RuleSet& rules, Duration se
   runtime.run(stop, later(robot.now(), longest_detection(rules)));
 }
 
-int plan_for_robot(const RuleSet& rules, const PlanOptions& options) {
+int plan_for_robot(const LoadedRules& loaded, const PlanOptions& options) {
+  const RuleSet& rules = loaded.rules;
   auto participant = ros2::options_from_environment();
   if (!participant) {
     fmt::print(stderr, "culprit: {}\n", participant.error());
@@ -112,11 +115,20 @@ int plan_for_robot(const RuleSet& rules, const PlanOptions& options) {
   fmt::print(stderr, "culprit: watching {} for {:g} s or more; nothing is changed on it\n",
              rules.robot.empty() ? "the robot" : rules.robot,
              seconds(manager_options.settling + longest_detection(rules)));
+  auto preflight = std::async(std::launch::async, [&] {
+    return sight(Source(options.rules, loaded.text), options.message_path);
+  });
   watch(manager, **robot, rules, manager_options.settling, signals.stopped());
   const bool is_stopped = signals.stopped();
   signals.on_stop({});
   if (is_stopped) {
     fmt::print(stderr, "culprit: stopped before the robot was seen; nothing is planned\n");
+    return kFailed;
+  }
+  const auto seen = preflight.get();
+  if (seen) fmt::print(stderr, "{}", seen->report);
+  if (seen && !seen->has_robot) {
+    fmt::print(stderr, "culprit: nothing is planned\n");
     return kFailed;
   }
   PlanReport report(*options.planner.planner(), manager.plannable(), manager.knowledge(),
@@ -127,9 +139,10 @@ int plan_for_robot(const RuleSet& rules, const PlanOptions& options) {
 }
 
 int plan(const PlanOptions& options) {
-  const auto rules = load_rules(options.rules);
-  if (rules == nullptr) return kFailed;
-  return options.robot ? plan_for_robot(*rules, options) : plan_for_state(*rules, options);
+  const auto loaded = read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
+  if (!loaded) return fail(loaded.error());
+  fmt::print(stderr, "{}", loaded->remarks);
+  return options.robot ? plan_for_robot(*loaded, options) : plan_for_state(loaded->rules, options);
 }
 
 }  // namespace

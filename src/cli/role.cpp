@@ -3,7 +3,6 @@
 #include <random>
 
 #include "cli/journal_file.h"
-#include "cli/paths.h"
 #include "manager/manager.h"
 
 namespace culprit::cli {
@@ -14,45 +13,83 @@ std::int64_t random_id() {
   return std::int64_t{random()} << 31 ^ random();
 }
 
-}  // namespace
-
-Expected<RoleOfCulprit> RoleOfCulprit::claim(const RuleSet& rules, std::uint32_t domain) {
-  // The variable makes one machine look like two.
-  RoleOfCulprit role(
-      "culprit-manages-" + std::to_string(domain) + "-" + rules.robot + environment("CULPRIT_LOCK"),
-      {rules.robot, wall_now(), random_id()});
-  if (const auto taken = role.take_lock(); !taken) return Error{taken.error()};
-  if (role.lock_) return role;
-  role.role_ = Role::kAdvise;
-  role.reason_ = "another culprit manages this robot; this one only says what it would do";
-  return role;
+std::string advising(const std::string& where) {
+  return "another culprit manages this robot" + where + "; this one only says what it would do";
 }
 
-Expected<void> RoleOfCulprit::take_lock() {
-  if (lock_) return {};
-  auto taken = ros2::NamedLock::take(lock_name_);
-  if (!taken) return Error{taken.error()};
-  lock_ = std::move(*taken);
-  return {};
+}  // namespace
+
+std::set<ComponentId> adapted_components(const RuleSet& rules) {
+  std::set<ComponentId> all;
+  for (const Strategy& strategy : rules.strategies)
+    all.insert(strategy.components.begin(), strategy.components.end());
+  return all;
+}
+
+RoleOfCulprit::RoleOfCulprit(const RuleSet& rules, std::uint32_t domain, std::string key)
+    : domain_(domain),
+      lease_{rules.robot, wall_now(), random_id(), {}, std::move(key)},
+      claim_(name_of_claim("robot-" + rules.robot)) {
+  if (claim_.look()) return;
+  role_ = Role::kAdvise;
+  reason_ = advising(" (" + claim_.holder() + ")");
+}
+
+std::string RoleOfCulprit::name_of_claim(const std::string& what) const {
+  return "manages-" + std::to_string(domain_) + "-" + what;
 }
 
 bool RoleOfCulprit::has_changed(const ros2::Link& link, Time now, Time joined) {
   const auto elder = link.elder();
-  if (!elder && !take_lock()) return false;
-  const Role before = role_;
-  role_ = elder || !lock_ ? Role::kAdvise : Role::kManage;
-  if (role_ == before) return false;
-  if (role_ == Role::kManage) {
-    if (now < later(joined, Manager::kDiscovery)) {
-      role_ = before;
-      return false;
-    }
+  const bool is_ours = claim_.look();
+  const Role role = elder || !is_ours ? Role::kAdvise : Role::kManage;
+  if (role == role_) return false;
+  if (role == Role::kManage) {
+    if (now < later(joined, Manager::kDiscovery)) return false;
     reason_ = "the other culprit is gone; this one manages the robot from now on";
   } else {
-    reason_ = "another culprit manages this robot, on " + *elder +
-              "; this one only says what it would do";
+    reason_ = advising(elder ? ", on " + *elder : " (" + claim_.holder() + ")");
   }
+  role_ = role;
   return true;
+}
+
+std::map<std::string, std::string> RoleOfCulprit::managed_elsewhere(
+    const std::set<std::string>& nodes, const ros2::Link& link) {
+  std::erase_if(node_claims_, [&](const auto& each) { return !nodes.contains(each.first); });
+  std::map<std::string, std::string> elsewhere;
+  for (const std::string& node : nodes) {
+    HostClaim& claim = node_claims_.try_emplace(node, name_of_claim("node-" + node)).first->second;
+    if (!claim.look()) {
+      elsewhere[node] = claim.holder();
+    } else if (const auto host = link.elder_at(node)) {
+      elsewhere[node] = "on " + *host;
+    }
+  }
+  return elsewhere;
+}
+
+std::vector<std::string> RoleOfCulprit::warnings(const ros2::Link& link) {
+  std::vector<std::string> lines;
+  const auto warn = [&](const std::string& line) {
+    constexpr std::size_t kMost = 100;  // strangers choose what they are called
+    if (warned_.size() < kMost && warned_.insert(line).second) lines.push_back(line);
+  };
+  for (const std::string& host : link.lease_strangers())
+    warn("a culprit on " + host +
+         " says that it manages this robot or a node of it, and does not " +
+         (lease_.key.empty()
+              ? "prove it: give both the same --lease-key, or end one of them; this one goes on"
+              : "know the key of --lease-key; this one goes on"));
+  const auto squatter = [&](const HostClaim& claim, const std::string& what) {
+    if (!claim.stranger().empty())
+      warn(claim.stranger() +
+           " keeps the name by which culprits on this machine tell who manages " + what +
+           ", and is nobody who may; end it; this one goes on");
+  };
+  squatter(claim_, "this robot");
+  for (const auto& [node, claim] : node_claims_) squatter(claim, node);
+  return lines;
 }
 
 }  // namespace culprit::cli

@@ -1,25 +1,32 @@
-// Whether this culprit manages the robot, or only says what it would do because another one does.
+// Whether this culprit manages the robot, or only says what it would do because another one does;
+// and of which components another one is in charge that manages a robot of another name.
 //
-// Two managers would undo each other's work. On one machine a lock that the kernel keeps decides,
-// among machines the lease (ros2/manager_lease.h); both are looked at again while culprit runs.
+// Two managers would undo each other's work. On one machine a claim that the kernel keeps decides
+// (host_claim.h), among machines the lease (ros2/manager_lease.h); both are looked at again while
+// culprit runs. Who manages a component is decided by the name of its node.
 #pragma once
 
-#include <optional>
+#include <map>
+#include <set>
 #include <string>
+#include <vector>
 
+#include "cli/host_claim.h"
 #include "language/rule_set.h"
 #include "robot/time.h"
 #include "ros2/link.h"
-#include "ros2/named_lock.h"
 
 namespace culprit::cli {
 
 enum class Role : std::uint8_t { kManage, kAdvise };
 
+// The components that strategies adapt.
+std::set<ComponentId> adapted_components(const RuleSet& rules);
+
 class RoleOfCulprit {
  public:
-  // Errors: no lock can be had.
-  static Expected<RoleOfCulprit> claim(const RuleSet& rules, std::uint32_t domain);
+  // `key` is what culprits on other machines prove themselves by; empty: they cannot.
+  RoleOfCulprit(const RuleSet& rules, std::uint32_t domain, std::string key);
 
   Role role() const { return role_; }
   // To be announced over DDS: the same for as long as this process lives.
@@ -31,16 +38,24 @@ class RoleOfCulprit {
   // For the user: why it has this role. Empty: it manages from the start.
   const std::string& reason() const { return reason_; }
 
- private:
-  RoleOfCulprit(std::string name, ros2::LeaseClaim lease)
-      : lock_name_(std::move(name)), lease_(std::move(lease)) {}
-  Expected<void> take_lock();
+  // Which of these nodes another culprit manages, and who that is. Looks anew; nodes that are no
+  // longer among them are given up.
+  std::map<std::string, std::string> managed_elsewhere(const std::set<std::string>& nodes,
+                                                       const ros2::Link& link);
 
-  std::string lock_name_;
+  // What a person should know of strangers: each line once.
+  std::vector<std::string> warnings(const ros2::Link& link);
+
+ private:
+  std::string name_of_claim(const std::string& what) const;
+
+  std::uint32_t domain_;
   ros2::LeaseClaim lease_;
-  std::optional<ros2::NamedLock> lock_;
+  HostClaim claim_;
+  std::map<std::string, HostClaim> node_claims_;
   Role role_ = Role::kManage;
   std::string reason_;
+  std::set<std::string> warned_;
 };
 
 }  // namespace culprit::cli

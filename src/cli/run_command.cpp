@@ -24,10 +24,27 @@
 namespace culprit::cli {
 namespace {
 
-Expected<RoleOfCulprit> claim_robot(const RuleSet& rules) {
+Expected<RoleOfCulprit> claim_robot(const RuleSet& rules, const RunOptions& options) {
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
-  return RoleOfCulprit::claim(rules, participant->domain);
+  std::string key;
+  if (!options.lease_key.empty()) {
+    auto read = web::read_secret(options.lease_key, "key");
+    if (!read) return Error{read.error()};
+    key = std::move(*read);
+  }
+  return RoleOfCulprit(rules, participant->domain, std::move(key));
+}
+
+// Whoever acts leaves alone what others manage.
+void look_at_neighbours(RoleOfCulprit& role, LiveSession& session,
+                        const LiveSession::Frame& frame) {
+  std::set<std::string> nodes;
+  if (!frame.advises) nodes = session.adapted_nodes();
+  const auto elsewhere = role.managed_elsewhere(nodes, session.link());
+  if (!frame.advises) session.leave_alone(elsewhere);
+  for (const std::string& warning : role.warnings(session.link()))
+    session.announce("neighbour", warning);
 }
 
 // Whoever only advises neither acts nor writes the journal.
@@ -178,6 +195,7 @@ int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, Role
       if (session == nullptr) return kFailed;
       joined = session->now();
     }
+    look_at_neighbours(role, *session, frame);
     // Whoever stays deaf is not fed, and begins anew.
     const auto deaf_since = session->deaf_since();
     if (!deaf_since) {
@@ -215,12 +233,12 @@ int run(const RunOptions& options) {
   if (!rules) return complain(rules.error());
   const auto trusted = trust_state(options.state_path(), options.journal_path(rules->rules));
   if (!trusted) return complain(trusted.error());
-  fmt::print(stderr, "{}", rules->remarks);
+  say(stderr, "{}", rules->remarks);
   const auto governor = options.governor.options();
   if (!governor) return complain(governor.error()), kUsage;
-  auto role = claim_robot(rules->rules);
+  auto role = claim_robot(rules->rules, options);
   if (!role) return complain(role.error()), kUsage;
-  if (!role->reason().empty()) fmt::print("culprit: {}\n", role->reason());
+  if (!role->reason().empty()) say(stdout, "culprit: {}\n", role->reason());
   StopSignals signals(Hangup::kReloads);
   signals.end_within(kEndsWithin);
   Stage stage(options);
@@ -234,9 +252,10 @@ int run(const RunOptions& options) {
   auto session = LiveSession::open(frame, std::move(*rules));
   if (!session) return complain(session.error());
   signals.on_stop([&] { stage.leave(); });
-  fmt::print("culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot as it is\n",
-             robot, (*session)->rules().rules.size(), options.dry_run ? " (dry run)" : "");
-  std::fflush(stdout);
+  say(stdout,
+      "culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot "
+      "as it is\n",
+      robot, (*session)->rules().rules.size(), options.dry_run ? " (dry run)" : "");
   (*session)->begin(signals.stopped());
 
   web::OrderDesk orders(keeper.keeping());
@@ -254,13 +273,13 @@ int run(const RunOptions& options) {
   }
   signals.on_reload([&] {
     if (const auto count = stage.reload("SIGHUP"); !count)
-      fmt::print(stderr, "culprit: the rules are not reloaded: {}\n", count.error());
+      say(stderr, "culprit: the rules are not reloaded: {}\n", count.error());
   });
   const int code = manage(std::move(*session), frame, *role, stage, orders, signals.stopped());
   signals.on_stop({});
   signals.on_reload({});
   if (code != kOk) return code;
-  fmt::print("culprit: stopped; the robot goes on as it is\n");
+  say(stdout, "culprit: stopped; the robot goes on as it is\n");
   return kOk;
 }
 

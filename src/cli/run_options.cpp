@@ -46,6 +46,9 @@ void RunOptions::add_to(CLI::App& command) {
       "Where everything is written down (default: <robot>.journal in the state folder)");
   command.add_flag("--no-journal", no_journal, "Write nothing down, and know nothing")
       ->excludes(kept);
+  command.add_option("--lease-key", lease_key,
+                     "A file that only you can read, with a key that culprits on other machines "
+                     "share: they agree who manages the robot (docs/security.md)");
   command.add_option("--message-path", message_path,
                      "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
   command

@@ -25,6 +25,7 @@ struct RunOptions {
   double settle_seconds = seconds(Manager::kDiscovery);
   std::string state_folder;
   std::string journal;
+  std::string lease_key;  // a file; empty: culprits on other machines are not believed
   bool no_journal = false;
   std::vector<std::filesystem::path> message_path;
   bool is_on_web = false;

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "cli/console.h"
+
 namespace culprit::cli {
 
 void WebOptions::add_to(CLI::App& command) {
@@ -45,7 +47,7 @@ Expected<web::Access> access_for(const WebOptions& options) {
     access.token = web::make_token();
     return access;
   }
-  auto token = web::read_token(options.token_file);
+  auto token = web::read_secret(options.token_file);
   if (!token) return Error{token.error()};
   access.token = std::move(*token);
   return access;
@@ -66,14 +68,13 @@ Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
   }
   if (!started) return started;
   if (server.access.is_local) {
-    fmt::print("See it in a browser: {}\n", (*started)->address());
+    say(stdout, "See it in a browser: {}\n", (*started)->address());
   } else {
-    fmt::print(
+    say(stdout,
         "See it in a browser: http://{}:{}/#token=... (the token of {}). Others can reach "
         "this address, and what they send is not encrypted.\n",
         options.address, (*started)->port(), options.token_file);
   }
-  std::fflush(stdout);
   return started;
 }
 

@@ -378,8 +378,9 @@ const LiveInventory& example_robot() {
     LiveInventory::Node& camera = robot.nodes["/robot/camera"];
     camera.parameters = {{"exposure", Value(0.5)}};
     camera.lifecycle = "active";
-    robot.topics["/robot/image"] = {"sensor_msgs/msg/Image", true, {}, {}};
-    robot.topics["/diagnostics"] = {"diagnostic_msgs/msg/DiagnosticArray", true, {}, {}};
+    robot.topics["/robot/image"] = {"sensor_msgs/msg/Image", {"/robot/camera"}, {}, {}};
+    robot.topics["/diagnostics"] = {
+        "diagnostic_msgs/msg/DiagnosticArray", {"/robot/camera"}, {}, {}};
     robot.services = {{"/robot/camera/change_state", "lifecycle_msgs/srv/ChangeState"},
                       {"/robot/camera/get_state", "lifecycle_msgs/srv/GetState"},
                       {"/robot/camera/set_parameters", "rcl_interfaces/srv/SetParameters"},

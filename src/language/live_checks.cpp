@@ -150,7 +150,7 @@ class LiveChecks {
       name = topic_of(o.name, node);
     }
     const auto found = robot_.topics.find(name);
-    if (found != robot_.topics.end() && found->second.is_published) return;
+    if (found != robot_.topics.end() && found->second.is_published()) return;
     if (!is_first(OccurrenceKind::kTopic, name)) return;
     if (found != robot_.topics.end()) {
       warn(Code::kNoSuchTopic, o.span, "no node publishes '" + name + "' now",
@@ -159,7 +159,7 @@ class LiveChecks {
     }
     Names published;
     for (const auto& [other, topic] : robot_.topics) {
-      if (topic.is_published) published.push_back(other);
+      if (topic.is_published()) published.push_back(other);
     }
     std::string near = closest_full_name(name, published);
     const bool same_namespace = namespace_of(near) == namespace_of(name);
@@ -332,18 +332,35 @@ class LiveChecks {
   std::vector<Diagnostic> found_;
 };
 
+bool comes_before(const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; }
+
+// What is missing where nothing is wrong already.
+std::vector<Diagnostic> find_missing(const syntax::File& file, const RuleSet& rules,
+                                     const LiveInventory& robot,
+                                     const std::vector<Diagnostic>& said) {
+  std::set<std::uint32_t> places;
+  for (const Diagnostic& d : said) places.insert(d.span.begin);
+  std::vector<Diagnostic> found = LiveChecks(file, rules, robot).find();
+  std::erase_if(found, [&](const Diagnostic& d) { return places.contains(d.span.begin); });
+  std::stable_sort(found.begin(), found.end(), comes_before);
+  return found;
+}
+
 }  // namespace
 
 void check_live(const syntax::File& file, const RuleSet& rules, const LiveInventory& robot,
                 std::vector<Diagnostic>& diagnostics) {
-  std::set<std::uint32_t> places;
-  for (const Diagnostic& d : diagnostics) places.insert(d.span.begin);
-  for (Diagnostic& d : LiveChecks(file, rules, robot).find()) {
-    if (!places.contains(d.span.begin)) diagnostics.push_back(std::move(d));
-  }
-  std::stable_sort(
-      diagnostics.begin(), diagnostics.end(),
-      [](const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; });
+  for (Diagnostic& d : find_missing(file, rules, robot, diagnostics))
+    diagnostics.push_back(std::move(d));
+  std::stable_sort(diagnostics.begin(), diagnostics.end(), comes_before);
+}
+
+std::vector<Diagnostic> missing_on(const LiveInventory& robot, const Source& source) {
+  std::vector<Diagnostic> said;
+  const syntax::File file = parse(source, said);
+  const Checked checked = check(file, std::move(said));
+  if (!checked.rules) return {};
+  return find_missing(file, *checked.rules, robot, checked.diagnostics);
 }
 
 Checked check_against(const LiveInventory& robot, const Source& source, Strictness strictness) {

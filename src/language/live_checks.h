@@ -20,6 +20,9 @@ namespace culprit {
 void check_live(const syntax::File& file, const RuleSet& rules, const LiveInventory& robot,
                 std::vector<Diagnostic>& diagnostics);
 
+// Only what check_live() would add: what the robot has not.
+std::vector<Diagnostic> missing_on(const LiveInventory& robot, const Source& source);
+
 // check(), and check_live() if there is no error.
 Checked check_against(const LiveInventory& robot, const Source& source,
                       Strictness strictness = Strictness::kLenient);

@@ -26,6 +26,13 @@ const std::string* looked_up(const Status& status, const std::string& name) {
 
 }  // namespace
 
+bool LiveInventory::has_robot() const {
+  return std::any_of(nodes.begin(), nodes.end(), [](const auto& entry) {
+    const std::string name = own_name(entry.first);
+    return !name.starts_with('_') && name != "culprit";
+  });
+}
+
 std::string LiveInventory::node_of(const Component& component) const {
   if (!component.node.empty()) return nodes.contains(component.node) ? component.node : "";
   const auto found = std::find_if(nodes.begin(), nodes.end(), [&](const auto& entry) {

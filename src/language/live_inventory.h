@@ -22,11 +22,12 @@ struct LiveInventory {
     bool operator==(const Node&) const = default;
   };
   struct Topic {
-    std::string type;  // "sensor_msgs/msg/Image"
-    bool is_published = false;
+    std::string type;                  // "sensor_msgs/msg/Image"
+    std::set<std::string> publishers;  // the nodes, by their full names
     // Of topics that are watched only.
     std::optional<double> rate;  // Hz
     std::map<std::string, Value> fields;
+    bool is_published() const { return !publishers.empty(); }
     bool operator==(const Topic&) const = default;
   };
   // A diagnostic status.
@@ -47,6 +48,8 @@ struct LiveInventory {
   std::vector<Status> diagnostics;
   bool operator==(const LiveInventory&) const = default;
 
+  // Whether anybody is there but tools, whose nodes are hidden, and culprit.
+  bool has_robot() const;
   // The full name of the component's node, empty if it is not there: the NODE that it is declared
   // with, or else the first one whose own name is the component's.
   std::string node_of(const Component& component) const;

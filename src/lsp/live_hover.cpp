@@ -41,7 +41,7 @@ std::string of_topic(const Document& document, const Occurrence& thing,
   if (found == robot.topics.end()) return "Not on the robot now.";
   const LiveInventory::Topic& topic = found->second;
   std::string text = "`" + topic.type + "`";
-  if (!topic.is_published) return text + ", published by nobody now.";
+  if (!topic.is_published()) return text + ", published by nobody now.";
   if (!topic.rate) return text + ".";
   char rate[32];
   std::snprintf(rate, sizeof rate, ", %.1f Hz now.", *topic.rate);

@@ -20,7 +20,7 @@ std::vector<Proposal> live_nodes(const LiveInventory& robot) {
 std::vector<Proposal> live_topics(const LiveInventory& robot) {
   std::vector<Proposal> out;
   for (const auto& [name, topic] : robot.topics) {
-    if (topic.is_published) out.push_back({Kind::kTopic, name, topic.type});
+    if (topic.is_published()) out.push_back({Kind::kTopic, name, topic.type});
   }
   return out;
 }

@@ -282,13 +282,16 @@ void Graph::warn_of_duplicate(const std::string& name, const Node& node) {
 
 // Told only when it changes. A predecessor whose lease still runs is none.
 void Graph::count_namesakes(const std::string& name, Node& node) {
-  int others = -1;
+  std::vector<GraphNode> all;
   for (const GuidPrefix& claimant : node.claimants) {
-    const int pid = claimant == node.told ? 0 : pid_of(peers_.at(claimant));
+    Peer& peer = peers_.at(claimant);
+    const int pid = claimant == node.told ? 0 : pid_of(peer);
     const bool is_gone = pid != 0 && options_.is_running && !options_.is_running(pid);
-    if (!is_gone) ++others;
+    if (!is_gone) all.push_back(describe(name, peer));
   }
-  if (std::exchange(node.namesakes, others) != others) tell(NodeNamesakes{name, others});
+  const int others = static_cast<int>(all.size()) - 1;
+  if (std::exchange(node.namesakes, others) != others)
+    tell(NodeNamesakes{name, others, std::move(all)});
 }
 
 void Graph::warn_of_limit(const char* what) {

@@ -75,6 +75,7 @@ struct EndpointLeft {
 struct NodeNamesakes {
   std::string node;
   int others = 0;
+  std::vector<GraphNode> all;  // of them and the one that counts, the newest last
 };
 struct GraphTrouble {
   std::string text;

@@ -2,6 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <ifaddrs.h>
+#include <iterator>
+#include <netinet/in.h>
+#include <unistd.h>
 
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
@@ -11,6 +18,7 @@ namespace {
 
 constexpr Duration kProbePeriod = std::chrono::milliseconds(400);
 constexpr Duration kPublishPeriod = std::chrono::seconds(1);
+constexpr Duration kReminder = std::chrono::minutes(1);
 
 // Services that managers and tools use, of every node or of every managed node: who uses them
 // depends on nobody.
@@ -29,8 +37,80 @@ bool is_for_management(std::string_view service) {
   return std::find(kNames.begin(), kNames.end(), last) != kNames.end();
 }
 
+// This machine's, as far as sockets go: of another container it is another one.
+std::set<std::array<std::uint8_t, 4>> own_addresses() {
+  std::set<std::array<std::uint8_t, 4>> own{{127, 0, 0, 1}};
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return own;
+  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(all, &freeifaddrs);
+  for (const ifaddrs* i = all; i != nullptr; i = i->ifa_next) {
+    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
+    const auto* address = reinterpret_cast<const sockaddr_in*>(i->ifa_addr);
+    std::array<std::uint8_t, 4> ip{};
+    std::memcpy(ip.data(), &address->sin_addr, ip.size());
+    own.insert(ip);
+  }
+  return own;
+}
+
+// All that it says must be ours: addresses of bridges are the same on many machines.
+bool is_on_this_machine(const ParticipantInfo& info) {
+  const auto own = own_addresses();
+  return !info.metatraffic.empty() &&
+         std::all_of(info.metatraffic.begin(), info.metatraffic.end(),
+                     [&](const UdpAddress& address) { return own.contains(address.ip); });
+}
+
 bool is_service(EndpointKind kind) {
   return kind == EndpointKind::kServer || kind == EndpointKind::kClient;
+}
+
+std::string read_line(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// "process 99 (ros2 launch robot.launch.py)". A command line is what its process says of itself.
+std::string process_in_words(int pid) {
+  constexpr std::size_t kLongest = 120;
+  std::string command = read_line("/proc/" + std::to_string(pid) + "/cmdline");
+  while (!command.empty() && command.back() == '\0') command.pop_back();
+  std::replace(command.begin(), command.end(), '\0', ' ');
+  if (command.size() > kLongest) command = command.substr(0, kLongest) + "...";
+  return "process " + std::to_string(pid) +
+         (command.empty() ? "" : " (" + printable(command) + ")");
+}
+
+// 0: it is gone.
+int parent_of(int pid) {
+  const std::string stat = read_line("/proc/" + std::to_string(pid) + "/stat");
+  const std::size_t end = stat.rfind(')');  // of the name, which may hold anything
+  return end + 4 < stat.size() ? std::atoi(stat.c_str() + end + 4) : 0;
+}
+
+// Who holds nodes of one name, who started each, and how to end what is one too many.
+std::string who_are(const std::vector<GraphNode>& nodes) {
+  if (nodes.size() < 2) return "";
+  std::string text;
+  std::string others;
+  for (const GraphNode& node : nodes) {
+    text += text.empty() ? "" : "; ";
+    if (node.pid == 0) {
+      text += node.host.empty() ? "one on another machine" : "one on " + printable(node.host);
+      continue;
+    }
+    const int parent = parent_of(node.pid);
+    text += process_in_words(node.pid);
+    if (parent == getpid()) {
+      text += ", started by this culprit";
+    } else {
+      if (parent > 1) text += ", started by " + process_in_words(parent);
+      others += " " + std::to_string(node.pid);
+    }
+  }
+  text += ". Nothing is done to it until one is left: end the one too many";
+  if (!others.empty()) text += " (kill" + others + (others.rfind(' ') > 0 ? ": one of them)" : ")");
+  return text + ", and if a launch file starts it again, set respawn to False there";
 }
 
 }  // namespace
@@ -61,7 +141,7 @@ Link::~Link() {
   watches_.clear();
   links_.clear();
   diagnostics_.reset();
-  lease_writer_.reset();
+  lease_writers_.clear();
   node_.reset();
   context_.reset();
 }
@@ -96,6 +176,7 @@ Expected<void> Link::start() {
   publishing_ = std::make_unique<Timer>(executor_, kPublishPeriod, [this] {
     publish_again();
     tell_of_refused();
+    remind();
   });
   auto hearing = Hearing::begin(context_->participant(), executor_);
   if (!hearing) return Error{hearing.error()};
@@ -107,31 +188,66 @@ Expected<void> Link::start() {
 
 Expected<void> Link::claim_lease() {
   if (!options_.claim) return {};
-  lease_.emplace(*options_.claim);
-  auto writer = context_->participant().create_writer({.topic = ManagerLease::kTopic,
-                                                       .type = ManagerLease::kType,
-                                                       .qos = {},
-                                                       .user_data = lease_->user_data(),
-                                                       .on_match = {}});
-  if (!writer) return Error{writer.error()};
-  lease_writer_ = std::move(*writer);
+  lease_.emplace(*options_.claim, context_->participant().guid().prefix());
+  for (std::string& announcement : lease_->announcements()) {
+    auto writer = context_->participant().create_writer({.topic = ManagerLease::kTopic,
+                                                         .type = ManagerLease::kType,
+                                                         .qos = {},
+                                                         .user_data = std::move(announcement),
+                                                         .on_match = {}});
+    if (!writer) return Error{writer.error()};
+    lease_writers_.push_back(std::move(*writer));
+  }
   context_->on_discovery([this](const DiscoveryEvent& event) { on_lease(event); });
   return {};
 }
 
 void Link::on_lease(const DiscoveryEvent& event) {
-  lease_->apply(event);
-  const auto elder = lease_->elder();
-  const ParticipantInfo* info = elder ? context_->graph().participant(*elder) : nullptr;
+  constexpr std::size_t kMost = 1000;
   const std::lock_guard lock(mutex_);
-  elder_.reset();
-  if (elder)
-    elder_ = info == nullptr || info->host.empty() ? "another machine" : printable(info->host);
+  lease_->apply(event);
+  if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
+    const GuidPrefix prefix = info->guid.prefix();
+    if (neighbours_.size() >= kMost && !neighbours_.contains(prefix)) return;
+    neighbours_[prefix] = {printable(info->host), is_on_this_machine(*info)};
+  } else if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
+    neighbours_.erase(gone->guid.prefix());
+  }
+}
+
+bool Link::is_here(const GuidPrefix& participant) const {
+  const auto found = neighbours_.find(participant);
+  return found != neighbours_.end() && found->second.is_here;
+}
+
+std::string Link::host_of(const GuidPrefix& participant) const {
+  const auto found = neighbours_.find(participant);
+  const bool is_known = found != neighbours_.end() && !found->second.host.empty();
+  return is_known ? found->second.host : "another machine";
 }
 
 std::optional<std::string> Link::elder() const {
   const std::lock_guard lock(mutex_);
-  return elder_;
+  if (!lease_) return std::nullopt;
+  const auto elder = lease_->elder([this](const GuidPrefix& p) { return is_here(p); });
+  return elder ? std::optional(host_of(*elder)) : std::nullopt;
+}
+
+std::optional<std::string> Link::elder_at(const std::string& node) const {
+  const std::lock_guard lock(mutex_);
+  if (!lease_) return std::nullopt;
+  const auto elder = lease_->elder_at(node, [this](const GuidPrefix& p) { return is_here(p); });
+  return elder ? std::optional(host_of(*elder)) : std::nullopt;
+}
+
+std::vector<std::string> Link::lease_strangers() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> hosts;
+  if (!lease_) return hosts;
+  for (const GuidPrefix& each :
+       lease_->strangers([this](const GuidPrefix& p) { return is_here(p); }))
+    hosts.push_back(host_of(each));
+  return hosts;
 }
 
 Expected<void> Link::declare_parameters() {
@@ -170,9 +286,40 @@ void Link::on_change(const GraphChange& change) {
     inbox_.put(EndpointVanished{gone->node, gone->kind, gone->name});
   } else if (const auto* namesakes = std::get_if<NodeNamesakes>(&change)) {
     inbox_.put(NamesakesSeen{namesakes->node, namesakes->others});
+    on_namesakes(*namesakes);
   } else if (const auto* trouble = std::get_if<GraphTrouble>(&change)) {
     inbox_.put(LinkTrouble{trouble->text});
   }
+}
+
+// Rules may have nothing to complain of, or complain late: this is told in its own right.
+void Link::on_namesakes(const NodeNamesakes& seen) {
+  if (!binding_.bind(seen.node)) return;
+  {
+    const std::lock_guard lock(mutex_);
+    if (seen.others == 0) {
+      contested_.erase(seen.node);
+      return;
+    }
+    contested_[seen.node] = {"several nodes have the name " + seen.node + ": " + who_are(seen.all),
+                             kLongAgo};
+  }
+  remind();
+}
+
+// Only a person can end that, and who comes late must hear of it too.
+void Link::remind() {
+  const Time now = live_now();
+  std::vector<std::string> due;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [node, contest] : contested_) {
+      if (contest.told != kLongAgo && now < later(contest.told, kReminder)) continue;
+      contest.told = now;
+      due.push_back(contest.text);
+    }
+  }
+  for (std::string& text : due) inbox_.put(LinkTrouble{std::move(text)});
 }
 
 void Link::on_joined(const GraphNode& node) {
@@ -302,6 +449,10 @@ void Link::publish_again() {
       msg::DiagnosticStatus status{h.level, h.name, h.message, "culprit", {}};
       for (const auto& [key, value] : h.values) status.values.push_back({key, value});
       message.status.push_back(std::move(status));
+    }
+    for (const auto& [node, contest] : contested_) {
+      constexpr std::uint8_t kWarn = 1;
+      message.status.push_back({kWarn, "culprit: " + node, contest.text, "culprit", {}});
     }
   }
   if (!message.status.empty()) diagnostics_->publish(message);

@@ -66,9 +66,13 @@ class Link {
   // Until when it is sure that what the robot says is heard (hearing.h). From any thread.
   Time doubtful() const { return hearing_->doubtful(); }
 
-  // Where the culprit runs that goes before this one: a host's name, or "another machine" where it
-  // does not say. Nothing: there is none. From any thread.
+  // Where the culprit runs, on another machine, that goes before this one for the robot, or for the
+  // node of this full name: a host's name, or "another machine" where it does not say. Nothing:
+  // there is none. From any thread, as the next.
   std::optional<std::string> elder() const;
+  std::optional<std::string> elder_at(const std::string& node) const;
+  // Where those run that claim the same and do not prove it.
+  std::vector<std::string> lease_strangers() const;
 
  private:
   Link(const RuleSet& rules, Options options, Inbox& inbox);
@@ -76,6 +80,10 @@ class Link {
   Expected<void> declare_parameters();
   Expected<void> claim_lease();
   Expected<void> watch_parameter_events();
+
+  // @pre the mutex is held.
+  bool is_here(const GuidPrefix& participant) const;
+  std::string host_of(const GuidPrefix& participant) const;
 
   // On the executor's thread.
   void on_lease(const DiscoveryEvent& event);
@@ -88,6 +96,8 @@ class Link {
   void probe();
   void publish_again();
   void tell_of_refused();
+  void on_namesakes(const NodeNamesakes& seen);
+  void remind();
 
   ComponentLink* link_of(ComponentId component);
   ComponentLink* make_link(ComponentId component, const std::string& node);
@@ -112,11 +122,21 @@ class Link {
   std::unique_ptr<Timer> publishing_;
   std::unique_ptr<Hearing> hearing_;
   std::uint64_t refused_ = 0;  // datagrams that were told of
-  std::optional<ManagerLease> lease_;
-  std::unique_ptr<Writer> lease_writer_;
+  std::vector<std::unique_ptr<Writer>> lease_writers_;
 
   mutable std::mutex mutex_;  // guards what follows; a link that is made stays
-  std::optional<std::string> elder_;
+  struct Neighbour {
+    std::string host;
+    bool is_here = false;  // on this machine
+  };
+  std::optional<ManagerLease> lease_;
+  std::map<GuidPrefix, Neighbour> neighbours_;  // of those that can be discovered
+  // A component's node that others have the name of.
+  struct Contest {
+    std::string text;
+    Time told = kLongAgo;
+  };
+  std::map<std::string, Contest> contested_;  // by node
   std::vector<Health> health_;
   std::vector<std::unique_ptr<ComponentLink>> links_;  // by component
 

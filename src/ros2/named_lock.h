@@ -1,9 +1,11 @@
 // A name that one process of this machine has at a time, whoever runs it.
 //
 // It is an abstract Unix socket, which the kernel gives to one process only and frees when that
-// process ends, however it ends. There is no file to clean up.
+// process ends, however it ends. There is no file to clean up. Anybody on the machine may take any
+// name; holder() tells whose it is.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -13,12 +15,24 @@ namespace culprit::ros2 {
 
 class NamedLock {
  public:
-  // Nothing: another process has it. `name` is cut to the 100 characters that a socket's may have.
+  // By the kernel's word, of when it took the name.
+  struct Holder {
+    int pid = 0;  // 0: in another PID namespace
+    std::uint32_t user = 0;
+  };
+
+  // Nothing: another process has it. Of a longer `name` than a socket may have, a hash takes the
+  // place of the end.
   static Expected<std::optional<NamedLock>> take(const std::string& name);
+  // Nothing: nobody has it, or that process has not called admit() for too long.
+  static std::optional<Holder> holder(const std::string& name);
 
   NamedLock(NamedLock&& other) noexcept;
   NamedLock& operator=(NamedLock&& other) noexcept;
   ~NamedLock();
+
+  // Makes room for others that ask who holds it: call it now and then.
+  void admit();
 
  private:
   explicit NamedLock(int socket) : socket_(socket) {}

@@ -76,7 +76,7 @@ LiveInventory Survey::inventory() const {
   for (const auto& [topic, use] : topics_) {
     LiveInventory::Topic& entry = all.topics[topic];
     entry.type = use.type;
-    entry.is_published = use.publishers > 0;
+    entry.publishers = use.publishers;
     const auto reading = topics_read_.find(topic);
     if (reading != topics_read_.end()) reading->second->tell(entry);
   }
@@ -121,7 +121,11 @@ void Survey::on_endpoint(const std::string& node, const GraphEndpoint& endpoint)
     TopicUse& use = topics_[endpoint.name];
     const bool publishes = endpoint.kind == EndpointKind::kPublisher;
     if (publishes || use.type.empty()) use.type = endpoint.type;
-    ++(publishes ? use.publishers : use.subscribers);
+    if (publishes) {
+      use.publishers.insert(node);
+    } else {
+      ++use.subscribers;
+    }
   }
   read_topic(endpoint.name);
 }
@@ -136,9 +140,13 @@ void Survey::on_endpoint_left(const EndpointLeft& gone) {
   const auto topic = topics_.find(gone.name);
   if (gone.kind == EndpointKind::kClient || topic == topics_.end()) return;
   TopicUse& use = topic->second;
-  --(gone.kind == EndpointKind::kPublisher ? use.publishers : use.subscribers);
-  if (use.publishers == 0) topics_read_.erase(gone.name);
-  if (use.publishers == 0 && use.subscribers == 0) topics_.erase(topic);
+  if (gone.kind == EndpointKind::kPublisher) {
+    use.publishers.erase(gone.node);
+  } else {
+    --use.subscribers;
+  }
+  if (use.publishers.empty()) topics_read_.erase(gone.name);
+  if (use.publishers.empty() && use.subscribers == 0) topics_.erase(topic);
 }
 
 // ---- what was asked for
@@ -169,7 +177,7 @@ void Survey::read_node(const std::string& node) {
 void Survey::read_topic(const std::string& topic) {
   const auto wanted = interest_.fields_of_topics.find(topic);
   const auto use = topics_.find(topic);
-  const bool can_be_read = use != topics_.end() && use->second.publishers > 0;
+  const bool can_be_read = use != topics_.end() && !use->second.publishers.empty();
   if (wanted == interest_.fields_of_topics.end() || !can_be_read || topics_read_.contains(topic))
     return;
   auto reading =

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -41,7 +42,7 @@ class Survey {
 
  private:
   struct TopicUse {
-    int publishers = 0;
+    std::set<std::string> publishers;  // nodes
     int subscribers = 0;
     std::string type;
   };

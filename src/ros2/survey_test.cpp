@@ -69,7 +69,7 @@ TEST(Survey, SeesTheGraphAndTheDiagnosticsButNotItself) {
   EXPECT_TRUE(shows(*survey, [](const LiveInventory& seen) {
     const auto topic = seen.topics.find("/visibility");
     return seen.nodes.contains("/robot") && seen.services.contains("/robot/change_state") &&
-           topic != seen.topics.end() && topic->second.is_published &&
+           topic != seen.topics.end() && topic->second.is_published() &&
            topic->second.type == "std_msgs/msg/Float64" && seen.diagnostics.size() == 1;
   }));
   const LiveInventory seen = survey->inventory();

@@ -61,18 +61,18 @@ std::string make_token() {
   return token;
 }
 
-Expected<std::string> read_token(const std::string& path) {
+Expected<std::string> read_secret(const std::string& path, const std::string& what) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0)
-    return Error{"cannot read the token file '" + path + "': " + std::strerror(errno)};
+    return Error{"cannot read the " + what + " file '" + path + "': " + std::strerror(errno)};
   if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
-    return Error{"others can read the token file '" + path + "'; chmod 600 it"};
+    return Error{"others can read the " + what + " file '" + path + "'; chmod 600 it"};
   std::ifstream file(path);
   std::string token;
   std::getline(file, token);
   const bool has_blank = token.find_first_of(" \t\r") != std::string::npos;
   if (token.size() < kShortestToken || has_blank)
-    return Error{"the token file '" + path + "' needs one line of " +
+    return Error{"the " + what + " file '" + path + "' needs one line of " +
                  std::to_string(kShortestToken) + " characters or more, without blanks"};
   return token;
 }

@@ -34,8 +34,8 @@ bool is_loopback(std::string_view address);
 // 128 random bits, as hexadecimal digits.
 std::string make_token();
 
-// The only line of a file that nobody else can read: at least 16 characters without blanks.
-// Errors: it cannot be read, is readable by others, or holds no such line.
-Expected<std::string> read_token(const std::string& path);
+// The only line of a file that nobody else can read: at least 16 characters without blanks. `what`
+// it is, for messages. Errors: it cannot be read, is readable by others, or holds no such line.
+Expected<std::string> read_secret(const std::string& path, const std::string& what = "token");
 
 }  // namespace culprit::web

@@ -55,7 +55,7 @@ struct TokenFile : testing::Test {
   Expected<std::string> read(const std::string& text, std::filesystem::perms mode) {
     std::ofstream(path) << text;
     std::filesystem::permissions(path, mode);
-    return read_token(path);
+    return read_secret(path);
   }
   const std::string path;
   static constexpr auto kOnlyMine =
@@ -75,7 +75,7 @@ TEST_F(TokenFile, IsRefusedIfOthersCanReadIt) {
 TEST_F(TokenFile, IsRefusedIfTheTokenCanBeGuessed) {
   EXPECT_FALSE(read("short\n", kOnlyMine));
   EXPECT_FALSE(read("two words that are long enough\n", kOnlyMine));
-  EXPECT_FALSE(read_token("/does/not/exist"));
+  EXPECT_FALSE(read_secret("/does/not/exist"));
 }
 
 TEST(RateLimit, AllowsABurstAndThenASteadyRate) {

@@ -1,0 +1,165 @@
+// Several culprits in one domain: who manages what, and what a stranger can bring about.
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/test_network.h"
+#include "cli/test_program.h"
+#include "exemplars/sunset/node_process.h"
+#include "robot/inbox.h"
+#include "ros2/options.h"
+#include "ros2/survey.h"
+
+namespace culprit::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string rules_of(const std::string& robot) {
+  return "ROBOT " + robot + R"(
+COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
+RULE CameraGone
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera redeploy 5
+)";
+}
+
+struct Neighbours : testing::Test {
+  ~Neighbours() override {
+    for (const int pid : cameras()) kill(pid, SIGKILL);
+  }
+  TestProgram run(const std::string& robot, const std::string& state,
+                  std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments = {"culprit",
+                                          "run",
+                                          world.write(robot + ".rules", rules_of(robot)),
+                                          "--settle",
+                                          "1",
+                                          "--state-dir",
+                                          (world.folder() / state).string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return TestProgram(world, std::move(arguments));
+  }
+  std::vector<int> cameras() const {
+    return sunset::processes_of(sunset::Member::kCamera, ros2::options_from_environment()->domain);
+  }
+  std::string key() const {
+    const std::string path = world.write("key", "a-key-that-only-friends-have\n");
+    std::filesystem::permissions(path, std::filesystem::perms::owner_read);
+    return path;
+  }
+
+  TestWorld world;
+};
+
+TEST_F(Neighbours, OfOneMachineTakeOverAtOnceWhenTheManagerIsKilled) {
+  TestProgram camera(world, {"sunset-node", "camera"});
+  TestProgram first = run("robot", "state");
+  ASSERT_TRUE(first.prints("camera is there")) << first.output();
+  TestProgram second = run("robot", "state");
+  ASSERT_TRUE(second.prints("another culprit manages this robot (process " +
+                            std::to_string(first.pid()) + ")"))
+      << second.output();
+  ASSERT_TRUE(second.prints("camera is there")) << second.output();
+  std::this_thread::sleep_for(5s);  // as long as an elder on another machine is looked for
+  first.signal(SIGKILL);
+  ASSERT_EQ(first.wait(), -SIGKILL);
+  // Far below the 20 s of a lease.
+  ASSERT_TRUE(second.prints("this one manages the robot from now on", 10s)) << second.output();
+  camera.signal(SIGKILL);
+  camera.wait();
+  EXPECT_TRUE(second.prints("redeploy camera: done")) << second.output();
+}
+
+TEST_F(Neighbours, OfTwoRobotNamesDoNotManageTheSameNode) {
+  TestProgram camera(world, {"sunset-node", "camera"});
+  TestProgram first = run("one", "one");
+  ASSERT_TRUE(first.prints("camera is there")) << first.output();
+  TestProgram second = run("two", "two");
+  ASSERT_TRUE(
+      second.prints("it manages /managed_subsystem/camera: process " + std::to_string(first.pid())))
+      << second.output();
+  ASSERT_TRUE(second.prints("camera is there")) << second.output();
+  camera.signal(SIGKILL);
+  camera.wait();
+  EXPECT_TRUE(second.prints("is held back: camera is silenced by another culprit"))
+      << second.output();
+  ASSERT_TRUE(first.prints("CameraGone resolved by camera_redeploy")) << first.output();
+  EXPECT_EQ(cameras().size(), 1u);
+  EXPECT_THAT(second.output(), Not(HasSubstr("redeploy camera")));
+  first.signal(SIGKILL);
+  ASSERT_EQ(first.wait(), -SIGKILL);
+  ASSERT_TRUE(second.prints("the silence of camera is lifted")) << second.output();
+}
+
+// As `respawn` in a launch file brings it about.
+TEST_F(Neighbours, WhoHoldNodesOfOneNameAreNamedAsLongAsTheyAreThere) {
+  const TestProgram one(world, {"sunset-node", "camera"});
+  const TestProgram two(world, {"sunset-node", "camera"});
+  TestProgram culprit = run("robot", "state");
+  ASSERT_TRUE(culprit.prints("several nodes have the name /managed_subsystem/camera: "))
+      << culprit.output();
+  const std::string parent = "sunset-node camera), started by process " + std::to_string(getpid());
+  EXPECT_THAT(culprit.output(), HasSubstr(parent));
+  EXPECT_THAT(culprit.output(), HasSubstr("process " + std::to_string(one.pid()) + " ("));
+  EXPECT_THAT(culprit.output(), HasSubstr("process " + std::to_string(two.pid()) + " ("));
+  EXPECT_THAT(culprit.output(), HasSubstr("set respawn to False"));
+  // For who comes late.
+  ros2::Survey::Options options;
+  options.participant = *ros2::options_from_environment();
+  const auto survey = ros2::Survey::open(std::move(options));
+  ASSERT_TRUE(survey) << survey.error();
+  const auto is_said = [&] {
+    for (const auto& status : (*survey)->inventory().diagnostics) {
+      if (status.name == "culprit: /managed_subsystem/camera") return status.level == 1;
+    }
+    return false;
+  };
+  for (const Time end = live_now() + TestProgram::kPatience; !is_said() && live_now() < end;)
+    std::this_thread::sleep_for(20ms);
+  EXPECT_TRUE(is_said());
+}
+
+TEST_F(Neighbours, OfTwoMachinesAgreeWhereTheyShareAKey) {
+  auto network = TestNetwork::create();
+  if (!network) GTEST_SKIP() << network.error();
+  setenv("ROS_LOCALHOST_ONLY", "0", 1);
+  const std::string secret = key();
+  std::optional<TestProgram> first, second, third;
+  {
+    const TestNetwork::Visit visit(**network, TestNetwork::kRobot);
+    first.emplace(world, std::vector<std::string>{"culprit", "run",
+                                                  world.write("robot.rules", rules_of("robot")),
+                                                  "--no-journal", "--lease-key", secret});
+    ASSERT_TRUE(first->prints("watching robot")) << first->output();
+  }
+  {
+    const TestNetwork::Visit visit(**network, TestNetwork::kDesk);
+    second.emplace(world, std::vector<std::string>{"culprit", "run",
+                                                   world.write("robot.rules", rules_of("robot")),
+                                                   "--no-journal", "--lease-key", secret});
+    third.emplace(world, std::vector<std::string>{"culprit", "run",
+                                                  world.write("other.rules", rules_of("other")),
+                                                  "--no-journal"});
+  }
+  EXPECT_TRUE(second->prints("another culprit manages this robot, on ")) << second->output();
+  EXPECT_TRUE(third->prints("says that it manages this robot or a node of it")) << third->output();
+  EXPECT_THAT(first->output(), Not(HasSubstr("another culprit manages")));
+  first->signal(SIGINT);
+  EXPECT_EQ(first->wait(), 0);
+  EXPECT_TRUE(second->prints("this one manages the robot from now on")) << second->output();
+}
+
+}  // namespace
+}  // namespace culprit::cli

@@ -1,0 +1,153 @@
+// What a person sees when culprit or its demonstration starts, and what becomes of both when that
+// person, or the terminal, is gone.
+#include <csignal>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/paths.h"
+#include "cli/test_program.h"
+#include "exemplars/sunset/node_process.h"
+#include "robot/inbox.h"
+#include "ros2/options.h"
+
+namespace culprit::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kRules = R"(
+ROBOT start
+COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
+COMPONENT depth  NODE /managed_subsystem/depth  LAUNCH "sunset-node depth"
+RULE CameraGone
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera redeploy 5
+RULE CameraSilent
+  POLICIES WARNING
+  TRIGGER rate(/managed_subsystem/rgb_camra) < 1
+    STRATEGY camera_restart 90 10
+      ADAPTATION camera restart 5
+)";
+
+template <class Done>
+bool eventually(Done done) {
+  for (const Time end = live_now() + TestProgram::kPatience; !done();) {
+    if (live_now() > end) return false;
+    std::this_thread::sleep_for(20ms);
+  }
+  return true;
+}
+
+std::vector<int> nodes_on(std::uint32_t domain) {
+  std::vector<int> all;
+  for (const sunset::Member member : sunset::kMembers) {
+    for (const int pid : sunset::processes_of(member, domain)) all.push_back(pid);
+  }
+  return all;
+}
+
+struct Start : testing::Test {
+  TestProgram culprit(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "culprit");
+    return TestProgram(world, std::move(arguments));
+  }
+  std::string state() const { return (world.folder() / "state").string(); }
+  std::uint32_t domain() const { return ros2::options_from_environment()->domain; }
+
+  TestWorld world;
+  const std::string rules = world.write("start.rules", kRules);
+};
+
+TEST_F(Start, RunSaysWhatTheRobotHasOfTheRulesAndWhatNot) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  auto run = culprit({"run", rules, "--dry-run", "--state-dir", state()});
+  ASSERT_TRUE(run.prints("the robot has no topic '/managed_subsystem/rgb_camra'")) << run.output();
+  EXPECT_THAT(run.output(), HasSubstr("camera is /managed_subsystem/camera"));
+  EXPECT_THAT(run.output(), HasSubstr("did you mean '/managed_subsystem/rgb_camera'?"));
+  EXPECT_THAT(run.output(), HasSubstr("the robot has no node '/managed_subsystem/depth'"));
+  auto check = culprit({"check", "--robot", rules});
+  EXPECT_EQ(check.wait(), 0);
+  EXPECT_THAT(check.output(), HasSubstr("camera is /managed_subsystem/camera"));
+  auto plan = culprit({"plan", "--robot", rules, "--settle", "1"});
+  EXPECT_EQ(plan.wait(), 0);
+  EXPECT_THAT(plan.output(), HasSubstr("did you mean '/managed_subsystem/rgb_camera'?"));
+}
+
+TEST_F(Start, RunSaysThatNobodyIsThereAndWaits) {
+  const std::string nobody = "no nodes were seen on domain " + std::to_string(domain());
+  auto run = culprit({"run", rules, "--state-dir", state(), "--dry-run"});
+  ASSERT_TRUE(run.prints(nobody)) << run.output();
+  auto plan = culprit({"plan", "--robot", rules, "--settle", "1"});
+  EXPECT_EQ(plan.wait(), 1);
+  EXPECT_THAT(plan.output(), HasSubstr(nobody));
+  EXPECT_THAT(plan.output(), Not(HasSubstr("camera_redeploy")));
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  EXPECT_TRUE(run.prints("camera is /managed_subsystem/camera")) << run.output();
+}
+
+// Its reader has seen enough, or a terminal is gone.
+TEST_F(Start, RunGoesOnWhenNobodyReadsItsOutputAnyMore) {
+  TestProgram camera(world, {"sunset-node", "camera"});
+  const std::string program = own_folder() / "culprit";
+  const TestProgram run(world, {"sh", "-c",
+                                "{ " + program + " run " + rules + " --settle 1 --state-dir " +
+                                    state() + "; echo ended with $? >&2; } | head -n 1"});
+  ASSERT_TRUE(run.prints("watching start")) << run.output();
+  const std::string journal = state() + "/start.journal";
+  ASSERT_TRUE(eventually([&] {
+    auto log = culprit({"log", "--journal", journal});
+    log.wait();
+    return log.output().find("camera is there") != std::string::npos;
+  }));
+  camera.signal(SIGKILL);
+  ASSERT_EQ(camera.wait(), -SIGKILL);
+  EXPECT_TRUE(eventually([&] {
+    return !sunset::processes_of(sunset::Member::kCamera, domain()).empty();
+  })) << run.output();
+  EXPECT_THAT(run.output(), Not(HasSubstr("ended with")));
+  for (const int pid : nodes_on(domain())) kill(pid, SIGKILL);
+}
+
+TEST_F(Start, ADemosNodesEndWithItAndARobotsNodesDoNotEndWithCulprit) {
+  auto run = culprit({"run", rules, "--launch", "--state-dir", state()});
+  ASSERT_TRUE(run.prints("camera is there (process ")) << run.output();
+  ASSERT_TRUE(run.prints("depth is there (process ")) << run.output();
+  run.signal(SIGKILL);
+  ASSERT_EQ(run.wait(), -SIGKILL);
+  EXPECT_EQ(nodes_on(domain()).size(), 2u);
+  for (const int pid : nodes_on(domain())) kill(pid, SIGKILL);
+
+  auto demo = culprit({"demo", "--stay", "--port", "0"});
+  ASSERT_TRUE(demo.prints("Break it in the browser")) << demo.output();
+  const std::string said = "SUNSET is on domain ";
+  ASSERT_THAT(demo.output(), HasSubstr(said));
+  const auto demos = static_cast<std::uint32_t>(
+      std::atoi(demo.output().c_str() + demo.output().find(said) + said.size()));
+  EXPECT_EQ(nodes_on(demos).size(), 7u);
+  auto second = culprit({"demo", "--stay", "--port", "0", "--domain", std::to_string(demos)});
+  EXPECT_EQ(second.wait(), 1);
+  EXPECT_THAT(second.output(), HasSubstr("the DDS domain " + std::to_string(demos)));
+  demo.signal(SIGKILL);
+  ASSERT_EQ(demo.wait(), -SIGKILL);
+  EXPECT_TRUE(eventually([&] { return nodes_on(demos).empty(); }));
+}
+
+TEST_F(Start, ADemoKeepsItsPageWhereAPersonWatches) {
+  const std::string demo =
+      (own_folder() / "culprit").string() + " demo --scenario 001 --speed 4 --port 0";
+  TestProgram watched(world, {"script", "-qec", demo, "/dev/null"});
+  ASSERT_TRUE(watched.prints("Ctrl-C ends it", 120s)) << watched.output();
+  watched.signal(SIGTERM);
+  EXPECT_TRUE(watched.wait().has_value());
+  TestProgram scripted(world, {"script", "-qec", demo + " --end", "/dev/null"});
+  EXPECT_EQ(scripted.wait(120s), 0) << scripted.output();
+}
+
+}  // namespace
+}  // namespace culprit::cli

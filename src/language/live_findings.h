@@ -1,0 +1,21 @@
+// Rules x robot -> what of the rules this robot has, for people. live_checks.h says what it has
+// not.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "language/live_inventory.h"
+#include "language/rule_set.h"
+
+namespace culprit {
+
+// One line for each component, topic and signal that is there, in the order of the rules:
+// "camera is /robot/camera, active ✓", "/scan 10 Hz from /lidar ✓", "entropy = 0.03 ✓". What is
+// there and has nothing to tell yet has no tick: "/scan from /lidar, silent".
+std::vector<std::string> findings(const RuleSet& rules, const LiveInventory& robot);
+
+// Whether there is nothing left to wait for: each of them is there, and told its rate or value.
+bool is_all_found(const RuleSet& rules, const LiveInventory& robot);
+
+}  // namespace culprit
