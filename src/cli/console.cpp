@@ -34,6 +34,7 @@ struct Labels {
   Label operator()(const LastResortReached&) const { return {"LAST", "\033[1;31m"}; }
   Label operator()(const ComponentLost&) const { return {"lost", "\033[31m"}; }
   Label operator()(const ComponentFound&) const { return {"found", "\033[32m"}; }
+  Label operator()(const NeverSeen&) const { return {"never seen", "\033[33m"}; }
   Label operator()(const LifecycleIntended&) const { return {"lifecycle", ""}; }
   Label operator()(const RivalSeen&) const { return {"RIVAL", "\033[1;33m"}; }
   Label operator()(const Trouble&) const { return {"trouble", "\033[33m"}; }

@@ -1,5 +1,7 @@
 #include "cli/health.h"
 
+#include <optional>
+
 #include <fmt/core.h>
 
 #include "knowledge/describe.h"
@@ -37,6 +39,19 @@ ros2::Health of_rule(RuleId id, const Knowledge& knowledge) {
   return health;
 }
 
+// Nothing if nobody needs it, or nobody knows yet.
+std::optional<ros2::Health> of_component(ComponentId id, const Knowledge& knowledge) {
+  const Component& component = knowledge.rules[id];
+  const ComponentState& state = knowledge.components[id];
+  if (!component.is_required || (!state.alive && !state.is_missed)) return std::nullopt;
+  ros2::Health health{"culprit: component " + component.name, kWell, "it is there", {}};
+  if (state.alive == true) return health;
+  health.level = kError;
+  health.message = state.is_missed ? "it is REQUIRED and was never seen; a person must look"
+                                   : "it is REQUIRED and is not there";
+  return health;
+}
+
 }  // namespace
 
 std::vector<ros2::Health> health(const Knowledge& knowledge) {
@@ -55,6 +70,15 @@ std::vector<ros2::Health> health(const Knowledge& knowledge) {
   all[0].values = {{"rules", std::to_string(knowledge.rules.rules.size())},
                    {"failing", std::to_string(failing)},
                    {"exhausted", std::to_string(exhausted)}};
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
+    auto status = of_component(ComponentId(c), knowledge);
+    if (!status) continue;
+    if (status->level == kError) {
+      all[0].level = kError;
+      all[0].message += "; " + knowledge.rules.components[c].name + " is missing";
+    }
+    all.push_back(std::move(*status));
+  }
   return all;
 }
 

@@ -41,5 +41,23 @@ TEST(HealthReport, WarnsOfAFailureUnderRepairAndErrsWhenNothingIsLeftToTry) {
   EXPECT_EQ(all[1].level, 2);
 }
 
+TEST(HealthReport, ErrsWhenARequiredComponentIsNotThere) {
+  const RuleSet rules = *check(Source("test.rules", "COMPONENT a REQUIRED\nCOMPONENT b\n")).rules;
+  Knowledge knowledge(rules);
+  EXPECT_EQ(health(knowledge).size(), 1u) << "it may still be discovered";
+  for (const ComponentId id : {ComponentId(0), ComponentId(1)})
+    knowledge.components[id].is_missed = true;
+  auto all = health(knowledge);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].level, 2);
+  EXPECT_EQ(all[1].name, "culprit: component a");
+  EXPECT_EQ(all[1].level, 2);
+  knowledge.components[ComponentId(0)].is_missed = false;
+  knowledge.components[ComponentId(0)].alive = true;
+  all = health(knowledge);
+  EXPECT_EQ(all[0].level, 0);
+  EXPECT_EQ(all[1].level, 0);
+}
+
 }  // namespace
 }  // namespace culprit::cli

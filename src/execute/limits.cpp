@@ -25,10 +25,6 @@ bool restarts(const Adaptation& adaptation) {
          kind_of(adaptation.type) == StrategyKind::kProcess;
 }
 
-bool launches(const Adaptation& adaptation) {
-  return adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
-}
-
 std::string_view words(StrategyKind kind) {
   switch (kind) {
     case StrategyKind::kConfiguration:
@@ -59,6 +55,10 @@ StrategyKind kind_of(const Strategy& strategy) {
   for (const Adaptation& adaptation : strategy.adaptations)
     kind = std::max(kind, kind_of(adaptation.type));
   return kind;
+}
+
+bool launches(const Adaptation& adaptation) {
+  return adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
 }
 
 Limits::Limits(const Knowledge& knowledge, Options options)

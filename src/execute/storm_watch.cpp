@@ -6,7 +6,7 @@
 namespace culprit {
 
 StormWatch::StormWatch(Knowledge& knowledge, Options options)
-    : knowledge_(knowledge), options_(options) {}
+    : knowledge_(knowledge), options_(options), is_dead_(knowledge.rules.components.size()) {}
 
 void StormWatch::advance(Time now) {
   if (options_.share <= 0) return;
@@ -28,14 +28,15 @@ bool StormWatch::is_much(std::size_t components) const {
          static_cast<double>(components) >= options_.share * all;
 }
 
-std::optional<StormWatch::Storm> StormWatch::look() const {
+std::optional<StormWatch::Storm> StormWatch::look() {
+  look_for_dead();
   const std::size_t all = knowledge_.rules.components.size();
   std::size_t unseen = 0;
   std::size_t out_of_reach = 0;
   for (std::size_t c = 0; c < all; ++c) {
     const ComponentState& state = knowledge_.components[ComponentId(c)];
     const bool runs = state.pid != 0 && state.process == ProcessState::kRunning;
-    if (state.alive != false || state.node_seen == kLongAgo) continue;
+    if (state.alive != false || !knowledge_.sightings.has(ComponentId(c))) continue;
     if (!state.in_graph && runs) ++unseen;
     // Its lease may say for long that it is there.
     if (state.known_pid() == 0) ++out_of_reach;
@@ -59,16 +60,32 @@ std::optional<StormWatch::Storm> StormWatch::look() const {
   return std::nullopt;
 }
 
+void StormWatch::look_for_dead() {
+  std::vector<bool> is_ill(is_dead_.size());
+  for (const RuleId id : knowledge_.states.active()) {
+    for (const ComponentId component : knowledge_.rules[id].components)
+      is_ill[component.index] = true;
+  }
+  for (std::size_t c = 0; c < is_dead_.size(); ++c) {
+    const ComponentState& state = knowledge_.components[ComponentId(c)];
+    const bool is_gone = state.pid != 0 && state.process == ProcessState::kGone;
+    is_dead_[c] = is_gone || (is_dead_[c] && is_ill[c]);
+  }
+}
+
 // Components that a failing rule is about, and that nothing upstream explains.
 std::size_t StormWatch::ill_roots() const {
   std::vector<ComponentId> roots;
   for (const RuleId id : knowledge_.states.active()) {
     for (const ComponentId component : knowledge_.rules[id].components) {
+      // Its death is no riddle; it is to be brought back.
+      if (is_dead_[component.index]) continue;
       const auto& upstream = knowledge_.graph.upstream(component);
       const bool is_explained =
           std::any_of(upstream.begin(), upstream.end(), [&](ComponentId other) {
             return other != component &&
-                   knowledge_.states.is_sick(other, Criticality::kNonCritical, id);
+                   (is_dead_[other.index] ||
+                    knowledge_.states.is_sick(other, Criticality::kNonCritical, id));
           });
       if (!is_explained) roots.push_back(component);
     }

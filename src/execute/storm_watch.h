@@ -2,8 +2,9 @@
 //
 // A storm: components that nothing upstream explains are ill, many of them (NodeHealthCheck's
 // minHealthy, with the dependency graph taken into account: a dead camera and all that needs it is
-// no storm). A graph in doubt: nodes are gone from the graph whose processes run, or those of
-// another computer do not answer: more likely the network is ill than all of them.
+// no storm; nor are dead processes, which are no riddle). A graph in doubt: nodes are gone from the
+// graph whose processes run, or those of another computer do not answer: more likely the network is
+// ill than all of them.
 #pragma once
 
 #include <optional>
@@ -38,7 +39,8 @@ class StormWatch {
   Time next_deadline() const { return storm_ ? over_ : kNever; }
 
  private:
-  std::optional<Storm> look() const;
+  std::optional<Storm> look();
+  void look_for_dead();
   std::size_t ill_roots() const;
   bool is_much(std::size_t components) const;
 
@@ -47,6 +49,8 @@ class StormWatch {
   std::optional<Storm> storm_;
   Time over_ = kNever;
   bool has_news_ = false;
+  // By component: the operating system said that its process is gone, and it was not well since.
+  std::vector<bool> is_dead_;
 };
 
 }  // namespace culprit

@@ -104,6 +104,12 @@ class EventWriter {
   Json operator()(const ComponentFound& e) const {
     return {{"type", "component_found"}, {"component", name(e.component)}, {"pid", e.pid}};
   }
+  Json operator()(const NeverSeen& e) const {
+    Json json = std::visit([this](auto id) { return named(id); }, e.what);
+    json["type"] = "never_seen";
+    if (!e.near.empty()) json["near"] = e.near;
+    return json;
+  }
   Json operator()(const LifecycleIntended& e) const {
     return {{"type", "lifecycle_intended"},
             {"component", name(e.component)},
@@ -183,6 +189,13 @@ class EventWriter {
     const char* operator()(const RunStrategy&) const { return "run_strategy"; }
     const char* operator()(const Forget&) const { return "forget"; }
   };
+  Json named(ComponentId id) const { return {{"component", name(id)}}; }
+  Json named(TopicId id) const { return {{"topic", name(id)}}; }
+  Json named(SignalId id) const { return {{"signal", name(id)}}; }
+  Json named(ParameterId id) const {
+    return {{"component", name(rules_[id].component)}, {"parameter", name(id)}};
+  }
+  Json named(DiagnosticId id) const { return {{"diagnostic", rules_.diagnostics[id.index].name}}; }
   Json of_order(const char* type, const Order& order) const {
     Json json = {{"type", type},
                  {"order", std::visit(WordOfOrder{}, order.what)},

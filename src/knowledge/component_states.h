@@ -31,6 +31,7 @@ struct ComponentState {
 
   // Does it work as a process and as a node? Nothing until something is known of it.
   std::optional<bool> alive;
+  bool is_missed = false;  // it was never seen, and had its time to show itself
 
   // The process to stop: the node's own, or else the one that was started or adopted.
   int known_pid() const { return node_pid != 0 ? node_pid : pid; }

@@ -25,14 +25,8 @@ DependencyGraph::DependencyGraph(const RuleSet& rules)
     if (!rules.components[c].node.empty()) intern_node(rules.components[c].node);
   }
   for (const Dependency& d : rules.dependencies) {
-    // A component without a known node gets a place now and its name when it is seen.
-    for (const ComponentId c : {d.consumer, d.producer}) {
-      if (nodes_of_components_[c.index]) continue;
-      nodes_of_components_[c.index] = add_node();
-      nodes_.back().component = c;
-    }
-    const NodeId consumer = *nodes_of_components_[d.consumer.index];
-    const NodeId producer = *nodes_of_components_[d.producer.index];
+    const NodeId consumer = place_of(d.consumer);
+    const NodeId producer = place_of(d.producer);
     nodes_[consumer.index].declared_producers.push_back(producer);
     nodes_[producer.index].declared_consumers.push_back(consumer);
     condensation_.add_dependency(consumer.index, producer.index);
@@ -43,6 +37,15 @@ NodeId DependencyGraph::add_node() {
   nodes_.emplace_back();
   condensation_.add_node();
   return NodeId(nodes_.size() - 1);
+}
+
+NodeId DependencyGraph::place_of(ComponentId component) {
+  auto& node = nodes_of_components_[component.index];
+  if (!node) {
+    node = add_node();
+    nodes_.back().component = component;
+  }
+  return *node;
 }
 
 std::optional<NodeId> DependencyGraph::intern_node(const std::string& name) {
@@ -68,7 +71,7 @@ std::optional<DependencyGraph::ChannelId> DependencyGraph::intern_channel(Endpoi
   if (known != channel_ids_.end()) return known->second;
   if (channels_.size() >= kMaxChannels) return std::nullopt;
   const ChannelId id(channels_.size());
-  channels_.push_back({name, {}, {}, 0});
+  channels_.push_back({name, is_service(kind), {}, {}, 0});
   channel_ids_[key] = id;
   return id;
 }
@@ -77,6 +80,7 @@ bool DependencyGraph::node_appeared(const std::string& node) {
   const auto id = intern_node(node);
   if (!id || nodes_[id->index].is_present) return false;
   note_channels_of(*id);
+  ++changes_;
   return nodes_[id->index].is_present = true;
 }
 
@@ -84,6 +88,7 @@ bool DependencyGraph::node_vanished(const std::string& node) {
   const auto id = node_ids_.find(node);
   if (id == node_ids_.end() || !nodes_[id->second.index].is_present) return false;
   nodes_[id->second.index].is_present = false;
+  ++changes_;
   note_channels_of(id->second);
   return true;
 }
@@ -100,19 +105,51 @@ bool DependencyGraph::endpoint_appeared(const std::string& node, EndpointKind ki
   const auto node_id = intern_node(node);
   const auto channel_id = intern_channel(kind, name);
   if (!node_id || !channel_id) return false;
-  Channel& channel = channels_[channel_id->index];
-  auto& ends = produces(kind) ? channel.producers : channel.consumers;
-  auto end =
-      std::find_if(ends.begin(), ends.end(), [&](const End& e) { return e.node == *node_id; });
-  if (end == ends.end()) {
-    Node& owner = nodes_[node_id->index];
-    (produces(kind) ? owner.produces : owner.consumes).push_back(*channel_id);
-    end = ends.insert(end, {*node_id, 0});
-  }
-  if (++end->count > 1) return false;
-  if (produces(kind)) ++channel.live_producers;
+  if (++end_of(*node_id, *channel_id, produces(kind)).count > 1) return false;
+  if (produces(kind)) ++channels_[channel_id->index].live_producers;
   condensation_.note(channel_id->index);
+  ++changes_;
   return true;
+}
+
+DependencyGraph::End& DependencyGraph::end_of(NodeId node, ChannelId channel, bool producer) {
+  auto& ends = producer ? channels_[channel.index].producers : channels_[channel.index].consumers;
+  const auto end =
+      std::find_if(ends.begin(), ends.end(), [&](const End& e) { return e.node == node; });
+  if (end != ends.end()) return *end;
+  Node& owner = nodes_[node.index];
+  (producer ? owner.produces : owner.consumes).push_back(channel);
+  return ends.emplace_back(End{node, 0});
+}
+
+void DependencyGraph::remember(ComponentId component, const std::vector<KnownRobot::End>& ends) {
+  const NodeId node = place_of(component);
+  for (const KnownRobot::End& end : ends) {
+    if (!is_service(end.kind) && ignored_.contains(end.name)) continue;
+    const auto channel = intern_channel(end.kind, end.name);
+    if (!channel) return;
+    end_of(node, *channel, produces(end.kind));
+    condensation_.note(channel->index);
+  }
+}
+
+std::vector<KnownRobot::End> DependencyGraph::ends_of(ComponentId component) const {
+  std::vector<KnownRobot::End> found;
+  const auto node = nodes_of_components_[component.index];
+  if (!node) return found;
+  const auto add = [&](ChannelId id, bool producer) {
+    const Channel& channel = channels_[id.index];
+    const auto& ends = producer ? channel.producers : channel.consumers;
+    const auto own =
+        std::find_if(ends.begin(), ends.end(), [&](const End& e) { return e.node == *node; });
+    if (!counts(*own, channel, producer)) return;
+    const EndpointKind of_topic = producer ? EndpointKind::kPublisher : EndpointKind::kSubscriber;
+    const EndpointKind of_service = producer ? EndpointKind::kServer : EndpointKind::kClient;
+    found.push_back({channel.is_service ? of_service : of_topic, channel.name});
+  };
+  for (const ChannelId channel : nodes_[node->index].produces) add(channel, true);
+  for (const ChannelId channel : nodes_[node->index].consumes) add(channel, false);
+  return found;
 }
 
 bool DependencyGraph::endpoint_vanished(const std::string& node, EndpointKind kind,
@@ -128,6 +165,7 @@ bool DependencyGraph::endpoint_vanished(const std::string& node, EndpointKind ki
   if (--end->count > 0) return false;
   if (produces(kind)) --channel.live_producers;
   condensation_.note(channel_id->second.index);
+  ++changes_;
   return true;
 }
 
@@ -150,6 +188,15 @@ bool DependencyGraph::publishes(ComponentId component, const std::string& topic)
   const auto node = nodes_of_components_[component.index];
   const std::vector<NodeId> publishers = publishers_of(topic);
   return node && std::find(publishers.begin(), publishers.end(), *node) != publishers.end();
+}
+
+std::vector<std::string> DependencyGraph::published_topics() const {
+  std::vector<std::string> topics;
+  for (const Channel& channel : channels_) {
+    if (!channel.is_service && channel.live_producers > 0) topics.push_back(channel.name);
+  }
+  std::sort(topics.begin(), topics.end());
+  return topics;
 }
 
 bool DependencyGraph::counts(const End& end, const Channel& channel, bool producer) const {

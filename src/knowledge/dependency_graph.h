@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "knowledge/channel_condensation.h"
+#include "knowledge/known_robot.h"
 #include "language/rule_set.h"
 #include "robot/component_binding.h"
 #include "robot/observation.h"
@@ -43,6 +44,14 @@ class DependencyGraph {
   bool endpoint_appeared(const std::string& node, EndpointKind kind, const std::string& name);
   bool endpoint_vanished(const std::string& node, EndpointKind kind, const std::string& name);
 
+  // What an earlier run saw of the component, which is not in the graph until it appears: it counts
+  // as if its node had been there and gone.
+  void remember(ComponentId component, const std::vector<KnownRobot::End>& ends);
+  // What counts of it now.
+  std::vector<KnownRobot::End> ends_of(ComponentId component) const;
+  // Another number whenever a node or an end came or went.
+  std::uint64_t changes() const { return changes_; }
+
   bool is_present(ComponentId component) const;
   // The full name of the component's node; empty while an undeclared one was not seen.
   const std::string& node_name(ComponentId component) const { return binding_.node_of(component); }
@@ -53,6 +62,8 @@ class DependencyGraph {
   // component is among them.
   std::size_t publisher_count(const std::string& topic) const;
   bool publishes(ComponentId component, const std::string& topic) const;
+  // Those that any node publishes now. Sorted.
+  std::vector<std::string> published_topics() const;
 
   // The components that `component` depends on, directly or through any nodes between; not itself.
   // The reference is valid until the next call.
@@ -104,6 +115,7 @@ class DependencyGraph {
   };
   struct Channel {
     std::string name;
+    bool is_service = false;
     std::vector<End> producers;
     std::vector<End> consumers;
     std::uint32_t live_producers = 0;
@@ -111,6 +123,9 @@ class DependencyGraph {
   enum class Direction : std::uint8_t { kUpstream, kDownstream };
 
   NodeId add_node();
+  // Makes one if the component has none. It gets its name when the node is seen.
+  NodeId place_of(ComponentId component);
+  End& end_of(NodeId node, ChannelId channel, bool producer);
   std::optional<NodeId> intern_node(const std::string& name);
   std::optional<ChannelId> intern_channel(EndpointKind kind, const std::string& name);
   void note_channels_of(NodeId node);
@@ -128,6 +143,8 @@ class DependencyGraph {
   std::unordered_map<std::string, ChannelId> channel_ids_;  // key: 't' or 's', then the name
   std::vector<std::optional<NodeId>> nodes_of_components_;
   std::unordered_set<std::string> ignored_;
+
+  std::uint64_t changes_ = 0;
 
   mutable ChannelCondensation condensation_;
 

@@ -97,11 +97,19 @@ class Describer {
     return rules_[e.rule].name + ": nothing helped, and only the last resort is left";
   }
   std::string operator()(const ComponentLost& e) const {
-    return rules_[e.component].name + " is lost" + (e.remark.empty() ? "" : ": " + e.remark);
+    return rules_[e.component].name + " is lost" +
+           (rules_[e.component].is_required ? " and is REQUIRED" : "") +
+           (e.remark.empty() ? "" : ": " + e.remark);
   }
   std::string operator()(const ComponentFound& e) const {
     return rules_[e.component].name + " is there" +
            (e.pid == 0 ? "" : " (process " + std::to_string(e.pid) + ")");
+  }
+  std::string operator()(const NeverSeen& e) const {
+    const bool is_component = std::holds_alternative<ComponentId>(e.what);
+    return std::visit([this](auto id) { return unseen(id); }, e.what) +
+           (e.near.empty() ? "" : "; did you mean '" + e.near + "'?") +
+           (is_component ? " Nothing is done about it" : " What rules read of it is unknown");
   }
   std::string operator()(const LifecycleIntended&) const { return ""; }
   std::string operator()(const RivalSeen& e) const {
@@ -188,6 +196,27 @@ class Describer {
     const ComponentId component = std::get<ComponentId>(what);
     return component.index < rules_.components.size() ? rules_[component].name
                                                       : "an unknown component";
+  }
+
+  std::string unseen(ComponentId id) const {
+    const Component& component = rules_[id];
+    return component.name + (component.is_required ? " is REQUIRED and" : "") +
+           " was never seen: the robot has no node " +
+           (component.node.empty() ? "called " + component.name : component.node);
+  }
+  std::string unseen(TopicId id) const {
+    return rules_[id].name + " was never seen: no node publishes it";
+  }
+  std::string unseen(SignalId id) const {
+    return "signal " + rules_[id].name + " was never seen: nothing tells it";
+  }
+  std::string unseen(ParameterId id) const {
+    const Parameter& parameter = rules_[id];
+    return "parameter " + parameter.name + " of " + rules_[parameter.component].name +
+           " was never seen: no value was read";
+  }
+  std::string unseen(DiagnosticId id) const {
+    return "diagnostic " + rules_.diagnostics[id.index].name + " was never seen: nobody tells it";
   }
 
   // " (62 %; 38 %: fusion, by FusionDead)"; empty if nobody else is suspected.

@@ -142,6 +142,14 @@ struct ComponentFound {
   int pid = 0;
 };
 
+// Something that the rules name was not seen in the time that a robot has to show itself. Unknown
+// is what rules read of it, until it is seen.
+using Nameable = std::variant<ComponentId, TopicId, SignalId, ParameterId, DiagnosticId>;
+struct NeverSeen {
+  Nameable what;
+  std::string near;  // a name of the robot that may be meant; empty: none is near
+};
+
 // Another state of its lifecycle is the intended one now (ComponentState::intended_lifecycle). Not
 // said to people: it is for the process of culprit that comes next.
 struct LifecycleIntended {
@@ -182,7 +190,8 @@ enum class Restraint : std::uint8_t {
   kClassIntensity,      // too many strategies of this kind lately
   kBackoff,             // it was restarted a short while ago
   kIdentity,            // nobody knows for sure which process it would hit
-  kEvidence             // the process that it would end runs and publishes
+  kEvidence,            // the process that it would end runs and publishes
+  kNeverSeen            // it would start what was never seen
 };
 
 // A strategy was chosen and is not begun. Told again only when the reason is another one.
@@ -271,7 +280,7 @@ struct Event {
                OrderAccepted, OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed,
                StrategyAbandoned, OrderCarriedOut, SilenceEnded, StormBegan, StormEnded,
                LastResortReached, LifecycleIntended, OutcomePending, OutcomeCounted, FailureFlaps,
-               JudgementSuspended, JudgementResumed, SleepNoticed>
+               JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen>
       what;
 };
 

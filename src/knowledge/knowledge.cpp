@@ -11,6 +11,20 @@ void Knowledge::intend_lifecycle(ComponentId component, Lifecycle state, Time at
   tell(at, LifecycleIntended{component, state});
 }
 
+KnownRobot Knowledge::known_robot() const {
+  KnownRobot known;
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    const ComponentId component(c);
+    if (!sightings.has(component)) continue;
+    known.parts.push_back(
+        {rules[component].name, graph.node_name(component), graph.ends_of(component)});
+  }
+  for (std::size_t t = 0; t < rules.topics.size(); ++t) {
+    if (sightings.has(TopicId(t))) known.topics.push_back(rules.topics[t].name);
+  }
+  return known;
+}
+
 Time Knowledge::began(ComponentId component) const {
   Time last = components[component].node_seen;
   for (const ComponentId upstream : graph.upstream(component))

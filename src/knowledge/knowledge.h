@@ -11,6 +11,7 @@
 #include "knowledge/outcomes.h"
 #include "knowledge/rivals.h"
 #include "knowledge/rule_states.h"
+#include "knowledge/sightings.h"
 #include "knowledge/signal_store.h"
 #include "language/rule_set.h"
 
@@ -23,6 +24,7 @@ struct Knowledge {
         signals(rules),
         graph(rules),
         components(rules),
+        sightings(rules),
         states(rules),
         beliefs(rules),
         couplings(rules),
@@ -34,6 +36,7 @@ struct Knowledge {
         signals(rules, other.signals),
         graph(other.graph),
         components(other.components),
+        sightings(other.sightings),
         states(rules, other.states),
         beliefs(other.beliefs),
         couplings(other.couplings),
@@ -47,6 +50,7 @@ struct Knowledge {
   SignalStore signals;
   DependencyGraph graph;
   ComponentStates components;
+  Sightings sightings;
   RuleStates states;
   Beliefs beliefs;
   Couplings couplings;
@@ -59,6 +63,10 @@ struct Knowledge {
 
   // Sets ComponentState::intended_lifecycle, and tells if it is another.
   void intend_lifecycle(ComponentId component, Lifecycle state, Time at);
+
+  // What the run that comes next should know. Changes only with the graph's changes and the count
+  // of sightings.
+  KnownRobot known_robot() const;
 
   // When the component, or something that it depends on, last joined the graph.
   Time began(ComponentId component) const;

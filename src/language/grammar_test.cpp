@@ -57,7 +57,9 @@ std::string complaint(const std::string& text) {
   std::vector<Diagnostic> diagnostics;
   parse(source, diagnostics);
   for (const Diagnostic& d : diagnostics) {
-    if (d.code < Code::kDuplicateName) return render(d, source) + "in:\n" + text;
+    // That a clause stands once on its line is not in the grammar.
+    const bool is_repeated = d.cause.ends_with(" is given twice");
+    if (d.code < Code::kDuplicateName && !is_repeated) return render(d, source) + "in:\n" + text;
   }
   return "";
 }
@@ -114,7 +116,7 @@ TEST(Grammar, ReservesTheWordsThatTheParserReserves) {
     Grammar::Productions used;
     words.insert(grammar().sentence("ReservedWord", 1, random, used));
   }
-  EXPECT_EQ(words.size(), 30u);
+  EXPECT_EQ(words.size(), 31u);
   for (const std::string& word : words) {
     std::vector<Diagnostic> diagnostics;
     parse(Source("", "CONST " + word + " = 1\n"), diagnostics);

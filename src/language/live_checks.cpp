@@ -21,38 +21,6 @@ Names names_of(const Table& table) {
   return names;
 }
 
-std::vector<std::string> segments(std::string_view name) {
-  std::vector<std::string> out;
-  for (std::size_t begin = 1; begin <= name.size();) {
-    const std::size_t end = std::min(name.find('/', begin), name.size());
-    out.emplace_back(name.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return out;
-}
-
-// Segment by segment, for long namespaces make any two names near as a whole.
-bool are_near(std::string_view a, std::string_view b) {
-  const auto left = segments(a);
-  const auto right = segments(b);
-  return std::equal(left.begin(), left.end(), right.begin(), right.end(),
-                    [](const std::string& x, const std::string& y) {
-                      return x == y || !closest(x, {y}).empty();
-                    });
-}
-
-// The full name that was probably meant: the only one in another namespace, or one with a slip of
-// the fingers. Empty if there is none.
-std::string closest_full_name(const std::string& name, const Names& known) {
-  Names namesakes;
-  Names near;
-  for (const std::string_view candidate : known) {
-    if (own_name(std::string(candidate)) == own_name(name)) namesakes.push_back(candidate);
-    if (are_near(name, candidate)) near.push_back(candidate);
-  }
-  return namesakes.size() == 1 ? std::string(namesakes[0]) : closest(name, near);
-}
-
 bool is_identifier(std::string_view name) {
   const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0 || c == '_'; };
   return !name.empty() && is_letter(name[0]) &&

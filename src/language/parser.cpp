@@ -177,7 +177,7 @@ class Parser {
   bool component(Scanner& s) {
     auto name = read_.declared_name(s, "the component's name");
     if (!name) return false;
-    syntax::Component component{std::move(*name), {}, {}};
+    syntax::Component component{std::move(*name), {}, {}, false};
     while (!s.at_end()) {
       const Token clause = s.peek();
       if (clause.text == "NODE" && !component.node) {
@@ -192,8 +192,11 @@ class Parser {
                                   "write it in quotes: LAUNCH \"ros2 run package program\"");
         }
         component.launch = Name{std::get<std::string>(command.literal), command.span};
+      } else if (clause.text == "REQUIRED" && !component.is_required) {
+        s.next();
+        component.is_required = true;
       } else {
-        return read_.unexpected_clause(clause, {"NODE", "LAUNCH"});
+        return read_.unexpected_clause(clause, {"NODE", "LAUNCH", "REQUIRED"});
       }
     }
     file_.components.push_back(std::move(component));

@@ -26,6 +26,7 @@ struct Component {
   std::string node;  // full name; empty: the node of the graph whose own name is `name`
   std::vector<std::string> launch;  // argument vector; empty: culprit cannot start it
   bool declared = true;             // by a COMPONENT line
+  bool is_required = false;  // a person is told if it is not there, also if no rule is about that
 };
 
 struct Topic {

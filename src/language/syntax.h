@@ -78,6 +78,7 @@ struct Component {
   Name name;
   std::optional<Name> node;
   std::optional<Name> launch;  // the quoted text, unescaped
+  bool is_required = false;
 };
 
 struct Dependency {

@@ -129,8 +129,9 @@ std::string range() {
 std::string component_line() {
   const std::string node = maybe(words({"NODE", ros_name()}));
   const std::string launch = maybe(words({"LAUNCH", text()}));
-  return coin() ? words({"COMPONENT", identifier(), node, launch})
-                : words({"COMPONENT", identifier(), launch, node});
+  const std::string required = maybe("REQUIRED");
+  return coin() ? words({"COMPONENT", identifier(), node, launch, required})
+                : words({"COMPONENT", identifier(), required, launch, node});
 }
 
 std::string signal_line() {

@@ -87,7 +87,8 @@ class Completion {
     const std::string& statement = words_.front();
     if (statement == "ADAPTATION") return adaptation();
     if (statement == "COMPONENT") {
-      return words_.back() == "NODE" ? names(&live_nodes) : keywords({"NODE", "LAUNCH"});
+      return words_.back() == "NODE" ? names(&live_nodes)
+                                     : keywords({"NODE", "LAUNCH", "REQUIRED"});
     }
     if (statement == "SIGNAL") return signal();
     if (statement == "IGNORE") {

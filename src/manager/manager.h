@@ -64,6 +64,8 @@ class Manager : public ManagingSystem {
   // What earlier processes did counts: budgets, back-offs, silences and what was tried last on.
   // Before the first step, and before resume().
   void remember(const Past& past);
+  // What earlier runs saw of this robot counts as seen.
+  void remember(const KnownRobot& known) { monitor_.remember(known); }
   // A strategy that an earlier process left in the middle is finished, once the robot had the time
   // of settling to show itself. Before the first step; one for each rule at most.
   void resume(Interrupted interrupted);

@@ -396,7 +396,8 @@ TEST_P(ManagerWith, ReportsAComponentThatDiesAtEveryStart) {
   EXPECT_EQ(robot.count("CameraDead is exhausted"), 1u) << transcript(robot);
 }
 
-TEST(Manager, StartsAComponentThatWasNeverThere) {
+// As with run --launch.
+TEST(Manager, StartsAComponentThatIsNotThereAndCountsAsSeen) {
   TestRobot robot(R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
 RULE Missing
@@ -406,6 +407,7 @@ RULE Missing
       ADAPTATION camera start 5
 )");
   robot.add("camera", {}, "/rgb").process = ProcessState::kGone;
+  robot.manager().remember(KnownRobot{{{"camera", "/camera", {}}}, {"/rgb"}});
   robot.run_for(4s);
   EXPECT_TRUE(robot.said.empty()) << "discovery may still be under way" << transcript(robot);
   robot.run_for(10s);

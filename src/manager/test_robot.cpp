@@ -24,6 +24,7 @@ void TestRobot::replace_manager(std::unique_ptr<Manager> manager) {
   for (const auto& [name, component] : components_) {
     if (component.process == ProcessState::kRunning) appear(component);
   }
+  show_ends();
 }
 
 TestRobot::Component& TestRobot::add(const std::string& name, std::vector<std::string> needs,
@@ -38,16 +39,23 @@ TestRobot::Component& TestRobot::add(const std::string& name, std::vector<std::s
 
 void TestRobot::discover() {
   for (const auto& [name, component] : components_) appear(component);
+  show_ends();
+  step();
+}
+
+void TestRobot::show_ends() {
+  const auto show = [this](const std::string& node, EndpointKind kind, const std::string& topic) {
+    if (components_.at(node).process == ProcessState::kRunning)
+      observe(EndpointAppeared{"/" + node, kind, topic});
+  };
   for (const auto& [name, component] : components_) {
     for (const auto* producers : {&component.needs, &component.hears}) {
       for (const std::string& producer : *producers) {
-        const std::string topic = "/from_" + producer;
-        observe(EndpointAppeared{"/" + producer, EndpointKind::kPublisher, topic});
-        observe(EndpointAppeared{"/" + name, EndpointKind::kSubscriber, topic});
+        show(producer, EndpointKind::kPublisher, "/from_" + producer);
+        show(name, EndpointKind::kSubscriber, "/from_" + producer);
       }
     }
   }
-  step();
 }
 
 void TestRobot::appear(const Component& component) {

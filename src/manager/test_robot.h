@@ -119,6 +119,7 @@ class TestRobot {
   void change_lifecycle(Component& component, const Command& command, Transition transition);
   void start(Component& component, const Command& command);
   void appear(const Component& component);
+  void show_ends();  // of what runs
   void later(Duration delay, std::function<void()> action);
 
   std::unique_ptr<RuleSet> rules_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "knowledge/named.h"
+
 namespace culprit {
 namespace {
 
@@ -49,7 +51,6 @@ Monitor::Monitor(Knowledge& knowledge, Time start, Time settled)
           if (input.kind == Kind::kPhi)
             derived_[i].deviations.push_back(monitor::PhiAccrual::deviations(threshold));
         }
-        deadlines_.set(i, settled_);
         break;
       case Kind::kSignal:
       case Kind::kMean:
@@ -73,6 +74,8 @@ Monitor::Monitor(Knowledge& knowledge, Time start, Time settled)
         break;
     }
   }
+  for (std::size_t t = 0; t < rules.topics.size(); ++t)
+    topic_ids_.emplace(rules.topics[t].name, TopicId(t));
   for (std::size_t s = 0; s < rules.signals.size(); ++s) {
     if (const auto* parameter = std::get_if<ParameterId>(&rules.signals[s].source)) {
       parameter_signals_[parameter->index].push_back(SignalId(s));
@@ -105,8 +108,46 @@ void Monitor::advance(Time now) {
       update(InputId(*due), now);
       continue;
     }
-    for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c)
-      update_alive(ComponentId(c), now, "its node left the graph");
+    for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
+      const ComponentState& state = knowledge_.components[ComponentId(c)];
+      const char* absence =
+          state.node_seen == kLongAgo ? "it is not there any more" : "its node left the graph";
+      update_alive(ComponentId(c), now,
+                   state.process_remark.empty() ? absence : state.process_remark);
+    }
+    if (*due > knowledge_.rules.inputs.size()) continue;
+    if (!is_deaf_) {
+      tell_never_seen(now);
+    } else {
+      deadlines_.set(*due, later(now, kGrace));
+    }
+  }
+}
+
+void Monitor::remember(const KnownRobot& known) {
+  for (const KnownRobot::Part& part : known.parts) {
+    const auto& components = knowledge_.rules.components;
+    const auto fits = [&](const Component& c) {
+      return c.name == part.component && (c.node.empty() || c.node == part.node);
+    };
+    const auto component = std::find_if(components.begin(), components.end(), fits);
+    if (component == components.end()) continue;
+    const ComponentId id(static_cast<std::size_t>(component - components.begin()));
+    knowledge_.sightings.note(id, start_);
+    knowledge_.graph.remember(id, part.ends);
+  }
+  for (const std::string& name : known.topics) {
+    const auto topic = topic_ids_.find(name);
+    if (topic != topic_ids_.end()) see(topic->second, start_);
+  }
+}
+
+void Monitor::tell_never_seen(Time at) {
+  for (const Named& named : named_by_rules(knowledge_)) {
+    if (named.was_seen) continue;
+    if (const auto* component = std::get_if<ComponentId>(&named.what))
+      knowledge_.components[*component].is_missed = true;
+    knowledge_.tell(at, NeverSeen{named.what, nearest_name(named.what, knowledge_)});
   }
 }
 

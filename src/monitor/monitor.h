@@ -8,10 +8,13 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "knowledge/deadlines.h"
 #include "knowledge/knowledge.h"
+#include "knowledge/known_robot.h"
 #include "knowledge/past.h"
 #include "monitor/phi_accrual.h"
 #include "monitor/sliding_count.h"
@@ -30,13 +33,17 @@ class Monitor {
   // Participants announce themselves every 3 s.
   static constexpr Duration kGrace = std::chrono::seconds(5);
 
-  // `knowledge` must outlive the monitor. Watching begins at `start`. Until `settled`, what was not
-  // seen is unknown: it may still be discovered. From then on it is absent: a component that is not
-  // there is not alive, a topic that never spoke is silent.
+  // `knowledge` must outlive the monitor. Watching begins at `start`. What was never seen
+  // (knowledge/sightings.h) is unknown; when `settled`, that is told. What an earlier run saw may
+  // still be discovered until `settled`, from then on it is absent: a component that is not there
+  // is not alive, a topic is silent. A topic that is seen later has as long to speak, from when its
+  // publisher came.
   Monitor(Knowledge& knowledge, Time start, Time settled);
 
   // What earlier processes of culprit knew of lifecycles. Before the first observation.
   void remember(const Past& past);
+  // What they saw. Before the first observation.
+  void remember(const KnownRobot& known);
 
   // Takes in an observation as of `at`, which never goes back.
   void observe(const Observation& observation, Time at);
@@ -108,6 +115,11 @@ class Monitor {
   Slot rate(InputId id, Time now);
   Slot phi(InputId id, Time now) const;
 
+  void see(TopicId topic, Time at);
+  // From when on a topic that has not spoken is silent; kNever while it was not seen.
+  Time silent_from(TopicId topic) const;
+  void tell_never_seen(Time at);
+
   void forget_process(ComponentId component, Time at);
   void update_alive(ComponentId component, Time at, const std::string& remark);
   void update_alive_inputs(ComponentId component, const Slot& value);
@@ -122,6 +134,7 @@ class Monitor {
   Time graced_ = kLongAgo;  // until then nodes may have to be discovered anew
   bool is_deaf_ = false;
   std::vector<Topic> topics_;
+  std::unordered_map<std::string, TopicId> topic_ids_;
   std::vector<Signal> signals_;
   std::vector<Derived> derived_;
   std::vector<std::vector<InputId>> component_inputs_;

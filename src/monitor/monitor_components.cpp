@@ -13,10 +13,12 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
   knowledge_.graph.node_appeared(seen.node);
   const auto component = knowledge_.graph.component_of(seen.node);
   if (!component) return;
+  knowledge_.sightings.note(*component, at);
   ComponentState& state = knowledge_.components[*component];
   const bool same_process = seen.pid != 0 && seen.pid == state.node_pid && state.in_graph;
   if (!same_process) forget_process(*component, at);
   state.in_graph = true;
+  state.is_missed = false;
   state.node_seen = at;
   state.node_pid = seen.pid;
   state.missed_probes = 0;
@@ -37,8 +39,11 @@ void Monitor::on(Time, const NamesakesSeen& seen) {
   if (component) knowledge_.components[*component].namesakes = seen.others;
 }
 
-void Monitor::on(Time, const EndpointAppeared& seen) {
+void Monitor::on(Time at, const EndpointAppeared& seen) {
   knowledge_.graph.endpoint_appeared(seen.node, seen.kind, seen.name);
+  if (seen.kind != EndpointKind::kPublisher) return;
+  const auto topic = topic_ids_.find(seen.name);
+  if (topic != topic_ids_.end()) see(topic->second, at);
 }
 
 void Monitor::on(Time, const EndpointVanished& seen) {
@@ -68,7 +73,8 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
 void Monitor::on(Time at, const ProcessSeen& seen) {
   ComponentState& state = knowledge_.components[seen.component];
   // A word about a process that the node no longer runs in says nothing about the node.
-  const bool is_other = seen.pid != 0 && state.node_pid != 0 && seen.pid != state.node_pid;
+  const int present = state.node_pid != 0 ? state.node_pid : state.pid;
+  const bool is_other = seen.pid != 0 && seen.pid != present;
   if (is_other && state.in_graph && seen.state != ProcessState::kRunning) return;
   state.process = seen.state;
   state.pid = seen.pid;
@@ -108,6 +114,7 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   ComponentState& state = knowledge_.components[component];
   const bool is_alive = state.in_graph && state.process == ProcessState::kRunning &&
                         state.missed_probes < kMissedProbes;
+  if (!knowledge_.sightings.has(component)) return;        // it may be a name that nobody has
   if (!is_alive && !state.alive && at < settled_) return;  // it may still be discovered
   const bool may_be_unheard = is_deaf_ || at < graced_;
   if (!is_alive && may_be_unheard && state.process == ProcessState::kRunning) {
@@ -115,14 +122,11 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
     return update_alive_inputs(component, Slot());
   }
   if (state.alive == is_alive) return;
-  const bool was_known = state.alive.has_value();
   state.alive = is_alive;
   if (is_alive) {
     knowledge_.tell(at, ComponentFound{component, state.node_pid});
   } else {
-    knowledge_.tell(
-        at, ComponentLost{component,
-                          was_known || state.node_seen != kLongAgo ? remark : "it was never seen"});
+    knowledge_.tell(at, ComponentLost{component, remark});
   }
   update_alive_inputs(component, Slot::of(is_alive));
 }

@@ -154,6 +154,7 @@ TEST(Monitor, EvaluatesNothingWhileATopicIsHealthy) {
 
 TEST(Monitor, TakesATopicThatNeverSpokeForSilentOnceDiscoveryIsOver) {
   Watched watched(rule("age(/t) > 1s"));
+  watched.observe(0s, EndpointAppeared{"/c", EndpointKind::kPublisher, "/t"});
   watched.monitor.advance(Time(4s));
   EXPECT_FALSE(watched.knowledge.signals[InputId(0)].known);
   watched.monitor.advance(Time(5s));

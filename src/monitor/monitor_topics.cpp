@@ -18,6 +18,7 @@ using monitor::usual_latency;
 using monitor::usual_silence;
 
 void Monitor::on(Time at, const SampleArrived& seen) {
+  knowledge_.sightings.note(seen.topic, at);
   Topic& topic = topics_[seen.topic.index];
   if (!topic.first) topic.first = at;
   SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(seen.topic);
@@ -38,17 +39,29 @@ void Monitor::on(Time at, const SampleArrived& seen) {
   }
 }
 
+void Monitor::see(TopicId topic, Time at) {
+  if (!knowledge_.sightings.note(topic, at)) return;
+  for (const InputId id : topics_[topic.index].inputs) deadlines_.set(id.index, silent_from(topic));
+}
+
+Time Monitor::silent_from(TopicId topic) const {
+  const auto first = knowledge_.sightings.first(topic);
+  return first ? later(std::max(*first, start_), settled_ - start_) : kNever;
+}
+
 Slot Monitor::age(InputId id, Time now) const {
-  const Topic& topic = topics_[knowledge_.rules[id].topic.index];
-  if (topic.last) return Slot::of(now - heard_since(*topic.last));
-  return now >= settled_ ? Slot::of(now - heard_since(start_)) : Slot();
+  const TopicId topic = knowledge_.rules[id].topic;
+  const auto& last = topics_[topic.index].last;
+  if (last) return Slot::of(now - heard_since(*last));
+  if (now < silent_from(topic)) return {};
+  return Slot::of(now - heard_since(std::max(*knowledge_.sightings.first(topic), start_)));
 }
 
 Slot Monitor::rate(InputId id, Time now) {
   const Input& input = knowledge_.rules[id];
   const Topic& topic = topics_[input.topic.index];
   const bool window_is_full = topic.first && later(heard_since(*topic.first), input.window) <= now;
-  if (topic.first ? !window_is_full : now < settled_) return {};
+  if (topic.first ? !window_is_full : now < silent_from(input.topic)) return {};
   derived_[id.index].count.advance(now);
   return Slot::of(derived_[id.index].count.rate());
 }
@@ -62,7 +75,7 @@ Slot Monitor::phi(InputId id, Time now) const {
 Time Monitor::next_crossing(InputId id, Time now) const {
   const Input& input = knowledge_.rules[id];
   const Topic& topic = topics_[input.topic.index];
-  if (!topic.last && now < settled_) return settled_;
+  if (!topic.last && now < silent_from(input.topic)) return silent_from(input.topic);
   if (input.readers.empty()) return kNever;
   if (!input.only_compared && input.kind != Kind::kRate) return later(now, knowledge_.rules.cycle);
   switch (input.kind) {
@@ -78,7 +91,8 @@ Time Monitor::next_crossing(InputId id, Time now) const {
 }
 
 Time Monitor::next_age(const Input& input, Time now) const {
-  const Time since = heard_since(topics_[input.topic.index].last.value_or(start_));
+  const Time since = heard_since(topics_[input.topic.index].last.value_or(
+      std::max(*knowledge_.sightings.first(input.topic), start_)));
   for (const double threshold : input.thresholds) {
     // One nanosecond on: `age > threshold` must hold then.
     const Time crossing = later(since, from_seconds(threshold) + Duration(1));

@@ -17,6 +17,7 @@ Result run_test(const RuleSet& rules, const Suite& suite, const Test& test,
   Manager::Options options;
   options.governor = restraint();
   Manager manager(rules, std::move(planner), options);
+  manager.remember(robot.declared());
   Result result{test.name, test.length, {}, {}};
 
   Runtime runtime(manager, robot);

@@ -128,6 +128,24 @@ void ScriptedRobot::set_default_parameters() {
   }
 }
 
+KnownRobot ScriptedRobot::declared() const {
+  const auto is_absent = [this](ComponentId id) { return !components_[id.index].is_there; };
+  KnownRobot known;
+  for (std::size_t c = 0; c < rules_.components.size(); ++c) {
+    if (!is_absent(ComponentId(c)))
+      known.parts.push_back({rules_.components[c].name, components_[c].node, {}});
+  }
+  for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
+    const auto voice = std::find_if(voices_.begin(), voices_.end(), [&](const Voice& v) {
+      return v.subject == Subject(TopicId(t));
+    });
+    const bool has_tellers = voice != voices_.end() && !voice->tellers.empty();
+    if (!has_tellers || !std::all_of(voice->tellers.begin(), voice->tellers.end(), is_absent))
+      known.topics.push_back(rules_.topics[t].name);
+  }
+  return known;
+}
+
 // ---- time
 
 void ScriptedRobot::observe(Time until, std::vector<Observation>& observations) {

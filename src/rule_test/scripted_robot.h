@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "knowledge/event.h"
+#include "knowledge/known_robot.h"
 #include "robot/robot.h"
 #include "rule_test/scenario.h"
 
@@ -34,6 +35,10 @@ class ScriptedRobot : public Robot {
   Time now() const override { return now_; }
   void observe(Time until, std::vector<Observation>& observations) override;
   void execute(const Command& command) override;
+
+  // What counts as seen: all that the rules name, but components that are absent, and topics that
+  // only they publish.
+  KnownRobot declared() const;
 
   // What the manager did. Tells the robot which strategy a command serves, and when an adaptation
   // took effect.

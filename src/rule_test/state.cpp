@@ -59,6 +59,7 @@ Watched watch(const State& state, const RuleSet& rules) {
   Manager::Options options;
   options.governor = restraint();
   Manager manager(rules, std::make_unique<Onlooker>(), options);
+  manager.remember(robot.declared());
   Runtime runtime(manager, robot);
   const std::atomic<bool> never = false;
   runtime.run(never, Time{moment_of(state, rules)});

@@ -101,6 +101,12 @@ struct AsJson {
   Json operator()(const ComponentFound& e) const {
     return {{"kind", "found"}, {"component", rules[e.component].name}};
   }
+  Json operator()(const NeverSeen& e) const {
+    Json json{{"kind", "never_seen"}};
+    if (const auto* component = std::get_if<ComponentId>(&e.what))
+      json["component"] = rules[*component].name;
+    return json;
+  }
   Json operator()(const LifecycleIntended& e) const {
     return {{"kind", "lifecycle"}, {"component", rules[e.component].name}};
   }

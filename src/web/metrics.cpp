@@ -62,7 +62,7 @@ void Metrics::watch(const Manager& manager) {
   }
   for (const std::string_view result : kPlanResults)
     counts_.plans.try_emplace(label("result", result), 0);
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(Restraint::kEvidence); ++i)
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(Restraint::kNeverSeen); ++i)
     counts_.holds.try_emplace(label("restraint", word_of(static_cast<Restraint>(i))), 0);
   for (const char* result : {"accepted", "refused"})
     counts_.orders.try_emplace(label("result", result), 0);

@@ -1,0 +1,25 @@
+// What the rules name of the robot, and whether the robot has it as far as was seen.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+struct Named {
+  Nameable what;
+  // Components and topics: sightings.h. A signal of a topic's field: its topic was. Other signals,
+  // parameters and diagnostics: they were read.
+  bool was_seen = false;
+};
+
+// Every component, and what the triggers and conditions read, each once.
+std::vector<Named> named_by_rules(const Knowledge& knowledge);
+
+// What was probably meant by the name of a component or a topic that was not seen: the full name of
+// a node that is there, or of a topic that is published. Empty if nothing is near.
+std::string nearest_name(const Nameable& name, const Knowledge& knowledge);
+
+}  // namespace culprit

@@ -1,0 +1,191 @@
+// Absent is not dead: nothing is done about what was never seen.
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+std::string camera_rules(const std::string& trigger, const std::string& remedy = "redeploy") {
+  return "COMPONENT camera NODE /front/camera LAUNCH \"camera\"\n"
+         "RULE Dead\n  POLICIES ERROR\n  TRIGGER " +
+         trigger + "\n    STRATEGY s 90 10\n      ADAPTATION camera " + remedy + " 2\n";
+}
+
+// A node that publishes, and is well.
+void show_camera(TestRobot& robot) {
+  robot.add("camera");
+  robot.tell(NodeAppeared{"/front/camera", 7});
+  robot.tell(EndpointAppeared{"/front/camera", EndpointKind::kPublisher, "/front/rgb_camera"});
+}
+
+TEST(NeverSeen, ATypingMistakeInATopicEndsNobody) {
+  for (const char* trigger : {"age(/front/rgb_camra) > 500ms", "rate(/front/rgb_camra) < 1",
+                              "!(rate(/front/rgb_camra) > 1)"}) {
+    TestRobot robot(camera_rules(trigger));
+    show_camera(robot);
+    robot.run_for(60s);
+    EXPECT_TRUE(robot.asked.empty()) << trigger << transcript(robot);
+    EXPECT_EQ(robot.count("/front/rgb_camra was never seen: no node publishes it; did you mean "
+                          "'/front/rgb_camera'?"),
+              1u)
+        << transcript(robot);
+  }
+}
+
+TEST(NeverSeen, ATypingMistakeInANodeStartsNoSecondOne) {
+  TestRobot robot(
+      "COMPONENT camera NODE /front/camra LAUNCH \"camera\"\n"
+      "RULE Dead\n  POLICIES ERROR\n  TRIGGER !alive(camera) || age(/front/rgb_camera) > 500ms\n"
+      "    STRATEGY s 90 10\n      ADAPTATION camera redeploy 2\n");
+  show_camera(robot);
+  robot.run_for(60s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(robot.count("camera was never seen: the robot has no node /front/camra; did you mean "
+                        "'/front/camera'?"),
+            1u)
+      << transcript(robot);
+  EXPECT_EQ(robot.count("Dead.s is held back: camera was never seen"), 1u) << transcript(robot);
+}
+
+// As with a wrong ROS_DOMAIN_ID.
+TEST(NeverSeen, OnAnEmptyRobotNothingIsStarted) {
+  TestRobot robot(
+      camera_rules("!alive(camera) || age(/front/rgb) > 1s || level(lens) > 1 || "
+                   "blur > 1 || lifecycle(camera) != \"active\"",
+                   "start"));
+  robot.run_for(4s);
+  EXPECT_TRUE(robot.said.empty()) << "discovery may still be under way" << transcript(robot);
+  robot.run_for(60s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(robot.count("was never seen"), 4u) << transcript(robot);
+  robot.order({1, "Ann", "", RunStrategy{StrategyId(0)}});
+  EXPECT_TRUE(robot.was_asked("camera: start process")) << "a person may ask for it";
+}
+
+TEST(NeverSeen, ANodeThatComesLateIsNotStartedASecondTime) {
+  TestRobot robot(camera_rules("!alive(camera) || age(/front/rgb_camera) > 500ms"));
+  robot.run_for(6s);
+  show_camera(robot);
+  robot.run_for(4s);  // to open its device
+  for (int i = 0; i < 100; ++i) {
+    robot.tell(SampleArrived{TopicId(0), 1});
+    robot.run_for(100ms);
+  }
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  robot.run_for(1s);
+  EXPECT_TRUE(robot.was_asked("camera: stop process")) << "now it is silent" << transcript(robot);
+}
+
+TEST(NeverSeen, APublisherThatComesLateAndNeverSpeaksIsSilent) {
+  TestRobot robot(camera_rules("age(/front/rgb_camera) > 500ms"));
+  robot.run_for(6s);
+  show_camera(robot);
+  robot.run_for(4s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  robot.run_for(2s);
+  EXPECT_TRUE(robot.was_asked("camera: stop process")) << transcript(robot);
+}
+
+TEST(NeverSeen, ARequiredComponentIsToldAndNothingElse) {
+  TestRobot robot("COMPONENT lidar NODE /lidar LAUNCH \"lidar\" REQUIRED\n");
+  robot.run_for(60s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(robot.count("lidar is REQUIRED and was never seen: the robot has no node /lidar"), 1u)
+      << transcript(robot);
+}
+
+TEST(NeverSeen, AFailureThatNeedsNoMoreThanWhatIsSeenIsActedOn) {
+  TestRobot robot(camera_rules("age(/front/rgb_camra) > 500ms || blur > 1"));
+  show_camera(robot);
+  robot.signal("blur", Value(2.0));
+  robot.run_for(2s);
+  EXPECT_TRUE(robot.was_asked("camera: stop process")) << transcript(robot);
+}
+
+// Five cameras, or a camera and four that each need the one before.
+struct Five {
+  explicit Five(bool is_chain) : robot(rules(), std::make_unique<BayesPlanner>(), options()) {
+    std::string last;
+    for (const char* c : {"a", "b", "c", "d", "e"}) {
+      const std::string name = c;
+      robot.add(name, is_chain && !last.empty() ? std::vector{last} : std::vector<std::string>{},
+                "/t" + name);
+      last = name;
+    }
+    robot.discover();
+    robot.run_for(2s);
+  }
+
+  static std::string rules() {
+    std::string text;
+    for (const char* c : {"a", "b", "c", "d", "e"}) {
+      const std::string name = c;
+      text += "COMPONENT " + name + " NODE /" + name + " LAUNCH \"x\"\nRULE Dead_" + name +
+              "\nPOLICIES ERROR\nTRIGGER age(/t" + name +
+              ") > 300ms\nSTRATEGY redeploy 90 10\nADAPTATION " + name + " redeploy 2\n";
+    }
+    return text;
+  }
+  static Manager::Options options(Time start = {}) {
+    Manager::Options options;
+    options.governor.storm.share = 0.6;
+    options.start = start;
+    return options;
+  }
+
+  // culprit and these die together; then another culprit begins.
+  void kill_with_culprit(const std::vector<const char*>& names) {
+    const KnownRobot known = robot.manager().knowledge().known_robot();
+    for (const char* name : names) robot[name].process = ProcessState::kGone;
+    auto manager = std::make_unique<Manager>(robot.rules(), std::make_unique<BayesPlanner>(),
+                                             options(robot.now));
+    manager->remember(known);
+    robot.replace_manager(std::move(manager));
+    for (const char* name : names) {
+      const ComponentId id(static_cast<std::size_t>(*name - 'a'));
+      robot.tell(ProcessSeen{id, ProcessState::kGone, robot[name].pid, "it ended"});
+    }
+  }
+
+  TestRobot robot;
+};
+
+TEST(KnownRobot, WhatDiedWithCulpritIsBroughtBack) {
+  Five five(false);
+  five.kill_with_culprit({"a", "b", "c", "d"});
+  five.robot.run_for(20s);
+  EXPECT_EQ(five.robot.count("a person must look"), 0u) << transcript(five.robot);
+  EXPECT_EQ(five.robot.count("a is lost: it ended"), 1u) << transcript(five.robot);
+  for (const char* c : {"a", "b", "c", "d", "e"})
+    EXPECT_TRUE(five.robot.works(c)) << c << transcript(five.robot);
+}
+
+TEST(KnownRobot, TellsWhoNeedsWhatDiedWithCulprit) {
+  Five five(true);
+  five.kill_with_culprit({"a", "b", "c"});
+  five.robot.run_for(20s);
+  for (const char* c : {"a", "b", "c", "d", "e"})
+    EXPECT_TRUE(five.robot.works(c)) << c << transcript(five.robot);
+  EXPECT_FALSE(five.robot.was_asked("d: ")) << transcript(five.robot);
+  EXPECT_FALSE(five.robot.was_asked("e: ")) << transcript(five.robot);
+}
+
+TEST(KnownRobot, IsNotSeenUnderAnotherNode) {
+  TestRobot robot(camera_rules("!alive(camera)"));
+  robot.manager().remember(KnownRobot{{{"camera", "/camera", {}}}, {}});
+  robot.run_for(60s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+}
+
+TEST(Storm, ProcessesThatAreKnownToBeDeadAreNone) {
+  Five five(false);
+  for (const char* c : {"a", "b", "c", "d"}) five.robot.kill(c);
+  five.robot.run_for(20s);
+  EXPECT_EQ(five.robot.count("a person must look"), 0u) << transcript(five.robot);
+  for (const char* c : {"a", "b", "c", "d", "e"})
+    EXPECT_TRUE(five.robot.works(c)) << c << transcript(five.robot);
+}
+
+}  // namespace
+}  // namespace culprit::test
