@@ -16,14 +16,27 @@
 namespace culprit::cli {
 namespace {
 
-ros2::Severity severity_of(const Event& event) {
-  if (std::holds_alternative<RuleExhausted>(event.what) ||
+bool is_required(const ComponentId* component, const RuleSet& rules) {
+  return component != nullptr && rules[*component].is_required;
+}
+
+// A REQUIRED component that is not there.
+bool misses_what_is_required(const Event& event, const RuleSet& rules) {
+  if (const auto* lost = std::get_if<ComponentLost>(&event.what))
+    return is_required(&lost->component, rules);
+  const auto* unseen = std::get_if<NeverSeen>(&event.what);
+  return unseen != nullptr && is_required(std::get_if<ComponentId>(&unseen->what), rules);
+}
+
+ros2::Severity severity_of(const Event& event, const RuleSet& rules) {
+  if (misses_what_is_required(event, rules) || std::holds_alternative<RuleExhausted>(event.what) ||
       std::holds_alternative<LastResortReached>(event.what) ||
       std::holds_alternative<FailureFlaps>(event.what) ||
       std::holds_alternative<StormBegan>(event.what) ||
       std::holds_alternative<JudgementSuspended>(event.what))
     return ros2::Severity::kError;
   const bool is_bad = std::holds_alternative<FailureDetected>(event.what) ||
+                      std::holds_alternative<NeverSeen>(event.what) ||
                       std::holds_alternative<StrategyFailed>(event.what) ||
                       std::holds_alternative<ComponentLost>(event.what) ||
                       std::holds_alternative<AdaptationFailed>(event.what) ||
@@ -44,7 +57,9 @@ std::vector<Observation> discover(LiveRobot& robot, const std::atomic<bool>& sto
   return seen;
 }
 
-void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Observation>& seen) {
+// What is started so was asked for: it counts as seen.
+void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Observation>& seen,
+                    KnownRobot& known) {
   ComponentBinding binding(rules);
   std::vector<bool> is_there(rules.components.size());
   for (const Observation& o : seen) {
@@ -56,6 +71,7 @@ void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Ob
     if (is_there[c] || rules.components[c].launch.empty()) continue;
     say(stdout, "starting {}\n", rules.components[c].name);
     robot.supervisor().start({}, ComponentId(c));
+    known.parts.push_back({rules.components[c].name, rules.components[c].node, {}});
   }
 }
 
@@ -67,9 +83,15 @@ std::vector<std::string> claimed_nodes(const RuleSet& rules) {
   return nodes;
 }
 
+void add(KnownRobot& known, const KnownRobot& more) {
+  known.parts.insert(known.parts.end(), more.parts.begin(), more.parts.end());
+  known.topics.insert(known.topics.end(), more.topics.begin(), more.topics.end());
+}
+
 // The manager and its journal begin from the same record, so that a replay begins from it too.
 journal::Session session_of(const LiveSession::Frame& frame, const std::string& rules_text,
-                            const RuleSet& rules, Time start, const RunBeginning& beginning) {
+                            const RuleSet& rules, int domain, Time start,
+                            const RunBeginning& beginning) {
   const RunOptions& options = frame.options;
   journal::Session session;
   session.version = options.version;
@@ -79,6 +101,7 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   session.planner = options.planner.to_json();
   session.governor = options.governor.to_json();
   session.advises = frame.advises;
+  session.domain = domain;
   session.boot = journal::boot_id();
   session.start = start;
   session.settling = from_seconds(options.settle_seconds);
@@ -86,16 +109,19 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   session.learned = beginning.learned;
   session.interrupted = beginning.interrupted;
   session.past = journal::to_json(beginning.past, rules);
+  session.known_robot = journal::to_json(beginning.known_robot);
   session.is_paused = beginning.orders.pause.has_value();
   session.is_dry_run = beginning.orders.dry_run.has_value();
   session.orders_kept = frame.orders.is_kept();
   return session;
 }
 
-// Also those that left the graph while nobody looked on, because they were stopped, say.
-void adopt_again(LiveRobot& robot, const Past& past) {
+// Also those that left the graph while nobody looked on, because they were stopped, say. Not where
+// the rules name another node now.
+void adopt_again(LiveRobot& robot, const Past& past, const Sightings& sightings) {
   for (const Event& event : past) {
-    if (const auto* found = std::get_if<ComponentFound>(&event.what))
+    const auto* found = std::get_if<ComponentFound>(&event.what);
+    if (found != nullptr && sightings.has(found->component))
       robot.supervisor().adopt_again(found->component, found->pid, event.at);
   }
 }
@@ -155,6 +181,7 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
   std::unique_ptr<LiveSession> session(new LiveSession(frame, std::move(rules)));
   setup->link.claim = frame.lease;
   if (setup->link.claim) setup->link.claim->nodes = claimed_nodes(session->rules_);
+  session->domain_ = static_cast<int>(setup->link.participant.domain);
   setup->supervisor.robot =
       fmt::format("{}/{}", setup->link.participant.domain, session->rules_.robot);
   auto robot = LiveRobot::open(session->rules_, std::move(*setup));
@@ -165,7 +192,7 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
 
 RunBeginning LiveSession::look_back() {
   const auto path = frame_.options.journal_path(rules_);
-  if (frame_.records) return begin_journal(path, rules_, {robot_->now(), wall_now()});
+  if (frame_.records) return begin_journal(path, rules_, {robot_->now(), wall_now(), domain_});
   if (frame_.options.no_journal) return begin_without_journal(path, robot_->now());
   return {};
 }
@@ -191,15 +218,16 @@ void LiveSession::hold(RunBeginning& beginning) {
     beginning.past.push_back(std::move(silence));
 }
 
-void LiveSession::begin(const std::atomic<bool>& stop) {
+void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_robot) {
   RunBeginning beginning = look_back();
+  add(beginning.known_robot, known_robot);
   hold(beginning);
   for (const std::string& finding : beginning.findings) say(stdout, "culprit: {}\n", finding);
   std::vector<Observation> seen;
   const bool is_held = beginning.orders.pause || beginning.orders.dry_run;
   if (frame_.options.launch && !frame_.advises && !is_held) {
     seen = discover(*robot_, stop);
-    launch_missing(*robot_, rules_, seen);
+    launch_missing(*robot_, rules_, seen, beginning.known_robot);
   }
   const auto go_on_with = [&](const journal::StandingOrders::Said& said, auto order) {
     seen.push_back({robot_->now(), Order{0, said.author, said.reason, order}});
@@ -215,6 +243,7 @@ void LiveSession::begin(Handover before) {
   // What the manager knew is known, whether or not the journal could be written.
   beginning.learned = std::move(before.learned);
   beginning.orders = frame_.orders.orders();
+  add(beginning.known_robot, before.known_robot);
   manage(std::move(beginning), std::move(before.orders), std::move(before.occasion));
 }
 
@@ -223,12 +252,13 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   preflight_ =
       std::make_unique<Preflight>(frame_.options.rules, rules_text_, frame_.options.message_path,
                                   [](const std::string& lines) { say_text(stdout, lines); });
-  adopt_again(*robot_, beginning.past);
-  journal::Session session = session_of(frame_, rules_text_, rules_, robot_->now(), beginning);
+  journal::Session session =
+      session_of(frame_, rules_text_, rules_, domain_, robot_->now(), beginning);
   session.occasion = std::move(occasion);
   const Autonomy autonomy = frame_.advises ? Autonomy::kAdvise : Autonomy::kAct;
   manager_ = replay::manager_for(session, rules_, frame_.options.planner.planner(),
                                  {autonomy, frame_.governor});
+  adopt_again(*robot_, beginning.past, manager_->knowledge().sightings);
   if (frame_.records) {
     journal::Recorder::Options recorder;
     recorder.path = frame_.options.journal_path(rules_);
@@ -260,7 +290,7 @@ void LiveSession::tell(std::span<const Event> events) {
     const std::string text = line(event, rules_, frame_.start, colour);
     if (text.empty()) continue;
     say(stdout, "{}\n", text);
-    robot_->link().log(severity_of(event), describe(event, rules_));
+    robot_->link().log(severity_of(event, rules_), describe(event, rules_));
   }
   robot_->link().publish(health(manager_->knowledge()));
 }
@@ -324,7 +354,7 @@ bool LiveSession::is_adapting() const {
 
 LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string occasion) {
   end();
-  return {learned_by(manager_->knowledge()),
+  return {learned_by(manager_->knowledge()), known_robot(),
           standing_orders(*manager_, frame_.advises, next, robot_->now()), std::move(occasion)};
 }
 

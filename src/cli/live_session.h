@@ -37,6 +37,7 @@ class LiveSession {
   // What a session leaves to the next one.
   struct Handover {
     journal::Learned learned;
+    KnownRobot known_robot;
     std::vector<Observation> orders;  // of people, that still hold
     std::string occasion;             // why there is a next one
   };
@@ -44,8 +45,9 @@ class LiveSession {
   // Joins the robot's DDS domain. From then on what it shows is kept until the session begins.
   static Expected<std::unique_ptr<LiveSession>> open(const Frame& frame, LoadedRules rules);
 
-  // Takes over what the journal knows of the last run: at the beginning of a run.
-  void begin(const std::atomic<bool>& stop);
+  // Takes over what the journal knows of the last run, and `known_robot`: at the beginning of a
+  // run, or of another role.
+  void begin(const std::atomic<bool>& stop, const KnownRobot& known_robot = {});
   // Takes over from another session, which has ended.
   void begin(Handover before);
 
@@ -61,6 +63,8 @@ class LiveSession {
   Handover hand_over(const RuleSet& next, std::string occasion);
   // Likewise, but nothing goes on.
   void end();
+  // What was seen of the robot.
+  KnownRobot known_robot() const { return manager_->knowledge().known_robot(); }
 
   // Says it to people, wherever they look.
   void announce(const std::string& kind, const std::string& text);
@@ -92,6 +96,7 @@ class LiveSession {
   const Frame frame_;
   const RuleSet rules_;
   const std::string rules_text_;
+  int domain_ = 0;
   std::unique_ptr<LiveRobot> robot_;
   std::unique_ptr<Manager> manager_;
   std::unique_ptr<journal::Recorder> recorder_;

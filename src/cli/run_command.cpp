@@ -163,12 +163,13 @@ std::unique_ptr<LiveSession> in_role(const RoleOfCulprit& role, std::unique_ptr<
   orders.close();
   stage.enter(nullptr);
   LoadedRules rules = old->loaded_rules();
+  const KnownRobot known = old->known_robot();
   old->end();
   old.reset();
   take_role(frame, role.role());
   auto session = LiveSession::open(frame, std::move(rules));
   if (!session) return complain(session.error()), nullptr;
-  (*session)->begin(stopped);
+  (*session)->begin(stopped, known);
   (*session)->announce("role", role.reason());
   stage.enter(session->get());
   orders.open((*session)->rules(),

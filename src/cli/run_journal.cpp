@@ -15,9 +15,11 @@ void tell(const Recovery& recovery, const RuleSet& rules, std::vector<std::strin
   for (const Interrupted& each : recovery.interrupted) {
     const Strategy& strategy = rules[each.strategy];
     const std::string what = strategy.name + " for " + rules[strategy.rule].name;
-    if (recovery.was_other_boot) {
-      findings.push_back("the last run ended in the middle of " + what +
-                         "; the machine was started anew since, so nothing of it is left to do");
+    if (recovery.is_other_robot()) {
+      findings.push_back("the last run ended in the middle of " + what + "; " +
+                         (recovery.was_other_boot ? "the machine was started anew since"
+                                                  : "that was in another DDS domain") +
+                         ", so nothing of it is left to do");
     } else {
       findings.push_back("the last run ended in the middle of " + what +
                          " (last: " + rules[each.requests.back().command.component].name + ": " +
@@ -83,11 +85,12 @@ std::optional<Recovery> take_over(const journal::Reader& reader, const RuleSet& 
   }
   tell(*recovery, rules, beginning.findings);
   beginning.past = recovery->past;
+  beginning.known_robot = recovery->known_robot;
   std::erase_if(beginning.past, journal::is_about_silence);
   if (!learned->beliefs.empty())
     beginning.findings.push_back(
         fmt::format("what was learned of {} strategies is known", learned->beliefs.size()));
-  if (recovery->was_other_boot) return *recovery;
+  if (recovery->is_other_robot()) return *recovery;
   for (const Interrupted& each : recovery->interrupted)
     beginning.interrupted.push_back(journal::to_json(each, rules));
   return *recovery;

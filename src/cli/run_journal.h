@@ -14,6 +14,7 @@ struct RunBeginning {
   journal::Learned learned;
   journal::Json interrupted = journal::Json::array();
   Past past;  // without silences
+  KnownRobot known_robot;
   journal::StandingOrders orders;
   bool are_orders_kept = false;       // they stand in their file just so
   bool is_of_another = false;         // another culprit writes the journal, and the orders

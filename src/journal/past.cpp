@@ -216,7 +216,7 @@ Past still_counting(const Past& past, Time now, const RuleSet& rules) {
   return kept;
 }
 
-Past after_restart(const Past& past, Duration shift) {
+Past of_people(const Past& past, Duration shift) {
   Past kept;
   for (const Event& event : past) {
     if (order_of<Silence>(event) == nullptr && order_of<LiftSilence>(event) == nullptr) continue;

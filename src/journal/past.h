@@ -18,9 +18,9 @@ std::optional<Event> past_event(const Json& body, const RuleSet& rules);
 // Leaves out what does not count at `now` any more.
 Past still_counting(const Past& past, Time now, const RuleSet& rules);
 
-// Only what outlives a restart of the machine, whose clock then begins anew: silences. `shift` is
-// added to their times.
-Past after_restart(const Past& past, Duration shift);
+// Only what holds on another robot, and on this one after a restart of the machine, whose clock
+// then begins anew: silences. `shift` is added to their times.
+Past of_people(const Past& past, Duration shift);
 
 Json to_json(const Past& past, const RuleSet& rules);
 // Leaves out what `rules` does not have.

@@ -55,6 +55,7 @@ Recorder::Recorder(std::optional<Writer> writer, Options options, const Session&
       knowledge_(knowledge),
       rules_(knowledge.rules),
       writer_(std::move(writer)),
+      where_{session.domain, session.boot},
       session_(to_json(session)),
       known_(session.learned) {
   for (std::size_t s = 0; s < rules_.strategies.size(); ++s)
@@ -122,7 +123,11 @@ void Recorder::hand_over(Pending& step, std::span<const Command> commands,
            std::any_of(commands.begin(), commands.end(), changes_something) ||
            std::any_of(events.begin(), events.end(), is_order);
   }
-  hand_over(wait ? Urgency::kNow : decides ? Urgency::kSoon : Urgency::kNone);
+  if (auto robot = newly_known(step.now)) {
+    if (step.decided == nullptr) step.decided = std::make_unique<Decided>();
+    step.decided->robot = std::move(robot);
+  }
+  hand_over(wait ? Urgency::kNow : step.decided != nullptr ? Urgency::kSoon : Urgency::kNone);
   if (wait) wait_until_written();
 }
 
@@ -151,13 +156,28 @@ void Recorder::hand_over(Urgency urgency) {
   if (urgency_ == Urgency::kSoon) work_.notify_one();
 }
 
-std::unique_ptr<const Recorder::Decided> Recorder::decision_of(std::span<const Command> commands,
-                                                               std::span<const Event> events) {
+std::unique_ptr<Recorder::Decided> Recorder::decision_of(std::span<const Command> commands,
+                                                         std::span<const Event> events) {
   auto decision = std::make_unique<Decided>();
   decision->commands.assign(commands.begin(), commands.end());
   decision->events.assign(events.begin(), events.end());
   if (!events.empty()) decision->learned = changes();
   return decision;
+}
+
+std::optional<KnownRobot> Recorder::newly_known(Time now) {
+  const std::uint64_t changes = knowledge_.graph.changes() + knowledge_.sightings.count();
+  const bool is_old = robot_written_ != kLongAgo && later(robot_written_, kRobotAtLatest) <= now;
+  const bool was_looked_at =
+      robot_looked_at_ != kLongAgo && now < later(robot_looked_at_, kRobotPeriod);
+  if ((changes == robot_changes_ && !is_old) || was_looked_at) return std::nullopt;
+  robot_changes_ = changes;
+  robot_looked_at_ = now;
+  KnownRobot known = knowledge_.known_robot();
+  if (known == known_robot_ && !is_old) return std::nullopt;
+  robot_written_ = now;
+  known_robot_ = known;
+  return known;
 }
 
 void Recorder::wait_until_written() {
@@ -266,6 +286,10 @@ void Recorder::make_decision(std::int64_t wall, const Decided& decision) {
     asked_[command.id.number] = text_of(body, "text");
     add(kind::kIntent, wall, body);
   }
+  if (decision.robot) {
+    robot_ = robot_row(*decision.robot, where_);
+    add(kind::kRobot, wall, robot_);
+  }
   replace(unsaved_.learned, decision.learned);
   replace(known_, decision.learned);
 }
@@ -307,7 +331,8 @@ void Recorder::begin_session_anew(const std::filesystem::path& rows) {
   const std::int64_t wall = options_.wall_clock();
   std::optional<Recovery> known;
   if (const auto reader = rows.empty() ? Expected<Reader>(Error{}) : Reader::open(rows)) {
-    if (auto recovery = recover(*reader, rules_, {now_, wall})) known = std::move(*recovery);
+    if (auto recovery = recover(*reader, rules_, {now_, wall, where_.domain}))
+      known = std::move(*recovery);
   }
   // Without them nobody knows what is under way by now; what was at the beginning is not.
   Json interrupted = Json::array();
@@ -321,6 +346,9 @@ void Recorder::begin_session_anew(const std::filesystem::path& rows) {
   session_["learned"] = to_json(known_);
   session_["start"] = now_.time_since_epoch().count();
   session_["continued"] = true;
+  if (!robot_.is_null())
+    unsaved_.entries.insert(unsaved_.entries.begin(),
+                            {0, wall, std::string(kind::kRobot), to_text(robot_)});
   unsaved_.entries.insert(unsaved_.entries.begin(),
                           {0, wall, std::string(kind::kSession), to_text(session_)});
 }

@@ -22,6 +22,7 @@
 #include <thread>
 #include <unordered_map>
 
+#include "journal/known_robot.h"
 #include "journal/session.h"
 #include "journal/step_codec.h"
 #include "journal/writer.h"
@@ -43,6 +44,10 @@ class Recorder {
   // How long, and how many, steps that decide nothing are kept before they are handed over.
   static constexpr Duration kKept = std::chrono::milliseconds(100);
   static constexpr std::size_t kMaxKept = 16;
+  // What is known of the robot is written once it changed, and at the latest after so long: old
+  // rows are dropped.
+  static constexpr Duration kRobotPeriod = std::chrono::seconds(1);
+  static constexpr Duration kRobotAtLatest = std::chrono::hours(1);
   static constexpr Duration kRetry = std::chrono::seconds(1);
   // How long an action waits for a disk that does not answer.
   static constexpr Duration kPatience = std::chrono::seconds(2);
@@ -87,6 +92,7 @@ class Recorder {
     std::vector<Command> commands;
     std::vector<Event> events;
     Learned learned;
+    std::optional<KnownRobot> robot;
   };
   // One line of the cache: between two steps of a robot at rest, others use the cache, and each
   // line that has to be fetched anew is felt in what a step takes.
@@ -94,7 +100,7 @@ class Recorder {
     Time now{};
     std::int64_t wall = 0;
     std::vector<Observation> observations;
-    std::unique_ptr<const Decided> decided;
+    std::unique_ptr<Decided> decided;
     bool is_end = false;
   };
   // Places are used again with the memory that their observations had.
@@ -109,10 +115,12 @@ class Recorder {
   void hand_over(Pending& step, std::span<const Command> commands, std::span<const Event> events);
   enum class Urgency : std::uint8_t { kNone, kSoon, kNow };
   void hand_over(Urgency urgency);
-  std::unique_ptr<const Decided> decision_of(std::span<const Command> commands,
-                                             std::span<const Event> events);
+  std::unique_ptr<Decided> decision_of(std::span<const Command> commands,
+                                       std::span<const Event> events);
   void wait_until_written();
   Learned changes();
+  // Nothing if it was written.
+  std::optional<KnownRobot> newly_known(Time now);
   void run();
   void make_rows(const Pending& pending);
   void make_decision(std::int64_t wall, const Decided& decision);
@@ -133,6 +141,11 @@ class Recorder {
   // Of the manager's thread.
   std::vector<Belief> beliefs_;  // as written last
   std::vector<std::vector<Couplings::Learned>> couplings_;
+
+  KnownRobot known_robot_;  // as written last
+  std::uint64_t robot_changes_ = 0;
+  Time robot_looked_at_ = kLongAgo;
+  Time robot_written_ = kLongAgo;
 
   // All that a step without decisions touches, side by side.
   alignas(64) std::size_t kept_ = 0;
@@ -164,7 +177,9 @@ class Recorder {
   std::uint64_t gap_steps_ = 0;
   std::uint64_t gap_rows_ = 0;
   std::unordered_map<std::uint64_t, std::string> asked_;  // changes that wait for their outcome
+  Whereabouts where_;
   Json session_;
+  Json robot_;             // its row
   Learned known_;          // all, for a file that takes the place of this one
   bool is_begun_ = false;  // the session is in a file
   std::optional<Error> last_error_;

@@ -140,12 +140,31 @@ Duration shift_of_clock(const Entry& begin, Time robot_then, const Moment& now) 
   return (now.robot - robot_then) - Duration(now.wall - begin.at);
 }
 
+// The newest row says all.
+Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& where) {
+  const auto newest = journal.newest(kind::kRobot);
+  if (!newest) return Error{newest.error()};
+  if (!*newest) return KnownRobot{};
+  auto rows = journal.entries(Which::kReadable, (*newest)->id);
+  if (!rows) return Error{rows.error()};
+  Entry entry;
+  Hasher hasher;
+  const auto row = rows->next(entry);
+  if (!row) return Error{row.error()};
+  // What was seen must not be for others to say.
+  if (!rows->is_as_written(entry, hasher)) return KnownRobot{};
+  return known_robot_of(from_text(entry.body), where);
+}
+
 }  // namespace
 
 Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Moment& now) {
   Recovery recovery;
   const auto last = journal.newest(kind::kSession);
   if (!last) return Error{last.error()};
+  auto known_robot = find_known_robot(journal, {now.domain, boot_id()});
+  if (!known_robot) return Error{known_robot.error()};
+  recovery.known_robot = std::move(*known_robot);
   if (!*last) return recovery;
   recovery.had_run = true;
   auto rows = journal.entries(Which::kReadable, (*last)->id);
@@ -165,6 +184,7 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Mo
   if (!is_good()) return recovery;
   const Json begin = from_text((*last)->body);
   recovery.was_other_boot = text_of(begin, "boot") != boot_id();
+  recovery.was_other_domain = integer_of(begin, "domain", -1) != now.domain;
   recovery.orders_kept |= flag_of(begin, "orders_kept");
   Trail trail(rules, recovery.given_up);
   trail.begin_with(begin);
@@ -176,10 +196,10 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Mo
   recovery.is_paused = trail.is_paused();
   recovery.is_dry_run = trail.is_dry_run();
   const Time robot_then = Time(Duration(integer_of(begin, "start")));
+  const Duration shift =
+      recovery.was_other_boot ? shift_of_clock(**last, robot_then, now) : Duration::zero();
   recovery.past = still_counting(
-      recovery.was_other_boot ? after_restart(trail.past(), shift_of_clock(**last, robot_then, now))
-                              : trail.past(),
-      now.robot, rules);
+      recovery.is_other_robot() ? of_people(trail.past(), shift) : trail.past(), now.robot, rules);
   // Whoever stops culprit may stop the robot as well: what comes back then proves nothing.
   if (recovery.was_stopped) {
     std::erase_if(recovery.past, [](const Event& event) {

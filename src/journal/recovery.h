@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "journal/known_robot.h"
 #include "journal/past.h"
 #include "journal/reader.h"
 #include "journal/session.h"
@@ -15,21 +16,26 @@
 namespace culprit::journal {
 
 struct Recovery {
-  bool had_run = false;         // there was a run before
-  bool was_stopped = false;     // and it was asked to end
-  bool was_other_boot = false;  // the machine was started anew since
-  bool orders_kept = false;     // in a file of their own, which alone counts (standing_orders.h)
-  bool is_paused = false;       // by a person, who has to resume it; according to the rows
-  bool is_dry_run = false;      // likewise
+  bool had_run = false;           // there was a run before
+  bool was_stopped = false;       // and it was asked to end
+  bool was_other_boot = false;    // the machine was started anew since
+  bool was_other_domain = false;  // or it was another robot
+  bool is_other_robot() const { return was_other_boot || was_other_domain; }
+  bool orders_kept = false;  // in a file of their own, which alone counts (standing_orders.h)
+  bool is_paused = false;    // by a person, who has to resume it; according to the rows
+  bool is_dry_run = false;   // likewise
   std::vector<Interrupted> interrupted;
   std::vector<std::string> given_up;  // what was under way and cannot be finished, and why
   Past past;                          // of all runs before, on the robot's clock
+  KnownRobot known_robot;             // what they saw of this robot since the machine was started
 };
 
-// Two clocks at one moment. `wall`: nanoseconds since 1970.
+// Two clocks at one moment. `wall`: nanoseconds since 1970. And the DDS domain that is watched from
+// then on.
 struct Moment {
   Time robot;
   std::int64_t wall = 0;
+  int domain = 0;
 };
 
 // Errors: the file cannot be read.

@@ -68,6 +68,7 @@ Expected<Learned> learned_from_json(const Json& json) {
 Json to_json(const Session& session) {
   return {{"version", session.version},
           {"robot", session.robot},
+          {"domain", session.domain},
           {"boot", session.boot},
           {"start", session.start.time_since_epoch().count()},
           {"settling", session.settling.count()},
@@ -78,6 +79,7 @@ Json to_json(const Session& session) {
           {"learned", to_json(session.learned)},
           {"interrupted", session.interrupted},
           {"past", session.past},
+          {"known_robot", session.known_robot},
           {"paused", session.is_paused},
           {"dry_run", session.is_dry_run},
           {"orders_kept", session.orders_kept},
@@ -103,6 +105,7 @@ Expected<Session> session_from_json(const Json& json) {
   session.governor = json.value("governor", Json::object());
   session.advises = flag_of(json, "advises");
   session.continued = flag_of(json, "continued");
+  session.domain = static_cast<int>(integer_of(json, "domain", -1));
   session.boot = text_of(json, "boot");
   session.start = Time(Duration(integer_of(json, "start")));
   session.settling = Duration(integer_of(json, "settling"));
@@ -110,6 +113,7 @@ Expected<Session> session_from_json(const Json& json) {
   session.learned = *learned;
   session.interrupted = json.value("interrupted", Json::array());
   session.past = json.value("past", Json::array());
+  session.known_robot = json.value("known_robot", Json());
   session.is_paused = flag_of(json, "paused");
   session.is_dry_run = flag_of(json, "dry_run");
   session.orders_kept = flag_of(json, "orders_kept");

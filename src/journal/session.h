@@ -18,6 +18,7 @@ struct Session {
   Json governor = Json::object();  // likewise
   bool advises = false;
   bool continued = false;  // the run began in another file, which is gone: it cannot be replayed
+  int domain = 0;          // of DDS: another domain is another robot
   std::string boot;        // which start of the machine: the robot's clock counts from there
   Time start{};
   Duration settling{};
@@ -25,6 +26,7 @@ struct Session {
   Learned learned;                   // what was known at the start
   Json interrupted = Json::array();  // what the run before left behind (requests.h)
   Json past = Json::array();         // what earlier runs did that still counts (past.h)
+  Json known_robot;                  // what they saw of this robot (known_robot.h)
   // By a person's order in the run before, which goes on: said anew with the first step.
   bool is_paused = false;
   bool is_dry_run = false;

@@ -168,7 +168,10 @@ void Supervisor::adopt(ComponentId component, int pid, Time known) {
 
 void Supervisor::adopt_again(ComponentId component, int pid, Time known) {
   const bool has_ended = state_letter(pid).value_or('X') == 'Z';
-  if (!has_ended && was_there(pid, known)) adopt(component, pid, known);
+  if (!has_ended && was_there(pid, known)) return adopt(component, pid, known);
+  const std::lock_guard lock(mutex_);
+  if (is_gone(component))
+    inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, "it ended unseen"});
 }
 
 void Supervisor::watch(ComponentId component, int pid, Relation relation) {

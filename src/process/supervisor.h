@@ -75,7 +75,8 @@ class Supervisor {
   // another. Tells that it is gone if it is. Does nothing if it is watched already.
   void adopt(ComponentId component, int pid, Time known);
 
-  // Likewise. Says nothing if it is gone.
+  // Likewise, of a process that an earlier run of culprit knew, if it is not a zombie now. Says
+  // nothing where another process of the component is watched.
   void adopt_again(ComponentId component, int pid, Time known);
 
   // Ends every process that was started here, and waits until all are gone.

@@ -226,7 +226,7 @@ TEST(MemoryAfterARestartOfTheMachine, KeepsSilencesOnly) {
       {then, StrategyChosen{StrategyId(0), {}, {}, false}},
       {then, FailureDetected{RuleId(0)}},
   };
-  const Past after = journal::after_restart(past, Time(5s) - 20s - then);
+  const Past after = journal::of_people(past, Time(5s) - 20s - then);
   ASSERT_EQ(after.size(), 1u);
   EXPECT_EQ(after[0].at, Time(-15s));
   EXPECT_EQ(journal::still_counting(after, Time(44s), robot.rules()).size(), 1u);

@@ -1,5 +1,6 @@
 #include "replay/replay.h"
 
+#include "journal/known_robot.h"
 #include "journal/past.h"
 #include "journal/recorder.h"
 #include "journal/requests.h"
@@ -52,6 +53,7 @@ std::unique_ptr<Manager> manager_for(const journal::Session& session, const Rule
   auto manager = std::make_unique<Manager>(rules, std::move(planner), options);
   restore(*manager, session.learned, rules);
   manager->remember(journal::past_from_json(session.past, rules));
+  manager->remember(journal::known_robot_from_json(session.known_robot));
   if (!session.interrupted.is_array()) return manager;
   for (const journal::Json& each : session.interrupted) {
     if (auto interrupted = journal::interrupted_from_json(each, rules))

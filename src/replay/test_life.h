@@ -58,6 +58,7 @@ class Life {
     session.is_paused = recovery.is_paused;
     session.is_dry_run = recovery.is_dry_run;
     session.past = journal::to_json(recovery.past, robot.rules());
+    session.known_robot = journal::to_json(recovery.known_robot);
     for (const Interrupted& each : recovery.interrupted)
       session.interrupted.push_back(journal::to_json(each, robot.rules()));
     robot.replace_manager(manager_for(session, robot.rules(), std::make_unique<BayesPlanner>(),

@@ -41,7 +41,7 @@ std::string_view word_of(Restraint restraint) {
   constexpr std::string_view kWords[] = {"paused",    "quiet_period", "storm",    "graph_in_doubt",
                                          "interlock", "overall",      "approval", "silenced",
                                          "refused",   "component",    "class",    "backoff",
-                                         "identity",  "evidence"};
+                                         "identity",  "evidence",     "never_seen"};
   return kWords[static_cast<std::size_t>(restraint)];
 }
 
