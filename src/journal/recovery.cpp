@@ -184,7 +184,8 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Mo
   if (!is_good()) return recovery;
   const Json begin = from_text((*last)->body);
   recovery.was_other_boot = text_of(begin, "boot") != boot_id();
-  recovery.was_other_domain = integer_of(begin, "domain", -1) != now.domain;
+  // An older culprit did not write it.
+  recovery.was_other_domain = integer_of(begin, "domain", now.domain) != now.domain;
   recovery.orders_kept |= flag_of(begin, "orders_kept");
   Trail trail(rules, recovery.given_up);
   trail.begin_with(begin);

@@ -217,6 +217,26 @@ TEST_F(Memory, ReplaysWithTheRun) {
   EXPECT_GE(again.decisions, 3u);
 }
 
+TEST_F(Memory, OfWhatWasSeenIsOfOneDomain) {
+  run_until_said("camera is there");
+  robot["camera"].fault = "redeploy";
+  run_until_said("Silent detected");
+  life.reset();
+  const journal::Reader reader = value_of(journal::Reader::open(folder / "a.journal"));
+  journal::Moment now = test::moment(robot);
+  const auto here = value_of(journal::recover(reader, robot.rules(), now));
+  ASSERT_EQ(here.known_robot.parts.size(), 1u);
+  EXPECT_EQ(here.known_robot.parts[0].node, "/camera");
+  EXPECT_EQ(here.known_robot.topics, std::vector<std::string>{"/rgb"});
+  EXPECT_FALSE(here.is_other_robot());
+  EXPECT_FALSE(here.past.empty());
+  now.domain = 7;
+  const auto elsewhere = value_of(journal::recover(reader, robot.rules(), now));
+  EXPECT_EQ(elsewhere.known_robot, KnownRobot());
+  EXPECT_TRUE(elsewhere.is_other_robot());
+  EXPECT_TRUE(elsewhere.past.empty());
+}
+
 // The robot's clock began anew with the machine: at 5 s of it, a silence of 60 s is 20 s old.
 TEST(MemoryAfterARestartOfTheMachine, KeepsSilencesOnly) {
   const TestRobot robot(kRules);
