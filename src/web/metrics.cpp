@@ -38,9 +38,9 @@ std::string of_strategy(StrategyId id, const RuleSet& rules, std::string_view ou
 
 // What held an action back (knowledge/event.h).
 std::string_view word_of(Restraint restraint) {
-  constexpr std::string_view kWords[] = {"paused",    "quiet_period", "storm",    "graph_in_doubt",
-                                         "interlock", "overall",      "approval", "silenced",
-                                         "refused",   "component",    "class",    "backoff",
+  constexpr std::string_view kWords[] = {"paused",    "quiet_period", "storm",     "graph_in_doubt",
+                                         "interlock", "overall",      "approval",  "silenced",
+                                         "refused",   "component",    "class",     "backoff",
                                          "identity",  "evidence",     "never_seen"};
   return kWords[static_cast<std::size_t>(restraint)];
 }
