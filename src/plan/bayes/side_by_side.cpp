@@ -88,9 +88,9 @@ class Search {
       is_better = false;
       for (std::size_t side = 0; side < sides_.size(); ++side) {
         for (const std::size_t first : sides_[side].firsts) {
-          std::vector<std::size_t> begins = best_;
-          begins[side] = first;
-          is_better |= consider(begins);
+          std::vector<std::size_t> changed = best_;
+          changed[side] = first;
+          is_better |= consider(changed);
         }
       }
     }
