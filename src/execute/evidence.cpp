@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "execute/limits.h"
+
 namespace culprit {
 namespace {
 
@@ -66,6 +68,17 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
     if (heard)
       return rules[component].name + " runs and publishes " + rules[*heard].name +
              "; what is silent is not its";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> launch_of_the_unseen(const Strategy& strategy,
+                                                const Knowledge& knowledge) {
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    const ComponentId component = adaptation.component;
+    if (launches(adaptation) && !knowledge.sightings.has(component))
+      return knowledge.rules[component].name +
+             " was never seen; run --launch starts what is not there";
   }
   return std::nullopt;
 }

@@ -22,6 +22,11 @@ namespace culprit {
 std::optional<std::string> contradiction(const Strategy& strategy, const Knowledge& knowledge,
                                          Time now);
 
+// Why it would start what was never seen (knowledge/sightings.h); nothing if it does not. Absent is
+// not dead, and only people and `run --launch` start what was not there.
+std::optional<std::string> launch_of_the_unseen(const Strategy& strategy,
+                                                const Knowledge& knowledge);
+
 // Why nobody knows for sure which node the strategy would hit; nothing if that is clear. Requests
 // go to a name, signals to a process.
 std::optional<std::string> doubt_of_identity(const Strategy& strategy, const Knowledge& knowledge);

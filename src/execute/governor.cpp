@@ -203,21 +203,10 @@ std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) co
   if (auto held = restraint_by_person(id)) return held;
   if (auto doubt = doubt_of_identity(knowledge_.rules[id], knowledge_))
     return Held{Restraint::kIdentity, std::move(*doubt), kNever};
-  if (auto held = launch_of_the_unseen(knowledge_.rules[id])) return held;
+  if (auto reason = launch_of_the_unseen(knowledge_.rules[id], knowledge_))
+    return Held{Restraint::kNeverSeen, std::move(*reason), kNever};
   if (auto held = lack_of_evidence(knowledge_.rules[id], now)) return held;
   return limits_.on(id, now);
-}
-
-std::optional<Governor::Held> Governor::launch_of_the_unseen(const Strategy& strategy) const {
-  for (const Adaptation& adaptation : strategy.adaptations) {
-    const ComponentId component = adaptation.component;
-    if (!launches(adaptation) || knowledge_.sightings.has(component)) continue;
-    return Held{
-        Restraint::kNeverSeen,
-        knowledge_.rules[component].name + " was never seen; run --launch starts what is not there",
-        kNever};
-  }
-  return std::nullopt;
 }
 
 std::optional<Governor::Held> Governor::lack_of_evidence(const Strategy& strategy, Time now) const {

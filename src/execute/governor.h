@@ -103,8 +103,6 @@ class Governor {
   std::optional<std::string> objection_to_run(StrategyId id, Autonomy autonomy) const;
   std::optional<Held> restraint_on(StrategyId strategy, Time now) const;
   std::optional<Held> restraint_by_person(StrategyId strategy) const;
-  // Nothing is started that was never seen, unless a person asks for it.
-  std::optional<Held> launch_of_the_unseen(const Strategy& strategy) const;
   std::optional<Held> lack_of_evidence(const Strategy& strategy, Time now) const;
   // What no person can order either.
   std::optional<Held> interlock() const;

@@ -108,7 +108,7 @@ class Describer {
   std::string operator()(const NeverSeen& e) const {
     const bool is_component = std::holds_alternative<ComponentId>(e.what);
     return std::visit([this](auto id) { return unseen(id); }, e.what) +
-           (e.near.empty() ? "" : "; did you mean '" + e.near + "'?") +
+           (e.near.empty() ? "." : "; did you mean '" + e.near + "'?") +
            (is_component ? " Nothing is done about it" : " What rules read of it is unknown");
   }
   std::string operator()(const LifecycleIntended&) const { return ""; }

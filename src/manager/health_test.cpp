@@ -133,6 +133,7 @@ void crash_and_go_on(TestRobot& robot, Duration healthy) {
   for (std::size_t s = 0; s < robot.rules().strategies.size(); ++s)
     manager->set_belief(StrategyId(s), robot.manager().knowledge().beliefs[StrategyId(s)]);
   manager->remember(robot.events);
+  manager->remember(robot.manager().knowledge().known_robot());
   robot.replace_manager(std::move(manager));
 }
 

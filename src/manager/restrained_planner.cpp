@@ -11,6 +11,7 @@ namespace {
 std::optional<std::string> objection(StrategyId id, const Knowledge& knowledge) {
   const Strategy& strategy = knowledge.rules[id];
   if (auto doubt = doubt_of_identity(strategy, knowledge)) return doubt;
+  if (auto reason = launch_of_the_unseen(strategy, knowledge)) return reason;
   return contradiction(strategy, knowledge, knowledge.now);
 }
 

@@ -35,6 +35,8 @@ std::string choice(bool has_namesake) {
   robot.add("camera", {}, "/rgb");
   robot.add("lidar", {}, "/scan");
   robot.discover();
+  robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/rgb"});
+  robot.tell(EndpointAppeared{"/lidar", EndpointKind::kPublisher, "/scan"});
   robot.run_for(6s);
   robot["camera"].fault = "restart";
   robot.run_for(1s);
