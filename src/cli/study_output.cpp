@@ -89,6 +89,15 @@ Expected<void> write(const study::SuaveResult& result, const StudyOutput& output
                                        : tables_as(study::suave_tables(result), output.format));
 }
 
+Expected<void> write(const study::Validation& validation, const StudyOutput& output) {
+  if (!output.html.empty())
+    return Error{"a validation is written as text, markdown, latex or json"};
+  return write_text(output.output,
+                    output.format == "json"
+                        ? study::validation_json(validation)
+                        : tables_as(study::validation_tables(validation), output.format));
+}
+
 std::string timeline_text(const study::Timeline& timeline) {
   std::string out = fmt::format("run {} of {}: {}\n", timeline.run,
                                 study::label(timeline.configuration), timeline.scenario);

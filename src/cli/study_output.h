@@ -9,6 +9,7 @@
 #include "language/expected.h"
 #include "study/findings.h"
 #include "study/suave/campaign.h"
+#include "study/suave/validation.h"
 
 namespace culprit::cli {
 
@@ -31,6 +32,7 @@ struct StudyOutput {
 // An error: a file cannot be written, or there is no such format of this study.
 Expected<void> write(const study::Findings& findings, const StudyOutput& output);
 Expected<void> write(const study::SuaveResult& result, const StudyOutput& output);
+Expected<void> write(const study::Validation& validation, const StudyOutput& output);
 
 // One run, a line for each happening.
 std::string timeline_text(const study::Timeline& timeline);

@@ -107,7 +107,7 @@ void VehicleProcess::begin() {
   autopilot_ = std::make_unique<model::Autopilot>(world_, model_topics_, model::VehicleTraits{},
                                                   world_.now());
   detector_ = std::make_unique<model::Detector>(world_, model_topics_, generation_, *autopilot_);
-  visibility_ = std::make_unique<model::VisibilityMonitor>(world_, *autopilot_);
+  visibility_ = std::make_unique<model::VisibilityMonitor>(world_, *autopilot_, plan_);
   battery_ = std::make_unique<model::BatteryMonitor>(world_, model_topics_, *autopilot_, plan_);
   thrusters_ = std::make_unique<model::ThrusterMonitor>(world_, *autopilot_, plan_);
   for (simulation::Node* node : world_.nodes()) node->launch();

@@ -87,6 +87,13 @@ std::int32_t JsonFields::integer(std::string_view name, std::int32_t least) {
   return 0;
 }
 
+bool JsonFields::is_null(std::string_view name) {
+  const auto field = json_.find(std::string(name));
+  if (field == json_.end() || !field->is_null()) return false;
+  ++read_;
+  return true;
+}
+
 const Json& JsonFields::object(std::string_view name) {
   const Json& value = at(name);
   if (value.is_object()) return value;

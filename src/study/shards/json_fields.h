@@ -17,6 +17,7 @@ class JsonFields {
   // `json` lives longer than this.
   explicit JsonFields(const nlohmann::ordered_json& json);
 
+  bool has(std::string_view name) const { return json_.contains(std::string(name)); }
   // A value of no meaning where there is a complaint.
   bool truth(std::string_view name);
   double number(std::string_view name);  // finite
@@ -25,6 +26,8 @@ class JsonFields {
   std::uint64_t natural(std::string_view name, std::uint64_t most);
   std::int32_t integer(std::string_view name,
                        std::int32_t least = std::numeric_limits<std::int32_t>::min());
+  // True, and the field counts as read, if it is null.
+  bool is_null(std::string_view name);
   // An empty object or array where there is a complaint.
   const nlohmann::ordered_json& object(std::string_view name);
   const nlohmann::ordered_json& array(std::string_view name);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "study/shards/json_fields.h"
+#include "study/suave/settings_json.h"
 
 namespace culprit::study {
 namespace {
@@ -49,6 +50,22 @@ std::vector<std::string> managers(JsonFields& campaign) {
   return managers;
 }
 
+// Files of before there were any have neither: the mission was played as it is, with the fitted
+// vehicle.
+void take_settings(JsonFields& fields, SuaveCampaign& campaign) {
+  if (fields.has("settings")) {
+    auto settings = settings_from_json(fields.object("settings"));
+    if (!settings) fields.complain_inside("settings", settings.error());
+    if (settings && campaign.plan != nullptr && *settings != settings_of(*campaign.plan))
+      campaign.settings = std::move(*settings);
+  }
+  if (fields.has("vehicle")) {
+    auto vehicle = vehicle_from_json(fields.object("vehicle"));
+    if (!vehicle) fields.complain_inside("vehicle", vehicle.error());
+    if (vehicle) campaign.vehicle = *vehicle;
+  }
+}
+
 }  // namespace
 
 Expected<Json> to_json(const SuaveRun& run) {
@@ -89,6 +106,8 @@ Json to_json(const SuaveCampaign& campaign) {
           {"managers", campaign.managers},
           {"runs", campaign.runs},
           {"seed", campaign.seed},
+          {"settings", to_json(campaign.settings.value_or(settings_of(*campaign.plan)))},
+          {"vehicle", to_json(campaign.vehicle)},
           {"version", campaign.version}};
 }
 
@@ -107,6 +126,7 @@ Expected<SuaveCampaign> campaign_from_json(const Json& json) {
   campaign.runs = static_cast<std::uint32_t>(fields.natural("runs", kMostShardedRuns));
   if (campaign.runs == 0) fields.complain("runs", "is 0");
   campaign.seed = fields.natural("seed", std::numeric_limits<std::uint64_t>::max());
+  take_settings(fields, campaign);
   campaign.version = fields.text("version");
   const std::string complaint = fields.complaint();
   if (!complaint.empty()) return Error{complaint};

@@ -10,7 +10,6 @@ Expected<nlohmann::ordered_json> to_json(const SuaveRun& run);
 template <>
 Expected<SuaveRun> run_from_json(const nlohmann::ordered_json& json);
 
-// @pre the vehicle is the fitted one, which the file does not tell
 nlohmann::ordered_json to_json(const SuaveCampaign& campaign);
 // A campaign has managers, missions and generations that there are, and at least one run.
 template <>

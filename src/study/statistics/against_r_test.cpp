@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "study/statistics/anova.h"
+#include "study/statistics/equivalence.h"
+#include "study/statistics/rank_correlation.h"
 #include "study/statistics/studentized_range.h"
 #include "study/statistics/welch.h"
 
@@ -139,6 +141,32 @@ TEST(Anova, OfGroupsWithoutSpreadIsSettledByTheirMeans) {
   EXPECT_EQ(one_way_anova(apart)->p, 0);
   EXPECT_EQ(TukeyHsd::of(apart)->compare(0, 1).p, 1);
   EXPECT_EQ(TukeyHsd::of(apart)->compare(0, 2).p, 0);
+}
+
+//     t.test(b, a, mu = -2, alternative = "greater")$p.value   8.05323048123e-07
+//     t.test(b, a, mu =  2, alternative = "less")$p.value      0.0106909577173
+//     t.test(b, a, conf.level = 0.9)$conf.int
+TEST(AgainstR, EquivalenceByTwoOneSidedTests) {
+  const auto test = equivalence_test(groups()[0], groups()[1], 2);
+  ASSERT_TRUE(test);
+  expect_relative(test->p, 0.0106909577173, 1e-8);
+  expect_relative(test->low, 0.218843870832, 1e-8);
+  expect_relative(test->high, 1.67004501806, 1e-8);
+  EXPECT_TRUE(test->is_equivalent());
+  EXPECT_FALSE(equivalence_test(groups()[0], groups()[1], 1)->is_equivalent());
+  EXPECT_FALSE(equivalence_test(groups()[0], Moments(), 2)) << "of nothing";
+}
+
+//     x <- c(174.75, 84.09, 89.24, 85.11, 81.52, 84.09)   with a tie
+//     y <- c(166.57, 92.83, 94.74, 95.39, 83.70, 90)
+//     cor(x, y, method = "spearman"); cor(x, y, method = "kendall")
+TEST(AgainstR, RankCorrelations) {
+  const std::vector<double> x = {174.75, 84.09, 89.24, 85.11, 81.52, 84.09};
+  const std::vector<double> y = {166.57, 92.83, 94.74, 95.39, 83.70, 90};
+  expect_relative(*spearman_rho(x, y), 0.927633657044, 1e-11);
+  expect_relative(*kendall_tau(x, y), 0.828078671211, 1e-11);
+  EXPECT_FALSE(spearman_rho(x, std::vector<double>(6, 1.0)));
+  EXPECT_FALSE(kendall_tau(std::vector<double>{1}, std::vector<double>{2}));
 }
 
 }  // namespace

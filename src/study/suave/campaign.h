@@ -4,9 +4,11 @@
 // phases of all timers, the same drift as long as nothing is done differently.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "exemplars/suave/model/mission_settings.h"
 #include "study/campaign.h"
 #include "study/single_run.h"
 #include "study/statistics/moments.h"
@@ -20,6 +22,8 @@ struct SuaveCampaign {
   std::vector<std::string> managers;
   std::uint32_t runs = 0;  // of each
   std::uint64_t seed = 0;
+  // What differs from the plan; nothing: it is played as it is.
+  std::optional<suave::model::MissionSettings> settings;
   suave::model::VehicleTraits vehicle;
   std::string version;  // of culprit
   std::string command;  // that makes the whole campaign

@@ -2,6 +2,7 @@
 // 1.7 to 1.10).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,9 @@ struct MissionPlan {
   std::string_view name;
   std::string_view summary;
   Duration time_limit = std::chrono::seconds(300);
+  double visibility_period_s = 80;  // of the cosine that the water clears and dims by
+  double visibility_shift_s = 0;    // how far it is when the mission begins
+  std::optional<double> start_y_m;  // instead of the vehicle's traits
   std::vector<ThrusterEvent> thruster_events;
   bool needs_battery = false;             // a manager is expected to see to it
   bool stops_when_empty = false;          // an empty battery ends all motion

@@ -16,15 +16,16 @@ Duration first_tick(const Autopilot& autopilot, Time now, double phase) {
 
 }  // namespace
 
-VisibilityMonitor::VisibilityMonitor(simulation::World& world, const Autopilot& autopilot)
-    : Node(world, nodes::kVisibility, {}), autopilot_(autopilot) {}
+VisibilityMonitor::VisibilityMonitor(simulation::World& world, const Autopilot& autopilot,
+                                     const MissionPlan& plan)
+    : Node(world, nodes::kVisibility, {}), autopilot_(autopilot), plan_(plan) {}
 
 void VisibilityMonitor::on_start() {
   every(first_tick(autopilot_, world().now(), random().uniform()), kPeriod, [this] {
     const auto second =
         std::chrono::floor<std::chrono::seconds>(world().now() - autopilot_.guided()).count();
     world().diagnose(diagnostics::kVisibility, diagnostics::kVisibilityKey,
-                     water_visibility(second));
+                     water_visibility(second, plan_.visibility_period_s, plan_.visibility_shift_s));
   });
 }
 

@@ -9,12 +9,13 @@ namespace culprit::suave::model {
 
 class VisibilityMonitor : public simulation::Node {
  public:
-  VisibilityMonitor(simulation::World& world, const Autopilot& autopilot);
+  VisibilityMonitor(simulation::World& world, const Autopilot& autopilot, const MissionPlan& plan);
 
  private:
   void on_start() override;
 
   const Autopilot& autopilot_;
+  const MissionPlan& plan_;
 };
 
 class BatteryMonitor : public simulation::Node {

@@ -20,15 +20,24 @@ simulation::NodeTraits mode_manager() {
   return traits;
 }
 
+// A plan that says where it begins leaves nothing of that to chance.
+VehicleTraits started_at(VehicleTraits traits, const MissionPlan& plan) {
+  if (!plan.start_y_m) return traits;
+  traits.centre_y = *plan.start_y_m;
+  traits.centre_y_sd = 0;
+  return traits;
+}
+
 }  // namespace
 
 SuaveModel::SuaveModel(const Setting& setting, std::uint64_t seed)
     : plan_(setting.plan),
       world_(seed),
       topics_(world_),
-      autopilot_(world_, topics_, setting.vehicle, draw_begin(world_.random("begin"))),
+      autopilot_(world_, topics_, started_at(setting.vehicle, setting.plan),
+                 draw_begin(world_.random("begin"))),
       detector_(world_, topics_, setting.generation, autopilot_),
-      visibility_(world_, autopilot_),
+      visibility_(world_, autopilot_, setting.plan),
       battery_(world_, topics_, autopilot_, setting.plan),
       thrusters_(world_, autopilot_, setting.plan),
       search_(world_, setting.generation, *this),

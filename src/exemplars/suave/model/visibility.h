@@ -8,8 +8,8 @@
 namespace culprit::suave::model {
 
 // Metres, `second` whole seconds after the mission began: a cosine between 1.25 and 3.75 with a
-// period of 80 s.
-double water_visibility(std::int64_t second);
+// period of `period_s`, which was at its most `shift_s` before.
+double water_visibility(std::int64_t second, double period_s = 80, double shift_s = 0);
 
 // The modes of the search, best first.
 struct SearchMode {

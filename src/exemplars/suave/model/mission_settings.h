@@ -1,0 +1,66 @@
+// What a campaign may set of a mission, beside which one it is: the water, the thrusters, where and
+// how long (the exemplar's mission_config.yaml and its runner's perturbations).
+//
+//     MissionSettings settings = settings_of(plan);
+//     settings.visibility_shift_s = {0, 120};                    // another one in each run
+//     MissionPlan of_this_run = drawn(plan, settings, seed);
+//
+// A range is drawn from uniformly in each run, as the exemplar's runner does; one without width is
+// a constant.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exemplars/suave/model/mission_plan.h"
+
+namespace culprit::suave::model {
+
+struct Range {
+  double low = 0;
+  double high = 0;
+
+  bool operator==(const Range&) const = default;
+};
+
+struct ThrusterSetting {
+  int thruster = 1;  // 1 to kThrusters
+  bool fails = true;
+  Range at_s;  // after the mission's begin, 0 or more
+
+  bool operator==(const ThrusterSetting&) const = default;
+};
+
+struct MissionSettings {
+  double visibility_period_s = 80;
+  Range visibility_shift_s;
+  std::vector<ThrusterSetting> thruster_events;
+  // Where a run begins, across the pipeline, in m; nothing: as the vehicle's traits say.
+  std::optional<Range> start_y_m;
+  double time_limit_s = 300;
+
+  bool operator==(const MissionSettings&) const = default;
+};
+
+// As `plan` has them.
+MissionSettings settings_of(const MissionPlan& plan);
+
+// The plan of one run. The same seed, the same plan.
+MissionPlan drawn(const MissionPlan& plan, const MissionSettings& settings, std::uint64_t seed);
+
+// Errors: a number that no mission can have (a period or limit of 0 s, a thruster that does not
+// exist, ...).
+Expected<void> check(const MissionSettings& settings);
+
+// "35" or "0..120".
+Expected<Range> parse_range(std::string_view text);
+// "1:fails@35", "3:recovers@0..200".
+Expected<ThrusterSetting> parse_thruster(std::string_view text);
+
+// The text that is parsed so.
+std::string to_string(const Range& range);
+std::string to_string(const ThrusterSetting& event);
+
+}  // namespace culprit::suave::model

@@ -1,0 +1,20 @@
+// Do two lists of numbers put the same things in the same order?
+//
+//     Spearman's rho: Pearson's correlation of the ranks, ties with their mean rank
+//     Kendall's tau-b: (concordant - discordant pairs) / sqrt((pairs - ties in a) (pairs - ties in
+//     b))
+//
+// Both are 1 for the same order and -1 for the opposite one.
+#pragma once
+
+#include <optional>
+#include <span>
+
+namespace culprit::study {
+
+// Nothing if there are fewer than two, or if one list has the same number everywhere. @pre as many
+// of either
+std::optional<double> spearman_rho(std::span<const double> a, std::span<const double> b);
+std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b);
+
+}  // namespace culprit::study

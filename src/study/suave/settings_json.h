@@ -1,0 +1,25 @@
+// A mission's settings and a vehicle as JSON: in shard files, in what a campaign found, and in
+// files of their own.
+//
+//     {"visibility_period_s": 80, "visibility_shift_s": [0, 120],
+//      "thruster_events": [{"thruster": 1, "event": "fails", "at_s": [35, 35]}],
+//      "start_y_m": null, "time_limit_s": 300}
+//
+//     {"gain_per_s": 0.65, "cruise": 0.7625, ...}     each of VehicleTraits
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "exemplars/suave/model/mission_settings.h"
+#include "exemplars/suave/model/vehicle.h"
+
+namespace culprit::study {
+
+nlohmann::ordered_json to_json(const suave::model::MissionSettings& settings);
+nlohmann::ordered_json to_json(const suave::model::VehicleTraits& vehicle);
+
+// Errors: a field is missing, unknown, or no value that a mission or a vehicle can have.
+Expected<suave::model::MissionSettings> settings_from_json(const nlohmann::ordered_json& json);
+Expected<suave::model::VehicleTraits> vehicle_from_json(const nlohmann::ordered_json& json);
+
+}  // namespace culprit::study
