@@ -8,8 +8,13 @@ add_library(culprit_options INTERFACE)
 target_compile_options(culprit_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                                  -Wold-style-cast -Wcast-qual -Werror)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # g++ 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
-  target_compile_options(culprit_options INTERFACE -Wno-restrict)
+  # g++ 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651), and at -O1 takes what an empty
+  # optional would hold for a value that is read.
+  target_compile_options(culprit_options INTERFACE -Wno-restrict -Wno-maybe-uninitialized)
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_UNITY_BUILD)
+  # Compiled several at a time, files look like headers to this warning: their private types would not be private.
+  target_compile_options(culprit_options INTERFACE -Wno-subobject-linkage)
 endif()
 if(CULPRIT_SANITIZE)
   target_compile_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE} -fno-omit-frame-pointer
