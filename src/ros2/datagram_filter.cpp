@@ -4,30 +4,16 @@
 #include <cstring>
 #include <optional>
 
+#include "ros2/rtps_submessage.h"
+
 namespace culprit::ros2 {
 namespace {
 
-enum Kind : std::uint8_t {
-  kPad = 0x01,
-  kAckNack = 0x06,
-  kHeartbeat = 0x07,
-  kGap = 0x08,
-  kInfoTime = 0x09,
-  kInfoSource = 0x0c,
-  kInfoDestination = 0x0e,
-  kNackFragment = 0x12,
-  kHeartbeatFragment = 0x13,
-  kData = 0x15,
-  kDataFragment = 0x16
-};
-
-constexpr std::size_t kHeader = 20;
-constexpr std::size_t kSubmessageHeader = 4;
 constexpr std::uint16_t kSentinel = 1;  // of a list of parameters
 constexpr std::size_t kMostFragments = 1 << 16;
 
 bool is_header(ByteView datagram) {
-  return datagram.size() >= kHeader && std::memcmp(datagram.data(), "RTPS", 4) == 0 &&
+  return datagram.size() >= rtps::kHeader && std::memcmp(datagram.data(), "RTPS", 4) == 0 &&
          datagram[4] == 2;
 }
 
@@ -126,25 +112,25 @@ ByteView DatagramFilter::look_at(ByteView datagram, Bytes& scratch, Clock::time_
   std::copy_n(datagram.data() + 8, source.bytes.size(), source.bytes.begin());
   bool is_changed = false;
   std::size_t end = datagram.size();
-  for (std::size_t at = kHeader; at < end;) {
+  for (std::size_t at = rtps::kHeader; at < end;) {
     const ByteView rest = datagram.subspan(at, end - at);
     const char* objection = nullptr;
     std::size_t length = 0;
     bool is_last = false;
-    if (rest.size() < kSubmessageHeader) {
+    if (rest.size() < rtps::kSubmessageHeader) {
       objection = "a submessage is cut";
       is_last = true;
     } else {
       length = (rest[1] & 1) != 0 ? rest[2] | (rest[3] << 8) : (rest[2] << 8) | rest[3];
-      is_last = length == 0 && rest[0] != kPad && rest[0] != kInfoTime;
-      if (is_last) length = rest.size() - kSubmessageHeader;
-      if (length > rest.size() - kSubmessageHeader) {
+      is_last = length == 0 && rest[0] != rtps::kPad && rest[0] != rtps::kInfoTime;
+      if (is_last) length = rest.size() - rtps::kSubmessageHeader;
+      if (length > rest.size() - rtps::kSubmessageHeader) {
         objection = "a submessage is longer than its datagram";
         is_last = true;
       } else {
-        const ByteView body = rest.subspan(kSubmessageHeader, length);
+        const ByteView body = rest.subspan(rtps::kSubmessageHeader, length);
         objection = this->objection(Submessage(rest, body, source), now);
-        if (rest[0] == kInfoSource && objection == nullptr)
+        if (rest[0] == rtps::kInfoSource && objection == nullptr)
           std::copy_n(body.data() + 8, source.bytes.size(), source.bytes.begin());
       }
     }
@@ -157,43 +143,43 @@ ByteView DatagramFilter::look_at(ByteView datagram, Bytes& scratch, Clock::time_
       }
       if (!is_changed) scratch.assign(datagram.begin(), datagram.end());
       is_changed = true;
-      scratch[at] = kPad;
+      scratch[at] = rtps::kPad;
     }
-    at += kSubmessageHeader + ((length + 3) & ~std::size_t{3});
+    at += rtps::kSubmessageHeader + ((length + 3) & ~std::size_t{3});
   }
-  if (end <= kHeader && datagram.size() > kHeader) return {};
+  if (end <= rtps::kHeader && datagram.size() > rtps::kHeader) return {};
   return is_changed ? ByteView(scratch).first(end) : datagram.first(end);
 }
 
 const char* DatagramFilter::objection(const Submessage& submessage, Clock::time_point now) {
   Submessage body = submessage;
   switch (submessage.kind) {
-    case kData:
+    case rtps::kData:
       return objection_to_data(submessage, now);
-    case kDataFragment:
+    case rtps::kDataFragment:
       return objection_to_fragment(submessage, now);
-    case kHeartbeat:
+    case rtps::kHeartbeat:
       return objection_to_heartbeat(submessage, now);
-    case kGap:
+    case rtps::kGap:
       return objection_to_gap(submessage);
-    case kAckNack:
-    case kNackFragment: {
+    case rtps::kAckNack:
+    case rtps::kNackFragment: {
       body.skip(8);
       const std::int64_t base = body.read_sequence();
       // The fragments of a sample have shorter numbers.
-      if (submessage.kind == kNackFragment) body.skip(4);
+      if (submessage.kind == rtps::kNackFragment) body.skip(4);
       if (base < 0 || base > kFirst) return "an acknowledgement of what nobody wrote";
       if (!body.skip_bitmap() || body.left() < 4) return "a damaged acknowledgement";
       return nullptr;
     }
-    case kHeartbeatFragment:
+    case rtps::kHeartbeatFragment:
       body.skip(24);
       return body.ok() ? nullptr : "a damaged heartbeat";
-    case kInfoSource:
+    case rtps::kInfoSource:
       return submessage.size() == 20 ? nullptr : "a damaged source";
-    case kInfoDestination:
+    case rtps::kInfoDestination:
       return submessage.size() >= 12 ? nullptr : "a damaged destination";
-    case kInfoTime:
+    case rtps::kInfoTime:
       return (submessage.flags & 2) != 0 || submessage.size() >= 8 ? nullptr : "a damaged time";
     default:
       return nullptr;

@@ -4,17 +4,13 @@
 #include <cstring>
 #include <optional>
 
+#include "ros2/rtps_submessage.h"
+
 namespace culprit::ros2 {
 namespace {
 
-// RTPS 2.3 §9.4.4, §9.4.5.
-constexpr std::size_t kHeaderSize = 20;
 constexpr std::size_t kPrefixInHeader = 8;
-constexpr std::size_t kSubmessageHeaderSize = 4;
-constexpr std::uint8_t kPad = 0x01;
-constexpr std::uint8_t kInfoTimestamp = 0x09;
-constexpr std::uint8_t kInfoSource = 0x0c;
-constexpr std::size_t kPrefixInInfoSource = kSubmessageHeaderSize + 8;
+constexpr std::size_t kPrefixInInfoSource = rtps::kSubmessageHeader + 8;
 
 GuidPrefix prefix_at(std::span<const std::uint8_t> bytes, std::size_t position) {
   GuidPrefix prefix;
@@ -26,8 +22,8 @@ GuidPrefix prefix_at(std::span<const std::uint8_t> bytes, std::size_t position) 
 template <class Found>
 void find_sources(std::span<const std::uint8_t> datagram, Found found) {
   bool is_sure_of_place = true;
-  for (std::size_t at = kHeaderSize; at + kSubmessageHeaderSize <= datagram.size();) {
-    if (datagram[at] == kInfoSource && at + kPrefixInInfoSource + 12 <= datagram.size())
+  for (std::size_t at = rtps::kHeader; at + rtps::kSubmessageHeader <= datagram.size();) {
+    if (datagram[at] == rtps::kInfoSource && at + kPrefixInInfoSource + 12 <= datagram.size())
       found(prefix_at(datagram, at + kPrefixInInfoSource));
     if (!is_sure_of_place) {
       ++at;
@@ -38,18 +34,18 @@ void find_sources(std::span<const std::uint8_t> datagram, Found found) {
     const std::size_t high = datagram[at + (is_little ? 3 : 2)];
     const std::size_t length = high << 8 | low;
     const bool reaches_the_end =
-        length == 0 && datagram[at] != kPad && datagram[at] != kInfoTimestamp;
+        length == 0 && datagram[at] != rtps::kPad && datagram[at] != rtps::kInfoTime;
     if (reaches_the_end) return;
     // Implementations differ in where they go on after an odd length: then each place may count.
     is_sure_of_place = length % 4 == 0;
-    at += kSubmessageHeaderSize + length;
+    at += rtps::kSubmessageHeader + length;
   }
 }
 
 }  // namespace
 
 void DatagramSources::heard(std::span<const std::uint8_t> datagram, const UdpAddress& from) {
-  if (datagram.size() < kHeaderSize || std::memcmp(datagram.data(), "RTPS", 4) != 0) return;
+  if (datagram.size() < rtps::kHeader || std::memcmp(datagram.data(), "RTPS", 4) != 0) return;
   const std::lock_guard lock(mutex_);
   note(prefix_at(datagram, kPrefixInHeader), from);
   find_sources(datagram, [&](const GuidPrefix& participant) { note(participant, from); });

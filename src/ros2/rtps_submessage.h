@@ -1,0 +1,27 @@
+// How an RTPS message is laid out, as far as it is looked at before Fast DDS sees it (RTPS 2.3
+// §9.4.4, §9.4.5): a header, then submessages, each with a kind, flags and a length.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace culprit::ros2::rtps {
+
+inline constexpr std::size_t kHeader = 20;           // bytes
+inline constexpr std::size_t kSubmessageHeader = 4;  // bytes
+
+enum Kind : std::uint8_t {
+  kPad = 0x01,
+  kAckNack = 0x06,
+  kHeartbeat = 0x07,
+  kGap = 0x08,
+  kInfoTime = 0x09,
+  kInfoSource = 0x0c,
+  kInfoDestination = 0x0e,
+  kNackFragment = 0x12,
+  kHeartbeatFragment = 0x13,
+  kData = 0x15,
+  kDataFragment = 0x16
+};
+
+}  // namespace culprit::ros2::rtps
