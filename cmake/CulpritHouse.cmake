@@ -14,7 +14,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_UNITY_BUILD)
   # Compiled several at a time, files look like headers to this warning: their private types would not be private.
-  target_compile_options(culprit_options INTERFACE -Wno-subobject-linkage)
+  target_compile_options(culprit_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
 endif()
 if(CULPRIT_SANITIZE)
   target_compile_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE} -fno-omit-frame-pointer

@@ -58,6 +58,7 @@ bool live_die_and_go_on(const Story& story, int steps, bool sends) {
   Life first(folder / "first.journal", robot, story.rules);
   robot.discover();
   robot.run_for(6s);
+  first.wait_until_known();
   robot["camera"].fault = story.fault;
   first.die_after(steps, sends);
   for (int i = 0; i < 3000 && !first.is_dead(); ++i) robot.run_for(10ms);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "journal/recorder.h"
 #include "journal/recovery.h"
@@ -77,6 +78,16 @@ class Life {
   void die_after(int steps, bool sends) {
     steps_left_ = steps;
     sends_ = sends;
+  }
+  // The robot's clock runs faster than the recorder's thread: waits until the robot's topics are on record.
+  void wait_until_known() const {
+    for (int i = 0; i < 1000; ++i) {
+      const auto reader = value_of(journal::Reader::open(path_));
+      const auto found = value_of(journal::recover(reader, robot_.rules(), moment(robot_)));
+      if (!found.known_robot.topics.empty()) return;
+      std::this_thread::sleep_for(10ms);
+    }
+    throw std::runtime_error("what was seen of the robot is not on record");
   }
   bool is_dead() const { return is_dead_; }
   fs::path remains() const { return path_.string() + ".remains"; }

@@ -88,14 +88,18 @@ class Run {
     return std::make_unique<Manager>(rules_, std::move(planner), options);
   }
 
-  // Its beliefs outlive a crash; the rest it has to find out anew.
+  // Its beliefs and what it saw of the robot outlive a crash; the rest it has to find out anew.
   void begin_manager() {
     std::vector<Belief> beliefs;
     for (std::size_t s = 0; manager_ && s < rules_.strategies.size(); ++s)
       beliefs.push_back(manager_->knowledge().beliefs[StrategyId(s)]);
-    if (manager_) check_replay();
+    if (manager_) {
+      check_replay();
+      known_ = manager_->knowledge().known_robot();
+    }
     start_ = robot_.now();
     manager_ = make_manager(start_);
+    manager_->remember(known_);
     for (std::size_t s = 0; s < beliefs.size(); ++s)
       manager_->set_belief(StrategyId(s), beliefs[s]);
     first_beliefs_ = beliefs;
@@ -220,6 +224,7 @@ class Run {
 
   void check_replay() {
     const auto again = make_manager(start_);
+    again->remember(known_);
     for (std::size_t s = 0; s < first_beliefs_.size(); ++s)
       again->set_belief(StrategyId(s), first_beliefs_[s]);
     for (const Step& recorded : recorded_) {
@@ -246,6 +251,7 @@ class Run {
   std::unique_ptr<Manager> manager_;
   Time start_{};
   std::vector<Belief> first_beliefs_;
+  KnownRobot known_;  // by the managers before this one
   std::vector<Step> recorded_;
   std::vector<Observation> orders_;
   std::multimap<Time, std::variant<Resume, Approve, Refuse>> due_;
