@@ -169,10 +169,8 @@ TEST_F(Commands, PlanLooksAtTheRobotAndLeavesItAsItIs) {
   auto plan = culprit({"plan", world.write("two.rules", kRules), "--robot", "--format", "json"});
   ASSERT_EQ(plan.wait(), 0) << plan.output();
   const auto json = nlohmann::json::parse(plan.output().substr(plan.output().find('{')));
-  ASSERT_EQ(json["failures"].size(), 1u) << json;
-  EXPECT_EQ(json["failures"][0]["rule"], "DepthGone");
-  EXPECT_EQ(json["failures"][0]["chosen"], "depth_redeploy");
-  EXPECT_GT(json["failures"][0]["failing_s"], 0.0);
+  EXPECT_TRUE(json["failures"].empty()) << "what was never seen is not gone: " << json;
+  EXPECT_THAT(json["unknown"].dump(), HasSubstr("alive(depth)"));
   auto graph = culprit({"graph"});
   ASSERT_EQ(graph.wait(), 0);
   EXPECT_THAT(graph.output(), Not(HasSubstr("/managed_subsystem/depth"))) << "it was started";
@@ -228,7 +226,7 @@ RULE GhostGone
     STRATEGY ghost_start 90 10
       ADAPTATION ghost start 5
 )"),
-                      "--settle", "0", "--state-dir", state()});
+                      "--launch", "--settle", "0", "--state-dir", state()});
   EXPECT_TRUE(run.prints("no-such-program")) << run.output();
   EXPECT_TRUE(run.prints("exhausted")) << run.output();
   run.signal(SIGINT);

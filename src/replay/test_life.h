@@ -79,7 +79,8 @@ class Life {
     steps_left_ = steps;
     sends_ = sends;
   }
-  // The robot's clock runs faster than the recorder's thread: waits until the robot's topics are on record.
+  // The robot's clock runs faster than the recorder's thread: waits until the robot's topics are on
+  // record.
   void wait_until_known() const {
     for (int i = 0; i < 1000; ++i) {
       const auto reader = value_of(journal::Reader::open(path_));

@@ -15,7 +15,7 @@ RULE CameraGone
 `
 const path = file('operator.rules')
 writeFileSync(path, kRules)
-const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--state-dir', file('state')]
+const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--healthy', '1', '--state-dir', file('state')]
 
 // The process that culprit says the camera to be, newest last.
 const cameras = (said) => [...said.matchAll(/camera is there \(process (\d+)/g)].map((m) => Number(m[1]))
@@ -56,7 +56,7 @@ async function reload(page) {
 async function beliefs(page) {
   await page.getByRole('link', { name: 'Beliefs' }).click()
   const row = page.getByRole('row', { name: /CameraGone\.camera_redeploy/ })
-  await row.getByText('70 %').waitFor()
+  await row.getByText('70 %').first().waitFor()
   await row.getByText('1 outcome').waitFor()
   const download = page.waitForEvent('download')
   await page.getByRole('button', { name: 'Export …' }).click()

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "plan/bayes/suspicion.h"
+
 namespace culprit::plan {
 namespace {
 
@@ -34,6 +36,25 @@ void search(std::size_t root, const BitRows& rows, std::span<Word> open,
   }
 }
 
+constexpr std::size_t kLevels = 3;
+
+std::size_t level_of(const Rule& rule) {
+  return static_cast<std::size_t>(rule.policies.criticality);
+}
+
+// Does a strategy of its rule begin anew what it is about?
+bool may_be_broken(RuleId rule, const RuleSet& rules) {
+  const auto begins_anew = [](const Adaptation& adaptation) {
+    return adaptation.type == AdaptationType::kRestart ||
+           adaptation.type == AdaptationType::kRedeploy ||
+           adaptation.type == AdaptationType::kStart;
+  };
+  return std::any_of(
+      rules[rule].strategies.begin(), rules[rule].strategies.end(), [&](StrategyId s) {
+        return std::any_of(rules[s].adaptations.begin(), rules[s].adaptations.end(), begins_anew);
+      });
+}
+
 }  // namespace
 
 Failures::Failures(const Knowledge& knowledge, const Reach& reach, const Ways& ways)
@@ -46,6 +67,16 @@ Failures::Failures(const Knowledge& knowledge, const Reach& reach, const Ways& w
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     for (const ComponentId c : rules[rules_[i]].components) set(touching[reach.place_of(c)], i);
   }
+  // By level: what is less critical and no outage, and is only ever reconfigured. That is no cause:
+  // its author finds nothing broken there, and what is bad may be old, for who would tell a better
+  // value is out.
+  BitRows slight(kLevels, rules_.size());
+  for (std::size_t i = 0; i < rules_.size(); ++i) {
+    if (symptom_of(rules_[i], knowledge) == Symptom::kOutage || may_be_broken(rules_[i], rules))
+      continue;
+    for (std::size_t level = level_of(rules[rules_[i]]) + 1; level < kLevels; ++level)
+      set(slight[level], i);
+  }
   BitRows effects(rules_.size(), rules_.size());
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     const auto row = causes_[i];
@@ -54,6 +85,7 @@ Failures::Failures(const Knowledge& knowledge, const Reach& reach, const Ways& w
                [&](std::size_t place) { add(row, touching[place]); });
     }
     clear(row, i);
+    for_each(slight[level_of(rules[rules_[i]])], [&](std::size_t cause) { clear(row, cause); });
     for_each(row, [&](std::size_t cause) { set(effects[cause], i); });
   }
   find_circles(effects);

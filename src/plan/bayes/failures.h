@@ -2,8 +2,9 @@
 // trigger is true: they still explain others.
 //
 // Failure j may be the cause of failure i if a component that j touches is upstream of one that i
-// touches, by a way that i can have taken (plan/bayes/ways.h), however critical either is: how bad
-// a cause is, its effects say (plan/bayes/levels.h). Failures that may be the causes of each other,
+// touches, by a way that i can have taken (plan/bayes/ways.h), however critical either is (but a
+// bad value that is only ever reconfigured is no cause of what is more critical): how bad a cause
+// is, its effects say (plan/bayes/levels.h). Failures that may be the causes of each other,
 // directly or round several corners, form a circle; that needs no circle in the graph, because a
 // rule may touch several components.
 //

@@ -75,7 +75,8 @@ TEST(Learning, FindsHowSurelyAFailureGoesWithItsCause) {
     for (const LearnedCoupling& coupling : result.couplings) {
       const double truth = static_cast<double>(coupling.cleared) / coupling.asked;
       EXPECT_NEAR(coupling.counted_cleared / coupling.counted, truth,
-                  3 * standard_error(truth, std::min<double>(coupling.asked, coupling.counted)))
+                  3 * std::hypot(standard_error(truth, static_cast<double>(coupling.asked)),
+                                 standard_error(truth, static_cast<double>(coupling.counted))))
           << coupling.cause << " -> " << coupling.effect;
     }
   }
