@@ -24,14 +24,15 @@ std::string error_of(const std::string& text) {
 
 TEST(Recorded, RunsOfTheExemplarAreReadByManager) {
   RecordedCampaign campaign;
-  ASSERT_TRUE(add_recorded("a.csv",
-                           std::string(kHead) +
-                               "suave bt,01-Jan-2026-00-00-00,\"(-17.0, 2.8)\",250,True,100,30.5,0.1\r\n"
-                               "suave bt,01-Jan-2026-00-05-00,\"(-17.0, 2.8)\",250,True,110,31.5,0.1\n"
-                               "\n"
-                               "suave rosa_bt,01-Jan-2026-00-10-00,\"(-17.0, 2.8)\",251,False,251,0,0\n"
-                               "suave mine,01-Jan-2026-00-15-00,\"(-17.0, 2.8)\",250,True,90,33,0",
-                           campaign));
+  ASSERT_TRUE(
+      add_recorded("a.csv",
+                   std::string(kHead) +
+                       "suave bt,01-Jan-2026-00-00-00,\"(-17.0, 2.8)\",250,True,100,30.5,0.1\r\n"
+                       "suave bt,01-Jan-2026-00-05-00,\"(-17.0, 2.8)\",250,True,110,31.5,0.1\n"
+                       "\n"
+                       "suave rosa_bt,01-Jan-2026-00-10-00,\"(-17.0, 2.8)\",251,False,251,0,0\n"
+                       "suave mine,01-Jan-2026-00-15-00,\"(-17.0, 2.8)\",250,True,90,33,0",
+                   campaign));
   ASSERT_EQ(campaign.rows.size(), 2u);
   EXPECT_EQ(campaign.rows[0].manager, "bt");
   EXPECT_EQ(campaign.rows[0].search_s.mean(), 105);
@@ -51,7 +52,8 @@ TEST(Recorded, WhatIsNoFileOfRunsIsRefusedWithItsPlace) {
   EXPECT_EQ(error_of(std::string(kHead) + "suave bt,x,p,250,True,100,nan,0\n"),
             "runs.csv: record 2: 'nan' is no number of at least 0");
   EXPECT_THAT(error_of(std::string(kHead) + "suave bt,\"x,p,250,True,100,30,0\n"),
-              HasSubstr("has 2 fields")) << "a quote that is never closed";
+              HasSubstr("has 2 fields"))
+      << "a quote that is never closed";
 }
 
 TEST(Recorded, FilesWithoutARunOfAKnownManagerAreAnError) {

@@ -25,11 +25,10 @@ RecordedCampaign recorded(SuaveCampaign campaign, double later_s = 0) {
   campaign.seed = 77;
   RecordedCampaign recorded;
   for (const SuaveRow& row : run_campaign(campaign, 2).rows) {
-    recorded.rows.push_back(
-        {row.manager,
-         Moments::of_summary(row.search_s.mean() + later_s, row.search_s.sample_sd(),
-                             row.search_s.count()),
-         row.distance_m});
+    recorded.rows.push_back({row.manager,
+                             Moments::of_summary(row.search_s.mean() + later_s,
+                                                 row.search_s.sample_sd(), row.search_s.count()),
+                             row.distance_m});
   }
   return recorded;
 }
@@ -40,7 +39,8 @@ TEST(SuaveValidation, FindsTheModelEquivalentToItself) {
   for (const ValidationRow& row : validation.rows) {
     ASSERT_TRUE(row.test) << row.manager;
     EXPECT_TRUE(row.is_within) << row.manager << ' ' << row.metric;
-    EXPECT_TRUE(row.test->is_equivalent()) << row.manager << ' ' << row.metric << ' ' << row.test->p;
+    EXPECT_TRUE(row.test->is_equivalent())
+        << row.manager << ' ' << row.metric << ' ' << row.test->p;
   }
   ASSERT_EQ(validation.ranks.size(), 2u);
   EXPECT_EQ(validation.ranks[0].managers, 3u);
@@ -59,8 +59,8 @@ TEST(SuaveValidation, DoesNotFindARobotEquivalentThatSearchesLonger) {
   EXPECT_EQ(validation_tables(validation).size(), 2u);
 }
 
-// A vehicle that was made slower is found again from its runs: what is fitted on one campaign makes the other, which
-// was not fitted, come out better.
+// A vehicle that was made slower is found again from its runs: what is fitted on one campaign makes
+// the other, which was not fitted, come out better.
 TEST(SuaveFit, BringsAVehicleCloserToTheOneThatWasRecorded) {
   SuaveCampaign slow = campaign();
   slow.vehicle.cruise = 0.6;
@@ -91,7 +91,8 @@ TEST(SuaveFit, BringsAVehicleCloserToTheOneThatWasRecorded) {
 }
 
 TEST(SuaveFit, HasNothingToDoForCulpritAlone) {
-  FitCampaign target{campaign(), {{kCulprit, Moments::of_summary(80, 10, 100), Moments::of_summary(60, 5, 100)}}};
+  FitCampaign target{
+      campaign(), {{kCulprit, Moments::of_summary(80, 10, 100), Moments::of_summary(60, 5, 100)}}};
   EXPECT_FALSE(fit_vehicle({target}, {}, 10, 2, [](const std::string&) {}));
 }
 
