@@ -166,12 +166,18 @@ std::unique_ptr<Recorder::Decided> Recorder::decision_of(std::span<const Command
 }
 
 std::optional<KnownRobot> Recorder::newly_known(Time now) {
-  const std::uint64_t changes = knowledge_.graph.changes() + knowledge_.sightings.count();
+  const std::uint64_t sightings = knowledge_.sightings.count();
+  const std::uint64_t changes = knowledge_.graph.changes() + sightings;
   const bool is_old = robot_written_ != kLongAgo && later(robot_written_, kRobotAtLatest) <= now;
   const bool was_looked_at =
       robot_looked_at_ != kLongAgo && now < later(robot_looked_at_, kRobotPeriod);
-  if ((changes == robot_changes_ && !is_old) || was_looked_at) return std::nullopt;
+  // What is seen for the first time is written at once: who dies together with culprit would never
+  // have been there. That is seldom; ends of topics come and go all the time.
+  const bool is_first_sight = sightings != robot_sightings_;
+  if ((changes == robot_changes_ && !is_old) || (was_looked_at && !is_first_sight))
+    return std::nullopt;
   robot_changes_ = changes;
+  robot_sightings_ = sightings;
   robot_looked_at_ = now;
   KnownRobot known = knowledge_.known_robot();
   if (known == known_robot_ && !is_old) return std::nullopt;

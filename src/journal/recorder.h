@@ -144,6 +144,7 @@ class Recorder {
 
   KnownRobot known_robot_;  // as written last
   std::uint64_t robot_changes_ = 0;
+  std::uint64_t robot_sightings_ = 0;
   Time robot_looked_at_ = kLongAgo;
   Time robot_written_ = kLongAgo;
 
