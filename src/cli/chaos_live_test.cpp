@@ -142,6 +142,8 @@ struct Chaos : testing::Test {
     TestProgram culprit = run();
     for (const char* component : {"camera", "depth", "image_enhancement", "fusion", "segmentation"})
       EXPECT_TRUE(culprit.prints(std::string(component) + " is there")) << culprit.output();
+    // What was never published is unknown to whoever comes later.
+    EXPECT_TRUE(culprit.prints("/managed_subsystem/sensors_fused")) << culprit.output();
     const Holdings holdings = holdings_of(culprit.pid());
     culprit.signal(SIGINT);
     EXPECT_EQ(culprit.wait(), 0) << culprit.output();
