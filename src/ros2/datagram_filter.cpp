@@ -161,7 +161,7 @@ const char* DatagramFilter::objection(const Submessage& submessage, Clock::time_
     case rtps::kHeartbeat:
       return objection_to_heartbeat(submessage, now);
     case rtps::kGap:
-      return objection_to_gap(submessage);
+      return objection_to_gap(submessage, now);
     case rtps::kAckNack:
     case rtps::kNackFragment: {
       body.skip(8);
@@ -301,8 +301,9 @@ const char* DatagramFilter::objection_to_heartbeat(const Submessage& submessage,
   return nullptr;
 }
 
-// A gap is of samples that were written, so a heartbeat or a sample has told of them.
-const char* DatagramFilter::objection_to_gap(const Submessage& submessage) {
+// A gap is of samples that were written, so a heartbeat or a sample has told of them; but the first
+// that a new reader hears of a writer may be the gap of what was before.
+const char* DatagramFilter::objection_to_gap(const Submessage& submessage, Clock::time_point now) {
   Submessage body = submessage;
   body.skip(4);
   const Guid guid = body.read_writer();
@@ -311,8 +312,9 @@ const char* DatagramFilter::objection_to_gap(const Submessage& submessage) {
   if (!body.skip_bitmap()) return "a damaged gap";
   if (!is_heard(guid)) return nullptr;
   const auto known = writers_.find(guid);
-  const std::int64_t last = known == writers_.end() ? 0 : known->second.last;
-  if (first < 1 || base < first || base > last + 1) return "a gap with an absurd number";
+  const bool is_first = known == writers_.end() || known->second.last == 0;
+  const bool is_absurd = is_first ? is_far(guid, base - 1, now) : base > known->second.last + 1;
+  if (first < 1 || base < first || is_absurd) return "a gap with an absurd number";
   return nullptr;
 }
 

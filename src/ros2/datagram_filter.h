@@ -98,7 +98,7 @@ class DatagramFilter {
   const char* objection_to_data(const Submessage& submessage, Clock::time_point now);
   const char* objection_to_fragment(const Submessage& submessage, Clock::time_point now);
   const char* objection_to_heartbeat(const Submessage& submessage, Clock::time_point now);
-  const char* objection_to_gap(const Submessage& submessage);
+  const char* objection_to_gap(const Submessage& submessage, Clock::time_point now);
   const char* reserve(const Guid& guid, std::int64_t sequence, const Assembly& wanted,
                       std::uint32_t first, std::uint32_t count);
 

@@ -15,7 +15,7 @@ RULE CameraGone
 `
 const path = file('operator.rules')
 writeFileSync(path, kRules)
-const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--healthy', '1', '--state-dir', file('state')]
+const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--healthy', '0', '--state-dir', file('state')]
 
 // The process that culprit says the camera to be, newest last.
 const cameras = (said) => [...said.matchAll(/camera is there \(process (\d+)/g)].map((m) => Number(m[1]))
