@@ -10,7 +10,7 @@
 //   structure         lengths that do not fit, lists that do not end, bitmaps of more than 256 bits
 //   sequence numbers  further ahead of what the writer was known to have written than it can have
 //                     written since: kAhead, and kPerSecond for each second that it was not heard;
-//                     gaps only of what a sample or a heartbeat told of
+//                     gaps no further ahead than heartbeats may be
 //   fragments         of samples that are larger than the budgets below, or that contradict what
 //                     was said of the same sample before
 //
