@@ -1,5 +1,6 @@
 // What the next run needs to know is never dropped, however long a run lasts and whatever the clock
 // shows; and what it costs to write all that down.
+#include <atomic>
 #include <fstream>
 #include <thread>
 
@@ -32,7 +33,7 @@ constexpr std::int64_t kDay = 86'400'000'000'000;
 struct Recovered : testing::Test {
   // Writes down what a robot shows that is well, at the rate of SUNSET.
   void live(Recorder& recorder, Duration time) {
-    for (const Time end = now + time; now < end; now += 50ms) {
+    for (const Time end = now + time; now < end; now += 50ms, clock += 50'000'000) {
       std::vector<Observation> observations;
       for (int i = 0; i < 5; ++i)
         observations.push_back({now - Duration(random() % 40'000'000), SampleArrived{TopicId(0)}});
@@ -57,14 +58,14 @@ struct Recovered : testing::Test {
     Recorder::Options options;
     options.path = path;
     options.writer = writer;
-    options.wall_clock = [this] { return wall + now.time_since_epoch().count(); };
+    options.wall_clock = [this] { return clock.load(); };
     return std::make_unique<Recorder>(std::move(*Writer::open(path, writer)), options, session,
                                       knowledge);
   }
   std::uint64_t random() { return state = state * 6364136223846793005u + 1442695040888963407u; }
   Recovery recovered() {
     const auto reader = Reader::open(path);
-    const auto recovery = recover(*reader, rules, {now, wall});
+    const auto recovery = recover(*reader, rules, {now, clock});
     EXPECT_TRUE(recovery) << recovery.error();
     return *recovery;
   }
@@ -74,7 +75,7 @@ struct Recovered : testing::Test {
   const RuleSet rules = *check(Source("test", kRules)).rules;
   Knowledge knowledge{rules};
   Time now = Time(1000s);
-  std::int64_t wall = kWall;
+  std::atomic<std::int64_t> clock = kWall;  // what the wall clock shows; the recorder's thread asks
   std::uint64_t state = 1;
   int steps = 0;
   std::uintmax_t seen = 0;
@@ -102,10 +103,10 @@ TEST_F(Recovered, IsWhatARunLeftWhoseFirstRowsAreGone) {
 
 // No battery: it begins in 1970, and a minute later the network tells the time.
 TEST_F(Recovered, IsWhatARunLeftWhoseClockJumped) {
-  wall = 0;
+  clock = 0;
   auto run = recorder();
   live(*run, 60s);
-  wall = 40 * kDay;
+  clock += 40 * kDay;
   live(*run, 60s);
   run.reset();
   EXPECT_TRUE(recovered().had_run);
