@@ -49,8 +49,7 @@ void LiveRobot::witness(std::size_t before, std::vector<Observation>& observatio
   if (hears == !deaf_since_) return;
   Observation observation{now, HearingRegained{}};
   if (!hears) {
-    observation.what =
-        HearingLost{"what culprit says to itself over the network does not come back"};
+    observation.what = HearingLost{link_->doubt()};
     deaf_since_ = now;
   } else {
     deaf_since_.reset();

@@ -27,7 +27,8 @@ class LiveRobot : public Robot {
 
   void interrupt() override { inbox_.interrupt(); }
 
-  // Since when it is not sure that what the robot says is heard; nothing: it is.
+  // Since when it is not sure that what the robot says is heard, or that nobody else manages it;
+  // nothing: it is.
   std::optional<Time> deaf_since() const { return deaf_since_; }
 
   // Something about culprit itself that a person should know. From any thread.

@@ -1,5 +1,6 @@
 #include "cli/live_session.h"
 
+#include <algorithm>
 #include <unistd.h>
 
 #include <fmt/core.h>
@@ -154,6 +155,30 @@ std::optional<Silenceable> translated(const Silenceable& what, const RuleSet& fr
   return found ? std::optional<Silenceable>(*found) : std::nullopt;
 }
 
+// Verdicts that wait for their proof. None is due before the next session has had the time to see
+// the robot: what nobody looked at counts for nothing.
+Past waiting_verdicts(const Knowledge& knowledge, const RuleSet& next, Time first) {
+  const RuleSet& rules = knowledge.rules;
+  Past waiting;
+  for (const PendingOutcome& outcome : knowledge.outcomes.open) {
+    const Strategy& strategy = rules[outcome.strategy];
+    const auto same = journal::find_strategy(next, rules[strategy.rule].name, strategy.name);
+    if (!same || outcome.is_void || outcome.has_second_fault) continue;
+    waiting.push_back({outcome.judged, OutcomePending{*same, outcome.has_helped && !outcome.is_back,
+                                                      std::max(outcome.due, first)}});
+  }
+  return waiting;
+}
+
+// In the order in which it happened.
+void add(Past& past, const Past& more) {
+  for (const Event& event : more) {
+    const auto next = std::find_if(past.begin(), past.end(),
+                                   [&](const Event& each) { return each.at > event.at; });
+    past.insert(next, event);
+  }
+}
+
 // What people have ordered and what still holds.
 std::vector<Observation> standing_orders(const Manager& manager, bool advised_at_first,
                                          const RuleSet& next, Time now) {
@@ -180,6 +205,10 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
   if (!setup) return Error{setup.error()};
   std::unique_ptr<LiveSession> session(new LiveSession(frame, std::move(rules)));
   setup->link.claim = frame.lease;
+  setup->link.manages = !frame.advises;
+  setup->link.told_orders = [&keeper = frame.orders] {
+    return journal::to_text(keeper.told(), journal::clocks_now(live_now()));
+  };
   if (setup->link.claim) setup->link.claim->nodes = claimed_nodes(session->rules_);
   session->domain_ = static_cast<int>(setup->link.participant.domain);
   setup->supervisor.robot =
@@ -197,15 +226,28 @@ RunBeginning LiveSession::look_back() {
   return {};
 }
 
-// What people have ordered, of the last run and of this process before.
+// What people have ordered, of the last run and of this process before. Who managed last knows
+// better than our file, unless that is later.
 void LiveSession::hold(RunBeginning& beginning) {
   const auto path = frame_.options.journal_path(rules_);
   std::string trouble;
+  if (const auto& told = frame_.told_orders) {
+    const bool is_later = told->revision > beginning.orders.revision;
+    beginning.orders = is_later ? *told : both(beginning.orders, *told);
+    beginning.are_orders_kept = false;
+    if (const auto& pause = told->pause)
+      beginning.findings.push_back((pause->author == "culprit"
+                                        ? pause->reason
+                                        : "the culprit that managed before was paused by " +
+                                              pause->author +
+                                              (pause->reason.empty() ? "" : ": " + pause->reason)) +
+                                   "; so it is paused until a person resumes it");
+  }
   if (frame_.options.no_journal) {
     beginning.orders = frame_.orders.begin_without("of --no-journal", beginning.orders);
   } else if (!frame_.records) {
-    beginning.orders = frame_.orders.begin_without(
-        "another culprit manages this robot, and has to be told too", beginning.orders);
+    beginning.orders =
+        frame_.orders.begin_advising("another culprit manages this robot, and has to be told");
   } else if (beginning.is_of_another) {
     beginning.orders =
         frame_.orders.begin_without("another culprit writes the journal", beginning.orders);
@@ -244,6 +286,7 @@ void LiveSession::begin(Handover before) {
   beginning.learned = std::move(before.learned);
   beginning.orders = frame_.orders.orders();
   add(beginning.known_robot, before.known_robot);
+  add(beginning.past, before.verdicts);
   manage(std::move(beginning), std::move(before.orders), std::move(before.occasion));
 }
 
@@ -354,7 +397,9 @@ bool LiveSession::is_adapting() const {
 
 LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string occasion) {
   end();
+  const Time sees = later(robot_->now(), from_seconds(frame_.options.settle_seconds));
   return {learned_by(manager_->knowledge()), known_robot(),
+          waiting_verdicts(manager_->knowledge(), next, sees),
           standing_orders(*manager_, frame_.advises, next, robot_->now()), std::move(occasion)};
 }
 

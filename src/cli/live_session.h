@@ -33,11 +33,15 @@ class LiveSession {
     web::Metrics& metrics;
     OrderKeeper& orders;
     Time start;  // of the run: what people read counts from here
+    // What people had ordered of the culprit on another machine that managed before; nothing: none
+    // did.
+    std::optional<journal::StandingOrders> told_orders{};
   };
   // What a session leaves to the next one.
   struct Handover {
     journal::Learned learned;
     KnownRobot known_robot;
+    Past verdicts;                    // that do not count yet
     std::vector<Observation> orders;  // of people, that still hold
     std::string occasion;             // why there is a next one
   };
@@ -78,6 +82,8 @@ class LiveSession {
   // For a session with the same.
   LoadedRules loaded_rules() const { return {rules_, rules_text_, ""}; }
   const ros2::Link& link() const { return robot_->link(); }
+  // The last word to other culprits, of who steps back or ends.
+  void say_lease() { robot_->link().say_lease(); }
   Time now() const { return robot_->now(); }
   // Since when the robot cannot be heard; nothing: it can. On the thread of run().
   std::optional<Time> deaf_since() const { return robot_->deaf_since(); }

@@ -2,6 +2,9 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <unistd.h>
@@ -13,6 +16,7 @@
 #include "cli/test_network.h"
 #include "cli/test_program.h"
 #include "exemplars/sunset/node_process.h"
+#include "journal/standing_orders.h"
 #include "robot/inbox.h"
 #include "ros2/options.h"
 #include "ros2/survey.h"
@@ -159,6 +163,82 @@ TEST_F(Neighbours, OfTwoMachinesAgreeWhereTheyShareAKey) {
   first->signal(SIGINT);
   EXPECT_EQ(first->wait(), 0);
   EXPECT_TRUE(second->prints("this one manages the robot from now on")) << second->output();
+}
+
+// Orders for who comes next, as a person gave them to the first run on that machine.
+void pause_at(const std::filesystem::path& state) {
+  std::filesystem::create_directories(state);
+  journal::StandingOrders orders;
+  orders.pause = journal::StandingOrders::Said{"ann", "hands in the machine"};
+  orders.revision = 1;
+  const auto written = journal::write_orders(journal::orders_beside(state / "robot.journal"),
+                                             orders, journal::clocks_now(live_now()));
+  ASSERT_TRUE(written) << written.error();
+}
+
+struct TwoMachines : Neighbours {
+  void SetUp() override {
+    auto made = TestNetwork::create();
+    if (!made) GTEST_SKIP() << made.error();
+    network = std::move(*made);
+    setenv("ROS_LOCALHOST_ONLY", "0", 1);
+  }
+  TestProgram run_on(TestNetwork::Computer computer, const std::string& state) {
+    const TestNetwork::Visit visit(*network, computer);
+    if (secret.empty()) secret = key();
+    return run("robot", state, {"--lease-key", secret});
+  }
+  // Both run, and the first manages.
+  void begin() {
+    first.reset(new TestProgram(run_on(TestNetwork::kRobot, "first")));
+    ASSERT_TRUE(first->prints("watching robot")) << first->output();
+    second.reset(new TestProgram(run_on(TestNetwork::kDesk, "second")));
+    ASSERT_TRUE(second->prints("another culprit manages this robot, on ")) << second->output();
+    std::this_thread::sleep_for(5s);  // as long as an elder is looked for
+  }
+
+  std::string secret;
+  std::unique_ptr<TestNetwork> network;
+  std::unique_ptr<TestProgram> first, second;
+};
+
+TEST_F(TwoMachines, TakeOverFromOneThatIsKilledAndArePausedAsItWas) {
+  pause_at(world.folder() / "first");
+  begin();
+  const Time killed = live_now();
+  first->signal(SIGKILL);
+  ASSERT_EQ(first->wait(), -SIGKILL);
+  // Far below the 20 s of a participant's lease.
+  ASSERT_TRUE(second->prints("this one manages the robot from now on", 12s)) << second->output();
+  std::cout << "taken over after " << seconds(live_now() - killed) << " s\n";
+  EXPECT_THAT(second->output(), HasSubstr("was paused by ann: hands in the machine"));
+  const auto kept =
+      journal::read_orders(journal::orders_beside(world.folder() / "second" / "robot.journal"),
+                           journal::clocks_now(live_now()));
+  ASSERT_TRUE(kept && *kept && (*kept)->pause);
+  EXPECT_EQ((*kept)->pause->author, "ann");
+}
+
+TEST_F(TwoMachines, StepBackAndDoNothingWhenTheyWereOnlySlow) {
+  TestProgram camera = [&] {
+    const TestNetwork::Visit visit(*network, TestNetwork::kRobot);
+    return TestProgram(world, {"sunset-node", "camera"});
+  }();
+  begin();
+  ASSERT_TRUE(first->prints("camera is there")) << first->output();
+  first->signal(SIGSTOP);
+  ASSERT_TRUE(second->prints("this one manages the robot from now on", 12s)) << second->output();
+  camera.signal(SIGKILL);
+  camera.wait();
+  std::this_thread::sleep_for(1s);
+  first->signal(SIGCONT);
+  ASSERT_TRUE(first->prints("another culprit manages this robot, on ")) << first->output();
+  EXPECT_THAT(first->output(), HasSubstr("was away so long"));
+  EXPECT_THAT(first->output(), Not(HasSubstr("redeploy camera: done")));
+  std::this_thread::sleep_for(3s);
+  const std::string since = second->output().substr(second->output().find("from now on"));
+  EXPECT_THAT(since, Not(HasSubstr("another culprit manages this robot")));
+  EXPECT_LE(cameras().size(), 1u);
 }
 
 }  // namespace

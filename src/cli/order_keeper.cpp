@@ -8,13 +8,27 @@ namespace culprit::cli {
 using journal::NamedOrder;
 using journal::StandingOrders;
 
+OrderKeeper::OrderKeeper(std::string why)
+    : why_not_(std::move(why)), later_([this] { write_later(); }) {}
+
+OrderKeeper::~OrderKeeper() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+  wakes_.notify_all();
+  later_.join();
+}
+
 StandingOrders OrderKeeper::begin(std::filesystem::path file, const StandingOrders& found,
                                   bool is_in_file, std::string& trouble) {
   const std::lock_guard lock(mutex_);
   file_ = std::move(file);
+  only_advises_ = false;
   in_file_ = is_in_file ? std::optional(found) : std::nullopt;
-  orders_ = both(found, orders_);
+  begin_with(both(found, orders_));
   if (const auto written = write(orders_); !written) trouble = written.error();
+  wakes_.notify_all();
   return orders_;
 }
 
@@ -22,9 +36,63 @@ StandingOrders OrderKeeper::begin_without(std::string why, const StandingOrders&
   const std::lock_guard lock(mutex_);
   file_.reset();
   in_file_.reset();
+  only_advises_ = false;
   why_not_ = std::move(why);
-  orders_ = both(found, orders_);
+  begin_with(both(found, orders_));
   return orders_;
+}
+
+StandingOrders OrderKeeper::begin_advising(std::string why) {
+  const std::lock_guard lock(mutex_);
+  file_.reset();
+  in_file_.reset();
+  only_advises_ = true;
+  why_not_ = std::move(why);
+  begin_with(orders_);
+  return orders_;
+}
+
+void OrderKeeper::begin_with(const StandingOrders& orders) {
+  orders_ = orders;
+  known_ = std::max(known_, orders.revision);
+  tell(orders);
+}
+
+void OrderKeeper::tell(const StandingOrders& orders) {
+  const std::lock_guard lock(told_mutex_);
+  told_ = orders;
+}
+
+StandingOrders OrderKeeper::told() const {
+  const std::lock_guard lock(told_mutex_);
+  return told_;
+}
+
+// What they had told before, and what we had from them, is known: a person may have freed us of it.
+std::vector<Order> OrderKeeper::heed(const StandingOrders& theirs, const RuleSet& rules, Time now) {
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock || theirs.revision <= known_) return {};
+  known_ = theirs.revision;
+  orders_.revision = std::max(orders_.revision, theirs.revision);
+  std::vector<Order> orders = restraints_beyond(orders_, theirs, rules, now);
+  for (const Order& order : orders)
+    orders_ = after(std::move(orders_), journal::by_name(order, rules), now);
+  tell(orders_);
+  wakes_.notify_all();
+  return orders;
+}
+
+void OrderKeeper::write_later() {
+  constexpr auto kAgain = std::chrono::seconds(1);
+  std::unique_lock lock(mutex_);
+  while (!is_over_) {
+    if (is_unwritten() && write(orders_)) is_kept_again_ = true;
+    if (is_unwritten()) {
+      wakes_.wait_for(lock, kAgain);
+    } else {
+      wakes_.wait(lock);
+    }
+  }
 }
 
 web::OrderDesk::Keeping OrderKeeper::keeping() {
@@ -41,19 +109,24 @@ web::Kept OrderKeeper::take(const NamedOrder& order, Standing standing,
   const std::uint64_t freed = freed_;
   if (!frees) submit();
   const std::lock_guard lock(mutex_);
+  const auto* dry_run = std::get_if<SetDryRun>(&order.what);
+  if (only_advises_ && dry_run != nullptr && !dry_run->is_on) return {false, false, why_not_};
   StandingOrders next = after(orders_, order, live_now());
+  if (!frees) tell(next);
   const auto written = write(next);
   // Without a file there is none that says otherwise.
   if (frees && file_ && !written) return {false, false, written.error()};
   orders_ = std::move(next);
+  tell(orders_);
   if (frees) ++freed_;
   if (frees || freed != freed_) submit();
+  if (!written) wakes_.notify_all();
   return {written.has_value(), true, written ? "" : written.error()};
 }
 
 Expected<void> OrderKeeper::write(const StandingOrders& orders) {
   if (!file_) return Error{why_not_};
-  if (in_file_ == orders) return {};
+  if (in_file_ && restrain_alike(*in_file_, orders)) return {};
   const auto content = [&] {
     const auto text = journal::read_sealed(*file_);
     return text ? *text : std::nullopt;
@@ -73,7 +146,11 @@ StandingOrders OrderKeeper::orders() const {
 
 bool OrderKeeper::is_kept() const {
   const std::lock_guard lock(mutex_);
-  return file_ && in_file_ == orders_;
+  return file_ && !is_unwritten();
+}
+
+bool OrderKeeper::is_unwritten() const {
+  return file_ && (!in_file_ || !restrain_alike(*in_file_, orders_));
 }
 
 }  // namespace culprit::cli

@@ -1,14 +1,18 @@
 // Keeps what people order for the next process (journal/standing_orders.h), in the order that
 // cannot harm: what restrains culprit is in force first and kept then, whatever the disk does; what
-// frees it is kept first, and is in force only then.
+// frees it is kept first, and is in force only then. What is in force and not kept is written as
+// soon as the disk takes it.
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <filesystem>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "journal/standing_orders.h"
 #include "robot/standing.h"
@@ -20,7 +24,9 @@ namespace culprit::cli {
 class OrderKeeper {
  public:
   // Until begin() is called nothing is kept; `why` says so to people.
-  explicit OrderKeeper(std::string why) : why_not_(std::move(why)) {}
+  explicit OrderKeeper(std::string why);
+
+  ~OrderKeeper();
 
   // From now on orders are kept in `file`. `found` holds according to it; `is_in_file`: and stands
   // there just so. What was ordered of this process before holds as well. Gives what holds now.
@@ -29,12 +35,23 @@ class OrderKeeper {
                                 bool is_in_file, std::string& trouble);
   // From now on nothing is kept; `why` says so to people. What `found` says holds as well.
   journal::StandingOrders begin_without(std::string why, const journal::StandingOrders& found);
+  // Likewise, and this one must not act: a dry run cannot be ended.
+  journal::StandingOrders begin_advising(std::string why);
 
   // For web::OrderDesk.
   web::OrderDesk::Keeping keeping();
 
-  // What holds now; also for a successor on another machine, which learns of it with the lease.
+  // What holds now.
   journal::StandingOrders orders() const;
+  // What a successor on another machine is to learn with the lease: what holds now, and what is in
+  // force and being written. Does not wait for the disk.
+  journal::StandingOrders told() const;
+  // What another culprit that managed this robot for a while says that people ordered there. Gives
+  // which restraints of it are new here, to be submitted; they are kept like any other. Does not
+  // wait: while the disk is busy it gives none, to be asked again.
+  std::vector<Order> heed(const journal::StandingOrders& theirs, const RuleSet& rules, Time now);
+  // Whether what was in force and not kept is kept since it was asked last.
+  bool is_kept_again() { return is_kept_again_.exchange(false); }
   // Whether the next process on this machine will know.
   bool is_kept() const;
 
@@ -42,13 +59,27 @@ class OrderKeeper {
   web::Kept take(const journal::NamedOrder& order, Standing standing,
                  const std::function<void()>& submit);
   Expected<void> write(const journal::StandingOrders& orders);
+  void begin_with(const journal::StandingOrders& orders);
+  void tell(const journal::StandingOrders& orders);
+  bool is_unwritten() const;
+  void write_later();
 
   mutable std::mutex mutex_;  // guards what follows; also held while the file is written
   std::optional<std::filesystem::path> file_;
-  std::string why_not_;                             // if there is no file
-  journal::StandingOrders orders_;                  // what holds
+  std::string why_not_;  // if there is no file
+  bool only_advises_ = false;
+  journal::StandingOrders orders_;  // what holds
+  std::uint64_t known_ = 0;  // the latest revision of another culprit's orders that is in ours
   std::optional<journal::StandingOrders> in_file_;  // nothing: unknown, or unreadable
   std::atomic<std::uint64_t> freed_ = 0;            // how many orders that free were given
+
+  mutable std::mutex told_mutex_;  // guards the next
+  journal::StandingOrders told_;
+
+  std::atomic<bool> is_kept_again_ = false;
+  std::condition_variable wakes_;
+  bool is_over_ = false;  // guarded by mutex_
+  std::thread later_;
 };
 
 }  // namespace culprit::cli

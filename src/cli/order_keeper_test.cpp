@@ -155,6 +155,62 @@ TEST_F(KillSwitch, ThatWasNotKeptNeedsNoDiskToBeLeft) {
   EXPECT_FALSE(run.is_paused());
 }
 
+TEST_F(KillSwitch, IsKeptAsSoonAsTheDiskIsBack) {
+  Run run(path, rules);
+  {
+    const FullDisk full(16);
+    ASSERT_FALSE(run.order(Pause{}).is_kept);
+  }
+  for (const Time end = live_now() + 30s; !run.keeper.is_kept() && live_now() < end;)
+    std::this_thread::sleep_for(20ms);
+  EXPECT_TRUE(run.keeper.is_kept_again());
+  EXPECT_FALSE(run.keeper.is_kept_again()) << "said once";
+  EXPECT_TRUE(Run(path, rules).is_paused());
+}
+
+TEST_F(KillSwitch, OfAnotherMachineRestrainsOnceAndFreesNothing) {
+  Run run(path, rules);
+  ASSERT_TRUE(run.order(Silence{RuleId(0), {}}).is_kept);
+  StandingOrders theirs;
+  theirs.pause = StandingOrders::Said{"ann", "hands in the machine"};
+  theirs.revision = 5;
+  const auto heeded = run.keeper.heed(theirs, rules, live_now());
+  ASSERT_EQ(heeded.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<Pause>(heeded[0].what));
+  EXPECT_EQ(heeded[0].author, "ann");
+  EXPECT_TRUE(run.is_paused());
+  EXPECT_EQ(run.keeper.told().silences.size(), 1u);
+  EXPECT_TRUE(run.order(Resume{}).is_given);
+  EXPECT_THAT(run.keeper.heed(theirs, rules, live_now()), testing::IsEmpty())
+      << "a person has resumed it since";
+  theirs.pause.reset();
+  theirs.revision = 99;
+  EXPECT_THAT(run.keeper.heed(theirs, rules, live_now()), testing::IsEmpty());
+  EXPECT_EQ(run.keeper.orders().silences.size(), 1u) << "nobody here has lifted it";
+}
+
+TEST_F(KillSwitch, IsToldAtOnceAndWhatFreesOnlyOnceItIsKept) {
+  Run run(path, rules);
+  {
+    const FullDisk full(16);
+    ASSERT_FALSE(run.order(Pause{}).is_kept);
+    EXPECT_TRUE(run.keeper.told().pause);
+  }
+  ASSERT_TRUE(run.order(Resume{}).is_kept);
+  EXPECT_FALSE(run.keeper.told().pause);
+  EXPECT_GT(run.keeper.told().revision, 1u);
+}
+
+TEST_F(KillSwitch, OfOneThatOnlyAdvisesCannotMakeItAct) {
+  Run run(path, rules);
+  run.keeper.begin_advising("another culprit manages this robot");
+  const web::Kept kept = run.order(SetDryRun{false});
+  EXPECT_FALSE(kept.is_given);
+  EXPECT_THAT(kept.why_not, HasSubstr("another culprit"));
+  EXPECT_EQ(run.given, 0);
+  EXPECT_TRUE(run.order(Pause{}).is_given);
+}
+
 TEST_F(KillSwitch, WithoutAJournalIsInForceAndSaidNotToBeKept) {
   Run run(path, rules);
   run.keeper.begin_without("of --no-journal", {});

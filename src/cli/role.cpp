@@ -35,6 +35,19 @@ RoleOfCulprit::RoleOfCulprit(const RuleSet& rules, std::uint32_t domain, std::st
   reason_ = advising(" (" + claim_.holder() + ")");
 }
 
+Expected<std::optional<journal::StandingOrders>> RoleOfCulprit::told_orders(
+    const ros2::Link& link) const {
+  using Told = std::optional<journal::StandingOrders>;
+  const auto text = link.told_orders();
+  if (!text && !had_elder_) return Told();
+  const auto orders = text ? journal::orders_from_text(*text, journal::clocks_now(live_now()))
+                           : Expected<journal::StandingOrders>(Error{"it was not heard"});
+  if (!orders)
+    return Error{"what people had ordered of the culprit that managed this robot is not known (" +
+                 orders.error() + ")"};
+  return Told(*orders);
+}
+
 std::string RoleOfCulprit::name_of_claim(const std::string& what) const {
   return "manages-" + std::to_string(domain_) + "-" + what;
 }
@@ -47,7 +60,10 @@ bool RoleOfCulprit::has_changed(const ros2::Link& link, Time now, Time joined) {
   if (role == Role::kManage) {
     if (now < later(joined, Manager::kDiscovery)) return false;
     reason_ = "the other culprit is gone; this one manages the robot from now on";
+    // More than any that it may be back with.
+    lease_.term = std::max(lease_.term, link.highest_term()) + 1;
   } else {
+    had_elder_ = elder.has_value();
     reason_ = advising(elder ? ", on " + *elder : " (" + claim_.holder() + ")");
   }
   role_ = role;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/host_claim.h"
+#include "journal/standing_orders.h"
 #include "language/rule_set.h"
 #include "robot/time.h"
 #include "ros2/link.h"
@@ -29,7 +30,7 @@ class RoleOfCulprit {
   RoleOfCulprit(const RuleSet& rules, std::uint32_t domain, std::string key);
 
   Role role() const { return role_; }
-  // To be announced over DDS: the same for as long as this process lives.
+  // To be announced over DDS: the same until the role is another one.
   const ros2::LeaseClaim& lease() const { return lease_; }
 
   // Looks anew. Gives whether the role is another one now, which takes a new beginning. `joined`:
@@ -37,6 +38,10 @@ class RoleOfCulprit {
   bool has_changed(const ros2::Link& link, Time now, Time joined);
   // For the user: why it has this role. Empty: it manages from the start.
   const std::string& reason() const { return reason_; }
+
+  // What people have ordered of the robot, as told by the latest other culprit that managed it;
+  // nothing: there was none. Error: there was one, and it could not be told what.
+  Expected<std::optional<journal::StandingOrders>> told_orders(const ros2::Link& link) const;
 
   // Which of these nodes another culprit manages, and who that is. Looks anew; nodes that are no
   // longer among them are given up.
@@ -54,6 +59,7 @@ class RoleOfCulprit {
   HostClaim claim_;
   std::map<std::string, HostClaim> node_claims_;
   Role role_ = Role::kManage;
+  bool had_elder_ = false;  // this role is, or the last one was, because of one on another machine
   std::string reason_;
   std::set<std::string> warned_;
 };

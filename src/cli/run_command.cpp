@@ -45,12 +45,29 @@ void look_at_neighbours(RoleOfCulprit& role, LiveSession& session,
   if (!frame.advises) session.leave_alone(elsewhere);
   for (const std::string& warning : role.warnings(session.link()))
     session.announce("neighbour", warning);
+  // One that was slow, or cut off, and is about to step back.
+  const auto told = role.told_orders(session.link());
+  if (frame.advises || !told || !*told) return;
+  for (Order& order : frame.orders.heed(**told, session.rules(), session.now()))
+    session.submit(std::move(order));
 }
 
 // Whoever only advises neither acts nor writes the journal.
-void take_role(LiveSession::Frame& frame, Role role) {
-  frame.advises = frame.options.dry_run || role == Role::kAdvise;
-  frame.records = !frame.options.no_journal && role == Role::kManage;
+void take_role(LiveSession::Frame& frame, const RoleOfCulprit& role) {
+  frame.advises = frame.options.dry_run || role.role() == Role::kAdvise;
+  frame.records = !frame.options.no_journal && role.role() == Role::kManage;
+  if (!frame.options.dry_run) frame.lease = role.lease();
+}
+
+// Who cannot tell whether a person has paused the robot is paused.
+std::optional<journal::StandingOrders> orders_for_successor(const RoleOfCulprit& role,
+                                                            const ros2::Link& link) {
+  if (role.role() != Role::kManage) return std::nullopt;
+  auto told = role.told_orders(link);
+  if (told) return *told;
+  journal::StandingOrders paused;
+  paused.pause = journal::StandingOrders::Said{"culprit", told.error()};
+  return paused;
 }
 
 std::string name_of(const RuleSet& rules) {
@@ -162,11 +179,13 @@ std::unique_ptr<LiveSession> in_role(const RoleOfCulprit& role, std::unique_ptr<
                                      web::OrderDesk& orders, const std::atomic<bool>& stopped) {
   orders.close();
   stage.enter(nullptr);
+  old->say_lease();
   LoadedRules rules = old->loaded_rules();
   const KnownRobot known = old->known_robot();
+  frame.told_orders = orders_for_successor(role, old->link());
   old->end();
   old.reset();
-  take_role(frame, role.role());
+  take_role(frame, role);
   auto session = LiveSession::open(frame, std::move(rules));
   if (!session) return complain(session.error()), nullptr;
   (*session)->begin(stopped, known);
@@ -197,6 +216,8 @@ int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, Role
       joined = session->now();
     }
     look_at_neighbours(role, *session, frame);
+    if (frame.orders.is_kept_again())
+      session->announce("kept", "what people have ordered was not kept, and is now");
     // Whoever stays deaf is not fed, and begins anew.
     const auto deaf_since = session->deaf_since();
     if (!deaf_since) {
@@ -225,6 +246,7 @@ int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, Role
   systemd.stopping();
   orders.close();
   stage.enter(nullptr);
+  session->say_lease();
   session->end();
   return kOk;
 }
@@ -246,9 +268,9 @@ int run(const RunOptions& options) {
   web::Hub hub([&] { stage.interrupt(); });
   web::Metrics metrics;
   OrderKeeper keeper("the run has not begun");
-  LiveSession::Frame frame{options, *governor, false, true, {}, hub, metrics, keeper, live_now()};
-  take_role(frame, role->role());
-  if (!options.dry_run) frame.lease = role->lease();
+  LiveSession::Frame frame{options, *governor, false,  true,       {},
+                           hub,     metrics,   keeper, live_now(), {}};
+  take_role(frame, *role);
   const std::string robot = name_of(rules->rules);
   auto session = LiveSession::open(frame, std::move(*rules));
   if (!session) return complain(session.error());

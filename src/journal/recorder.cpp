@@ -388,7 +388,20 @@ Expected<void> Recorder::write(bool is_durable) {
     was_failing = std::exchange(is_failing_, false);
   }
   if (was_failing && options_.on_trouble) options_.on_trouble("the journal is written again");
+  tell_of_copy();
   return {};
+}
+
+// Each change once.
+void Recorder::tell_of_copy() {
+  if (copy_trouble_ == writer_->copy_trouble()) return;
+  copy_trouble_ = writer_->copy_trouble();
+  if (!options_.on_trouble) return;
+  options_.on_trouble(copy_trouble_.empty()
+                          ? "the second copy of what was learned is written again"
+                          : "what was learned stands in the journal alone, its second copy cannot "
+                            "be written: " +
+                                copy_trouble_);
 }
 
 Expected<void> Recorder::failed(Error error) {

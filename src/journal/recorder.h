@@ -132,6 +132,7 @@ class Recorder {
   void begin_session_anew(const std::filesystem::path& rows);
   void finish();
   Expected<void> failed(Error error);
+  void tell_of_copy();
   void bound_unsaved();
 
   Options options_;
@@ -169,8 +170,9 @@ class Recorder {
 
   // Of the recorder's thread.
   std::optional<Writer> writer_;
-  bool is_damaged_ = false;  // the file, which cannot be written any more
-  Time now_{};               // of the newest step
+  bool is_damaged_ = false;   // the file, which cannot be written any more
+  std::string copy_trouble_;  // that was told
+  Time now_{};                // of the newest step
   Batch unsaved_;
   std::size_t unsaved_bytes_ = 0;
   std::string steps_;  // of the row that is being made

@@ -59,6 +59,7 @@ struct Recovered : testing::Test {
     options.path = path;
     options.writer = writer;
     options.wall_clock = [this] { return clock.load(); };
+    options.on_trouble = [this](const std::string& what) { troubles.push_back(what); };
     return std::make_unique<Recorder>(std::move(*Writer::open(path, writer)), options, session,
                                       knowledge);
   }
@@ -79,7 +80,16 @@ struct Recovered : testing::Test {
   std::uint64_t state = 1;
   int steps = 0;
   std::uintmax_t seen = 0;
+  std::vector<std::string> troubles;  // of the recorder's thread: to be read when it has ended
 };
+
+TEST_F(Recovered, LacksASecondCopyOfWhatWasLearnedOnlyAfterThatWasSaid) {
+  fs::create_directories(learned_beside(path) / "in the way");
+  recorder().reset();
+  ASSERT_EQ(troubles.size(), 1u);
+  EXPECT_THAT(troubles[0], testing::HasSubstr("second copy cannot be written"));
+  EXPECT_THAT(troubles[0], testing::HasSubstr("a.journal-learned"));
+}
 
 TEST_F(Recovered, IsWhatARunLeftWhoseFirstRowsAreGone) {
   Writer::Options small;

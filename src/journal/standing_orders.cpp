@@ -52,6 +52,7 @@ NamedOrder by_name(const Order& order, const RuleSet& rules) {
 }
 
 StandingOrders after(StandingOrders orders, const NamedOrder& order, Time now) {
+  ++orders.revision;
   std::erase_if(orders.silences, [&](const Quiet& quiet) { return quiet.until <= now; });
   if (std::holds_alternative<Resume>(order.what)) orders.pause.reset();
   // Whoever said it first is who is asked about it.
@@ -70,9 +71,14 @@ StandingOrders after(StandingOrders orders, const NamedOrder& order, Time now) {
   return orders;
 }
 
+bool restrain_alike(const StandingOrders& a, const StandingOrders& b) {
+  return a.pause == b.pause && a.dry_run == b.dry_run && a.silences == b.silences;
+}
+
 StandingOrders both(StandingOrders a, const StandingOrders& b) {
   if (!a.pause) a.pause = b.pause;
   if (!a.dry_run) a.dry_run = b.dry_run;
+  a.revision = std::max(a.revision, b.revision);
   for (const Quiet& theirs : b.silences) {
     const auto ours = std::find_if(a.silences.begin(), a.silences.end(), [&](const Quiet& quiet) {
       return quiet.about == theirs.about && quiet.name == theirs.name;
@@ -84,6 +90,28 @@ StandingOrders both(StandingOrders a, const StandingOrders& b) {
     }
   }
   return a;
+}
+
+std::vector<Order> restraints_beyond(const StandingOrders& ours, const StandingOrders& theirs,
+                                     const RuleSet& rules, Time now) {
+  std::vector<Order> orders;
+  const auto add = [&](const Said& said, auto what) {
+    orders.push_back({0, said.author, said.reason, what});
+  };
+  if (theirs.pause && !ours.pause) add(*theirs.pause, Pause{});
+  if (theirs.dry_run && !ours.dry_run) add(*theirs.dry_run, SetDryRun{true});
+  for (const Quiet& quiet : theirs.silences) {
+    const bool is_known =
+        std::any_of(ours.silences.begin(), ours.silences.end(), [&](const Quiet& own) {
+          return own.about == quiet.about && own.name == quiet.name && own.until >= quiet.until;
+        });
+    const auto what = find(quiet, rules);
+    if (is_known || !what || quiet.until <= now) continue;
+    Silence silence{*what, {}};
+    if (quiet.until != kNever) silence.lasts = quiet.until - now;
+    add(quiet.said, silence);
+  }
+  return orders;
 }
 
 Past to_past(const StandingOrders& orders, const RuleSet& rules, Time now) {
@@ -123,6 +151,7 @@ std::string to_text(const StandingOrders& orders, const Clocks& now) {
       {"paused", orders.pause ? to_json(*orders.pause) : Json()},
       {"dry_run", orders.dry_run ? to_json(*orders.dry_run) : Json()},
       {"silences", Json::array()},
+      {"revision", orders.revision},
   };
   for (const Quiet& quiet : orders.silences) {
     if (quiet.until <= now.robot) continue;
@@ -142,6 +171,8 @@ Expected<StandingOrders> orders_from_text(const std::string& text, const Clocks&
   StandingOrders orders;
   orders.pause = standing(json["paused"]);
   orders.dry_run = standing(json["dry_run"]);
+  orders.revision =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(0, integer_of(json, "revision")));
   const Clocks then{text_of(json, "boot"), Time(Duration(integer_of(json, "robot"))),
                     integer_of(json, "wall"), flag_of(json, "wall_is_set")};
   const Duration age = certain_age(then, now);

@@ -33,6 +33,7 @@ struct StandingOrders {
   std::optional<Said> pause;
   std::optional<Said> dry_run;
   std::vector<Quiet> silences;
+  std::uint64_t revision = 0;  // how many orders led to this; more is later
   bool operator==(const StandingOrders&) const = default;
 };
 
@@ -48,8 +49,16 @@ NamedOrder by_name(const Order& order, const RuleSet& rules);
 // `orders` after `order` at `now`. Silences that are over are left out.
 StandingOrders after(StandingOrders orders, const NamedOrder& order, Time now);
 
+// Whether they are the same for the manager, however many orders led there.
+bool restrain_alike(const StandingOrders& a, const StandingOrders& b);
+
 // All restraints of both.
 StandingOrders both(StandingOrders a, const StandingOrders& b);
+
+// What restrains according to `theirs` and not according to `ours`, as orders; no silences of what
+// `rules` does not have.
+std::vector<Order> restraints_beyond(const StandingOrders& ours, const StandingOrders& theirs,
+                                     const RuleSet& rules, Time now);
 
 // Silences as the manager remembers them (knowledge/past.h); those about what `rules` does not have
 // are left out. And back.

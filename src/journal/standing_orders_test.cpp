@@ -96,7 +96,26 @@ TEST(StandingOrders, ChangeByOrders) {
   orders = after(orders, order(LiftSilence{RuleId(0)}), Time(20s));
   orders = after(orders, order(Resume{}), Time(20s));
   orders = after(orders, order(SetDryRun{false}), Time(20s));
-  EXPECT_EQ(orders, StandingOrders());
+  EXPECT_TRUE(restrain_alike(orders, StandingOrders()));
+  EXPECT_EQ(orders.revision, 7u);
+}
+
+TEST(StandingOrders, OfAnotherAreNewWhereTheyRestrainMore) {
+  const RuleSet rules = *check(Source("test", kRules)).rules;
+  StandingOrders ours;
+  ours.dry_run = StandingOrders::Said{"eve", ""};
+  ours.silences = {{StandingOrders::About::kComponent, rules.components[0].name, {}, Time(9s)}};
+  StandingOrders theirs = ours;
+  EXPECT_TRUE(restraints_beyond(ours, theirs, rules, Time(1s)).empty());
+  EXPECT_TRUE(restraints_beyond(ours, StandingOrders(), rules, Time(1s)).empty());
+  theirs.pause = StandingOrders::Said{"ann", "hands in the machine"};
+  theirs.silences[0].until = Time(20s);
+  theirs.silences.push_back({StandingOrders::About::kRule, "of other rules", {}, kNever});
+  const auto orders = restraints_beyond(ours, theirs, rules, Time(1s));
+  ASSERT_EQ(orders.size(), 2u);
+  EXPECT_TRUE(std::holds_alternative<Pause>(orders[0].what));
+  EXPECT_EQ(orders[0].author, "ann");
+  EXPECT_EQ(std::get<Silence>(orders[1].what).lasts, Duration(19s));
 }
 
 TEST(StandingOrders, OfTwoAreAllRestraints) {

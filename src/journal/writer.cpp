@@ -207,7 +207,10 @@ Expected<void> Writer::restore(const Learned& learned) {
 
 void Writer::copy_learned() {
   const auto all = learned();
-  is_copy_due_ = !all || !write_copy(learned_beside(path_), {newest_, *all});
+  const auto written =
+      all ? write_copy(learned_beside(path_), {newest_, *all}) : Error{all.error()};
+  is_copy_due_ = !written;
+  copy_trouble_ = written ? "" : written.error();
 }
 
 // By ourselves, because with the first row that stands in the -wal file alone the copy has to be

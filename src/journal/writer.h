@@ -50,6 +50,9 @@ class Writer {
   // Whether the error that append() gave comes from damage: then the writer is of no use any more,
   // and the file has to be opened anew with Options::is_damaged.
   bool is_damaged() const { return is_damaged_; }
+  // Why the second copy of what was learned is not written; empty: it is. It is tried again with
+  // the next batch.
+  const std::string& copy_trouble() const { return copy_trouble_; }
   // Whether rows should go that the next run needs. They go once there is a newer `session` row
   // with all that is to be known of them.
   bool wants_new_session() const { return wants_new_session_; }
@@ -89,6 +92,7 @@ class Writer {
   std::int64_t session_ = 0;  // the newest of its rows; 0: there is none
   bool wants_new_session_ = false;
   bool is_copy_due_ = true;
+  std::string copy_trouble_;
   bool is_damaged_ = false;
   std::string remark_;
   std::filesystem::path aside_;

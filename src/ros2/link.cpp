@@ -135,6 +135,8 @@ Link::~Link() {
   // Clients and readers go before the node that they belong to.
   probing_.reset();
   publishing_.reset();
+  lease_timer_.reset();
+  lease_reader_.reset();
   hearing_.reset();
   parameter_events_.reset();
   diagnostics_watch_.reset();
@@ -181,22 +183,37 @@ Expected<void> Link::start() {
   auto hearing = Hearing::begin(context_->participant(), executor_);
   if (!hearing) return Error{hearing.error()};
   hearing_ = std::move(*hearing);
+  if (options_.claim)
+    lease_timer_ =
+        std::make_unique<Timer>(executor_, ManagerLease::kPeriod, [this] { say_lease(); });
   probing_ = std::make_unique<Timer>(executor_, kProbePeriod, [this] { probe(); });
   thread_ = std::thread([this] { executor_.run(); });
   return {};
 }
 
 Expected<void> Link::claim_lease() {
+  constexpr Qos kLeaseQos{.reliability = Reliability::kBestEffort, .depth = 10};
   if (!options_.claim) return {};
   lease_.emplace(*options_.claim, context_->participant().guid().prefix());
   for (std::string& announcement : lease_->announcements()) {
     auto writer = context_->participant().create_writer({.topic = ManagerLease::kTopic,
                                                          .type = ManagerLease::kType,
-                                                         .qos = {},
+                                                         .qos = kLeaseQos,
                                                          .user_data = std::move(announcement),
                                                          .on_match = {}});
     if (!writer) return Error{writer.error()};
     lease_writers_.push_back(std::move(*writer));
+  }
+  if (!options_.claim->key.empty()) {
+    auto reader =
+        context_->participant().create_reader({.topic = ManagerLease::kTopic,
+                                               .type = ManagerLease::kType,
+                                               .qos = kLeaseQos,
+                                               .user_data = {},
+                                               .on_match = {}},
+                                              [this](const Sample& sample) { on_beat(sample); });
+    if (!reader) return Error{reader.error()};
+    lease_reader_ = std::move(*reader);
   }
   context_->on_discovery([this](const DiscoveryEvent& event) { on_lease(event); });
   return {};
@@ -204,8 +221,8 @@ Expected<void> Link::claim_lease() {
 
 void Link::on_lease(const DiscoveryEvent& event) {
   constexpr std::size_t kMost = 1000;
-  const std::lock_guard lock(mutex_);
-  lease_->apply(event);
+  const std::lock_guard lock(lease_mutex_);
+  lease_->apply(event, live_now());
   if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
     const GuidPrefix prefix = info->guid.prefix();
     if (neighbours_.size() >= kMost && !neighbours_.contains(prefix)) return;
@@ -227,27 +244,72 @@ std::string Link::host_of(const GuidPrefix& participant) const {
 }
 
 std::optional<std::string> Link::elder() const {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(lease_mutex_);
   if (!lease_) return std::nullopt;
-  const auto elder = lease_->elder([this](const GuidPrefix& p) { return is_here(p); });
+  const auto elder = lease_->elder(live_now(), [this](const GuidPrefix& p) { return is_here(p); });
   return elder ? std::optional(host_of(*elder)) : std::nullopt;
 }
 
 std::optional<std::string> Link::elder_at(const std::string& node) const {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(lease_mutex_);
   if (!lease_) return std::nullopt;
-  const auto elder = lease_->elder_at(node, [this](const GuidPrefix& p) { return is_here(p); });
+  const auto elder =
+      lease_->elder_at(node, live_now(), [this](const GuidPrefix& p) { return is_here(p); });
   return elder ? std::optional(host_of(*elder)) : std::nullopt;
 }
 
 std::vector<std::string> Link::lease_strangers() const {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(lease_mutex_);
   std::vector<std::string> hosts;
   if (!lease_) return hosts;
   for (const GuidPrefix& each :
        lease_->strangers([this](const GuidPrefix& p) { return is_here(p); }))
     hosts.push_back(host_of(each));
   return hosts;
+}
+
+std::optional<std::string> Link::told_orders() const {
+  const std::lock_guard lock(lease_mutex_);
+  return lease_ ? lease_->told_orders() : std::nullopt;
+}
+
+std::int64_t Link::highest_term() const {
+  const std::lock_guard lock(lease_mutex_);
+  return lease_ ? lease_->highest_term() : 0;
+}
+
+void Link::say_lease() {
+  if (!lease_) return;
+  const bool hears = hearing_->doubtful() > live_now();
+  const std::string orders = options_.told_orders ? options_.told_orders() : "";
+  std::optional<std::string> beat;
+  {
+    const std::lock_guard lock(lease_mutex_);
+    beat = lease_->beat(live_now(), hears, options_.manages, orders);
+  }
+  if (!beat) return;
+  CdrWriter message;
+  message.write_string(*beat);
+  lease_writers_.front()->write(message.take());
+}
+
+void Link::on_beat(const Sample& sample) {
+  CdrReader message(sample.payload);
+  const std::string_view beat = message.read_string();
+  const std::lock_guard lock(lease_mutex_);
+  lease_->hear(sample.identity.writer.prefix(), beat, live_now());
+}
+
+Time Link::doubtful() const {
+  const Time heard = hearing_->doubtful();
+  const std::lock_guard lock(lease_mutex_);
+  return lease_ ? std::min(heard, lease_->sure_until(live_now())) : heard;
+}
+
+std::string Link::doubt() const {
+  return hearing_->doubtful() > live_now()
+             ? "culprit was away so long that another one may manage this robot by now; it listens"
+             : "what culprit says to itself over the network does not come back";
 }
 
 Expected<void> Link::declare_parameters() {

@@ -8,6 +8,7 @@
 // rules read, and it uses no shared memory.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -52,6 +53,9 @@ class Link {
     // Announced to other culprits, of which one manages the robot (manager_lease.h). Nothing: this
     // one never will.
     std::optional<LeaseClaim> claim{};
+    bool manages = false;  // now; needs a claim
+    // What people have ordered, for who takes over. Called on a thread of the link; must not wait.
+    std::function<std::string()> told_orders{};
   };
 
   // `rules` and `inbox` must outlive the link. Errors: the domain cannot be joined.
@@ -63,8 +67,11 @@ class Link {
   void publish(std::vector<Health> health);
   void log(Severity severity, std::string text);
 
-  // Until when it is sure that what the robot says is heard (hearing.h). From any thread.
-  Time doubtful() const { return hearing_->doubtful(); }
+  // Until when it is sure that what the robot says is heard (hearing.h), and that no other culprit
+  // manages it (manager_lease.h). From any thread, as the next.
+  Time doubtful() const;
+  // What is not sure, if that time has come.
+  std::string doubt() const;
 
   // Where the culprit runs, on another machine, that goes before this one for the robot, or for the
   // node of this full name: a host's name, or "another machine" where it does not say. Nothing:
@@ -73,6 +80,12 @@ class Link {
   std::optional<std::string> elder_at(const std::string& node) const;
   // Where those run that claim the same and do not prove it.
   std::vector<std::string> lease_strangers() const;
+  // What the last one that managed this robot, on another machine or here, said of orders; empty:
+  // it did not say. Nothing: there was none.
+  std::optional<std::string> told_orders() const;
+  std::int64_t highest_term() const;
+  // Tells who takes over, now and not with the next beat: the last word of who steps back or ends.
+  void say_lease();
 
  private:
   Link(const RuleSet& rules, Options options, Inbox& inbox);
@@ -87,6 +100,8 @@ class Link {
 
   // On the executor's thread.
   void on_lease(const DiscoveryEvent& event);
+  // On a receive thread.
+  void on_beat(const Sample& sample);
   void on_change(const GraphChange& change);
   void on_joined(const GraphNode& node);
   void on_left(const std::string& node);
@@ -123,14 +138,18 @@ class Link {
   std::unique_ptr<Hearing> hearing_;
   std::uint64_t refused_ = 0;  // datagrams that were told of
   std::vector<std::unique_ptr<Writer>> lease_writers_;
+  std::unique_ptr<Reader> lease_reader_;
+  std::unique_ptr<Timer> lease_timer_;
 
-  mutable std::mutex mutex_;  // guards what follows; a link that is made stays
+  mutable std::mutex lease_mutex_;  // guards the next; the middleware is not called under it
   struct Neighbour {
     std::string host;
     bool is_here = false;  // on this machine
   };
   std::optional<ManagerLease> lease_;
   std::map<GuidPrefix, Neighbour> neighbours_;  // of those that can be discovered
+
+  mutable std::mutex mutex_;  // guards what follows; a link that is made stays
   // A component's node that others have the name of.
   struct Contest {
     std::string text;

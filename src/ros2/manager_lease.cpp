@@ -24,9 +24,9 @@ std::optional<std::int64_t> number_in(std::string_view text) {
 }
 
 std::string claim_text(const std::string& robot, std::int64_t since, std::int64_t id,
-                       std::string_view nodes) {
+                       std::int64_t term, std::string_view nodes) {
   return "robot=" + robot + ";since=" + std::to_string(since) + ";id=" + std::to_string(id) +
-         ";nodes=" + std::string(nodes) + ";";
+         ";term=" + std::to_string(term) + ";nodes=" + std::string(nodes) + ";";
 }
 
 std::vector<std::string> split(std::string_view text) {
@@ -39,10 +39,10 @@ std::vector<std::string> split(std::string_view text) {
   return names;
 }
 
-// In hexadecimal.
-std::string proof_of(const std::string& claim, const GuidPrefix& participant,
+// In hexadecimal. `kind`: so that none can be taken for the other.
+std::string proof_of(const char* kind, std::string_view text, const GuidPrefix& participant,
                      const std::string& key) {
-  std::string signed_text = "culprit lease\n" + claim;
+  std::string signed_text = std::string("culprit ") + kind + "\n" + std::string(text);
   signed_text.append(reinterpret_cast<const char*>(participant.bytes.data()),
                      participant.bytes.size());
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
@@ -50,14 +50,17 @@ std::string proof_of(const std::string& claim, const GuidPrefix& participant,
   HMAC(EVP_sha256(), key.data(), static_cast<int>(key.size()),
        reinterpret_cast<const unsigned char*>(signed_text.data()), signed_text.size(),
        digest.data(), &size);
-  std::string text;
+  std::string proof;
   constexpr const char* kDigits = "0123456789abcdef";
   for (unsigned i = 0; i < size; ++i) {
-    text += kDigits[digest[i] >> 4];
-    text += kDigits[digest[i] & 0xf];
+    proof += kDigits[digest[i] >> 4];
+    proof += kDigits[digest[i] & 0xf];
   }
-  return text;
+  return proof;
 }
+
+constexpr const char* kClaim = "lease";
+constexpr const char* kBeat = "beat";
 
 bool are_same(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
@@ -83,8 +86,8 @@ std::vector<std::string> ManagerLease::announcements() const {
     parts.back() += (parts.back().empty() ? "" : ",") + node;
   }
   for (std::string& part : parts) {
-    part = claim_text(own_.robot, own_.since, own_.id, part);
-    if (!own_.key.empty()) part += "proof=" + proof_of(part, self_, own_.key) + ";";
+    part = claim_text(own_.robot, own_.since, own_.id, own_.term, part);
+    if (!own_.key.empty()) part += "proof=" + proof_of(kClaim, part, self_, own_.key) + ";";
   }
   return parts;
 }
@@ -95,58 +98,124 @@ bool ManagerLease::concerns_us(const Other& other) const {
                      [&](const std::string& node) { return has_node(own_.nodes, node); });
 }
 
-void ManagerLease::apply(const DiscoveryEvent& event) {
+void ManagerLease::apply(const DiscoveryEvent& event, Time now) {
   if (const auto* endpoint = std::get_if<EndpointInfo>(&event)) {
     if (endpoint->topic != kTopic || endpoint->guid.is_reader()) return;
     const auto value = [&](const char* key) { return user_data_value(endpoint->user_data, key); };
     const auto since = number_in(value("since"));
     const auto id = number_in(value("id"));
-    if (!since || !id) return;
-    Other other{std::string(value("robot")), {*since, *id}, split(value("nodes")), false};
+    const auto term = number_in(value("term"));
+    if (!since || !id || !term) return;
+    Other other{std::string(value("robot")), *term, {*since, *id}, split(value("nodes")), false};
     if (!concerns_us(other)) return;
-    const std::string claim = claim_text(other.robot, *since, *id, value("nodes"));
-    other.is_proven = !own_.key.empty() &&
-                      are_same(value("proof"), proof_of(claim, endpoint->guid.prefix(), own_.key));
-    if (other.is_proven || strangers().size() < kMostStrangers)
-      others_[endpoint->guid] = std::move(other);
+    const std::string claim = claim_text(other.robot, *since, *id, *term, value("nodes"));
+    const GuidPrefix prefix = endpoint->guid.prefix();
+    other.is_proven =
+        !own_.key.empty() && are_same(value("proof"), proof_of(kClaim, claim, prefix, own_.key));
+    if (!other.is_proven && strangers().size() >= kMostStrangers) return;
+    if (other.is_proven) {
+      lives_.try_emplace(prefix, Life{now});
+      has_friends_ = true;
+      if (other.robot == own_.robot) highest_term_ = std::max(highest_term_, other.term);
+    }
+    others_[endpoint->guid] = std::move(other);
   } else if (const auto* gone = std::get_if<EndpointGone>(&event)) {
     others_.erase(gone->guid);
   } else if (const auto* left = std::get_if<ParticipantGone>(&event)) {
     std::erase_if(others_,
                   [&](const auto& other) { return other.first.prefix() == left->guid.prefix(); });
+    lives_.erase(left->guid.prefix());
   }
 }
 
-// A claim of the same rank is of this process, which joins the domain anew at times.
-template <class Predicate>
-std::optional<GuidPrefix> ManagerLease::first(const IsLeftOut& is_left_out,
-                                              Predicate is_rival) const {
+std::optional<std::string> ManagerLease::beat(Time now, bool hears, bool manages,
+                                              const std::string& orders) {
+  if (!hears || now > later(ticked_, kAway)) hears_since_ = now;
+  ticked_ = now;
+  manages_ = manages;
+  if (own_.key.empty() || !hears) return std::nullopt;
+  if (said_ && now > later(*said_, kAway)) listens_until_ = later(now, kListen);
+  said_ = now;
+  std::string text =
+      "count=" + std::to_string(++beats_) + ";manages=" + (manages ? "1" : "0") + ";";
+  if (manages && orders.size() <= kLongestBeat - 1024) text += "orders=" + orders;
+  return "proof=" + proof_of(kBeat, text, self_, own_.key) + ";" + text;
+}
+
+void ManagerLease::hear(const GuidPrefix& participant, std::string_view beat, Time now) {
+  const auto life = lives_.find(participant);
+  const auto other = std::find_if(others_.begin(), others_.end(), [&](const auto& each) {
+    return each.first.prefix() == participant && each.second.is_proven;
+  });
+  if (life == lives_.end() || other == others_.end() || beat.size() > kLongestBeat) return;
+  const auto take = [&](std::string_view key, std::string_view& rest) {
+    if (!rest.starts_with(key)) return std::string_view();
+    const std::size_t end = rest.find(';');
+    if (end == std::string_view::npos) return std::string_view();
+    const std::string_view value = rest.substr(key.size(), end - key.size());
+    rest.remove_prefix(end + 1);
+    return value;
+  };
+  std::string_view rest = beat;
+  const std::string_view proof = take("proof=", rest);
+  if (!are_same(proof, proof_of(kBeat, rest, participant, own_.key))) return;
+  const auto count = number_in(take("count=", rest));
+  const bool manages = take("manages=", rest) == "1";
+  if (!count || static_cast<std::uint64_t>(*count) <= life->second.beats) return;
+  life->second = {now, static_cast<std::uint64_t>(*count)};
+  if (!manages || other->second.robot != own_.robot) return;
+  constexpr std::string_view kOrders = "orders=";
+  told_orders_ = rest.starts_with(kOrders) ? std::string(rest.substr(kOrders.size())) : "";
+}
+
+Time ManagerLease::sure_until(Time now) const {
+  if (!has_friends_ || !manages_ || !said_) return kNever;
+  return now < listens_until_ ? now : later(*said_, kAway);
+}
+
+// While nothing is heard nobody is held to be gone.
+bool ManagerLease::is_alive(const GuidPrefix& participant, Time now) const {
+  const bool slept = now > later(ticked_, kAway);
+  const auto life = lives_.find(participant);
+  return slept || life == lives_.end() ||
+         now <= later(std::max(life->second.heard, hears_since_), kPatience);
+}
+
+// A claim of the same age is of this process, which joins the domain anew at times.
+template <class Predicate, class Order>
+std::optional<GuidPrefix> ManagerLease::first(Time now, const IsLeftOut& is_left_out,
+                                              Predicate is_rival, Order order) const {
   std::optional<GuidPrefix> found;
-  Rank best(own_.since, own_.id);
+  auto best = order(Other{own_.robot, own_.term, own_age(), {}, true});
   for (const auto& [guid, other] : others_) {
-    if (!other.is_proven || other.rank >= best || !is_rival(other)) continue;
+    if (!other.is_proven || other.age == own_age() || order(other) >= best || !is_rival(other))
+      continue;
+    if (!is_alive(guid.prefix(), now)) continue;
     if (is_left_out && is_left_out(guid.prefix())) continue;
-    best = other.rank;
+    best = order(other);
     found = guid.prefix();
   }
   return found;
 }
 
-std::optional<GuidPrefix> ManagerLease::elder(const IsLeftOut& is_left_out) const {
-  return first(is_left_out, [&](const Other& other) { return other.robot == own_.robot; });
+std::optional<GuidPrefix> ManagerLease::elder(Time now, const IsLeftOut& is_left_out) const {
+  return first(
+      now, is_left_out, [&](const Other& other) { return other.robot == own_.robot; },
+      [](const Other& other) { return other.rank(); });
 }
 
-std::optional<GuidPrefix> ManagerLease::elder_at(const std::string& node,
+std::optional<GuidPrefix> ManagerLease::elder_at(const std::string& node, Time now,
                                                  const IsLeftOut& is_left_out) const {
-  return first(is_left_out, [&](const Other& other) {
-    return other.robot != own_.robot && has_node(other.nodes, node);
-  });
+  return first(
+      now, is_left_out,
+      [&](const Other& other) { return other.robot != own_.robot && has_node(other.nodes, node); },
+      [](const Other& other) { return other.age; });
 }
 
 std::vector<GuidPrefix> ManagerLease::strangers(const IsLeftOut& is_left_out) const {
   std::vector<GuidPrefix> found;
   for (const auto& [guid, other] : others_) {
-    const bool is_own = other.rank == Rank(own_.since, own_.id);
+    const bool is_own = other.age == own_age();
     if (other.is_proven || is_own || (is_left_out && is_left_out(guid.prefix()))) continue;
     found.push_back(guid.prefix());
   }

@@ -2,16 +2,22 @@
 // a lock decides, cli/host_claim.h.)
 //
 // Each announces that it would, by writers on the hidden topic /_culprit_lease that say in their
-// user data which robot, which nodes, and since when. Nothing is ever written: discovery alone
-// tells everybody of everybody, and that one is gone, at once if it ended in order, else when its
-// lease of 20 s is over. The one that began first, by its own clock, manages; of two that began at
-// once, the one with the lower id. All come to the same answer, so a robot has one manager also
-// after a network that was in two parts has come together. Two that name different robots and the
-// same node are told apart likewise, for that node.
+// user data which robot, which nodes, since when, and in which term: one more than any before for
+// who takes over. Whoever has the highest term manages; of one term, the one that began first, by
+// its own clock; of two that began at once, the one with the lower id. All come to the same answer,
+// so a robot has one manager also after a network that was in two parts has come together. Two that
+// name different robots and the same node are told apart by who began first, for that node.
 //
-// Anybody in the domain could announce so. A claim counts if it carries a proof that its
-// participant knows the key that both were given (HMAC-SHA-256 over the claim and the participant's
-// GUID prefix). What has none is a stranger's: told of, and not given way to.
+// Each writes a beat there every quarter of a second, as long as it hears itself. Who ends in order
+// is gone at once; whose beats stay away for kPatience has lost its lease, though DDS holds it to
+// be there for 20 s. A manager that could not say its beats may have lost it without knowing: it
+// listens for kListen before it goes on, and steps back if another has taken over. With the beat
+// goes what people have ordered of the robot, for who takes over.
+//
+// Anybody in the domain could announce so. A claim or a beat counts if it carries a proof that its
+// participant knows the key that both were given (HMAC-SHA-256 over it and the participant's GUID
+// prefix); beats are numbered, so that an old one is not taken for a new one. What has no proof is
+// a stranger's: told of, and not given way to.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +25,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "robot/time.h"
 #include "ros2/participant.h"
 
 namespace culprit::ros2 {
@@ -33,28 +41,52 @@ struct LeaseClaim {
   // That it adapts, by full name; "*/camera" for a node of that own name in any namespace.
   std::vector<std::string> nodes{};
   std::string key{};  // shared by those who believe each other; empty: no claim but our own counts
+  std::int64_t term = 0;  // how often the robot was taken over, as far as it is known
 };
 
 class ManagerLease {
  public:
   static constexpr const char* kTopic = "rt/_culprit_lease";
   static constexpr const char* kType = "culprit::msg::dds_::Lease_";
+  static constexpr Duration kPeriod = std::chrono::milliseconds(250);
+  static constexpr Duration kPatience = std::chrono::milliseconds(1500);
+  // A manager whose beats stayed away for so long may be held to be gone, less what they need to
+  // arrive.
+  static constexpr Duration kAway = std::chrono::milliseconds(1000);
+  // Longer than it takes to take over, and to hear of it.
+  static constexpr Duration kListen = std::chrono::milliseconds(3000);
+  static constexpr std::size_t kLongestBeat = 48 * 1024;  // one UDP datagram
 
   // `self` is the participant that announces it.
   ManagerLease(LeaseClaim own, GuidPrefix self) : own_(std::move(own)), self_(self) {}
 
   // What the own writers say in their user data: one for each, for not all nodes may fit into one.
   std::vector<std::string> announcements() const;
-  void apply(const DiscoveryEvent& event);
+  void apply(const DiscoveryEvent& event, Time now);
+
+  // To be called every kPeriod. `hears`: what others say is heard now. Gives the beat to be
+  // written; nothing if nobody would believe it, or nobody should rely on this one now. `orders`:
+  // what people have ordered; told only if it manages, and left out if it is too long.
+  std::optional<std::string> beat(Time now, bool hears, bool manages, const std::string& orders);
+  // What a writer of this participant wrote.
+  void hear(const GuidPrefix& participant, std::string_view beat, Time now);
+  // Until when it is sure that nobody has taken over from this manager unless we heard of it. Not
+  // later than `now`: it is not.
+  Time sure_until(Time now) const;
+  // What the latest beat of another one that manages this robot says of orders; empty: they were
+  // not told. Nothing: no such beat was heard.
+  const std::optional<std::string>& told_orders() const { return told_orders_; }
+  // The highest term that was proven.
+  std::int64_t highest_term() const { return highest_term_; }
 
   // Participants that are left out: those of this machine.
   using IsLeftOut = std::function<bool(const GuidPrefix&)>;
 
   // The participant of the culprit that goes before this one; nothing if this one manages.
-  std::optional<GuidPrefix> elder(const IsLeftOut& is_left_out = {}) const;
+  std::optional<GuidPrefix> elder(Time now, const IsLeftOut& is_left_out = {}) const;
   // The participant of a culprit of another robot that goes before this one at the node of this
   // full name.
-  std::optional<GuidPrefix> elder_at(const std::string& node,
+  std::optional<GuidPrefix> elder_at(const std::string& node, Time now,
                                      const IsLeftOut& is_left_out = {}) const;
   // Who claims this robot, or a node of it, and does not prove it.
   std::vector<GuidPrefix> strangers(const IsLeftOut& is_left_out = {}) const;
@@ -62,21 +94,42 @@ class ManagerLease {
  private:
   static constexpr std::size_t kMostStrangers = 100;  // that are kept track of
 
-  using Rank = std::pair<std::int64_t, std::int64_t>;  // since when, id
+  using Age = std::pair<std::int64_t, std::int64_t>;  // since when, id
+  using Rank = std::pair<std::int64_t, Age>;          // the term, negative
   struct Other {
     std::string robot;
-    Rank rank;
+    std::int64_t term = 0;
+    Age age;
     std::vector<std::string> nodes;
     bool is_proven = false;
+
+    Rank rank() const { return {-term, age}; }
+  };
+  struct Life {
+    Time heard;  // or discovered
+    std::uint64_t beats = 0;
   };
 
+  Age own_age() const { return {own_.since, own_.id}; }
   bool concerns_us(const Other& other) const;
-  template <class Predicate>
-  std::optional<GuidPrefix> first(const IsLeftOut& is_left_out, Predicate is_rival) const;
+  bool is_alive(const GuidPrefix& participant, Time now) const;
+  template <class Predicate, class Order>
+  std::optional<GuidPrefix> first(Time now, const IsLeftOut& is_left_out, Predicate is_rival,
+                                  Order order) const;
 
   LeaseClaim own_;
   GuidPrefix self_;
-  std::map<Guid, Other> others_;  // that concern us
+  std::map<Guid, Other> others_;      // that concern us
+  std::map<GuidPrefix, Life> lives_;  // of those that are proven
+  std::int64_t highest_term_ = 0;
+  std::optional<std::string> told_orders_;
+  std::uint64_t beats_ = 0;   // that we said
+  std::optional<Time> said_;  // the latest of them
+  bool has_friends_ = false;  // some were proven
+  bool manages_ = false;
+  Time ticked_ = kLongAgo;       // when we were last asked for a beat
+  Time hears_since_ = kLongAgo;  // what others say is heard without a gap
+  Time listens_until_ = kLongAgo;
 };
 
 }  // namespace culprit::ros2

@@ -87,7 +87,7 @@ Rights rights_of(const RuleSet& rules, const NodeName& self) {
   const auto lease = demangle_topic(ManagerLease::kTopic);
   const auto hearing = demangle_topic(Hearing::kTopic);
   rights.publishes = {"/diagnostics", "/parameter_events", "/rosout", lease->name, hearing->name};
-  rights.subscribes = {hearing->name};
+  rights.subscribes = {lease->name, hearing->name};
   for (const char* service : {"describe_parameters", "get_parameter_types", "get_parameters",
                               "list_parameters", "set_parameters", "set_parameters_atomically"})
     rights.offers.push_back(self.full() + "/" + service);

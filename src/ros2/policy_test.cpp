@@ -63,7 +63,8 @@ TEST(Policy, IsGoldenForTheRobotsOfTheExamples) {
 TEST(Policy, AllowsNothingThatTheRulesDoNotNeed) {
   const Rights rights = rights_with("!alive(c)", "stop 1");
   EXPECT_THAT(rights.calls, ElementsAre("/robot/c/get_parameters", "/robot/c/get_state"));
-  EXPECT_THAT(rights.subscribes, ElementsAre("/_culprit_hearing", "/robot/c/transition_event"));
+  EXPECT_THAT(rights.subscribes,
+              ElementsAre("/_culprit_hearing", "/_culprit_lease", "/robot/c/transition_event"));
 }
 
 TEST(Policy, AllowsToHearWhatTriggersRead) {

@@ -57,6 +57,7 @@ async function beliefs(page) {
   await page.getByRole('link', { name: 'Beliefs' }).click()
   const row = page.getByRole('row', { name: /CameraGone\.camera_redeploy/ })
   await row.getByText('70 %').first().waitFor()
+  await row.getByText('1 outcome').waitFor()
   const download = page.waitForEvent('download')
   await page.getByRole('button', { name: 'Export …' }).click()
   const learned = JSON.parse(readFileSync(await (await download).path(), 'utf8'))
