@@ -171,13 +171,13 @@ Governor::Question* Governor::question_of(StrategyId strategy) {
 // ---- plans
 
 void Governor::begin_planning() {
-  for (std::string& reason : knowledge_.withheld) reason.clear();
+  std::fill(knowledge_.withheld.begin(), knowledge_.withheld.end(), Knowledge::Withheld{});
 }
 
 bool Governor::withholds(StrategyId strategy, Time now) {
   const auto held = restraint_on(strategy, now);
   if (!held) return false;
-  knowledge_.withheld[strategy.index] = held->reason;
+  knowledge_.withheld[strategy.index] = {held->reason, held->until};
   tell(strategy, *held, now);
   return true;
 }

@@ -54,8 +54,12 @@ struct Knowledge {
   RuleStates states;
   Beliefs beliefs;
   Couplings couplings;
-  // By strategy: why the governor does not allow it now; empty where it does.
-  std::vector<std::string> withheld;
+  // What the governor does not allow now.
+  struct Withheld {
+    std::string reason;   // empty: it is allowed
+    Time until = kNever;  // kNever: until somebody does something, or more is known
+  };
+  std::vector<Withheld> withheld;  // by strategy
   PendingOutcomes outcomes;
   Rivals rivals;
   Time now{};                 // of the step under way

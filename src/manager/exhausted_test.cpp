@@ -62,6 +62,49 @@ TEST_P(ExhaustedCause, LetsItsEffectsBeRepairedOnceItIsGone) {
   EXPECT_TRUE(robot.works("c1")) << transcript(robot);
 }
 
+// A bad value of c1, which one reconfiguration may mend.
+constexpr const char* kBlurred =
+    "RULE Blurred\nPOLICIES NON_CRITICAL\nTRIGGER blur > 0.5\nSTRATEGY focus 80 10 WHEN is_tunable "
+    "> 0.5\nADAPTATION c1 set_parameter angle 1 2\n";
+
+// One reconfiguration may be tried; what made no sense when its turn came was not tried.
+TEST(Exhausted, LetsAReconfigurationBeTriedThatMadeNoSenseBefore) {
+  TestRobot robot(rule(0) + rule(1) + kBlurred);
+  robot.add("c0", {}, "/c0");
+  robot.add("c1", {"c0"}, "/c1").parameters["angle"] = Value(std::int64_t{0});
+  robot.discover();
+  robot.signal("is_tunable", Value(0.0));
+  robot.run_for(2s);
+  robot.signal("blur", Value(1.0));
+  robot["c0"].fault = "a person";
+  robot.run_for(500ms);
+  ASSERT_EQ(robot.count("Blurred: nothing left to try"), 1u) << transcript(robot);
+  robot.signal("is_tunable", Value(1.0));
+  robot.run_for(1500ms);
+  ASSERT_FALSE(robot.was_asked("c1: set angle")) << transcript(robot);
+  robot.run_for(120s);
+  ASSERT_EQ(robot.count("Silent0 is exhausted"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("c1: set angle to 1"), 1u) << transcript(robot);
+}
+
+// Whoever made way for what waits for a person would wait as long, and nobody would have said so.
+TEST(Exhausted, WhatWaitsForAPersonHoldsUpNoLesserFailure) {
+  TestRobot robot(rule(0) + rule(2) + "COMPONENT c1 NODE /c1\n" + kBlurred);
+  robot.add("c0", {}, "/c0");
+  robot.add("c1", {}, "/c1").parameters["angle"] = Value(std::int64_t{0});
+  robot.add("c2", {"c0", "c1"}, "/c2");
+  robot.discover();
+  robot.signal("is_tunable", Value(1.0));
+  robot.signal("blur", Value(0.0));
+  robot.run_for(2s);
+  robot["c0"].fault = "a person";
+  robot.run_for(60s);
+  ASSERT_EQ(robot.count("Silent0 is exhausted"), 1u) << transcript(robot);
+  robot.signal("blur", Value(1.0));
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.was_asked("c1: set angle to 1")) << transcript(robot);
+}
+
 // The robot stops at once when nobody can help the camera any more.
 TEST_P(ExhaustedCause, MakesTheRobotStopSafely) {
   TestRobot robot(rule(0) +

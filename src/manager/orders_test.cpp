@@ -153,6 +153,27 @@ TEST(Orders, ARefusedStrategyMakesRoomForTheNextAndIsAskedForAgainWithTheNextFai
   EXPECT_EQ(r.count("shall CameraDead.restart"), 2u) << transcript(r);
 }
 
+TEST(Orders, WhatAPersonRefusedHoldsUpNoLesserFailure) {
+  Manager::Options options;
+  options.governor.approval = Approval::kEach;
+  std::string rules = kRules;
+  rules.replace(rules.find("light 90"), 8, "light 80");  // what is sure waits for nobody anyway
+  TestRobot r(rules, std::make_unique<BayesPlanner>(), options);
+  r.add("lamp").parameters["on"] = Value(std::int64_t{0});
+  r.add("camera", {"lamp"}, "/rgb");
+  r.discover();
+  r.signal("brightness", Value(1.0));
+  r.run_for(1s);
+  r["camera"].fault = "a person";
+  for (const StrategyId strategy : {kRestart, kRedeploy}) {
+    r.run_for(2s);
+    r.order(order(Refuse{strategy}));
+  }
+  r.signal("brightness", Value(0.2));
+  r.run_for(2s);
+  EXPECT_EQ(r.manager().governor().asked(), std::vector{kLight}) << transcript(r);
+}
+
 TEST(Orders, AQuestionLapsesWithItsFailure) {
   TestRobot r = robot(Approval::kEach);
   r.signal("brightness", Value(0.2));

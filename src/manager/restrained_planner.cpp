@@ -29,7 +29,7 @@ std::vector<Verdict> RestrainedPlanner::plan(std::span<const RuleId> failures,
   Knowledge marked(knowledge.rules, knowledge);
   return plan::allowed(planner_, failures, marked, [&](StrategyId chosen) {
     auto reason = objection(chosen, marked);
-    if (reason) marked.withheld[chosen.index] = std::move(*reason);
+    if (reason) marked.withheld[chosen.index] = {std::move(*reason), kNever};
     return reason.has_value();
   });
 }

@@ -45,7 +45,7 @@ std::string choice(bool has_namesake) {
   const auto verdicts =
       RestrainedPlanner(planner).plan(robot.manager().plannable(), robot.manager().knowledge());
   EXPECT_EQ(verdicts.size(), 1u);
-  for (const std::string& reason : robot.manager().knowledge().withheld) EXPECT_EQ(reason, "");
+  for (const auto& each : robot.manager().knowledge().withheld) EXPECT_EQ(each.reason, "");
   if (verdicts.empty() || !verdicts.front().chosen) return "";
   return robot.rules()[*verdicts.front().chosen].name;
 }

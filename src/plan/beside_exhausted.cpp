@@ -28,7 +28,10 @@ bool reconfigures(const Strategy& strategy) {
 bool may_be_tried_beside_exhausted(StrategyId strategy, const Knowledge& knowledge) {
   const Strategy& asked = knowledge.rules[strategy];
   if (asked.is_last_resort) return true;
-  if (!reconfigures(asked) || knowledge.states[asked.rule].round > 0) return false;
+  const RuleState& state = knowledge.states[asked.rule];
+  // A round is spent as well if nothing in it made sense, and nothing was tried.
+  const bool may_have_been_tried = state.round > 0 && state.attempts > 0;
+  if (!reconfigures(asked) || may_have_been_tried) return false;
   const auto& all = knowledge.rules[asked.rule].strategies;
   return std::none_of(all.begin(), all.end(), [&](StrategyId other) {
     return knowledge.states.is_tried(other) && reconfigures(knowledge.rules[other]);

@@ -13,7 +13,8 @@
 //   5. is for a failure that is expected to go away with one that was just resolved,
 //   6. adapts a component that depends on a suspicious one: a verdict is pending,
 //   7. adapts a component on which a more critical failure depends that is being worked on and that
-//      it does not explain: the lower criticality never delays the higher.
+//      it does not explain: the lower criticality never delays the higher. What waits for a person
+//      is not worked on: its cause is exhausted, or all that is left was refused, say.
 // 5 and 6 are waits of bounded length, and 3, 4 and 7 wait for failures that come to an end
 // (resolved or exhausted) without waiting for this one, so every failure has its turn.
 //

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <tuple>
 
@@ -40,7 +41,8 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
       failures_(knowledge, reach_, ways_),
       responsibility_(knowledge, failures_),
       levels_(knowledge, failures_, responsibility_),
-      surroundings_(knowledge, reach_, levels_, failures, suspicious_),
+      remedies_(all_remedies()),
+      surroundings_(knowledge, reach_, levels_, worked_on(), suspicious_),
       has_choice_(failures_.size(), false),
       tries_(failures_.size()) {}
 
@@ -59,6 +61,51 @@ std::vector<Verdict> PlanningStep::run() {
        {Criticality::kError, Criticality::kWarning, Criticality::kNonCritical})
     select(level);
   return verdicts();
+}
+
+std::vector<std::vector<Remedy>> PlanningStep::all_remedies() const {
+  std::vector<std::vector<Remedy>> all(failures_.size());
+  for (const RuleId rule : planned_) all[failures_.index_of(rule)] = remedies(rule, knowledge_);
+  return all;
+}
+
+// Those that something may be begun for without a person, now or later. Nobody need make way for
+// the others.
+std::vector<RuleId> PlanningStep::worked_on() const {
+  std::vector<RuleId> rules;
+  std::copy_if(planned_.begin(), planned_.end(), std::back_inserter(rules),
+               [&](RuleId rule) { return !waits_for_person(failures_.index_of(rule)); });
+  return rules;
+}
+
+bool PlanningStep::waits_for_person(std::size_t failure) const {
+  const auto cause = cause_of(failure);
+  const bool is_exhausted = cause && knowledge_.states.awaits_person(*cause);
+  const auto is_in_vain = [&](StrategyId id) {
+    if (!cause || only_revives(knowledge_.rules[id], knowledge_)) return false;
+    if (is_exhausted) return !may_be_tried_beside_exhausted(id, knowledge_);
+    return !knowledge_.rules[id].is_last_resort && waits_for_person(failures_.index_of(*cause));
+  };
+  bool is_anything_left = false;
+  for (const Remedy& remedy : remedies_[failure]) {
+    if (remedy.is_out()) continue;
+    is_anything_left = true;
+    const StrategyId id = remedy.strategy;
+    const bool is_held = remedy.is_withheld && knowledge_.withheld[id.index].until == kNever;
+    if (!is_held && !is_in_vain(id)) return false;
+  }
+  return is_anything_left;
+}
+
+// The likeliest cause outside its circle, if the failure more likely has one than not.
+std::optional<RuleId> PlanningStep::cause_of(std::size_t failure) const {
+  if (responsibility_.against_others(failure) >= 0.5) return std::nullopt;
+  std::int64_t most = 0;
+  RuleId cause;
+  responsibility_.for_each_share(failure, [&](std::size_t j, double share) {
+    if (parts(share) > most) std::tie(most, cause) = std::pair(parts(share), failures_[j]);
+  });
+  return cause;
 }
 
 // By level, then by worth, then by name.
@@ -101,7 +148,7 @@ void PlanningStep::find_stakes() {
 }
 
 void PlanningStep::examine(std::size_t failure) {
-  const auto all = remedies(failures_[failure], knowledge_);
+  const std::vector<Remedy>& all = remedies_[failure];
   const std::vector<Option> tries = options(failure, all);
   std::vector<std::size_t> order(all.size());  // p/c index
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -134,7 +181,7 @@ void PlanningStep::examine(std::size_t failure) {
     } else if (all[s].is_withheld) {
       entry.candidate.excluded = Condition::kWithheld;
       entry.candidate.component = knowledge_.rules[all[s].strategy].components.front();
-      entry.candidate.remark = knowledge_.withheld[all[s].strategy.index];
+      entry.candidate.remark = knowledge_.withheld[all[s].strategy.index].reason;
     } else {
       entry.candidate.resolves = root * all[s].chance;
       entry.candidate.value = root * std::min(1.0, helps) * stakes_[failure];
@@ -215,25 +262,22 @@ void PlanningStep::exclude_invalid(Entry& entry, const Invalid& why) const {
 
 // A failure that others more likely explain waits for them.
 void PlanningStep::exclude_effect(Entry& entry) const {
-  std::int64_t most = 0;
-  RuleId cause;
-  // In a circle the members take turns, whoever is the likelier: what counts is what is outside.
-  // But who is in a circle is only known when the failures are old enough.
-  if (responsibility_.against_others(entry.failure) >= 0.5) {
-    if (!is_young(failures_[entry.failure], knowledge_)) return;
-    for (const std::size_t j : failures_.circles()[failures_.circle_of(entry.failure)]) {
-      if (j != entry.failure && parts(responsibility_.of(j)) > most)
-        std::tie(most, cause) = std::pair(parts(responsibility_.of(j)), failures_[j]);
-    }
-    if (most > 0) exclude(entry, {Condition::kDependency, likeliest_component(cause), cause});
+  if (const auto cause = cause_of(entry.failure)) {
+    const bool goes_round = knowledge_.states.awaits_person(*cause) &&
+                            may_be_tried_beside_exhausted(entry.candidate.strategy, knowledge_);
+    if (!goes_round) exclude(entry, {Condition::kDependency, likeliest_component(*cause), *cause});
     return;
   }
-  responsibility_.for_each_share(entry.failure, [&](std::size_t j, double share) {
-    if (parts(share) > most) std::tie(most, cause) = std::pair(parts(share), failures_[j]);
-  });
-  const bool goes_round = knowledge_.states.awaits_person(cause) &&
-                          may_be_tried_beside_exhausted(entry.candidate.strategy, knowledge_);
-  if (!goes_round) exclude(entry, {Condition::kDependency, likeliest_component(cause), cause});
+  // In a circle the members take turns, whoever is the likelier: what counts is what is outside.
+  // But who is in a circle is only known when the failures are old enough.
+  if (!is_young(failures_[entry.failure], knowledge_)) return;
+  std::int64_t most = 0;
+  RuleId likeliest;
+  for (const std::size_t j : failures_.circles()[failures_.circle_of(entry.failure)]) {
+    if (j != entry.failure && parts(responsibility_.of(j)) > most)
+      std::tie(most, likeliest) = std::pair(parts(responsibility_.of(j)), failures_[j]);
+  }
+  if (most > 0) exclude(entry, {Condition::kDependency, likeliest_component(likeliest), likeliest});
 }
 
 // The dead are replaced side by side, whatever depends on whatever and however critical it is.

@@ -32,6 +32,10 @@ class PlanningStep {
     std::size_t place = 0;    // among tries_ of the failure
   };
 
+  std::vector<std::vector<Remedy>> all_remedies() const;
+  std::vector<RuleId> worked_on() const;
+  bool waits_for_person(std::size_t failure) const;
+  std::optional<RuleId> cause_of(std::size_t failure) const;
   void find_stakes();
   void examine(std::size_t failure);
   std::vector<Option> options(std::size_t failure, const std::vector<Remedy>& remedies) const;
@@ -62,6 +66,7 @@ class PlanningStep {
   Failures failures_;
   Responsibility responsibility_;
   Levels levels_;
+  std::vector<std::vector<Remedy>> remedies_;  // by failure, of those to be decided about
   Surroundings surroundings_;
   std::vector<double> stakes_;  // by failure: W_i + sum_k share(i -> k) W_k
   std::vector<Entry> entries_;

@@ -16,7 +16,8 @@ std::vector<Remedy> remedies(RuleId rule, const Knowledge& knowledge) {
     Remedy remedy{strategies[s], state.tried[s], {}, knowledge.beliefs[strategies[s]].mean().value};
     if (is_down && !revives(strategy, knowledge)) remedy.chance *= kUnlikely;
     if (!remedy.is_tried) remedy.invalid = invalidity(strategy, knowledge);
-    remedy.is_withheld = !remedy.is_out() && !knowledge.withheld[strategies[s].index].empty();
+    remedy.is_withheld =
+        !remedy.is_out() && !knowledge.withheld[strategies[s].index].reason.empty();
     if (remedy.is_out()) out += std::exchange(remedy.chance, 0);
     all.push_back(std::move(remedy));
   }

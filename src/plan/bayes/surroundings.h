@@ -27,7 +27,8 @@ Duration longest_wait(RuleId suspicious, const Knowledge& knowledge);
 // Places (see Reach) where something stands against adapting them, and why.
 class Surroundings {
  public:
-  // `failures` are those to be decided about.
+  // `failures` are those to be decided about; what waits for a person is not among them: whoever
+  // made way for it would wait as long.
   Surroundings(const Knowledge& knowledge, const Reach& reach, const Levels& levels,
                std::span<const RuleId> failures, std::span<const RuleId> suspicious);
 
@@ -78,7 +79,7 @@ class Surroundings {
   // critical and only waits for its verdict: it gives way.
   std::vector<Marks> holding_;
   std::vector<Marks> urgent_;       // by level: of more critical failures that are worked on
-  std::vector<Marks> planned_;      // by level: of those to be decided about
+  std::vector<Marks> planned_;      // by level: of `failures` that are more critical
   std::vector<Marks> judged_;       // by level: of those whose strategy waits for its verdict
   std::vector<Marks> pending_;      // by level: of suspicious rules that are more critical
   Marks suspects_;                  // of suspicious rules
