@@ -1,8 +1,11 @@
 #include "rule_test/runner.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rule_test/restraint.h"
 #include "rule_test/test_suite.h"
 
 namespace culprit::rule_test {
@@ -186,6 +189,28 @@ TEST(Runner, SaysThatTheInterlockWithheldAStrategy) {
       "EXPECT NOT camera_redeploy EXCLUDED BECAUSE withheld\n",
       kDocked);
   EXPECT_TRUE(open.result.is_ok()) << open.text();
+}
+
+TEST(Runner, KeepsWithinTheBudgetOfAComponentWhateverFails) {
+  const std::string rules =
+      "COMPONENT lidar NODE /lidar LAUNCH \"lidar\"\n"
+      "RULE Stuck\n  POLICIES ERROR ATTEMPTS 1000\n  TRIGGER stuck > 0.5\n"
+      "    STRATEGY again 50 10\n      ADAPTATION lidar restart 1\n"
+      "    STRATEGY anew 50 10\n      ADAPTATION lidar redeploy 1\n"
+      "RULE Rough\n  POLICIES WARNING ATTEMPTS 1000\n  TRIGGER rough > 0.5\n"
+      "    STRATEGY smooth 50 10\n      ADAPTATION lidar set_parameter smooth true 1\n";
+  const Played played =
+      play("SIGNAL stuck 1s: 1\nSIGNAL rough 1s: 1\nRUN 10min\nEXPECT Stuck DETECTED\n", rules);
+  const Intensity bound = restraint().limits.per_component;
+  std::vector<Time> begun;
+  std::ptrdiff_t most = 0;
+  for (const Event& event : played.result.events) {
+    if (!std::holds_alternative<StrategyChosen>(event.what)) continue;
+    begun.push_back(event.at);
+    most = std::max(most, std::count_if(begun.begin(), begun.end(),
+                                        [&](Time at) { return event.at - at < bound.period; }));
+  }
+  EXPECT_EQ(most, bound.most) << played.text();
 }
 
 constexpr const char* kMapper =
