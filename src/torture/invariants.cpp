@@ -9,10 +9,24 @@ namespace {
 // Requests and verdicts follow each other at one point of time; so many of them never do.
 constexpr int kMostStepsAtOnce = 200;
 
-bool changes_something(const Command& command) {
-  return !std::holds_alternative<ReadLifecycle>(command.what) &&
-         !std::holds_alternative<ReadParameter>(command.what) &&
-         !std::holds_alternative<ReadMode>(command.what);
+// What was well for so long is known to be, and so is what needs it.
+constexpr Duration kKnownToBeWell = std::chrono::seconds(3);
+
+bool is_seen_as_it_is(const Scenario& scenario) {
+  const Noise& noise = scenario.noise;
+  if (noise.loss > 0 || noise.lateness > Duration::zero()) return false;
+  return std::none_of(scenario.mishaps.begin(), scenario.mishaps.end(), [](const Mishap& m) {
+    return m.kind == Mishap::Kind::kStaleStamp || m.kind == Mishap::Kind::kJump;
+  });
+}
+
+bool is_dead(const ComponentState& state) {
+  return state.pid != 0 && state.process == ProcessState::kGone && state.alive == false;
+}
+
+bool replaces(const Strategy& strategy) {
+  return std::any_of(strategy.adaptations.begin(), strategy.adaptations.end(),
+                     [](const auto& a) { return a.type == AdaptationType::kRedeploy; });
 }
 
 }  // namespace
@@ -20,19 +34,22 @@ bool changes_something(const Command& command) {
 Invariants::Invariants(const RuleSet& rules, const Scenario& scenario)
     : rules_(rules),
       is_bayes_(!scenario.uses_paper_planner),
+      is_seen_true_(is_seen_as_it_is(scenario)),
+      left_dead_since_(rules.rules.size(), kNever),
+      dead_since_(rules.components.size(), kNever),
+      searches_(rules.rules.size()),
+      healthy_(scenario.governor.limits.backoff.healthy),
       overall_{scenario.governor.limits.overall, {}},
       kinds_{Budget{scenario.governor.limits.per_kind, {}},
              Budget{scenario.governor.limits.per_kind, {}},
              Budget{scenario.governor.limits.per_kind, {}}},
-      components_(rules.components.size(), Budget{scenario.governor.limits.per_component, {}}) {}
+      components_(rules.components.size(), Budget{scenario.governor.limits.per_component, {}}) {
+  for (std::size_t part = 0; part < scenario.parts.size(); ++part)
+    needs_.push_back(all_needs(scenario, part));
+}
 
 void Invariants::begin(const Manager& manager) {
-  // A manager that begins anew counts anew.
-  overall_.spent.clear();
-  for (Budget& budget : kinds_) budget.spent.clear();
-  for (Budget& budget : components_) budget.spent.clear();
-  silenced_.clear();
-  is_paused_ = false;
+  std::fill(left_dead_since_.begin(), left_dead_since_.end(), kNever);
   beliefs_.clear();
   for (std::size_t s = 0; s < rules_.strategies.size(); ++s)
     beliefs_.push_back(manager.knowledge().beliefs[StrategyId(s)]);
@@ -46,6 +63,7 @@ void Invariants::check(const Manager& manager, Time now, std::span<const Command
                        const Truth& truth) {
   begun_now_.clear();
   for (const Event& event : manager.events()) {
+    count_attempts(event);
     if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
       if (!chosen->dry_run) on(manager, *chosen, truth, event.at);
     } else if (const auto* accepted = std::get_if<OrderAccepted>(&event.what)) {
@@ -59,11 +77,44 @@ void Invariants::check(const Manager& manager, Time now, std::span<const Command
       silenced_.erase(ended->what);
     }
   }
+  note_the_dead(manager, now);
   check_commands(commands, truth, now);
   check_beliefs(manager, now);
+  if (is_bayes_ && manager.hears()) check_the_dead(manager, now);
   steps_at_last_ = now == last_ ? steps_at_last_ + 1 : 0;
   last_ = now;
   if (steps_at_last_ > kMostStepsAtOnce) fail(now, "the manager steps without end");
+}
+
+void Invariants::note_the_dead(const Manager& manager, Time now) {
+  for (std::size_t c = 0; c < dead_since_.size(); ++c) {
+    const bool is_now = is_dead(manager.knowledge().components[ComponentId(c)]);
+    dead_since_[c] = is_now ? std::min(dead_since_[c], now) : kNever;
+  }
+}
+
+// Whatever the budgets of a minute allow, a failure that nothing helps against does not cost more
+// than its attempts, in an hour or in a day; nor does one that comes and goes.
+void Invariants::count_attempts(const Event& event) {
+  const auto count = [&](StrategyId strategy) {
+    const RuleId rule = rules_[strategy].rule;
+    if (ordered_.contains(strategy) || rules_[strategy].is_last_resort) return;
+    if (++searches_[rule.index].attempts > rules_[rule].policies.attempts)
+      fail(event.at, rules_[rule].name + " is treated more often than its ATTEMPTS allow");
+  };
+  const auto is_gone = [&](RuleId rule) { searches_[rule.index].gone = event.at; };
+  if (const auto* detected = std::get_if<FailureDetected>(&event.what)) {
+    Search& search = searches_[detected->rule.index];
+    if (search.gone && event.at - *search.gone >= healthy_) search.attempts = 0;
+    search.gone.reset();
+  } else if (const auto* failed = std::get_if<StrategyFailed>(&event.what)) {
+    count(failed->strategy);
+  } else if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) {
+    if (resolved->strategy) count(*resolved->strategy);
+    is_gone(resolved->rule);
+  } else if (const auto* lost = std::get_if<FailureLost>(&event.what)) {
+    is_gone(lost->rule);
+  }
 }
 
 void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const Truth& truth,
@@ -85,10 +136,17 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
     }
     if (busy > 1) fail(at, where + " is adapted by several strategies at once");
   }
-  if (is_downstream_of_an_attempt(manager.knowledge(), strategy, at))
+  if (!strategy.is_last_resort && is_downstream_of_an_attempt(manager.knowledge(), strategy, at))
     fail(at, name + " is begun downstream of what is being adapted");
   begun_now_.insert(chosen.strategy);
   if (silenced_.contains(strategy.rule)) fail(at, name + " is begun though its rule is silenced");
+  check_replacement(manager, strategy, truth, at);
+  for (const ComponentId component : strategy.components) {
+    const ComponentState& state = manager.knowledge().components[component];
+    if (state.in_graph && state.namesakes > 0)
+      fail(at, name + " is begun though another node has the name of " + rules_[component].name);
+  }
+  if (!manager.hears()) fail(at, name + " is begun though the robot cannot be heard");
   if (is_paused_) fail(at, name + " is begun while paused");
   if (truth.is_moving) fail(at, name + " is begun though the robot moves");
 }
@@ -117,6 +175,70 @@ bool Invariants::is_downstream_of_an_attempt(const Knowledge& knowledge, const S
   return false;
 }
 
+void Invariants::check_replacement(const Manager& manager, const Strategy& strategy,
+                                   const Truth& truth, Time at) {
+  if (!replaces(strategy) || strategy.is_last_resort) return;
+  const std::string name = rules_[strategy.rule].name + "." + strategy.name;
+  for (const ComponentId component : strategy.components) {
+    const std::size_t part = component.index;
+    const Time well = truth.well_since[part];
+    if (is_seen_true_ && well != kNever && well + kKnownToBeWell <= at)
+      fail(at, name + " is begun though " + rules_[component].name + " is well");
+    const auto& components = manager.knowledge().components;
+    // What is gone or stopped is replaced for that.
+    if (!is_bayes_ || components[component].process != ProcessState::kRunning) continue;
+    const Time failed = manager.knowledge().states[strategy.rule].first_detected();
+    for (const std::size_t needed : needs_[part]) {
+      const ComponentId cause(needed);
+      // As far as anybody can see either may need the other: they take turns.
+      const auto& upstream = manager.knowledge().graph.upstream(cause);
+      if (std::find(upstream.begin(), upstream.end(), component) != upstream.end()) continue;
+      const char* why = dead_since_[needed] <= failed         ? " is dead"
+                        : is_given_up(manager, cause, failed) ? " is silent and exhausted"
+                                                              : nullptr;
+      if (why != nullptr)
+        fail(at, name + " is begun though " + rules_[cause].name + why + ", which explains it");
+    }
+  }
+}
+
+// Its silence began before `failed`, and nothing helped against it.
+bool Invariants::is_given_up(const Manager& manager, ComponentId component, Time failed) const {
+  const RuleStates& states = manager.knowledge().states;
+  return std::any_of(states.exhausted().begin(), states.exhausted().end(), [&](RuleId rule) {
+    return states.awaits_person(rule) && rules_[rule].components.front() == component &&
+           rules_[rule].name.starts_with("Silent") && states[rule].first_detected() <= failed;
+  });
+}
+
+// A decision comes at once, or, if the failure has to wait for anything, once in a cycle.
+void Invariants::check_the_dead(const Manager& manager, Time now) {
+  const Knowledge& knowledge = manager.knowledge();
+  const bool is_held = manager.held_back().has_value();
+  const std::vector<RuleId> plannable = manager.plannable();
+  std::vector<Time> since(rules_.rules.size(), kNever);
+  for (const RuleId id : plannable) {
+    const ComponentId component = rules_[id].components.front();
+    const bool is_left = is_dead(knowledge.components[component]) && !is_held &&
+                         knowledge.states.reservation(component) == nullptr &&
+                         std::none_of(rules_[id].strategies.begin(), rules_[id].strategies.end(),
+                                      [&](StrategyId s) { return is_excused(manager, s); });
+    if (!is_left) continue;
+    since[id.index] = std::min(left_dead_since_[id.index], now);
+    if (now - since[id.index] > 2 * rules_.cycle)
+      fail(now, "nothing is done about " + rules_[id].name + " though " + rules_[component].name +
+                    " is dead");
+  }
+  left_dead_since_ = std::move(since);
+}
+
+// The governor holds the strategy back, or a person is asked.
+bool Invariants::is_excused(const Manager& manager, StrategyId strategy) const {
+  const auto asked = manager.governor().asked();
+  return !manager.knowledge().withheld[strategy.index].reason.empty() ||
+         std::find(asked.begin(), asked.end(), strategy) != asked.end();
+}
+
 void Invariants::spend(Budget& budget, const std::string& what, Time at) {
   if (budget.limit.most == 0) return;
   budget.spent.push_back(at);
@@ -128,11 +250,15 @@ void Invariants::spend(Budget& budget, const std::string& what, Time at) {
 void Invariants::check_commands(std::span<const Command> commands, const Truth& truth, Time now) {
   for (const Command& command : commands) {
     const std::string& name = rules_[command.component].name;
-    if (is_paused_ && changes_something(command))
+    if (is_paused_ && !is_read(command))
       fail(now, name + ": " + to_string(command) + " is asked while paused");
     const bool is_there = truth.processes[command.component.index] != ProcessState::kGone;
-    if (std::holds_alternative<StartProcess>(command.what) && is_there)
+    if (!std::holds_alternative<StartProcess>(command.what)) continue;
+    const std::size_t part = command.component.index;
+    if (is_there && !truth.is_relaunched[part])
       fail(now, name + " is started while its old process is there");
+    if (!truth.was_there[part] && !ordered_.contains(command.purpose.strategy))
+      fail(now, name + " is started though it was never there");
   }
 }
 

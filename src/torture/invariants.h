@@ -1,15 +1,24 @@
 // What must hold in every step of every run, whatever breaks.
 //
 // - No budget is ever exceeded: no interval holds more strategies than allowed, in total, of a
-// kind,
-//   at a component. Counted here anew, from the events.
+//   kind, at a component. Counted here anew, from the events.
 // - No process is started while the component's old one is there.
 // - While paused nothing is asked that changes anything; at a silenced component nothing is begun;
 //   while the robot is known to move nothing is begun.
 // - A component is adapted by one strategy at a time, and no planner begins one downstream of what
-// is
-//   adapted for a failure at least as critical; bayes not even for a lesser one, unless that only
-//   waits for its verdict. What a person ordered is the person's.
+//   is adapted for a failure at least as critical; bayes not even for a lesser one, unless that
+//   only waits for its verdict. What a person ordered is the person's, and a last resort never
+//   waits.
+// - With bayes, the repair of a component that the operating system knows to be dead begins within
+//   one decision of its detection where the governor allows, whatever the levels.
+// - With bayes, no process is replaced for a silence that a dead or exhausted component which it
+//   needs, and that does not seem to need it in turn, explains.
+// - No failure is treated more often than its ATTEMPTS allow, until it was proven gone.
+// - What was never there is not started.
+// - Nothing healthy is replaced, as long as samples and clocks are not tampered with.
+// - Nothing is begun while the robot cannot be heard.
+// - Nothing is begun at a component while another node has its name.
+// All of this holds across crashes of the manager: budgets, pauses and silences go on.
 // - A belief changes by one outcome at a time, and only with the verdict that says so.
 // - The manager never wants to be stepped without end.
 #pragma once
@@ -36,7 +45,11 @@ class Invariants {
   // What the robot really is like; the manager only knows what it is told.
   struct Truth {
     std::vector<ProcessState> processes;  // by component
-    bool is_moving = false;               // for long enough that the manager must know
+    // By component: its launcher has just started it, and the manager may not know.
+    std::vector<bool> is_relaunched;
+    std::vector<bool> was_there;   // by component: its process ran once
+    std::vector<Time> well_since;  // by component; kNever: it does not work
+    bool is_moving = false;        // for long enough that the manager must know
   };
 
   // `rules` must outlive the invariants.
@@ -58,6 +71,13 @@ class Invariants {
   void on(const Manager& manager, const StrategyChosen& chosen, const Truth& truth, Time at);
   bool is_downstream_of_an_attempt(const Knowledge& knowledge, const Strategy& strategy,
                                    Time at) const;
+  void check_replacement(const Manager& manager, const Strategy& strategy, const Truth& truth,
+                         Time at);
+  void note_the_dead(const Manager& manager, Time now);
+  void count_attempts(const Event& event);
+  void check_the_dead(const Manager& manager, Time now);
+  bool is_given_up(const Manager& manager, ComponentId component, Time failed) const;
+  bool is_excused(const Manager& manager, StrategyId strategy) const;
   void spend(Budget& budget, const std::string& what, Time at);
   void check_beliefs(const Manager& manager, Time now);
   void check_commands(std::span<const Command> commands, const Truth& truth, Time now);
@@ -65,6 +85,18 @@ class Invariants {
 
   const RuleSet& rules_;
   bool is_bayes_;
+  bool is_seen_true_;                            // what is observed is so
+  std::vector<std::vector<std::size_t>> needs_;  // by component: all that it needs
+  std::vector<Time>
+      left_dead_since_;           // by rule: its component is dead, and nothing is done; kNever
+  std::vector<Time> dead_since_;  // by component: that it is known to be dead; kNever: it is not
+  // By rule: strategies that were executed since it was proven gone, and when it went away last.
+  struct Search {
+    int attempts = 0;
+    std::optional<Time> gone;
+  };
+  std::vector<Search> searches_;
+  Duration healthy_;  // a failure that stays away for so long is proven gone
   Budget overall_;
   std::array<Budget, 3> kinds_;
   std::vector<Budget> components_;

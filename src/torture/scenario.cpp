@@ -15,31 +15,35 @@ using Kind = Mishap::Kind;
 constexpr Time kFirst{5s};       // the robot is up by then
 constexpr int kMishaps = 10000;  // ms in which mishaps begin
 
-Part draw_part(std::size_t index, Random& random) {
+// `density`: how likely it needs each of the others.
+Part draw_part(std::size_t index, double density, Random& random) {
   Part part;
   for (std::size_t other = 0; other < index; ++other) {
-    if (random.chance(0.35)) part.needs.push_back(other);
+    if (random.chance(density)) part.needs.push_back(other);
   }
   constexpr std::array kCriticalities = {"ERROR", "WARNING", "NON_CRITICAL"};
   part.criticality = kCriticalities[static_cast<std::size_t>(random.below(3))];
   part.restart_percent = 1 + random.below(100);
   part.redeploy_percent = 1 + random.below(100);
   part.has_last_resort = random.chance(0.2);
+  if (random.chance(0.1)) part.boots = std::chrono::milliseconds(random.below(15000));
   return part;
 }
 
 Mishap draw_mishap(std::size_t parts, Random& random) {
   // Faults are the rule, the rest the exception.
   constexpr std::array kKinds = {
-      Kind::kKill,    Kind::kKill,      Kind::kStop,        Kind::kHang,  Kind::kDrift,
-      Kind::kDrift,   Kind::kBreak,     Kind::kBreak,       Kind::kBurn,  Kind::kBurn,
-      Kind::kCrash,   Kind::kJump,      Kind::kMove,        Kind::kPause, Kind::kStaleStamp,
-      Kind::kSilence, Kind::kRunByHand, Kind::kBeyondRepair};
+      Kind::kKill,    Kind::kKill,      Kind::kStop,         Kind::kHang,     Kind::kDrift,
+      Kind::kDrift,   Kind::kBreak,     Kind::kBreak,        Kind::kBurn,     Kind::kBurn,
+      Kind::kCrash,   Kind::kJump,      Kind::kMove,         Kind::kPause,    Kind::kStaleStamp,
+      Kind::kSilence, Kind::kRunByHand, Kind::kBeyondRepair, Kind::kFlap,     Kind::kNamesake,
+      Kind::kDeaf,    Kind::kStall,     Kind::kRival,        Kind::kTotalLoss};
   Mishap mishap;
   mishap.at = kFirst + std::chrono::milliseconds(random.below(kMishaps));
   mishap.kind = kKinds[static_cast<std::size_t>(random.below(static_cast<int>(kKinds.size())))];
   mishap.part = static_cast<std::size_t>(random.below(static_cast<int>(parts)));
   mishap.lasts = std::chrono::milliseconds(100 + random.below(5000));
+  if (mishap.kind == Kind::kFlap) mishap.lasts *= 10;
   return mishap;
 }
 
@@ -105,12 +109,25 @@ std::string_view to_string(Kind kind) {
       return "is silenced";
     case Kind::kRunByHand:
       return "a person runs its redeploy";
+    case Kind::kFlap:
+      return "comes and goes";
+    case Kind::kNamesake:
+      return "has a namesake";
+    case Kind::kRival:
+      return "is started again by its launcher";
+    case Kind::kDeaf:
+      return "nothing is heard";
+    case Kind::kStall:
+      return "the manager stands still";
+    case Kind::kTotalLoss:
+      return "everything is killed";
   }
   return "";
 }
 
 std::string describe(const Mishap& mishap) {
-  const bool is_about_part = mishap.kind < Kind::kCrash || mishap.kind >= Kind::kSilence;
+  const bool is_about_part =
+      mishap.kind < Kind::kCrash || (mishap.kind >= Kind::kSilence && mishap.kind < Kind::kDeaf);
   return (is_about_part ? "c" + std::to_string(mishap.part) + " " : "") +
          std::string(to_string(mishap.kind)) + " (" + culprit::to_string(mishap.lasts) + ")";
 }
@@ -119,10 +136,11 @@ Scenario draw(std::uint64_t seed) {
   Random random(seed);
   Scenario scenario;
   scenario.seed = seed;
-  const int parts = 1 + random.below(6);
+  const bool is_large = random.chance(0.05);
+  const int parts = is_large ? 7 + random.below(24) : 1 + random.below(6);
   for (int i = 0; i < parts; ++i)
-    scenario.parts.push_back(draw_part(static_cast<std::size_t>(i), random));
-  const int mishaps = 1 + random.below(8);
+    scenario.parts.push_back(draw_part(static_cast<std::size_t>(i), is_large ? 0.1 : 0.35, random));
+  const int mishaps = is_large ? 9 + random.below(12) : 1 + random.below(8);
   for (int i = 0; i < mishaps; ++i)
     scenario.mishaps.push_back(draw_mishap(scenario.parts.size(), random));
   std::stable_sort(scenario.mishaps.begin(), scenario.mishaps.end(),
@@ -132,12 +150,29 @@ Scenario draw(std::uint64_t seed) {
   scenario.has_interlock = random.chance(0.3);
   scenario.uses_paper_planner = random.chance(0.4);
   scenario.operator_answers = random.chance(0.8);
+  scenario.has_infrastructure = random.chance(0.3);
   return scenario;
+}
+
+std::vector<std::size_t> all_needs(const Scenario& scenario, std::size_t part) {
+  // A part needs earlier ones only.
+  std::vector<bool> is_needed(part, false);
+  for (const std::size_t other : scenario.parts[part].needs) is_needed[other] = true;
+  std::vector<std::size_t> all;
+  for (std::size_t other = part; other-- > 0;) {
+    if (!is_needed[other]) continue;
+    all.push_back(other);
+    for (const std::size_t further : scenario.parts[other].needs) is_needed[further] = true;
+  }
+  return all;
 }
 
 std::string rules_of(const Scenario& scenario) {
   std::string text = "CYCLE 100ms\nSIGNAL moving DIAGNOSTIC base KEY moving\n";
   if (scenario.has_interlock) text += "INTERLOCK moving == false\n";
+  // bayes has to cope without; nobody would run the paper's planner so.
+  if (scenario.has_infrastructure && scenario.uses_paper_planner)
+    text += "IGNORE TOPIC /infrastructure\n";
   for (std::size_t i = 0; i < scenario.parts.size(); ++i) {
     const Part& part = scenario.parts[i];
     const std::string n = std::to_string(i);

@@ -17,6 +17,7 @@ struct Part {
   int restart_percent = 50;
   int redeploy_percent = 50;
   bool has_last_resort = false;
+  Duration boots{};  // so long after the rest of the robot
 };
 
 struct Mishap {
@@ -34,7 +35,13 @@ struct Mishap {
     kMove,        // the robot drives for a while: the interlock is closed
     kPause,       // by a person, for a while
     kSilence,     // of the component, for a while
-    kRunByHand
+    kRunByHand,
+    kFlap,      // it works and does not, in turns, for a while
+    kNamesake,  // for a while another node has its name
+    kRival,     // for a while its launcher starts it again when it is gone
+    kDeaf,      // for a while the manager hears nothing of topics, and knows it a moment later
+    kStall,     // the manager stands still for a while
+    kTotalLoss  // every process is killed
   };
   Time at{};
   Kind kind = Kind::kKill;
@@ -60,6 +67,8 @@ struct Scenario {
   Noise noise;
   Governor::Options governor;
   bool has_interlock = false;
+  // All parts publish and hear one topic, as /rosout or /parameter_events.
+  bool has_infrastructure = false;
   bool uses_paper_planner = false;
   bool operator_answers = true;  // where each strategy has to be approved
 };
@@ -67,6 +76,8 @@ struct Scenario {
 inline constexpr Duration kPeriod = std::chrono::milliseconds(200);  // of what each part says
 
 Scenario draw(std::uint64_t seed);
+// What the part needs, directly or not.
+std::vector<std::size_t> all_needs(const Scenario& scenario, std::size_t part);
 std::string rules_of(const Scenario& scenario);
 std::string describe(const Mishap& mishap);
 

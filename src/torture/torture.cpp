@@ -4,12 +4,15 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "knowledge/describe.h"
 #include "language/checker.h"
+#include "manager/runtime.h"
 #include "plan/bayes/bayes_planner.h"
 #include "plan/paper_planner.h"
+#include "torture/memory.h"
 #include "torture/tortured_robot.h"
 
 namespace culprit::torture {
@@ -18,9 +21,11 @@ namespace {
 using namespace std::chrono_literals;
 using Kind = Mishap::Kind;
 
-constexpr Time kQuiet{21s};    // what happens by itself is over by then, the noise too
+constexpr Time kQuiet{21s};    // the noise is over by then
 constexpr Time kLatest{900s};  // back-offs, attempts and silences are over by then
 constexpr Duration kCalm = 4s;
+// Who says nothing for so long waits for a person, not for a back-off or a budget.
+constexpr Duration kGivenUp = 2 * Analyzer::kLongestBackoff;
 
 // A step of a manager as it was recorded.
 struct Step {
@@ -50,6 +55,7 @@ class Run {
       : scenario_(scenario),
         rules_(*check(Source("torture.rules", rules_of(scenario))).rules),
         robot_(scenario_, rules_),
+        memory_(rules_),
         invariants_(rules_, scenario) {
     begin_manager();
   }
@@ -63,7 +69,7 @@ class Run {
         calm_since_ = robot_.now();
       }
       if (robot_.now() >= kQuiet) robot_.end_noise();
-      const bool is_over = next == scenario_.mishaps.size() && robot_.now() >= kQuiet;
+      const bool is_over = next == scenario_.mishaps.size() && robot_.now() >= over_;
       if (!is_over || !is_settled()) calm_since_ = robot_.now();
       if (is_over && robot_.now() - calm_since_ >= kCalm) break;
       Time until = std::min(kLatest, manager_->next_deadline());
@@ -88,32 +94,72 @@ class Run {
     return std::make_unique<Manager>(rules_, std::move(planner), options);
   }
 
-  // Its beliefs and what it saw of the robot outlive a crash; the rest it has to find out anew.
-  void begin_manager() {
+  // What a manager begins with.
+  struct Beginning {
+    Time start{};
     std::vector<Belief> beliefs;
+    KnownRobot known_robot;
+    Past past;
+    std::vector<Interrupted> interrupted;
+  };
+
+  std::unique_ptr<Manager> make_manager() const {
+    auto manager = make_manager(beginning_.start);
+    for (std::size_t s = 0; s < beginning_.beliefs.size(); ++s)
+      manager->set_belief(StrategyId(s), beginning_.beliefs[s]);
+    manager->remember(beginning_.known_robot);
+    manager->remember(beginning_.past);
+    for (const Interrupted& interrupted : beginning_.interrupted) manager->resume(interrupted);
+    return manager;
+  }
+
+  // What the journal keeps outlives a crash, and a pause too; the rest it has to find out anew.
+  void begin_manager() {
+    const bool was_paused = manager_ && manager_->governor().is_paused();
+    if (manager_) check_replay();
+    beginning_ = {};
+    if (manager_) beginning_.known_robot = manager_->knowledge().known_robot();
     for (std::size_t s = 0; manager_ && s < rules_.strategies.size(); ++s)
-      beliefs.push_back(manager_->knowledge().beliefs[StrategyId(s)]);
-    if (manager_) {
-      check_replay();
-      known_ = manager_->knowledge().known_robot();
-    }
-    start_ = robot_.now();
-    manager_ = make_manager(start_);
-    manager_->remember(known_);
-    for (std::size_t s = 0; s < beliefs.size(); ++s)
-      manager_->set_belief(StrategyId(s), beliefs[s]);
-    first_beliefs_ = beliefs;
+      beginning_.beliefs.push_back(manager_->knowledge().beliefs[StrategyId(s)]);
+    beginning_.start = robot_.now();
+    stepped_ = kLongAgo;
+    beginning_.past = memory_.past();
+    beginning_.interrupted = memory_.interrupted();
+    manager_ = make_manager();
     recorded_.clear();
+    if (was_paused)
+      orders_.insert(orders_.begin(), {robot_.now(), Order{0, "before the crash", "", Pause{}}});
     invariants_.begin(*manager_);
+  }
+
+  // It ends when it has just decided, and nothing of that was asked for yet.
+  bool dies_deciding(std::span<const Command> commands) {
+    if (!is_to_die_deciding_ || commands.empty()) return false;
+    is_to_die_deciding_ = false;
+    say("the manager crashes before it asks", "!");
+    begin_manager();
+    robot_.rediscover();
+    return true;
   }
 
   void befall(const Mishap& mishap) {
     say(describe(mishap), "!");
+    // What has begun lasts on while the manager's clock jumps.
+    if (mishap.kind == Kind::kJump) {
+      over_ += mishap.lasts;
+    } else {
+      over_ = std::max(over_, robot_.now() + mishap.lasts);
+    }
     const ComponentId component(mishap.part);
     switch (mishap.kind) {
       case Kind::kCrash:
+        is_to_die_deciding_ = mishap.part % 2 == 1;
+        if (is_to_die_deciding_) return;
         begin_manager();
         return robot_.rediscover();
+      case Kind::kStall:
+        stalled_until_ = robot_.now() + mishap.lasts;
+        return;
       case Kind::kPause:
         order(Pause{});
         due_.emplace(robot_.now() + mishap.lasts, Resume{});
@@ -160,73 +206,145 @@ class Run {
     }
   }
 
+  // What comes while it stands still is there when it goes on. Then it knows, as the runtime tells
+  // it, that it, or the clock, came round late.
+  void watch(Time until, std::vector<Observation>& observations) {
+    const Time due = std::max(stepped_, manager_->next_deadline());
+    robot_.observe(until, observations);
+    while (robot_.now() < stalled_until_) robot_.observe(stalled_until_, observations);
+    const Time now = robot_.now();
+    if (stepped_ != kLongAgo && now > later(due, Runtime::kLate))
+      observations.insert(observations.begin(), {now, Overslept{now - due}});
+    stepped_ = now;
+  }
+
   void step(Time until) {
     std::vector<Observation> observations;
-    robot_.observe(until, observations);
+    watch(until, observations);
     while (!due_.empty() && due_.begin()->first <= robot_.now()) {
       std::visit([&](const auto& what) { order(what); }, due_.begin()->second);
       due_.erase(due_.begin());
     }
     std::move(orders_.begin(), orders_.end(), std::back_inserter(observations));
     orders_.clear();
+    note_health();
     const Time now = robot_.now();
     const std::vector<Command> commands = manager_->step(now, observations);
     ++outcome_.steps;
     std::vector<std::string> words = words_of(*manager_, commands, rules_);
     for (const std::string& line : words) say(line, " ");
+    if (!words.empty()) said_ = now;
     for (const Event& event : manager_->events()) {
-      const auto* held = std::get_if<ActionHeldBack>(&event.what);
-      was_refused_ |= held != nullptr && held->restraint == Restraint::kRefused;
+      const auto* accepted = std::get_if<OrderAccepted>(&event.what);
+      const auto* refused = accepted ? std::get_if<Refuse>(&accepted->order.what) : nullptr;
+      if (refused != nullptr) refused_.insert(rules_[refused->strategy].rule);
     }
     invariants_.check(*manager_, now, commands, truth());
+    memory_.note(observations, manager_->events(), commands);
     recorded_.push_back({now, std::move(observations), std::move(words)});
+    if (dies_deciding(commands)) return;
     for (const Command& command : commands) robot_.execute(command);
     answer_questions();
   }
 
-  Invariants::Truth truth() const {
-    Invariants::Truth truth;
-    for (std::size_t i = 0; i < scenario_.parts.size(); ++i)
-      truth.processes.push_back(robot_.process(i));
-    const Duration known = 2 * kPeriod + scenario_.noise.lateness;
-    truth.is_moving = scenario_.has_interlock && robot_.has_moved_for(known);
-    return truth;
-  }
-
-  bool is_settled() const {
-    for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
-      const RulePhase phase = manager_->knowledge().states[RuleId(r)].phase;
-      if (phase != RulePhase::kQuiet && phase != RulePhase::kExhausted) return false;
-    }
-    return manager_->governor().silences().empty();
-  }
-
-  void check_liveness() {
-    if (!is_excused()) {
-      for (std::size_t i = 0; i < scenario_.parts.size(); ++i) {
-        if (!robot_.works(i))
-          return fail("c" + std::to_string(i) + " is not cured, and nobody says why");
+  void note_health() {
+    was_there_.resize(scenario_.parts.size());
+    well_since_.resize(scenario_.parts.size(), kNever);
+    for (std::size_t i = 0; i < well_since_.size(); ++i) {
+      was_there_[i] = was_there_[i] || robot_.process(i) != ProcessState::kGone;
+      if (!robot_.works(i)) {
+        well_since_[i] = kNever;
+      } else if (well_since_[i] == kNever) {
+        well_since_[i] = robot_.now();
       }
     }
   }
 
-  // What was said to a person at the end of it all.
-  bool is_excused() const {
+  Invariants::Truth truth() const {
+    Invariants::Truth truth;
+    truth.well_since = well_since_;
+    const Duration known = 2 * kPeriod + scenario_.noise.lateness;
+    for (std::size_t i = 0; i < scenario_.parts.size(); ++i) {
+      truth.processes.push_back(robot_.process(i));
+      truth.is_relaunched.push_back(robot_.was_relaunched_within(i, known));
+    }
+    truth.was_there = was_there_;
+    truth.is_moving = scenario_.has_interlock && robot_.has_moved_for(known);
+    return truth;
+  }
+
+  // A failure may be there for good: what explains it waits for a person, and so does it.
+  bool is_settled() const {
+    if (!manager_->governor().silences().empty()) return false;
+    const auto is_in = [&](RulePhase phase) {
+      for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
+        if (manager_->knowledge().states[RuleId(r)].phase == phase) return true;
+      }
+      return false;
+    };
+    if (is_in(RulePhase::kAttempting)) return false;
+    return !is_in(RulePhase::kFailing) || robot_.now() - said_ >= kGivenUp;
+  }
+
+  void check_liveness() {
     const Governor& governor = manager_->governor();
-    if (governor.is_paused() || !governor.silences().empty() || !governor.asked().empty() ||
-        governor.storm() || was_refused_)
+    if (governor.is_paused() || governor.storm()) return;
+    for (std::size_t i = 0; i < scenario_.parts.size(); ++i) {
+      if (!robot_.works(i) && !is_excused(i))
+        return fail("c" + std::to_string(i) + " is not cured, and nobody says why");
+    }
+  }
+
+  // What was said to a person at the end of it all about this part, or about one that it needs.
+  bool is_excused(std::size_t part) const {
+    std::vector<std::size_t> needed = all_needs(scenario_, part);
+    needed.push_back(part);
+    const auto is_about = [&](RuleId rule) {
+      return std::find(needed.begin(), needed.end(), rules_[rule].components.front().index) !=
+             needed.end();
+    };
+    // Nothing is begun beside what a person is asked about.
+    for (const StrategyId asked : manager_->governor().asked()) {
+      if (is_about(rules_[asked].rule) || is_joined(ComponentId(part), rules_[asked])) return true;
+    }
+    if (std::any_of(refused_.begin(), refused_.end(), is_about)) return true;
+    if (std::any_of(needed.begin(), needed.end(), [&](std::size_t p) { return is_never_seen(p); }))
       return true;
     for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
-      if (manager_->knowledge().states[RuleId(r)].phase == RulePhase::kExhausted) return true;
+      const RuleId id(r);
+      if (manager_->knowledge().states[id].phase == RulePhase::kExhausted && is_about(id))
+        return true;
+    }
+    const auto& silences = manager_->governor().silences();
+    return std::any_of(silences.begin(), silences.end(), [&](const auto& silence) {
+      const auto* rule = std::get_if<RuleId>(&silence.what);
+      if (rule != nullptr) return is_about(*rule);
+      return std::find(needed.begin(), needed.end(), std::get<ComponentId>(silence.what).index) !=
+             needed.end();
+    });
+  }
+
+  // It never spoke, and that was told.
+  bool is_never_seen(std::size_t part) const {
+    const std::string topic = "/c" + std::to_string(part);
+    for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
+      if (rules_.topics[t].name == topic) return !manager_->knowledge().sightings.has(TopicId(t));
     }
     return false;
   }
 
+  // By what the manager sees: topics that all parts share join those that do not need each other.
+  bool is_joined(ComponentId part, const Strategy& strategy) const {
+    const auto depends = [&](ComponentId consumer, ComponentId producer) {
+      const auto& upstream = manager_->knowledge().graph.upstream(consumer);
+      return std::find(upstream.begin(), upstream.end(), producer) != upstream.end();
+    };
+    return std::any_of(strategy.components.begin(), strategy.components.end(),
+                       [&](ComponentId c) { return depends(part, c) || depends(c, part); });
+  }
+
   void check_replay() {
-    const auto again = make_manager(start_);
-    again->remember(known_);
-    for (std::size_t s = 0; s < first_beliefs_.size(); ++s)
-      again->set_belief(StrategyId(s), first_beliefs_[s]);
+    const auto again = make_manager();
     for (const Step& recorded : recorded_) {
       const std::vector<Command> commands = again->step(recorded.now, recorded.observations);
       if (words_of(*again, commands, rules_) != recorded.said)
@@ -247,16 +365,22 @@ class Run {
   const Scenario scenario_;
   const RuleSet rules_;
   TorturedRobot robot_;
+  Memory memory_;
   Invariants invariants_;
   std::unique_ptr<Manager> manager_;
-  Time start_{};
-  std::vector<Belief> first_beliefs_;
-  KnownRobot known_;  // by the managers before this one
+  Beginning beginning_;
+  bool is_to_die_deciding_ = false;
+  Time stalled_until_ = kLongAgo;
+  Time stepped_ = kLongAgo;
+  std::vector<bool> was_there_;   // by part: it was started at least once
+  std::vector<Time> well_since_;  // by part; kNever: it does not work
   std::vector<Step> recorded_;
   std::vector<Observation> orders_;
   std::multimap<Time, std::variant<Resume, Approve, Refuse>> due_;
+  Time over_ = kQuiet;  // what happens by itself
   Time calm_since_{};
-  bool was_refused_ = false;
+  Time said_{};               // anything, the manager, last
+  std::set<RuleId> refused_;  // a person refused a strategy of theirs
   RunOutcome outcome_;
 };
 

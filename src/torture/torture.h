@@ -18,8 +18,9 @@ struct RunOutcome {
 };
 
 // Runs the scenario to its end, or to the first violation. Afterwards it must hold too that
-// - every part works, or something that was said excuses it: a rule is exhausted, a storm, a
-//   silence, a pause, a question that nobody answers;
+// - every part works, or something that was said excuses it: a storm or a pause, or about it or
+// about
+//   what it needs an exhausted rule, a silence, a refusal, a question that nobody answers;
 // - the same observations give the same commands and events again.
 RunOutcome run(const Scenario& scenario);
 

@@ -13,7 +13,7 @@ TEST(Torture, HundredsOfRobotsAreTreatedAsPromised) {
 }
 
 TEST(Torture, WhatWasOnceFoundStaysMended) {
-  for (const std::uint64_t seed : {2266u, 5056u, 6515u, 7086u, 22244u})
+  for (const std::uint64_t seed : {485u})
     EXPECT_FALSE(run(draw(seed)).violation) << report(shrink(draw(seed)));
 }
 
@@ -24,13 +24,15 @@ TEST(Torture, TheSameSeedGivesTheSameRun) {
 
 TEST(Torture, MishapsLeaveTheirMark) {
   std::string all;
-  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     for (const std::string& line : run(draw(seed)).timeline) all += line + "\n";
   }
   for (const char* part :
-       {"is killed", "the manager crashes", "resolved by", "did not resolve", "is held back",
-        "is exhausted", "waits for approval", "the last resort is left", "is left where it is",
-        "is silenced", "INTERLOCK moving == false is false", "was restarted a short while ago",
+       {"is killed", "everything is killed", "is started again by its launcher", "was never seen",
+        "the manager crashes", "comes and goes: detected", "culprit stood still", "resolved by",
+        "did not resolve", "is held back", "is exhausted", "waits for approval",
+        "the last resort is left", "is left where it is", "is silenced",
+        "INTERLOCK moving == false is false", "was restarted a short while ago",
         "and no more are allowed"})
     EXPECT_NE(all.find(part), std::string::npos) << part;
 }

@@ -30,7 +30,7 @@ bool take(std::vector<CommandId>& ids, CommandId id) { return std::erase(ids, id
 class Machine : public simulation::Node {
  public:
   Machine(simulation::World& world, std::size_t index, simulation::Topic<int>& own,
-          const std::vector<simulation::Topic<int>*>& needs)
+          const std::vector<simulation::Topic<int>*>& needs, simulation::Topic<int>* infrastructure)
       : Node(world, "/c" + std::to_string(index), machine_traits()),
         name_("c" + std::to_string(index)),
         out_(*this, own),
@@ -41,12 +41,20 @@ class Machine : public simulation::Node {
       in_.push_back(std::make_unique<simulation::Subscription<int>>(
           *this, *needs[i], [this, i](int) { heard_[i] = Node::world().now(); }));
     }
+    if (infrastructure == nullptr) return;
+    to_all_ = std::make_unique<simulation::Publisher<int>>(*this, *infrastructure);
+    from_all_ = std::make_unique<simulation::Subscription<int>>(*this, *infrastructure, [](int) {});
   }
 
   void drift() { assign("drift", 1.0); }
   void break_down() { is_broken_ = true; }
   void burn() { is_burnt_ = true; }
   void ruin() { is_ruined_ = true; }
+  // It works, and it does so in time: it does not hang.
+  bool speaks() const {
+    return works() && spoke_ != kLongAgo && Node::world().now() - spoke_ <= 2 * kPeriod;
+  }
+  void flap(Time until) { flaps_until_ = until; }
 
   bool works() const {
     const bool hears = std::all_of(heard_.begin(), heard_.end(), [this](Time at) {
@@ -56,13 +64,22 @@ class Machine : public simulation::Node {
   }
 
  private:
-  bool is_sound() const { return !is_broken_ && !is_burnt_ && !is_ruined_; }
+  bool is_sound() const {
+    constexpr Duration kTurn = 3s;
+    const Time now = Node::world().now();
+    const bool is_away = now < flaps_until_ && (now.time_since_epoch() / kTurn) % 2 == 0;
+    return !is_broken_ && !is_burnt_ && !is_ruined_ && !is_away;
+  }
   void on_activate() override { is_broken_ = false; }
   void on_start() override {
     is_broken_ = is_burnt_ = false;
     every(kPeriod, [this] {
       Node::world().diagnose(name_, "drift", *parameter("drift"));
-      if (works()) out_.publish(1);
+      if (works()) {
+        out_.publish(1);
+        spoke_ = Node::world().now();
+      }
+      if (to_all_) to_all_->publish(1);
     });
   }
 
@@ -73,6 +90,10 @@ class Machine : public simulation::Node {
   bool is_broken_ = false;
   bool is_burnt_ = false;
   bool is_ruined_ = false;  // no new process helps
+  Time flaps_until_ = kLongAgo;
+  Time spoke_ = kLongAgo;
+  std::unique_ptr<simulation::Publisher<int>> to_all_;
+  std::unique_ptr<simulation::Subscription<int>> from_all_;
 };
 
 TorturedRobot::TorturedRobot(const Scenario& scenario, const RuleSet& rules)
@@ -80,15 +101,26 @@ TorturedRobot::TorturedRobot(const Scenario& scenario, const RuleSet& rules)
       noise_(scenario.noise),
       world_(scenario.seed),
       random_(world_.random("noise")) {
+  if (scenario.has_infrastructure)
+    infrastructure_ = std::make_unique<simulation::Topic<int>>(
+        world_, "/infrastructure", simulation::Transport{{1ms, 1ms}, 0});
   for (std::size_t i = 0; i < scenario.parts.size(); ++i) {
     topics_.push_back(std::make_unique<simulation::Topic<int>>(
         world_, "/c" + std::to_string(i), simulation::Transport{{1ms, 1ms}, 0}));
     std::vector<simulation::Topic<int>*> needs;
     for (const std::size_t other : scenario.parts[i].needs) needs.push_back(topics_[other].get());
-    machines_.push_back(std::make_unique<Machine>(world_, i, *topics_[i], needs));
+    machines_.push_back(
+        std::make_unique<Machine>(world_, i, *topics_[i], needs, infrastructure_.get()));
   }
   rediscover();
-  for (const auto& machine : machines_) machine->launch();
+  for (std::size_t i = 0; i < machines_.size(); ++i) {
+    const Duration boots = scenario.parts[i].boots;
+    if (boots == Duration::zero()) {
+      machines_[i]->launch();
+    } else {
+      world_.after(boots, [this, i] { machines_[i]->launch(); });
+    }
+  }
   tell_base();
 }
 
@@ -113,6 +145,7 @@ TorturedRobot::Source TorturedRobot::source_of(const Observation& observation) {
 void TorturedRobot::receive(Observation observation) {
   const bool is_sample = std::holds_alternative<SampleArrived>(observation.what);
   if (is_sample && random_.chance(noise_.loss)) return;
+  if (is_deaf() && source_of(observation) == Source::kTopics) return;
   if (auto* answer = std::get_if<Reply>(&observation.what)) {
     if (take(unanswered_, answer->command)) return;
     if (take(denied_, answer->command)) *answer = {answer->command, Outcome::kRefused, {}, "no"};
@@ -193,9 +226,49 @@ void TorturedRobot::befall(const Mishap& mishap) {
       if (moving_since_ == kNever) moving_since_ = world_.now();
       world_.after(mishap.lasts, [this] { moving_since_ = kNever; });
       return;
+    case Kind::kFlap:
+      return machine.flap(world_.now() + mishap.lasts);
+    case Kind::kDeaf:
+      return go_deaf(mishap.lasts);
+    case Kind::kRival:
+      return relaunch(mishap.part, world_.now() + mishap.lasts);
+    case Kind::kTotalLoss:
+      for (const auto& each : machines_) each->kill();
+      return;
+    case Kind::kNamesake:
+      tell_namesakes(mishap.part, 1);
+      world_.after(mishap.lasts, [this, part = mishap.part] { tell_namesakes(part, 0); });
+      return;
     default:
       return;
   }
+}
+
+void TorturedRobot::relaunch(std::size_t part, Time until) {
+  constexpr Duration kLook = 300ms;
+  if (world_.now() >= until) return;
+  if (process(part) == ProcessState::kGone) {
+    machines_[part]->launch();
+    relaunched_[part] = world_.now();
+  }
+  world_.after(kLook, [this, part, until] { relaunch(part, until); });
+}
+
+// That it hears nothing is known once what it says to itself did not come back.
+void TorturedRobot::go_deaf(Duration time) {
+  constexpr Duration kKnown = 300ms;
+  deaf_until_ = std::max(deaf_until_, world_.now() + time);
+  world_.after(kKnown, [this] {
+    if (is_deaf()) receive({now(), HearingLost{"nothing comes back"}});
+  });
+  world_.after(time + kKnown, [this] {
+    if (!is_deaf()) receive({now(), HearingRegained{}});
+  });
+}
+
+void TorturedRobot::tell_namesakes(std::size_t part, int others) {
+  namesakes_[part] = others;
+  receive({now(), NamesakesSeen{"/c" + std::to_string(part), others}});
 }
 
 void TorturedRobot::rediscover() {
@@ -203,11 +276,13 @@ void TorturedRobot::rediscover() {
   unanswered_.clear();
   denied_.clear();
   robots_.push_back(std::make_unique<simulation::SimulatedRobot>(rules_, world_));
+  for (const auto& [part, others] : namesakes_) tell_namesakes(part, others);
+  if (is_deaf()) receive({now(), HearingLost{"nothing comes back"}});
 }
 
 bool TorturedRobot::works(std::size_t part) const {
   const Value* drift = machines_[part]->parameter("drift");
-  return machines_[part]->works() && drift != nullptr && *drift == Value(0.0);
+  return machines_[part]->speaks() && drift != nullptr && *drift == Value(0.0);
 }
 
 ProcessState TorturedRobot::process(std::size_t part) const { return machines_[part]->process(); }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <deque>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -39,6 +40,11 @@ class TorturedRobot : public Robot {
 
   bool works(std::size_t part) const;
   ProcessState process(std::size_t part) const;
+  // Its process began in the last `time`, and the manager had nothing to do with that.
+  bool was_relaunched_within(std::size_t part, Duration time) const {
+    const auto at = relaunched_.find(part);
+    return at != relaunched_.end() && world_.now() - at->second <= time;
+  }
   bool has_moved_for(Duration time) const {
     return moving_since_ != kNever && world_.now() - moving_since_ >= time;
   }
@@ -54,11 +60,16 @@ class TorturedRobot : public Robot {
   void receive(Observation observation);
   void reply(const Command& command, Outcome outcome);
   void tell_base();
+  bool is_deaf() const { return world_.now() < deaf_until_; }
+  void go_deaf(Duration time);
+  void relaunch(std::size_t part, Time until);
+  void tell_namesakes(std::size_t part, int others);
 
   const RuleSet& rules_;
   Noise noise_;
   simulation::World world_;
   simulation::Random random_;
+  std::unique_ptr<simulation::Topic<int>> infrastructure_;  // null: there is none
   std::vector<std::unique_ptr<simulation::Topic<int>>> topics_;
   std::vector<std::unique_ptr<Machine>> machines_;
   // One for each manager so far, the last for the present one. What is due in the world knows the
@@ -70,6 +81,9 @@ class TorturedRobot : public Robot {
   Duration ahead_{};                            // the manager's clock, of the world's
   Time stale_until_ = kLongAgo;
   Time moving_since_ = kNever;
+  Time deaf_until_ = kLongAgo;
+  std::map<std::size_t, int> namesakes_;    // by part
+  std::map<std::size_t, Time> relaunched_;  // by part: when its launcher started it last
 };
 
 }  // namespace culprit::torture

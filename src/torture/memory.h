@@ -1,0 +1,41 @@
+// What outlives a manager's crash, as the journal keeps it (journal/recovery.h), without a file:
+// what was told, and the strategies that were under way.
+//
+// What is told and asked for in a step is noted before its requests go out.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "knowledge/interrupted.h"
+#include "knowledge/past.h"
+#include "language/rule_set.h"
+
+namespace culprit::torture {
+
+class Memory {
+ public:
+  // `rules` must outlive the memory.
+  explicit Memory(const RuleSet& rules) : rules_(rules) {}
+
+  // A step: what was observed, what was told, and what is about to be asked for.
+  void note(std::span<const Observation> observations, std::span<const Event> events,
+            std::span<const Command> commands);
+
+  const Past& past() const { return past_; }
+  // Those that had begun to change anything.
+  std::vector<Interrupted> interrupted() const;
+
+ private:
+  void note(const Reply& reply);
+  void note(const Event& event);
+  void note(const Command& command);
+  Interrupted* open(StrategyId strategy);
+  void close(RuleId rule);
+
+  const RuleSet& rules_;
+  Past past_;
+  std::vector<Interrupted> open_;
+};
+
+}  // namespace culprit::torture
