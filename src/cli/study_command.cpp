@@ -113,12 +113,21 @@ std::string command_of(const StudyOptions& options) {
                                options.seed);
 }
 
+// Who learns: the first of the planners that can, or else the paper's.
+std::string learner_of(const StudyOptions& options) {
+  const std::vector<std::string> planners = planners_of(options);
+  const auto found = std::find_if(planners.begin(), planners.end(), study::can_learn);
+  return found == planners.end() ? "paper" : *found;
+}
+
 // `progress` has what comes before it behind it.
 Expected<std::vector<study::LearningCurve>> learn(const StudyOptions& options, Progress& progress,
                                                   std::uint64_t before) {
-  auto study = study::SunsetStudy::make(
-      {{{}, "paper", profiles_of(options).front(), study::Probabilities::kMisspecified}},
-      options.seed);
+  auto study = study::SunsetStudy::make({{{},
+                                          learner_of(options),
+                                          profiles_of(options).front(),
+                                          study::Probabilities::kMisspecified}},
+                                        options.seed);
   if (!study) return Error{study.error()};
   return study->learn(options.runs, options.repetitions,
                       [&](std::uint64_t done) { progress.show(before + done); });
@@ -209,14 +218,17 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
   command->add_flag("--ablation", options->ablation, "Eight configurations of D, C and S");
   command->add_flag("--robustness", options->robustness,
                     "Success probabilities that are 20 % off, beside ideal ones");
-  command->add_flag("--learning", options->learning,
-                    "What the paper's planner learns of each strategy");
+  command->add_flag(
+      "--learning", options->learning,
+      "What is learned of each strategy, by the first planner that can (paper, bayes)");
   command
       ->add_option(
           "--planner", options->planners,
           "paper (Algorithm 1 as meant), reference (the authors' public code with its "
           "slips), bayes (culprit's own); bt, metacontrol, rosa (others': one failure and one "
-          "strategy at a time); oracle (knows each fault at once, and what ends it: a bound); "
+          "strategy at a time), rebet, ac-ros, vogel, ghahremani (others': each failure for "
+          "itself); "
+          "oracle (knows each fault at once, and what ends it: a bound); "
           "several, one after the other")
       ->capture_default_str();
   command

@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/progress.h"
 #include "language/text_file.h"
+#include "study/managers/style_planner.h"
 #include "study/rca/learning_report.h"
 #include "study/rca/repair_process.h"
 #include "study/rca/report.h"
@@ -87,6 +88,7 @@ Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
         RepairProcess::kMostComponents, RepairProcess::kMostFaults,
         RepairProcess::kMostSubscriptions)};
   if (!has_optimum) std::erase(all, "optimum");
+  std::erase_if(all, [](const std::string& name) { return study::find_style(name).has_value(); });
   campaign.planners = asked.empty() ? all : asked;
   campaign.objective = *parse_objective(options.objective);
   campaign.episodes = options.episodes;
@@ -188,7 +190,9 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
   command->add_flag("--cyclic", options->cyclic, "With feedback topics, so that there are circles");
   command
       ->add_option("--planner", options->planners,
-                   fmt::format("Only these of {}", fmt::join(study::rca::planner_names(), ", ")))
+                   fmt::format("Only these of {}; without a choice, all but those of others "
+                               "(rebet to ghahremani)",
+                               fmt::join(study::rca::planner_names(), ", ")))
       ->delimiter(',');
   auto* scenario = command->add_option("--scenario", options->scenario,
                                        "Play this scenario (docs/study-rca.md), with other luck in "

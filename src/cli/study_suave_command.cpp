@@ -26,6 +26,7 @@ using Json = nlohmann::ordered_json;
 struct SettingTexts {
   std::string visibility_period;
   std::string visibility_shift;
+  std::string visibility;
   std::vector<std::string> thruster_events;
   bool no_thruster_events = false;
   std::string start;
@@ -52,7 +53,7 @@ struct SuaveOptions {
 
 Expected<double> one_number(const std::string& text) {
   const auto range = suave::model::parse_range(text);
-  if (range && range->low == range->high) return range->low;
+  if (range && range->turns.empty() && range->low == range->high) return range->low;
   return Error{"'" + text + "' is no number of seconds"};
 }
 
@@ -66,6 +67,13 @@ Expected<void> apply(const SettingTexts& texts, suave::model::MissionSettings& s
     const auto shift = suave::model::parse_range(texts.visibility_shift);
     if (!shift) return Error{"--visibility-shift: " + shift.error()};
     settings.visibility_shift_s = *shift;
+  }
+  if (!texts.visibility.empty()) {
+    const auto visibility = suave::model::parse_range(texts.visibility);
+    if (!visibility) return Error{"--visibility: " + visibility.error()};
+    if (!visibility->turns.empty()) return Error{"--visibility: it is one for all runs"};
+    settings.least_visibility_m = visibility->low;
+    settings.most_visibility_m = visibility->high;
   }
   if (!texts.start.empty()) {
     const auto start = suave::model::parse_range(texts.start);
@@ -108,6 +116,9 @@ std::string settings_of_command(const study::SuaveCampaign& campaign) {
     text += fmt::format(" --visibility-period {}", settings.visibility_period_s);
   if (settings.visibility_shift_s != plain.visibility_shift_s)
     text += " --visibility-shift " + to_string(settings.visibility_shift_s);
+  const suave::model::Range visibility{settings.least_visibility_m, settings.most_visibility_m};
+  if (visibility != suave::model::Range{plain.least_visibility_m, plain.most_visibility_m})
+    text += " --visibility " + to_string(visibility);
   if (settings.start_y_m) text += " --start=" + to_string(*settings.start_y_m);
   if (settings.time_limit_s != plain.time_limit_s)
     text += fmt::format(" --time-limit {}", settings.time_limit_s);
@@ -201,14 +212,19 @@ int study_suave(const SuaveOptions& options) {
 }
 
 void add_settings(CLI::App& command, SettingTexts& settings) {
-  constexpr const char* kGroup = "Mission settings (where A..B: another value of it in each run)";
+  constexpr const char* kGroup =
+      "Mission settings (where A..B: another value in each run; A,B,C: these by turns)";
   command
       .add_option("--visibility-period", settings.visibility_period,
                   "In which the water clears and dims, in s (default: 80)")
       ->group(kGroup);
   command
       .add_option("--visibility-shift", settings.visibility_shift,
-                  "How far it is when the mission begins, in s, or A..B (default: 0)")
+                  "How far it is when the mission begins, in s, A..B or A,B,C (default: 0)")
+      ->group(kGroup);
+  command
+      .add_option("--visibility", settings.visibility,
+                  "From the dimmest to the clearest, in m (default: 1.25..3.75; 2.5: always)")
       ->group(kGroup);
   auto* thruster =
       command
@@ -219,8 +235,9 @@ void add_settings(CLI::App& command, SettingTexts& settings) {
       ->excludes(thruster)
       ->group(kGroup);
   command
-      .add_option("--start", settings.start,
-                  "Where a run begins across the pipeline, y in m, or A..B (default: as fitted)")
+      .add_option(
+          "--start", settings.start,
+          "Where a run begins across the pipeline, y in m, A..B or A,B,C (default: as fitted)")
       ->group(kGroup);
   command.add_option("--time-limit", settings.time_limit, "Of the mission, in s (default: 300)")
       ->group(kGroup);

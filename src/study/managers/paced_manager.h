@@ -1,7 +1,8 @@
 // A managing system that looks at the robot at its own pace, and takes time to decide.
 //
-// It sees what was observed since when its next look is due, or an answer comes that it waits for.
-// What it decides at a look goes out after the time that deciding takes.
+// It sees what was observed since when its next look is due, or an answer comes that it waits for;
+// without a period it sees everything at once. What it decides at a look goes out after the time
+// that deciding takes.
 #pragma once
 
 #include <deque>
@@ -16,12 +17,12 @@
 namespace culprit::study {
 
 struct Pace {
-  Duration period{};          // between looks
+  Duration period{};          // between looks; 0: whenever something is observed
   simulation::Span decision;  // how long it takes
 };
 
-// Of the baselines of the SUAVE study (their headers say where the figures are from). Null for
-// another name.
+// Of the baselines of the SUAVE study (their headers say where the figures are from) and of ReBeT.
+// Null for another name.
 const Pace* find_pace(std::string_view baseline);
 
 class PacedManager : public ManagingSystem {
@@ -35,6 +36,7 @@ class PacedManager : public ManagingSystem {
   std::span<const Event> events() const override { return events_; }
 
  private:
+  bool is_awake() const { return pace_.period == Duration::zero(); }
   void release(Time now, std::vector<Command>& commands);
 
   std::unique_ptr<ManagingSystem> inner_;

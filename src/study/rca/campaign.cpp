@@ -7,6 +7,7 @@
 #include "plan/bayes/bayes_planner.h"
 #include "plan/paper_planner.h"
 #include "simulation/random.h"
+#include "study/managers/style_planner.h"
 #include "study/ordered_work.h"
 #include "study/rca/baselines.h"
 #include "study/rca/optimum.h"
@@ -85,7 +86,8 @@ bool find_regrets(const RcaCampaign& campaign, unsigned jobs, Count& count,
 }  // namespace
 
 std::vector<std::string> planner_names() {
-  return {"naive", "first-failing", "topological", "random-walk", "paper", "bayes", "optimum"};
+  return {"naive", "first-failing", "topological", "random-walk", "paper",  "bayes",
+          "rebet", "ac-ros",        "vogel",       "ghahremani",  "optimum"};
 }
 
 Expected<std::unique_ptr<const Planner>> make_planner(const std::string& name, Objective objective,
@@ -99,6 +101,7 @@ Expected<std::unique_ptr<const Planner>> make_planner(const std::string& name, O
     return Made(std::make_unique<RankingPlanner>(Ranking::kFirstFailing));
   if (name == "topological") return Made(std::make_unique<RankingPlanner>(Ranking::kTopological));
   if (name == "random-walk") return Made(std::make_unique<RankingPlanner>(Ranking::kRandomWalk));
+  if (const auto style = find_style(name)) return Made(std::make_unique<StylePlanner>(*style));
   if (name == "optimum") {
     if (RepairProcess::is_small(scenario)) return Made(optimum_planner(scenario, objective));
     return Error{"the optimum is only known of small robots: at most " +

@@ -15,8 +15,8 @@
 
 namespace culprit::study::rca {
 
-// "naive", "first-failing", "topological", "random-walk", "paper", "bayes", and "optimum", which is
-// for small robots only (optimum.h).
+// "naive", "first-failing", "topological", "random-walk", "paper", "bayes", the styles of others
+// (style_planner.h), and "optimum", which is for small robots only (optimum.h).
 std::vector<std::string> planner_names();
 
 struct RcaCampaign {

@@ -18,6 +18,9 @@ class JsonFields {
   explicit JsonFields(const nlohmann::ordered_json& json);
 
   bool has(std::string_view name) const { return json_.contains(std::string(name)); }
+  bool is_object(std::string_view name) const {
+    return has(name) && json_.at(std::string(name)).is_object();
+  }
   // A value of no meaning where there is a complaint.
   bool truth(std::string_view name);
   double number(std::string_view name);  // finite

@@ -49,7 +49,7 @@ SuaveRow fold(const std::string& manager, const suave::model::MissionPlan& plan,
 SuaveRun play(const SuaveCampaign& campaign, RunId id, SuaveTelling* telling) {
   const std::uint64_t seed = simulation::mix(campaign.seed) + id.run;
   const suave::model::MissionPlan plan =
-      campaign.settings ? drawn(*campaign.plan, *campaign.settings, seed) : *campaign.plan;
+      campaign.settings ? drawn(*campaign.plan, *campaign.settings, seed, id.run) : *campaign.plan;
   return play_suave(campaign.managers[id.row], *campaign.generation, plan, campaign.vehicle, seed,
                     telling);
 }

@@ -98,6 +98,8 @@ Expected<void> add_recorded(std::string_view name, std::string_view text,
     if (fields.size() != head.size())
       return Error{fmt::format("{}: record {} has {} fields, but the head has {}", name, line,
                                fields.size(), head.size())};
+    // Who looks at the runs in a spreadsheet leaves lines of means in the file.
+    if (fields[*mission].empty()) continue;
     const auto search_s = amount(fields[*search]);
     const auto distance_m = amount(fields[*distance]);
     if (!search_s || !distance_m)

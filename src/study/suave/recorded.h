@@ -7,8 +7,8 @@
 //
 // Of the columns three are read, wherever they stand: "mission name", whose last word is the
 // manager; "time searching pipeline (s)", which of a pipeline that was not found is the whole
-// mission; and "distance inspected (m)". A campaign may be in several files, usually one for each
-// manager.
+// mission; and "distance inspected (m)". A line without a mission's name is no run. A campaign may
+// be in several files, usually one for each manager.
 #pragma once
 
 #include <string>

@@ -30,6 +30,7 @@ TEST(Recorded, RunsOfTheExemplarAreReadByManager) {
                        "suave bt,01-Jan-2026-00-00-00,\"(-17.0, 2.8)\",250,True,100,30.5,0.1\r\n"
                        "suave bt,01-Jan-2026-00-05-00,\"(-17.0, 2.8)\",250,True,110,31.5,0.1\n"
                        "\n"
+                       ",,,,AVERAGE,105,31,0.1\n"
                        "suave rosa_bt,01-Jan-2026-00-10-00,\"(-17.0, 2.8)\",251,False,251,0,0\n"
                        "suave mine,01-Jan-2026-00-15-00,\"(-17.0, 2.8)\",250,True,90,33,0",
                    campaign));

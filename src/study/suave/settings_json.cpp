@@ -33,9 +33,20 @@ constexpr std::array kTraits = {
     Trait{"first_pose_s", &VehicleTraits::first_pose_s},
 };
 
-Json to_json(const Range& range) { return Json::array({range.low, range.high}); }
+Json to_json(const Range& range) {
+  if (!range.turns.empty()) return {{"by_turns", range.turns}};
+  return Json::array({range.low, range.high});
+}
 
 Range range(JsonFields& fields, std::string_view name) {
+  if (fields.is_object(name)) {
+    JsonFields own(fields.object(name));
+    Range by_turns;
+    by_turns.turns = own.numbers("by_turns");
+    if (by_turns.turns.empty()) own.complain("by_turns", "is empty");
+    fields.complain_inside(name, own.complaint());
+    return by_turns;
+  }
   const std::vector<double> ends = fields.numbers(name);
   if (ends.size() == 2) return {ends[0], ends[1]};
   fields.complain(name, "is no pair of numbers");
@@ -66,6 +77,7 @@ Json to_json(const MissionSettings& settings) {
   }
   return {{"visibility_period_s", settings.visibility_period_s},
           {"visibility_shift_s", to_json(settings.visibility_shift_s)},
+          {"visibility_m", Json::array({settings.least_visibility_m, settings.most_visibility_m})},
           {"thruster_events", events},
           {"start_y_m", settings.start_y_m ? to_json(*settings.start_y_m) : Json(nullptr)},
           {"time_limit_s", settings.time_limit_s}};
@@ -82,6 +94,10 @@ Expected<MissionSettings> settings_from_json(const Json& json) {
   MissionSettings settings;
   settings.visibility_period_s = fields.number("visibility_period_s");
   settings.visibility_shift_s = range(fields, "visibility_shift_s");
+  const Range visibility = range(fields, "visibility_m");
+  if (!visibility.turns.empty()) fields.complain("visibility_m", "is no pair of numbers");
+  settings.least_visibility_m = visibility.low;
+  settings.most_visibility_m = visibility.high;
   for (const Json& event : fields.array("thruster_events"))
     settings.thruster_events.push_back(thruster_event(event, fields));
   if (!fields.is_null("start_y_m")) settings.start_y_m = range(fields, "start_y_m");

@@ -1,9 +1,10 @@
 // A mission's settings and a vehicle as JSON: in shard files, in what a campaign found, and in
 // files of their own.
 //
-//     {"visibility_period_s": 80, "visibility_shift_s": [0, 120],
+//     {"visibility_period_s": 80, "visibility_shift_s": [0, 120], "visibility_m": [1.25, 3.75],
 //      "thruster_events": [{"thruster": 1, "event": "fails", "at_s": [35, 35]}],
-//      "start_y_m": null, "time_limit_s": 300}
+//      "start_y_m": {"by_turns": [2.8, 3.15]}, "time_limit_s": 300}
+//     Where a pair stands, another value is drawn from between in each run, but of visibility_m.
 //
 //     {"gain_per_s": 0.65, "cruise": 0.7625, ...}     each of VehicleTraits
 #pragma once

@@ -8,6 +8,7 @@
 #include "plan/paper_planner.h"
 #include "study/managers/one_by_one_planner.h"
 #include "study/managers/paced_manager.h"
+#include "study/managers/style_planner.h"
 #include "study/reference/reference_manager.h"
 #include "study/reference/sunset_blackboard.h"
 #include "study/sunset/detectors.h"
@@ -100,12 +101,25 @@ std::vector<TimelineEntry> injected(const SunsetRun& run, const RuleSet& rules) 
 }  // namespace
 
 std::vector<std::string_view> sunset_planners() {
-  return {
-      "paper", "reference",   "bayes", "bayes:downtime", "bayes:adaptations", "bayes:redeployments",
-      "bt",    "metacontrol", "rosa",  "oracle"};
+  return {"paper",
+          "reference",
+          "bayes",
+          "bayes:downtime",
+          "bayes:adaptations",
+          "bayes:redeployments",
+          "bt",
+          "metacontrol",
+          "rosa",
+          "rebet",
+          "ac-ros",
+          "vogel",
+          "ghahremani",
+          "oracle"};
 }
 
 bool has_switches(std::string_view planner) { return planner == "paper" || planner == "reference"; }
+
+bool can_learn(std::string_view planner) { return planner == "paper" || objective_of(planner); }
 
 Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::uint64_t seed) {
   std::vector<Setting> settings;
@@ -114,7 +128,8 @@ Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::ui
     if (std::find(planners.begin(), planners.end(), row.planner) == planners.end())
       return Error{"there is no planner '" + row.planner +
                    "'; there are paper, reference, bayes, bayes with an objective "
-                   "(bayes:downtime), bt, metacontrol, rosa, oracle"};
+                   "(bayes:downtime), bt, metacontrol, rosa, rebet, ac-ros, vogel, ghahremani, "
+                   "oracle"};
     const auto named = parse_profile(row.profile);
     if (!named) return Error{named.error()};
     const auto profile = sunset::model::find_profile(named->first);
@@ -137,9 +152,9 @@ std::uint64_t SunsetStudy::seed_of(RunId id) const {
   return simulation::mix(simulation::mix(seed_) + (std::uint64_t{id.row} << 32U) + id.run);
 }
 
-Manager::Options SunsetStudy::manager_options(const Setting& setting) {
+Manager::Options SunsetStudy::manager_options(const sunset::model::Profile& profile) {
   Manager::Options options;
-  options.start = Time{setting.profile->manager_start};
+  options.start = Time{profile.manager_start};
   options.settling = kSettling;
   return options;
 }
@@ -154,22 +169,24 @@ std::unique_ptr<ManagingSystem> SunsetStudy::manager(const Setting& setting,
     // The rules are made for it.
     return std::move(*ReferenceManager::make(*setting.rules, std::move(options)));
   }
-  if (const Pace* pace = find_pace(setting.configuration.planner)) {
-    const Manager::Options options = manager_options(setting);
-    return std::make_unique<PacedManager>(
-        std::make_unique<Manager>(*setting.rules, std::make_unique<OneByOnePlanner>(), options),
-        *pace, options.start, seed);
-  }
-  std::unique_ptr<const Planner> planner;
-  if (const auto objective = objective_of(setting.configuration.planner)) {
-    planner = std::make_unique<BayesPlanner>(*objective);
-  } else if (setting.configuration.planner == "oracle") {
-    // Who knows each fault need not ask which failure is whose effect.
-    planner = std::make_unique<PaperPlanner>(PaperSwitches{false, false, false});
-  } else {
-    planner = std::make_unique<PaperPlanner>(setting.configuration.switches);
-  }
-  return std::make_unique<Manager>(*setting.rules, std::move(planner), manager_options(setting));
+  const Manager::Options options = manager_options(*setting.profile);
+  auto manager =
+      std::make_unique<Manager>(*setting.rules, planner_of(setting.configuration), options);
+  if (const Pace* pace = find_pace(setting.configuration.planner))
+    return std::make_unique<PacedManager>(std::move(manager), *pace, options.start, seed);
+  return manager;
+}
+
+std::unique_ptr<const Planner> SunsetStudy::planner_of(const Configuration& configuration) {
+  if (const auto style = find_style(configuration.planner))
+    return std::make_unique<StylePlanner>(*style);
+  if (find_pace(configuration.planner) != nullptr) return std::make_unique<OneByOnePlanner>();
+  if (const auto objective = objective_of(configuration.planner))
+    return std::make_unique<BayesPlanner>(*objective);
+  // Who knows each fault need not ask which failure is whose effect.
+  if (configuration.planner == "oracle")
+    return std::make_unique<PaperPlanner>(PaperSwitches{false, false, false});
+  return std::make_unique<PaperPlanner>(configuration.switches);
 }
 
 SunsetRun SunsetStudy::play(RunId id) const {

@@ -40,7 +40,8 @@ class SunsetStudy {
   Timeline explain(RunId id) const;
 
   // `experiments` runs after each other with beliefs that are carried on, `repetitions` times: what
-  // row 0 learns. A curve for each strategy of the paper's failures F1 to F5.
+  // row 0, of culprit's own planners, learns. A curve for each strategy of the paper's failures F1
+  // to F5.
   // `told` is told how many are done of all (null: nobody is).
   std::vector<LearningCurve> learn(std::uint32_t experiments, std::uint32_t repetitions,
                                    const std::function<void(std::uint64_t done)>& told) const;
@@ -57,7 +58,9 @@ class SunsetStudy {
       : settings_(std::move(settings)), seed_(seed) {}
 
   std::uint64_t seed_of(RunId id) const;
-  static Manager::Options manager_options(const Setting& setting);
+  static Manager::Options manager_options(const sunset::model::Profile& profile);
+  // Of all but "reference".
+  static std::unique_ptr<const Planner> planner_of(const Configuration& configuration);
   std::unique_ptr<ManagingSystem> manager(const Setting& setting, std::uint64_t seed) const;
 
   std::vector<Setting> settings_;
@@ -65,11 +68,14 @@ class SunsetStudy {
 };
 
 // The planners that there are: "paper", "reference", "bayes" (balanced), "bayes:downtime" and so on
-// // with another objective, the managers of others, "bt", "metacontrol" and "rosa", and "oracle",
-// who knows each fault at once, and what ends it.
+// with another objective, the managers of others, "bt", "metacontrol", "rosa", "rebet", "ac-ros",
+// "vogel" and "ghahremani", and "oracle", who knows each fault at once, and what ends it.
 std::vector<std::string_view> sunset_planners();
 
 // Whether a planner has the paper's D, C and S to switch off.
 bool has_switches(std::string_view planner);
+
+// Whether it is one whose success probabilities are learned: culprit's own.
+bool can_learn(std::string_view planner);
 
 }  // namespace culprit::study

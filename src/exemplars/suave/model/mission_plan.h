@@ -41,6 +41,8 @@ struct MissionPlan {
   Duration time_limit = std::chrono::seconds(300);
   double visibility_period_s = 80;  // of the cosine that the water clears and dims by
   double visibility_shift_s = 0;    // how far it is when the mission begins
+  double least_visibility_m = 1.25;
+  double most_visibility_m = 3.75;
   std::optional<double> start_y_m;  // instead of the vehicle's traits
   std::vector<ThrusterEvent> thruster_events;
   bool needs_battery = false;             // a manager is expected to see to it

@@ -27,13 +27,17 @@ std::string plain(double value) {
   return {text, end};
 }
 
-// Draws nothing where there is nothing to draw, so that constants change no run.
-double draw(const Range& range, simulation::Random& random) {
+// Of run number `run`. Draws nothing where there is nothing to draw, so that constants change no
+// run.
+double draw(const Range& range, std::uint32_t run, simulation::Random& random) {
+  if (!range.turns.empty()) return range.turns[run % range.turns.size()];
   return range.low == range.high ? range.low : random.uniform(range.low, range.high);
 }
 
 bool is_within(const Range& range, double least, double most) {
-  return least <= range.low && range.low <= range.high && range.high <= most;
+  return least <= range.low && range.low <= range.high && range.high <= most &&
+         std::all_of(range.turns.begin(), range.turns.end(),
+                     [&](double each) { return least <= each && each <= most; });
 }
 
 }  // namespace
@@ -42,6 +46,8 @@ MissionSettings settings_of(const MissionPlan& plan) {
   MissionSettings settings;
   settings.visibility_period_s = plan.visibility_period_s;
   settings.visibility_shift_s = {plan.visibility_shift_s, plan.visibility_shift_s};
+  settings.least_visibility_m = plan.least_visibility_m;
+  settings.most_visibility_m = plan.most_visibility_m;
   for (const ThrusterEvent& event : plan.thruster_events) {
     const double at = seconds(event.at);
     settings.thruster_events.push_back({event.thruster, event.fails, {at, at}});
@@ -51,17 +57,21 @@ MissionSettings settings_of(const MissionPlan& plan) {
   return settings;
 }
 
-MissionPlan drawn(const MissionPlan& plan, const MissionSettings& settings, std::uint64_t seed) {
+MissionPlan drawn(const MissionPlan& plan, const MissionSettings& settings, std::uint64_t seed,
+                  std::uint32_t run) {
   simulation::Random random(simulation::mix(seed) ^ 0x5e77165);
   MissionPlan of_run = plan;
   of_run.visibility_period_s = settings.visibility_period_s;
-  of_run.visibility_shift_s = draw(settings.visibility_shift_s, random);
+  of_run.visibility_shift_s = draw(settings.visibility_shift_s, run, random);
+  of_run.least_visibility_m = settings.least_visibility_m;
+  of_run.most_visibility_m = settings.most_visibility_m;
   of_run.time_limit = from_seconds(settings.time_limit_s);
   of_run.start_y_m.reset();
-  if (settings.start_y_m) of_run.start_y_m = draw(*settings.start_y_m, random);
+  if (settings.start_y_m) of_run.start_y_m = draw(*settings.start_y_m, run, random);
   of_run.thruster_events.clear();
   for (const ThrusterSetting& event : settings.thruster_events) {
-    const double at = std::floor(draw(event.at_s, random));
+    // The exemplar waits until as many whole seconds are over.
+    const double at = std::ceil(draw(event.at_s, run, random));
     of_run.thruster_events.push_back({event.thruster, event.fails, from_seconds(at)});
   }
   std::stable_sort(of_run.thruster_events.begin(), of_run.thruster_events.end(),
@@ -75,6 +85,8 @@ Expected<void> check(const MissionSettings& settings) {
     return Error{"the visibility's period must be 1 to 100000 s"};
   if (!is_within(settings.visibility_shift_s, 0, kMostSeconds))
     return Error{"the visibility's shift must be 0 to 100000 s, the lower end first"};
+  if (!is_within({settings.least_visibility_m, settings.most_visibility_m}, 0, kFar))
+    return Error{"the visibility must be 0 to 1000 m, the lower end first"};
   if (!is_within({settings.time_limit_s, settings.time_limit_s}, 1, kMostSeconds))
     return Error{"the time limit must be 1 to 100000 s"};
   if (settings.start_y_m && !is_within(*settings.start_y_m, -kFar, kFar))
@@ -90,11 +102,24 @@ Expected<void> check(const MissionSettings& settings) {
 }
 
 Expected<Range> parse_range(std::string_view text) {
+  const Error error{"'" + std::string(text) +
+                    "' is neither a number (35), a range (0..120), nor some by turns (35,60)"};
+  if (text.find(',') != std::string_view::npos) {
+    Range range;
+    for (std::size_t begin = 0; begin <= text.size();) {
+      const std::size_t comma = std::min(text.find(',', begin), text.size());
+      const auto number = parse_number(text.substr(begin, comma - begin));
+      if (!number) return error;
+      range.turns.push_back(*number);
+      begin = comma + 1;
+    }
+    return range;
+  }
   const std::size_t dots = text.find("..");
   const auto low = parse_number(text.substr(0, dots));
   const auto high = dots == std::string_view::npos ? low : parse_number(text.substr(dots + 2));
   if (low && high) return Range{*low, *high};
-  return Error{"'" + std::string(text) + "' is neither a number (35) nor a range (0..120)"};
+  return error;
 }
 
 Expected<ThrusterSetting> parse_thruster(std::string_view text) {
@@ -113,6 +138,11 @@ Expected<ThrusterSetting> parse_thruster(std::string_view text) {
 }
 
 std::string to_string(const Range& range) {
+  if (!range.turns.empty()) {
+    std::string text;
+    for (const double each : range.turns) text += (text.empty() ? "" : ",") + plain(each);
+    return text;
+  }
   return range.low == range.high ? plain(range.low) : plain(range.low) + ".." + plain(range.high);
 }
 

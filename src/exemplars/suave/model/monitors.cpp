@@ -25,7 +25,8 @@ void VisibilityMonitor::on_start() {
     const auto second =
         std::chrono::floor<std::chrono::seconds>(world().now() - autopilot_.guided()).count();
     world().diagnose(diagnostics::kVisibility, diagnostics::kVisibilityKey,
-                     water_visibility(second, plan_.visibility_period_s, plan_.visibility_shift_s));
+                     water_visibility(second, plan_.visibility_period_s, plan_.visibility_shift_s,
+                                      plan_.least_visibility_m, plan_.most_visibility_m));
   });
 }
 

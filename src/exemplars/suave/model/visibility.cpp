@@ -5,15 +5,14 @@
 
 namespace culprit::suave::model {
 
-double water_visibility(std::int64_t second, double period_s, double shift_s) {
-  constexpr double kLeast = 1.25;
-  constexpr double kMost = 3.75;
-  constexpr double kAmplitude = (kMost - kLeast) / 2;
+double water_visibility(std::int64_t second, double period_s, double shift_s, double least,
+                        double most) {
+  const double amplitude = (most - least) / 2;
   const double phase = std::fmod(static_cast<double>(second) + shift_s, period_s) / period_s;
   const double angle = 2 * std::numbers::pi * phase;
   // Cut after a nanometre, so that no C library's last bit decides on which side of a threshold the
   // least value is.
-  return std::round((kAmplitude * std::cos(angle) + kAmplitude + kLeast) * 1e9) / 1e9;
+  return std::round((amplitude * std::cos(angle) + amplitude + least) * 1e9) / 1e9;
 }
 
 }  // namespace culprit::suave::model

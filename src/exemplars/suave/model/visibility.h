@@ -7,9 +7,10 @@
 
 namespace culprit::suave::model {
 
-// Metres, `second` whole seconds after the mission began: a cosine between 1.25 and 3.75 with a
-// period of `period_s`, which was at its most `shift_s` before.
-double water_visibility(std::int64_t second, double period_s = 80, double shift_s = 0);
+// Metres, `second` whole seconds after the mission began: a cosine between `least` and `most` with
+// a period of `period_s`, which was at its most `shift_s` before.
+double water_visibility(std::int64_t second, double period_s = 80, double shift_s = 0,
+                        double least = 1.25, double most = 3.75);
 
 // The modes of the search, best first.
 struct SearchMode {

@@ -1,0 +1,46 @@
+// How managers plan that the paper names beside those of the SUAVE study, each after its own
+// description. None asks which failure is another one's effect.
+//
+//   rebet       Alberts et al., ReBeT: decorators of a behaviour tree, one around each action. Each
+//               adapts by itself when its own condition holds, and goes through its options in
+//               their order.
+//   ac-ros      Cheng et al., AC-ROS: the goal model is evaluated, and for each violated goal its
+//               one predefined plan is executed, over and over; no goal comes before another.
+//   vogel       Vogel and Giese, executable runtime megamodels: one feedback loop repairs
+//               (ERROR), the next one optimises (the other levels) once nothing is left to repair.
+//   ghahremani  Ghahremani et al., utility-driven and rule-based: of the rules that match an issue
+//               the one that gains most utility for its cost, the worthiest issue first. What a
+//               repaired component is worth: its level, 1 to 3, times itself and all that depend
+//               on it.
+//
+// Where they leave open which strategy is meant (vogel, ac-ros) it is the likeliest.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "plan/planner.h"
+
+namespace culprit::study {
+
+enum class Style : std::uint8_t { kRebet, kAcRos, kVogel, kGhahremani };
+
+// Nothing for another name.
+std::optional<Style> find_style(std::string_view name);
+
+class StylePlanner : public Planner {
+ public:
+  explicit StylePlanner(Style style) : style_(style) {}
+  std::vector<Verdict> plan(std::span<const RuleId> failures,
+                            const Knowledge& knowledge) const override;
+
+ private:
+  // The failure that one of `rule` waits for.
+  std::optional<RuleId> comes_first(RuleId rule, const Knowledge& knowledge) const;
+  // Of a strategy, or of all that a failure has: the higher the earlier.
+  double worth(StrategyId id, const Knowledge& knowledge) const;
+
+  Style style_;
+};
+
+}  // namespace culprit::study
