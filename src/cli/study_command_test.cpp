@@ -74,7 +74,7 @@ TEST_F(StudyCommand, GivesTheRowsOfAllThreeTables) {
   ASSERT_EQ(document["learning"].size(), 10);  // strategies of F1 to F5
   const auto& learned = document["learning"][0];
   EXPECT_EQ(learned["strategy"], "rgb_restart");
-  for (const char* key : {"believed", "truth", "error", "executed"})
+  for (const char* key : {"believed", "truth", "error", "executed", "counted"})
     EXPECT_TRUE(learned[key].is_number()) << key;
 }
 

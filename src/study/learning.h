@@ -19,6 +19,7 @@ struct LearningCurve {
   // After the first, second, ... experiment; each over the repetitions of the whole series.
   std::vector<Moments> learned;
   double executed = 0;  // how often in a series, on average
+  double counted = 0;   // as often it was learned from
 
   // What is believed at the end, and how far that is from the truth.
   double believed() const { return learned.empty() ? initial : learned.back().mean(); }

@@ -39,7 +39,7 @@ void examine(Candidate& candidate, const std::vector<ComponentId>& affected,
     candidate.remark = std::move(invalid->reason);
     return;
   }
-  if (const std::string& reason = knowledge.withheld[candidate.strategy.index]; !reason.empty()) {
+  if (const auto& reason = knowledge.withheld[candidate.strategy.index].reason; !reason.empty()) {
     candidate.excluded = Condition::kWithheld;
     candidate.component = strategy.components.front();
     candidate.remark = reason;

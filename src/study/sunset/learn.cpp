@@ -67,7 +67,7 @@ std::vector<Learner> learners(const RuleSet& rules, std::uint32_t experiments) {
     if (failure.empty()) continue;
     Learner learner;
     learner.strategy = StrategyId(s);
-    learner.curve = {failure, rule, strategy.name, strategy.success.value, 0, {}, 0};
+    learner.curve = {failure, rule, strategy.name, strategy.success.value, 0, {}, 0, 0};
     learner.curve.learned.resize(experiments);
     all.push_back(std::move(learner));
   }
@@ -88,8 +88,9 @@ std::vector<LearningCurve> SunsetStudy::learn(
   wait_for_pictures(rules, profile);
   const std::vector<sunset::Scenario> scenarios = sunset::scenarios();
   std::vector<Learner> all = learners(rules, experiments);
+  const Beliefs initial(rules);
   for (std::uint32_t repetition = 0; repetition < repetitions; ++repetition) {
-    Beliefs beliefs(rules);
+    Beliefs beliefs = initial;
     simulation::Random order(seed_of({repetition, experiments}));
     for (std::uint32_t experiment = 0; experiment < experiments; ++experiment) {
       const std::uint64_t seed = seed_of({repetition, experiment});
@@ -112,6 +113,12 @@ std::vector<LearningCurve> SunsetStudy::learn(
           if (choice.is_remedy) ++learner.remedies;
         }
       }
+    }
+    for (Learner& learner : all) {
+      const Belief now = beliefs[learner.strategy];
+      const Belief before = initial[learner.strategy];
+      learner.curve.counted +=
+          (now.alpha + now.beta - before.alpha - before.beta) / std::max(1U, repetitions);
     }
   }
   std::vector<LearningCurve> curves;

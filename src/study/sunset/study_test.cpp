@@ -69,12 +69,12 @@ TEST(SunsetClaims, AgesComeNearWhoeverKnowsEachFaultAtOnce) {
                                           {kFull, "bayes:downtime", profile + ":known"},
                                           {kFull, "bayes:downtime", profile + ":age"},
                                           {kFull, "bayes:downtime", profile + ":phi"}},
-                                         54);
+                                         162);
     const auto downtime = [&](std::size_t row) {
       return result.rows[row][Metric::kHonestDowntime].mean();
     };
     EXPECT_GT(downtime(1), downtime(0));
-    EXPECT_LT(downtime(2), 1.55 * downtime(1));
+    EXPECT_LT(downtime(2), 1.5 * downtime(1));
     EXPECT_LT(downtime(3), 1.5 * downtime(1));
   }
 }
