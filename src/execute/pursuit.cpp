@@ -244,9 +244,10 @@ std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal,
                                                 const ComponentState& state, Time now) {
   const bool is_there = goal.instead_of && state.in_graph && state.known_pid() != *goal.instead_of;
   if (is_there && !has_changed_anything()) return reach();
-  // Started before culprit ended, and not in the graph yet.
+  // Started before culprit ended, and not in the graph yet. If it was stopped since, none is begun
+  // beside it either.
   const bool is_coming = goal.instead_of && state.pid != 0 && state.pid != *goal.instead_of &&
-                         state.process == ProcessState::kRunning && !state.in_graph;
+                         state.process != ProcessState::kGone && !state.in_graph;
   if (is_coming && !has_changed_anything()) return look_again(now);
   if (!has_changed_anything()) return change(StartProcess{}, now);
   if (state.in_graph && state.node_seen >= begun_) return reach();

@@ -61,6 +61,17 @@ TEST(PursuitOfAProcess, WaitsForOneThatRunsAndIsNotInTheGraphYet) {
   EXPECT_FALSE(pursuit.has_changed_anything());
 }
 
+TEST(PursuitOfAProcess, StartsNoneBesideOneThatWasStopped) {
+  One one;
+  one.runs(8, false);
+  one.state().process = ProcessState::kStopped;
+  Pursuit pursuit(PresentGoal{7}, one.c, kStart);
+  for (int s = 0; pursuit.is_under_way() && s < 1000; ++s)
+    EXPECT_FALSE(pursuit.advance(one.knowledge, kStart + s * 1s));
+  EXPECT_FALSE(pursuit.is_under_way());
+  EXPECT_FALSE(pursuit.is_reached());
+}
+
 TEST(PursuitOfAProcess, StartsOneWhereTheOldOneIsGone) {
   One one;
   one.runs(7, false);

@@ -174,6 +174,42 @@ TEST(Orders, WhatAPersonRefusedHoldsUpNoLesserFailure) {
   EXPECT_EQ(r.manager().governor().asked(), std::vector{kLight}) << transcript(r);
 }
 
+TEST(Orders, AReconfigurationMayLeadRoundWhatAPersonRefused) {
+  Manager::Options options;
+  options.governor.approval = Approval::kEach;
+  TestRobot r(
+      R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT viewer NODE /viewer
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY restart 90 10
+      ADAPTATION camera restart 2
+RULE Blind
+  POLICIES WARNING
+  TRIGGER age(/view) > 300ms
+    STRATEGY other_source 80 10
+      ADAPTATION viewer set_parameter source 1 2
+    STRATEGY again 80 10
+      ADAPTATION viewer restart 2
+)",
+      std::make_unique<BayesPlanner>(), options);
+  r.add("camera", {}, "/rgb");
+  r.add("viewer", {"camera"}, "/view").parameters["source"] = Value(std::int64_t{0});
+  r.discover();
+  r.run_for(1s);
+  r["camera"].fault = "a person";
+  r.run_for(2s);
+  ASSERT_EQ(r.manager().governor().asked(), std::vector{StrategyId(0)}) << transcript(r);
+  r.order(order(Refuse{StrategyId(0)}));
+  r.run_for(2s);
+  EXPECT_EQ(r.manager().governor().asked(), std::vector{StrategyId(1)}) << transcript(r);
+  r.order(order(Refuse{StrategyId(1)}));
+  r.run_for(10s);
+  EXPECT_TRUE(r.manager().governor().asked().empty()) << "no restart of it" << transcript(r);
+}
+
 TEST(Orders, AQuestionLapsesWithItsFailure) {
   TestRobot r = robot(Approval::kEach);
   r.signal("brightness", Value(0.2));

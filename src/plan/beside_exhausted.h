@@ -6,6 +6,8 @@
 //   - one reconfiguration, once: a strategy that takes nothing down and starts nothing. It may lead
 //     round the cause (another source, another mode);
 //   - a LASTRESORT: the safe stop never waits.
+// The same goes for the effects of what a person has to look at for another reason, because all
+// that is left was refused, say.
 #pragma once
 
 #include "plan/planner.h"

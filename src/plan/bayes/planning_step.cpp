@@ -80,11 +80,9 @@ std::vector<RuleId> PlanningStep::worked_on() const {
 
 bool PlanningStep::waits_for_person(std::size_t failure) const {
   const auto cause = cause_of(failure);
-  const bool is_exhausted = cause && knowledge_.states.awaits_person(*cause);
   const auto is_in_vain = [&](StrategyId id) {
-    if (!cause || only_revives(knowledge_.rules[id], knowledge_)) return false;
-    if (is_exhausted) return !may_be_tried_beside_exhausted(id, knowledge_);
-    return !knowledge_.rules[id].is_last_resort && waits_for_person(failures_.index_of(*cause));
+    return cause && !only_revives(knowledge_.rules[id], knowledge_) &&
+           !may_be_tried_beside_exhausted(id, knowledge_) && is_left_to_person(*cause);
   };
   bool is_anything_left = false;
   for (const Remedy& remedy : remedies_[failure]) {
@@ -95,6 +93,11 @@ bool PlanningStep::waits_for_person(std::size_t failure) const {
     if (!is_held && !is_in_vain(id)) return false;
   }
   return is_anything_left;
+}
+
+// It is exhausted, or nothing may be begun for it without a person.
+bool PlanningStep::is_left_to_person(RuleId rule) const {
+  return knowledge_.states.awaits_person(rule) || waits_for_person(failures_.index_of(rule));
 }
 
 // The likeliest cause outside its circle, if the failure more likely has one than not.
@@ -263,8 +266,8 @@ void PlanningStep::exclude_invalid(Entry& entry, const Invalid& why) const {
 // A failure that others more likely explain waits for them.
 void PlanningStep::exclude_effect(Entry& entry) const {
   if (const auto cause = cause_of(entry.failure)) {
-    const bool goes_round = knowledge_.states.awaits_person(*cause) &&
-                            may_be_tried_beside_exhausted(entry.candidate.strategy, knowledge_);
+    const bool goes_round = may_be_tried_beside_exhausted(entry.candidate.strategy, knowledge_) &&
+                            is_left_to_person(*cause);
     if (!goes_round) exclude(entry, {Condition::kDependency, likeliest_component(*cause), *cause});
     return;
   }

@@ -35,6 +35,7 @@ class PlanningStep {
   std::vector<std::vector<Remedy>> all_remedies() const;
   std::vector<RuleId> worked_on() const;
   bool waits_for_person(std::size_t failure) const;
+  bool is_left_to_person(RuleId rule) const;
   std::optional<RuleId> cause_of(std::size_t failure) const;
   void find_stakes();
   void examine(std::size_t failure);
