@@ -190,9 +190,13 @@ void Invariants::check_replacement(const Manager& manager, const Strategy& strat
     const Time failed = manager.knowledge().states[strategy.rule].first_detected();
     for (const std::size_t needed : needs_[part]) {
       const ComponentId cause(needed);
-      // As far as anybody can see either may need the other: they take turns.
-      const auto& upstream = manager.knowledge().graph.upstream(cause);
-      if (std::find(upstream.begin(), upstream.end(), component) != upstream.end()) continue;
+      // As far as anybody can see: while it is inactive it needs nobody, and where either may need
+      // the other they take turns.
+      const auto needs = [&](ComponentId consumer, ComponentId producer) {
+        const auto& upstream = manager.knowledge().graph.upstream(consumer);
+        return std::find(upstream.begin(), upstream.end(), producer) != upstream.end();
+      };
+      if (!needs(component, cause) || needs(cause, component)) continue;
       const char* why = dead_since_[needed] <= failed         ? " is dead"
                         : is_given_up(manager, cause, failed) ? " is silent and exhausted"
                                                               : nullptr;
@@ -255,7 +259,7 @@ void Invariants::check_commands(std::span<const Command> commands, const Truth& 
     const bool is_there = truth.processes[command.component.index] != ProcessState::kGone;
     if (!std::holds_alternative<StartProcess>(command.what)) continue;
     const std::size_t part = command.component.index;
-    if (is_there && !truth.is_relaunched[part])
+    if (is_there && !truth.is_launched[part])
       fail(now, name + " is started while its old process is there");
     if (!truth.was_there[part] && !ordered_.contains(command.purpose.strategy))
       fail(now, name + " is started though it was never there");

@@ -46,7 +46,7 @@ class Invariants {
   struct Truth {
     std::vector<ProcessState> processes;  // by component
     // By component: its launcher has just started it, and the manager may not know.
-    std::vector<bool> is_relaunched;
+    std::vector<bool> is_launched;
     std::vector<bool> was_there;   // by component: its process ran once
     std::vector<Time> well_since;  // by component; kNever: it does not work
     bool is_moving = false;        // for long enough that the manager must know

@@ -21,8 +21,8 @@ namespace {
 using namespace std::chrono_literals;
 using Kind = Mishap::Kind;
 
-constexpr Time kQuiet{21s};    // the noise is over by then
-constexpr Time kLatest{900s};  // back-offs, attempts and silences are over by then
+constexpr Time kQuiet{21s};     // the noise is over by then
+constexpr Time kLatest{3600s};  // back-offs, attempts and silences are over by then
 constexpr Duration kCalm = 4s;
 // Who says nothing for so long waits for a person, not for a back-off or a budget.
 constexpr Duration kGivenUp = 2 * Analyzer::kLongestBackoff;
@@ -138,7 +138,7 @@ class Run {
     is_to_die_deciding_ = false;
     say("the manager crashes before it asks", "!");
     begin_manager();
-    robot_.rediscover();
+    robot_.rediscover(memory_.past());
     return true;
   }
 
@@ -156,7 +156,7 @@ class Run {
         is_to_die_deciding_ = mishap.part % 2 == 1;
         if (is_to_die_deciding_) return;
         begin_manager();
-        return robot_.rediscover();
+        return robot_.rediscover(memory_.past());
       case Kind::kStall:
         stalled_until_ = robot_.now() + mishap.lasts;
         return;
@@ -266,7 +266,7 @@ class Run {
     const Duration known = 2 * kPeriod + scenario_.noise.lateness;
     for (std::size_t i = 0; i < scenario_.parts.size(); ++i) {
       truth.processes.push_back(robot_.process(i));
-      truth.is_relaunched.push_back(robot_.was_relaunched_within(i, known));
+      truth.is_launched.push_back(robot_.was_launched_within(i, known));
     }
     truth.was_there = was_there_;
     truth.is_moving = scenario_.has_interlock && robot_.has_moved_for(known);

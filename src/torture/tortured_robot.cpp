@@ -112,13 +112,13 @@ TorturedRobot::TorturedRobot(const Scenario& scenario, const RuleSet& rules)
     machines_.push_back(
         std::make_unique<Machine>(world_, i, *topics_[i], needs, infrastructure_.get()));
   }
-  rediscover();
+  rediscover({});
   for (std::size_t i = 0; i < machines_.size(); ++i) {
     const Duration boots = scenario.parts[i].boots;
     if (boots == Duration::zero()) {
       machines_[i]->launch();
     } else {
-      world_.after(boots, [this, i] { machines_[i]->launch(); });
+      world_.after(boots, [this, i] { launch(i); });
     }
   }
   tell_base();
@@ -143,6 +143,7 @@ TorturedRobot::Source TorturedRobot::source_of(const Observation& observation) {
 }
 
 void TorturedRobot::receive(Observation observation) {
+  if (is_of_a_stranger(observation)) return;
   const bool is_sample = std::holds_alternative<SampleArrived>(observation.what);
   if (is_sample && random_.chance(noise_.loss)) return;
   if (is_deaf() && source_of(observation) == Source::kTopics) return;
@@ -244,13 +245,16 @@ void TorturedRobot::befall(const Mishap& mishap) {
   }
 }
 
+void TorturedRobot::launch(std::size_t part) {
+  if (process(part) != ProcessState::kGone) return;
+  machines_[part]->launch();
+  launched_[part] = world_.now();
+}
+
 void TorturedRobot::relaunch(std::size_t part, Time until) {
   constexpr Duration kLook = 300ms;
   if (world_.now() >= until) return;
-  if (process(part) == ProcessState::kGone) {
-    machines_[part]->launch();
-    relaunched_[part] = world_.now();
-  }
+  launch(part);
   world_.after(kLook, [this, part, until] { relaunch(part, until); });
 }
 
@@ -271,11 +275,47 @@ void TorturedRobot::tell_namesakes(std::size_t part, int others) {
   receive({now(), NamesakesSeen{"/c" + std::to_string(part), others}});
 }
 
-void TorturedRobot::rediscover() {
+// Nobody hears of the end of a node of which they never heard.
+bool TorturedRobot::is_of_a_stranger(const Observation& observation) {
+  if (const auto* node = std::get_if<NodeAppeared>(&observation.what)) {
+    announced_.insert(node->node);
+  } else if (const auto* gone = std::get_if<NodeVanished>(&observation.what)) {
+    return announced_.erase(gone->node) == 0;
+  } else if (const auto* end = std::get_if<EndpointVanished>(&observation.what)) {
+    return !announced_.contains(end->node);
+  }
+  return false;
+}
+
+// Who looks on anew hears of no node that cannot speak, also while others still wait for it.
+bool TorturedRobot::is_of_the_mute(const Observation& observation) const {
+  const auto is_mute = [&](const std::string& node) {
+    const simulation::Node* known = world_.node(node);
+    return known != nullptr && known->process() != ProcessState::kRunning;
+  };
+  if (const auto* node = std::get_if<NodeAppeared>(&observation.what)) return is_mute(node->node);
+  if (const auto* end = std::get_if<EndpointAppeared>(&observation.what)) return is_mute(end->node);
+  if (const auto* read = std::get_if<LifecycleRead>(&observation.what))
+    return process(read->component.index) != ProcessState::kRunning;
+  return false;
+}
+
+void TorturedRobot::rediscover(const Past& past) {
   for (auto& queue : on_the_way_) queue.clear();
   unanswered_.clear();
   denied_.clear();
   robots_.push_back(std::make_unique<simulation::SimulatedRobot>(rules_, world_));
+  announced_.clear();
+  std::vector<Observation> seen;
+  robots_.back()->observe(world_.now(), seen);
+  for (Observation& observation : seen) {
+    if (!is_of_the_mute(observation)) receive(std::move(observation));
+  }
+  for (const Event& event : past) {
+    const auto* found = std::get_if<ComponentFound>(&event.what);
+    if (found != nullptr && process(found->component.index) == ProcessState::kGone)
+      receive({now(), ProcessSeen{found->component, ProcessState::kGone, found->pid, ""}});
+  }
   for (const auto& [part, others] : namesakes_) tell_namesakes(part, others);
   if (is_deaf()) receive({now(), HearingLost{"nothing comes back"}});
 }

@@ -9,8 +9,11 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
+#include "knowledge/past.h"
 #include "language/rule_set.h"
 #include "simulation/simulated_robot.h"
 #include "simulation/topic.h"
@@ -33,17 +36,18 @@ class TorturedRobot : public Robot {
 
   // What happens to the robot, not to the manager. Those of people do nothing here.
   void befall(const Mishap& mishap);
-  // A manager that begins anew is told what is there, as by discovery.
-  void rediscover();
+  // A manager that begins anew is told what is there, as by discovery, and which of the processes
+  // that were known in the `past` are gone (process/supervisor.h, adopt_again()).
+  void rediscover(const Past& past);
   // From now on nothing is lost, late or wrong.
   void end_noise() { noise_ = {}; }
 
   bool works(std::size_t part) const;
   ProcessState process(std::size_t part) const;
   // Its process began in the last `time`, and the manager had nothing to do with that.
-  bool was_relaunched_within(std::size_t part, Duration time) const {
-    const auto at = relaunched_.find(part);
-    return at != relaunched_.end() && world_.now() - at->second <= time;
+  bool was_launched_within(std::size_t part, Duration time) const {
+    const auto at = launched_.find(part);
+    return at != launched_.end() && world_.now() - at->second <= time;
   }
   bool has_moved_for(Duration time) const {
     return moving_since_ != kNever && world_.now() - moving_since_ >= time;
@@ -58,10 +62,13 @@ class TorturedRobot : public Robot {
 
   static Source source_of(const Observation& observation);
   void receive(Observation observation);
+  bool is_of_a_stranger(const Observation& observation);
+  bool is_of_the_mute(const Observation& observation) const;
   void reply(const Command& command, Outcome outcome);
   void tell_base();
   bool is_deaf() const { return world_.now() < deaf_until_; }
   void go_deaf(Duration time);
+  void launch(std::size_t part);
   void relaunch(std::size_t part, Time until);
   void tell_namesakes(std::size_t part, int others);
 
@@ -82,8 +89,9 @@ class TorturedRobot : public Robot {
   Time stale_until_ = kLongAgo;
   Time moving_since_ = kNever;
   Time deaf_until_ = kLongAgo;
-  std::map<std::size_t, int> namesakes_;    // by part
-  std::map<std::size_t, Time> relaunched_;  // by part: when its launcher started it last
+  std::set<std::string> announced_;       // nodes, to the present manager
+  std::map<std::size_t, int> namesakes_;  // by part
+  std::map<std::size_t, Time> launched_;  // by part: when others started it last
 };
 
 }  // namespace culprit::torture
