@@ -312,6 +312,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   }
   watched_ =
       std::make_unique<web::WatchedManager>(*manager_, frame_.hub, frame_.metrics, frame_.start);
+  watched_->remarks = [this] { return robot_->link().contested(); };
   runtime_ = std::make_unique<Runtime>(*watched_, *robot_);
   if (recorder_ != nullptr) {
     runtime_->on_step = [this](const Runtime::Step& step) {

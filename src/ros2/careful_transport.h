@@ -24,6 +24,7 @@
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 
+#include "robot/inbox.h"
 #include "ros2/datagram_filter.h"
 #include "ros2/datagram_sources.h"
 
@@ -66,6 +67,10 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     const ByteView passed = filter_->pass({bytes, size}, scratch, DatagramFilter::Clock::now());
     if (passed.empty()) return;
     next->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local, remote);
+    // Not what comes by multicast: it goes away with a network interface, and nothing is wrong.
+    const bool is_multicast = local.address[12] >= 224 && local.address[12] < 240;
+    if (!is_multicast)
+      sources_->came_through(passed, static_cast<std::uint16_t>(local.port), live_now());
   }
 
  private:

@@ -91,6 +91,32 @@ void DatagramSources::forget(const GuidPrefix& participant) {
   entries_.erase(found);
 }
 
+void DatagramSources::begin(const GuidPrefix& self) {
+  const std::lock_guard lock(mutex_);
+  self_ = self;
+}
+
+void DatagramSources::came_through(std::span<const std::uint8_t> datagram, std::uint16_t port,
+                                   Time now) {
+  if (datagram.size() < rtps::kHeader) return;
+  const std::lock_guard lock(mutex_);
+  if (self_ != prefix_at(datagram, kPrefixInHeader)) return;
+  const auto found = std::find_if(ports_.begin(), ports_.end(),
+                                  [&](const auto& each) { return each.first == port; });
+  if (found != ports_.end()) {
+    found->second = now;
+  } else if (ports_.size() < kMostPorts) {
+    ports_.emplace_back(port, now);
+  }
+}
+
+Time DatagramSources::own_came_through() const {
+  const std::lock_guard lock(mutex_);
+  Time oldest = kNever;
+  for (const auto& [port, at] : ports_) oldest = std::min(oldest, at);
+  return oldest;
+}
+
 DatagramSources::Origin DatagramSources::of(const GuidPrefix& participant) const {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(participant);

@@ -7,6 +7,9 @@
 // those that INFO_SRC submessages put in its place (§8.3.7.9). Whoever forges a datagram leaves his
 // own address here before it has any effect.
 //
+// It is also the witness of the threads that receive: what this participant sends to ports of its
+// own has to come through each of them again and again.
+//
 // Bounded: participants that were discovered are kept while they are there, of the others the ones
 // heard last. Whoever has too many addresses is known to have too many.
 #pragma once
@@ -14,10 +17,13 @@
 #include <cstdint>
 #include <list>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include "robot/time.h"
 #include "ros2/guid.h"
 
 namespace culprit::ros2 {
@@ -48,7 +54,17 @@ class DatagramSources {
 
   Origin of(const GuidPrefix& participant) const;
 
+  // The participant that receives.
+  void begin(const GuidPrefix& self);
+  // The middleware has taken what came to this unicast port.
+  void came_through(std::span<const std::uint8_t> datagram, std::uint16_t port, Time now);
+  // Of the ports at which datagrams of its own came through at all, the one where none did for
+  // longest: since then. kNever: there is none.
+  Time own_came_through() const;
+
  private:
+  static constexpr std::size_t kMostPorts = 16;
+
   struct Entry {
     std::vector<UdpAddress> addresses;
     bool has_more = false;
@@ -61,6 +77,9 @@ class DatagramSources {
   mutable std::mutex mutex_;
   std::unordered_map<GuidPrefix, Entry> entries_;
   std::list<GuidPrefix> others_;  // those that are not kept, oldest first
+  std::optional<GuidPrefix> self_;
+  std::vector<std::pair<std::uint16_t, Time>>
+      ports_;  // when datagrams of our own came through last
 };
 
 }  // namespace culprit::ros2

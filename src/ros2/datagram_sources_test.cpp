@@ -127,5 +127,24 @@ TEST(DatagramSources, OfALiveParticipantAreItsSockets) {
   }
 }
 
+TEST(DatagramSources, TellSinceWhenNothingOfOurOwnCameThroughAPort) {
+  DatagramSources sources;
+  const auto at = [](int seconds) { return Time(std::chrono::seconds(seconds)); };
+  sources.came_through(from(prefix(1)), 7410, at(1));
+  EXPECT_EQ(sources.own_came_through(), kNever) << "nobody knows yet who we are";
+  sources.begin(prefix(1));
+  sources.came_through(from(prefix(2)), 7410, at(2));
+  sources.came_through({}, 7410, at(2));
+  EXPECT_EQ(sources.own_came_through(), kNever);
+  sources.came_through(from(prefix(1)), 7410, at(3));
+  sources.came_through(from(prefix(1)), 7411, at(4));
+  EXPECT_EQ(sources.own_came_through(), at(3));
+  sources.came_through(from(prefix(1)), 7411, at(9));
+  sources.came_through(from(prefix(2)), 7410, at(9));
+  EXPECT_EQ(sources.own_came_through(), at(3)) << "what others send is no witness";
+  sources.came_through(from(prefix(1)), 7410, at(10));
+  EXPECT_EQ(sources.own_came_through(), at(9));
+}
+
 }  // namespace
 }  // namespace culprit::ros2

@@ -20,7 +20,7 @@ Bytes payload_of(std::uint64_t secret) {
 }  // namespace
 
 Expected<std::unique_ptr<Hearing>> Hearing::begin(Participant& participant, Executor& executor) {
-  std::unique_ptr<Hearing> hearing(new Hearing);
+  std::unique_ptr<Hearing> hearing(new Hearing(participant));
   std::random_device random;
   hearing->secret_ = (std::uint64_t{random()} << 32) | random();
   const Time first = later(live_now(), kFirstPatience - kPatience);

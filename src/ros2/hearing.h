@@ -2,9 +2,11 @@
 // robot says, and when it came back last.
 //
 // It is said on the executor's thread and heard on a receive thread, so that it also tells of these
-// threads, and of the network interfaces.
+// threads, and of the network interfaces. Discovery has a port and a thread of its own: what the
+// participant announces of itself has to come through there.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -30,15 +32,22 @@ class Hearing {
   // Both outlive it. An error when the middleware, or the domain's permissions, refuse.
   static Expected<std::unique_ptr<Hearing>> begin(Participant& participant, Executor& executor);
 
+  // What is announced to everybody comes to our port for discovery too, once a second.
+  static constexpr Duration kDiscoveryPatience = std::chrono::seconds(5);
+
   // When it came back last. From any thread.
   Time heard() const { return Time(Duration(heard_->load())); }
-  // Until when it has to come back again.
-  Time doubtful() const { return later(heard(), kPatience); }
+  // Until when it has to come back again, by each way.
+  Time doubtful() const {
+    return std::min(later(heard(), kPatience),
+                    later(participant_.own_came_through(), kDiscoveryPatience));
+  }
 
  private:
-  Hearing() = default;
+  explicit Hearing(const Participant& participant) : participant_(participant) {}
   void say();
 
+  const Participant& participant_;
   // Shared with the reader's callback, which runs before there is a Hearing.
   std::shared_ptr<std::atomic<std::int64_t>> heard_;
   std::uint64_t secret_ = 0;  // nobody else says it

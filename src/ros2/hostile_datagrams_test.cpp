@@ -146,6 +146,20 @@ TEST_F(HostileDatagrams, FragmentsWithinTheBudgetTakeNoMoreThanIt) {
   EXPECT_LT(resident_bytes(), before + (64u << 20));
 }
 
+// What a participant announces comes to its own port for discovery again and again: the witness of
+// the thread there.
+TEST_F(HostileDatagrams, TheOwnAnnouncementsComeThrough) {
+  const auto is_within = [&](auto condition) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!condition() && std::chrono::steady_clock::now() < end)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return condition();
+  };
+  EXPECT_TRUE(is_within([&] { return victim->own_came_through() != kNever; }));
+  const Time first = victim->own_came_through();
+  EXPECT_TRUE(is_within([&] { return victim->own_came_through() > first; }));
+}
+
 // What is said through the middleware comes back only through sockets and threads that live.
 TEST(Hearing, IsDoubtfulWithoutTheThreadThatSpeaks) {
   const TestDomain domain;

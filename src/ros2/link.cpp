@@ -369,6 +369,13 @@ void Link::on_namesakes(const NodeNamesakes& seen) {
   remind();
 }
 
+std::map<std::string, std::string> Link::contested() const {
+  const std::lock_guard lock(mutex_);
+  std::map<std::string, std::string> all;
+  for (const auto& [node, contest] : contested_) all[node] = contest.text;
+  return all;
+}
+
 // Only a person can end that, and who comes late must hear of it too.
 void Link::remind() {
   const Time now = live_now();

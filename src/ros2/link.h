@@ -67,6 +67,10 @@ class Link {
   void publish(std::vector<Health> health);
   void log(Severity severity, std::string text);
 
+  // Of each component's node that others have the name of, by full name: who they are, who started
+  // each, and how to end what is one too many. From any thread.
+  std::map<std::string, std::string> contested() const;
+
   // Until when it is sure that what the robot says is heard (hearing.h), and that no other culprit
   // manages it (manager_lease.h). From any thread, as the next.
   Time doubtful() const;

@@ -1,9 +1,12 @@
 #include "ros2/link.h"
 
 #include <algorithm>
+#include <arpa/inet.h>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
@@ -13,6 +16,7 @@
 #include "ros2/lifecycle_node.h"
 #include "ros2/live_test.h"
 #include "ros2/services.h"
+#include "ros2/test_datagram.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -207,6 +211,58 @@ TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
   const auto trouble = linked.wait<LinkTrouble>(
       [](const LinkTrouble& t) { return t.text.find("signal wrong") != std::string::npos; });
   EXPECT_TRUE(trouble) << "a field that is not there must be said";
+}
+
+// A best effort reader passes over what it takes for old.
+TEST(Link, HearsAWriterAgainWhoseNumbersWereForged) {
+  const TestDomain domain;
+  Robot robot(domain);
+  std::mutex mutex;
+  std::optional<Guid> writer;
+  std::uint16_t port = 0;
+  std::atomic<int> published = 0;
+  auto visibility = robot.publisher<msg::Float64>("/visibility");
+  Timer timer(robot.context->executor(), 10ms,
+              [&] { visibility.publish({static_cast<double>(++published)}); });
+  const auto spy = Participant::create(domain.options(), [&](const DiscoveryEvent& event) {
+    const std::lock_guard lock(mutex);
+    const auto* endpoint = std::get_if<EndpointInfo>(&event);
+    if (endpoint != nullptr && endpoint->topic == "rt/visibility" && !endpoint->guid.is_reader())
+      writer = endpoint->guid;
+    const auto* info = std::get_if<ParticipantInfo>(&event);
+    const bool is_robot = info != nullptr && info->guid == robot.context->participant().guid();
+    if (info != nullptr && !is_robot && !info->metatraffic.empty())
+      port = info->metatraffic.front().port;
+  });
+  ASSERT_TRUE(spy) << spy.error();
+  Linked linked(domain);
+  ASSERT_TRUE(linked.reads("visibility"));
+  for (const Time end = live_now() + kPatience; live_now() < end;) {
+    const std::lock_guard lock(mutex);
+    if (writer && port != 0) break;
+  }
+  ASSERT_TRUE(writer && port != 0);
+  // Each a little ahead of the last, which nothing can object to: minutes of what it publishes.
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  to.sin_port = htons(static_cast<std::uint16_t>(port + 1));
+  for (int i = 1; i <= 100; ++i) {
+    const TestDatagram forged =
+        TestDatagram(writer->prefix()).data(*writer, published + i * std::int64_t{250});
+    sendto(socket, forged.bytes().data(), forged.bytes().size(), 0,
+           reinterpret_cast<sockaddr*>(&to), sizeof to);
+  }
+  close(socket);
+  EXPECT_TRUE(linked.wait<LinkTrouble>([](const LinkTrouble& trouble) {
+    return trouble.text.find("cannot be put together") != std::string::npos;
+  })) << "it was not deaf, so this proves nothing";
+  const double now = published;
+  EXPECT_TRUE(linked.wait<SignalRead>([&](const SignalRead& read) {
+    const auto* value = std::get_if<double>(&read.value);
+    return linked.rules[read.signal].name == "visibility" && value != nullptr && *value > now;
+  }));
 }
 
 TEST(Link, SurvivesHostileMessages) {

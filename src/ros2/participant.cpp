@@ -311,6 +311,7 @@ class Participant::Impl {
     *listens = true;
     likely_refusal_ = likely_refusal(options.security);
     guid_ = fast_dds::to_guid(participant_->guid());
+    sources_->begin(guid_.prefix());
     publisher_ = participant_->create_publisher(dds::PublisherQos());
     subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
     topics_.emplace(*participant_);
@@ -361,6 +362,7 @@ const Guid& Participant::guid() const { return impl_->guid(); }
 DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) const {
   return impl_->sources().of(participant);
 }
+Time Participant::own_came_through() const { return impl_->sources().own_came_through(); }
 DatagramFilter::Refused Participant::refused() const { return impl_->filter().refused(); }
 
 Expected<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,

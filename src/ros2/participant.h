@@ -150,6 +150,9 @@ class Participant {
 
   // Where the datagrams of another participant came from so far.
   DatagramSources::Origin origin_of(const GuidPrefix& participant) const;
+  // Since when nothing of its own came through one of the threads that receive (DatagramSources).
+  // Every second something should.
+  Time own_came_through() const;
   // What came and was kept from the middleware.
   DatagramFilter::Refused refused() const;
 

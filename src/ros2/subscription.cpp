@@ -1,5 +1,9 @@
 #include "ros2/subscription.h"
 
+#include <algorithm>
+
+#include "robot/inbox.h"
+
 namespace culprit::ros2 {
 
 Expected<std::unique_ptr<RawSubscription>> RawSubscription::create(
@@ -9,25 +13,64 @@ Expected<std::unique_ptr<RawSubscription>> RawSubscription::create(
   if (!name) return Error{name.error()};
   if (!is_valid_type_name(type))
     return Error{"'" + printable(type) + "' is not the name of a type"};
-  auto reader =
-      node.context().participant().create_reader({.topic = mangle_topic(Channel::kTopic, *name),
-                                                  .type = mangle_type(Channel::kTopic, type),
-                                                  .qos = qos,
-                                                  .payload = use,
-                                                  .user_data = {},
-                                                  .on_match = {},
-                                                  .on_unheard = std::move(on_unheard)},
-                                                 std::move(on_sample));
+  std::unique_ptr<RawSubscription> subscription(
+      new RawSubscription(node,
+                          {.topic = mangle_topic(Channel::kTopic, *name),
+                           .type = mangle_type(Channel::kTopic, type),
+                           .qos = qos,
+                           .payload = use,
+                           .user_data = {},
+                           .on_match = {},
+                           .on_unheard = std::move(on_unheard)},
+                          std::move(on_sample)));
+  if (auto opened = subscription->open(); !opened) return Error{opened.error()};
+  return subscription;
+}
+
+RawSubscription::RawSubscription(NodeEntry& node, ReaderOptions options, SampleCallback on_sample)
+    : node_(node),
+      options_(std::move(options)),
+      on_sample_(std::move(on_sample)),
+      tell_unheard_(std::exchange(options_.on_unheard, [this] { on_unheard(); })),
+      tasks_(node.context().executor()) {
+  // A reliable one waits for what it lacks, and is sent it again.
+  if (options_.qos.reliability == Reliability::kReliable) options_.on_unheard = {};
+}
+
+RawSubscription::~RawSubscription() {
+  tasks_.close();
+  close();
+}
+
+Expected<void> RawSubscription::open() {
+  auto reader = node_.context().participant().create_reader(options_, on_sample_);
   if (!reader) return Error{reader.error()};
-  return std::make_unique<RawSubscription>(node, std::move(*reader));
-}
-
-RawSubscription::RawSubscription(NodeEntry& node, std::unique_ptr<Reader> reader)
-    : node_(node), reader_(std::move(reader)) {
+  reader_ = std::move(*reader);
   node_.add(reader_->guid());
+  return {};
 }
 
-RawSubscription::~RawSubscription() { node_.remove(reader_->guid()); }
+void RawSubscription::close() {
+  if (reader_) node_.remove(reader_->guid());
+  reader_.reset();
+}
+
+void RawSubscription::on_unheard() {
+  if (tell_unheard_) tell_unheard_();
+  const Time now = live_now();
+  if (now < next_) return;
+  // It went well for a while: this is something new.
+  if (now > later(next_, pause_)) pause_ = kSoonest;
+  next_ = later(now, pause_);
+  pause_ = std::min(2 * pause_, kLatest);
+  tasks_.post([this] { make_anew(); });
+}
+
+void RawSubscription::make_anew() {
+  constexpr auto kAgain = std::chrono::seconds(1);
+  close();
+  if (!open()) tasks_.post_at(Executor::Clock::now() + kAgain, [this] { make_anew(); });
+}
 
 Expected<std::unique_ptr<Subscription>> Subscription::create(NodeEntry& node,
                                                              std::string_view topic,

@@ -19,6 +19,11 @@ namespace culprit::ros2 {
 
 // The shortest way from the wire to a callback: called on a receive thread, under the rules of
 // participant.h.
+//
+// A best effort reader passes over what it takes for old, so one forged sequence number makes it
+// deaf to a writer for as long as that writer does not come so far. A reader to which samples come
+// that it does not deliver is made anew, after a while that doubles if that does not help: samples
+// that are too large, or lost in part, come to a new reader no better.
 class RawSubscription {
  public:
   // `topic` as resolve_name takes it; `type` is "package/msg/Type". The node entry outlives the
@@ -27,14 +32,31 @@ class RawSubscription {
                                                            std::string_view type, const Qos& qos,
                                                            PayloadUse use, SampleCallback on_sample,
                                                            std::function<void()> on_unheard = {});
-  RawSubscription(NodeEntry& node, std::unique_ptr<Reader> reader);
   ~RawSubscription();
   RawSubscription(const RawSubscription&) = delete;
   RawSubscription& operator=(const RawSubscription&) = delete;
 
  private:
+  static constexpr Duration kSoonest = std::chrono::seconds(1);
+  static constexpr Duration kLatest = std::chrono::minutes(1);
+
+  RawSubscription(NodeEntry& node, ReaderOptions options, SampleCallback on_sample);
+  Expected<void> open();
+  void close();
+  void on_unheard();
+  void make_anew();
+
   NodeEntry& node_;
-  std::unique_ptr<Reader> reader_;
+  ReaderOptions options_;
+  const SampleCallback on_sample_;
+  const std::function<void()> tell_unheard_;
+
+  // Of the reader's callback.
+  Time next_ = kLongAgo;
+  Duration pause_ = kSoonest;
+
+  std::unique_ptr<Reader> reader_;  // of the executor's thread, once it exists
+  TaskGroup tasks_;
 };
 
 // Calls back on the executor's thread, where anything is allowed but to destroy the subscription.

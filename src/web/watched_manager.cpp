@@ -56,9 +56,24 @@ void WatchedManager::tell_state(Time now) {
   }
   std::string control = to_line(control_to_json(manager_, start_));
   if (control != told_control_) hub_.publish(Kind::kControl, told_control_ = std::move(control));
-  hub_.publish(Kind::kState, to_line(state_to_json(knowledge, start_)));
+  Json state = state_to_json(knowledge, start_);
+  if (remarks) add_remarks(state);
+  hub_.publish(Kind::kState, to_line(state));
   told_ = now;
   next_tell_ = later(now, kPeriod);
+}
+
+void WatchedManager::add_remarks(Json& state) const {
+  const Remarks all = remarks();
+  const Knowledge& knowledge = manager_.knowledge();
+  for (std::size_t c = 0; c < knowledge.rules.components.size() && !all.empty(); ++c) {
+    const std::string& seen = knowledge.graph.node_name(ComponentId(c));
+    const auto found = all.find(seen.empty() ? knowledge.rules.components[c].node : seen);
+    if (found == all.end()) continue;
+    Json& component = state["components"][c];
+    const std::string own = component.value("remark", "");
+    component["remark"] = own.empty() ? found->second : own + "; " + found->second;
+  }
 }
 
 }  // namespace culprit::web

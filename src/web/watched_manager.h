@@ -6,7 +6,12 @@
 // nothing for being visible.
 #pragma once
 
+#include <functional>
+#include <map>
+#include <string>
+
 #include "manager/manager.h"
+#include "web/event_json.h"
 #include "web/hub.h"
 #include "web/metrics.h"
 
@@ -25,9 +30,15 @@ class WatchedManager : public ManagingSystem {
   Time next_deadline() const override;
   std::span<const Event> events() const override { return manager_.events(); }
 
+  // What people should know of nodes beyond what the manager knows, by full name: it is shown with
+  // their components. May be empty.
+  using Remarks = std::map<std::string, std::string>;
+  std::function<Remarks()> remarks;
+
  private:
   void tell_events();
   void tell_state(Time now);
+  void add_remarks(Json& state) const;
 
   Manager& manager_;
   Hub& hub_;
