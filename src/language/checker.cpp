@@ -196,7 +196,10 @@ class Checker {
       add_strategy(strategy, id);
     }
     sort_unique(rules_.rules[id.index].components);
-    if (!written.has_broken_part) check_launches(written, rules_, id, diagnostics_);
+    if (!written.has_broken_part) {
+      check_launches(written, rules_, id, diagnostics_);
+      check_required(written, rules_, id, diagnostics_);
+    }
   }
 
   // What a rule means is worth a thought once all of them can be read: a warning that follows from

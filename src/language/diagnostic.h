@@ -46,6 +46,7 @@ enum class Code : std::uint16_t {
   kContradiction = 40,
   kNoLaunch = 41,
   kNeverValid = 42,
+  kStopsRequired = 43,
   kAlwaysTrue = 50,
   kNeverTrue = 51,
   kOscillation = 52,

@@ -204,6 +204,14 @@ std::vector<Explanation> rule_explanations() {
        "COMPONENT camera NODE /robot/camera LAUNCH \"ros2 run my_cameras driver\"\n" +
            rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY redeploy 90 10",
                      "ADAPTATION camera redeploy 10")},
+      {Code::kStopsRequired, "a strategy stops what is REQUIRED",
+       "REQUIRED says that a person is told when the component is not there. A strategy that stops "
+       "it, and does not start it again, brings just that about. A last resort may: it is a safe "
+       "stop, and a person is told of it anyway.",
+       "COMPONENT camera NODE /robot/camera REQUIRED\n" + rule_with("rate(/robot/image) < 1",
+                                                                    "ERROR", "STRATEGY quiet 50 10",
+                                                                    "ADAPTATION camera stop 5"),
+       "COMPONENT camera NODE /robot/camera REQUIRED\n" + rule_with("rate(/robot/image) < 1")},
       {Code::kAlwaysTrue, "a trigger reads nothing and is always true",
        "A trigger that reads no signal, topic or component says the same whatever the robot does: "
        "this failure would be there from the start and could never be resolved.",

@@ -42,6 +42,7 @@ bool exists(Code code) {
     case Code::kContradiction:
     case Code::kNoLaunch:
     case Code::kNeverValid:
+    case Code::kStopsRequired:
     case Code::kAlwaysTrue:
     case Code::kNeverTrue:
     case Code::kCircularDependency:

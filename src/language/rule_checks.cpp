@@ -168,6 +168,31 @@ void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
   diagnostics.insert(diagnostics.end(), impossible.begin(), impossible.end());
 }
 
+void check_required(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
+                    std::vector<Diagnostic>& diagnostics) {
+  auto written = rule.strategies.begin();  // in the same order, but for those without a name
+  for (const StrategyId s : rules[id].strategies) {
+    const Strategy& strategy = rules[s];
+    while (written->name.text != strategy.name) ++written;
+    if (strategy.is_last_resort) continue;
+    const auto& all = strategy.adaptations;
+    for (auto stop = all.begin(); stop != all.end(); ++stop) {
+      if (stop->type != kStop || !rules[stop->component].is_required) continue;
+      const bool is_back = std::any_of(stop, all.end(), [&](const auto& later) {
+        return later.type == kStart && later.component == stop->component;
+      });
+      if (is_back) continue;
+      const auto place = static_cast<std::size_t>(stop - all.begin());
+      diagnostics.push_back({Code::kStopsRequired, Severity::kWarning,
+                             written->adaptations[place].span,
+                             "strategy '" + strategy.name + "' stops '" +
+                                 rules[stop->component].name + "', which is REQUIRED",
+                             "redeploy it, make the strategy a LASTRESORT, or take REQUIRED from "
+                             "its COMPONENT line"});
+    }
+  }
+}
+
 void check_constant_trigger(const syntax::Rule& rule, const Program& trigger,
                             std::vector<Diagnostic>& diagnostics) {
   const bool reads = std::any_of(trigger.code.begin(), trigger.code.end(),

@@ -18,6 +18,10 @@ void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnost
 void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
                     std::vector<Diagnostic>& diagnostics);
 
+// Strategies that stop, and leave stopped, what is REQUIRED. A last resort may.
+void check_required(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
+                    std::vector<Diagnostic>& diagnostics);
+
 // A trigger that reads nothing is always or never true.
 void check_constant_trigger(const syntax::Rule& rule, const Program& trigger,
                             std::vector<Diagnostic>& diagnostics);
