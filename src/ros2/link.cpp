@@ -307,7 +307,9 @@ Time Link::doubtful() const {
 }
 
 std::string Link::doubt() const {
-  return hearing_->doubtful() > live_now()
+  const std::lock_guard lock(lease_mutex_);
+  const Time now = live_now();
+  return lease_ && lease_->sure_until(now) <= now
              ? "culprit was away so long that another one may manage this robot by now; it listens"
              : "what culprit says to itself over the network does not come back";
 }

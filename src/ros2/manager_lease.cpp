@@ -170,7 +170,7 @@ void ManagerLease::hear(const GuidPrefix& participant, std::string_view beat, Ti
 
 Time ManagerLease::sure_until(Time now) const {
   if (!has_friends_ || !manages_ || !said_) return kNever;
-  return now < listens_until_ ? now : later(*said_, kAway);
+  return now < listens_until_ ? kLongAgo : later(*said_, kAway);
 }
 
 // While nothing is heard nobody is held to be gone.
