@@ -72,6 +72,16 @@ TEST(Undoing, BringsBackWhatWasReadBefore) {
   EXPECT_EQ(std::get<LifecycleGoal>(*lifecycle).target, Lifecycle::kActive);
 }
 
+TEST(Undoing, BringsBackAModeThatWasKnown) {
+  const ModeGoal fast{"fast"};
+  const auto mode = undoing(fast, AdaptationType::kChangeMode, read(Value(std::string("slow"))));
+  ASSERT_TRUE(mode);
+  EXPECT_EQ(std::get<ModeGoal>(*mode).mode, "slow");
+  for (const char* unknown : {"", kUnknownMode})
+    EXPECT_FALSE(undoing(fast, AdaptationType::kChangeMode, read(Value(std::string(unknown)))));
+  EXPECT_FALSE(undoing(fast, AdaptationType::kChangeMode, read({})));
+}
+
 TEST(Undoing, LeavesWhatIsNoStateToGoBackTo) {
   const ParameterGoal set{"gain", Value(0.7), Kind::kSet, {}};
   EXPECT_FALSE(undoing(set, AdaptationType::kSetParameter, read(Value(std::nan("")))));

@@ -114,6 +114,14 @@ TEST(Resumption, StartsNoProcessOfWhichNobodyKnowsWhetherItWasStarted) {
   EXPECT_EQ(std::get<LifecycleGoal>(rest.goals[1]).target, Lifecycle::kActive);
 }
 
+TEST(Resumption, GoesOnWithALifecycleWhereItWas) {
+  Left left;
+  const Resumption rest = resumption_of(left.tuned(), left.knowledge);
+  EXPECT_EQ(rest.adaptation, 1u);
+  ASSERT_EQ(rest.goals.size(), 1u) << "no process is touched";
+  EXPECT_EQ(std::get<LifecycleGoal>(rest.goals[0]).target, Lifecycle::kInactive);
+}
+
 TEST(Resumption, EndsTheOldProcessFirstIfItWasOnlyToldTo) {
   Left left;
   const Interrupted stopping{
