@@ -4,7 +4,9 @@
 #include <atomic>
 #include <csignal>
 #include <fstream>
+#include <mutex>
 #include <netinet/in.h>
+#include <set>
 #include <sys/ptrace.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -239,14 +241,14 @@ TEST_F(Attack, WithHostileDatagramsLeavesItSmallAndHealing) {
   ASSERT_TRUE(run.prints("camera is there")) << run.output();
   // Anybody in the domain knows who listens where, and who writes.
   std::mutex mutex;
-  int port = 0;
+  std::set<int> ports;  // of each participant that it has: it looks at the robot with another one
   std::vector<ros2::Guid> writers;
   const auto spy = ros2::Participant::create(
       *ros2::options_from_environment(), [&](const ros2::DiscoveryEvent& event) {
         const std::lock_guard lock(mutex);
         if (const auto* info = std::get_if<ros2::ParticipantInfo>(&event)) {
           if (info->pid == run.pid() && !info->metatraffic.empty())
-            port = info->metatraffic.front().port;
+            ports.insert(info->metatraffic.front().port);
           for (const std::uint8_t entity : {3, 4}) {
             ros2::Guid guid = info->guid;
             guid.bytes[13] = 0, guid.bytes[14] = entity, guid.bytes[15] = 0xc2;
@@ -259,18 +261,20 @@ TEST_F(Attack, WithHostileDatagramsLeavesItSmallAndHealing) {
   ASSERT_TRUE(spy) << spy.error();
   ASSERT_TRUE(eventually([&] {
     const std::lock_guard lock(mutex);
-    return port != 0 && writers.size() > 10;
+    return !ports.empty() && writers.size() > 10;
   }));
   const std::size_t before = holdings_of(run.pid()).kilobytes;
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const auto attack = [&](const ros2::TestDatagram& datagram) {
-    for (const int at : {port, port + 1}) {
-      sockaddr_in to{};
-      to.sin_family = AF_INET;
-      to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-      to.sin_port = htons(static_cast<std::uint16_t>(at));
-      sendto(socket, datagram.bytes().data(), datagram.bytes().size(), 0,
-             reinterpret_cast<sockaddr*>(&to), sizeof to);
+    for (const int port : ports) {
+      for (const int at : {port, port + 1}) {
+        sockaddr_in to{};
+        to.sin_family = AF_INET;
+        to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        to.sin_port = htons(static_cast<std::uint16_t>(at));
+        sendto(socket, datagram.bytes().data(), datagram.bytes().size(), 0,
+               reinterpret_cast<sockaddr*>(&to), sizeof to);
+      }
     }
   };
   constexpr std::int64_t kAbsurd = std::int64_t{1} << 60;
@@ -292,7 +296,7 @@ TEST_F(Attack, WithHostileDatagramsLeavesItSmallAndHealing) {
   is_healed(run);
   is_healed(run);
   EXPECT_LT(holdings_of(run.pid()).kilobytes, before + kMostKilobytes);
-  EXPECT_THAT(run.output(), HasSubstr("datagrams were kept out"));
+  EXPECT_TRUE(run.prints("datagrams were kept out")) << run.output();
   EXPECT_THAT(run.output(), Not(HasSubstr("DEAF")));
 }
 
