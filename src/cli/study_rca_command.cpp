@@ -14,6 +14,7 @@
 #include "language/text_file.h"
 #include "study/managers/style_planner.h"
 #include "study/rca/learning_report.h"
+#include "study/rca/regret.h"
 #include "study/rca/repair_process.h"
 #include "study/rca/report.h"
 #include "study/rca/scenario_json.h"
@@ -45,6 +46,9 @@ struct RcaOptions {
   std::optional<std::uint32_t> learned;  // faults; nothing: no learning is measured
   double forgetting = 1;
   bool drift = false;
+  bool regret = false;
+  std::uint32_t systems = 1000;
+  bool untold = false;
   std::string html;  // a report on learning; empty: none
   std::string version;
   std::string scenario_output;  // empty: the episodes are played
@@ -97,13 +101,37 @@ Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
   return campaign;
 }
 
+std::string in_format(const RcaOptions& options, const study::Table& table) {
+  if (options.format == "markdown") return study::markdown(table);
+  return options.format == "latex" ? study::latex(table) : study::text(table);
+}
+
 std::string in_format(const RcaOptions& options, const RcaCampaign& campaign,
                       const std::vector<RcaRow>& rows) {
   if (options.format == "json") return study::rca::rca_json(campaign, rows, options.times());
   if (options.format == "csv") return study::rca::rca_csv(rows, options.times());
-  const study::Table table = study::rca::rca_table(campaign, rows, options.times());
-  if (options.format == "markdown") return study::markdown(table);
-  return options.format == "latex" ? study::latex(table) : study::text(table);
+  return in_format(options, study::rca::rca_table(campaign, rows, options.times()));
+}
+
+int study_regret(const RcaOptions& options) {
+  if (options.format == "csv")
+    return fail("--regret has no CSV; there are text, markdown, latex and json", kUsage);
+  const study::rca::RegretCampaign campaign{options.systems, options.seed, !options.untold};
+  const StopSignals signals;
+  std::optional<Progress> progress;
+  const auto regrets = study::rca::measure_regret(campaign, options.jobs,
+                                                  [&](std::uint64_t done, std::uint64_t total) {
+                                                    if (!progress) progress.emplace(0, total);
+                                                    progress->show(done);
+                                                    return !signals.stopped();
+                                                  });
+  progress.reset();
+  if (!regrets) return fail("interrupted; nothing is written", kFailed);
+  const auto written = write_text(
+      options.output, options.format == "json"
+                          ? study::rca::regret_json(campaign, *regrets)
+                          : in_format(options, study::rca::regret_table(campaign, *regrets)));
+  return written ? kOk : fail(written.error(), kFailed);
 }
 
 int study_learning(const RcaOptions& options) {
@@ -136,6 +164,7 @@ int study_learning(const RcaOptions& options) {
 
 int study_rca(const RcaOptions& options) {
   if (options.learned) return study_learning(options);
+  if (options.regret) return study_regret(options);
   const auto campaign = campaign_of(options);
   if (!campaign) return fail(campaign.error(), kUsage);
   if (!options.scenario_output.empty()) {
@@ -219,6 +248,18 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->add_flag("--drift", options->drift,
                  "What helps changes for the last quarter of what is learned from")
       ->needs(learn);
+  auto* regret = command->add_flag("--regret", options->regret,
+                                   "How far bayes is from the optimum, for each objective, on "
+                                   "random robots of up to four components");
+  regret->excludes(scenario)->excludes(learn);
+  command->add_option("--systems", options->systems, "So many robots")
+      ->check(CLI::Range(1U, 1'000'000U))
+      ->capture_default_str()
+      ->needs(regret);
+  command
+      ->add_flag("--untold", options->untold,
+                 "Robots that differ from what the rules say, as those of the benchmark do")
+      ->needs(regret);
   command->add_option("--html", options->html, "Also a page with calibration plots")->needs(learn);
   command->add_option("--objective", options->objective, "What the bayes planner spares most")
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))

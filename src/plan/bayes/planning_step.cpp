@@ -16,7 +16,8 @@ namespace culprit::plan {
 namespace {
 
 // What costs more than it is worth has to be done all the same, once nothing else comes first: it
-// is worth a little, by its index.
+// is worth a little, by its index: by how likely it
+// resolves the failure for what it costs.
 std::int64_t worth(double value, double cost, double index) {
   constexpr double kLittle = 1e-4;
   return parts(std::max(value - cost, kLittle * std::min(index, 1.0))) + 1;
@@ -190,7 +191,7 @@ void PlanningStep::examine(std::size_t failure) {
       entry.candidate.value = root * std::min(1.0, helps) * stakes_[failure];
       entry.candidate.cost = costs[next];
       entry.place = next++;
-      entry.worth = worth(entry.candidate.value, entry.candidate.cost, index(tries[s]));
+      entry.worth = worth(entry.candidate.value, entry.candidate.cost, root * index(tries[s]));
       exclude(entry, all[s].chance);
     }
   }
@@ -204,7 +205,7 @@ std::vector<Option> PlanningStep::options(std::size_t failure,
     const Strategy& strategy = knowledge_.rules[remedy.strategy];
     const Effort effort{strategy.impact, latency, redeployments(strategy), disruption(strategy)};
     all.push_back({remedy.chance, try_cost(effort, weights_, knowledge_.rules),
-                   time_cost(effort, weights_, knowledge_.rules)});
+                   time_cost(effort, weights_, knowledge_.rules), remedy.luck});
   }
   return all;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plan/bayes/remedies.h"
 #include "plan/bayes/seen_down.h"
 
 namespace culprit::plan {
@@ -67,21 +68,13 @@ void Responsibility::divide(const std::vector<std::size_t>& circle) {
 
 double Responsibility::weight(std::size_t i, const std::vector<std::size_t>& circle,
                               Time first) const {
-  // Even one whose strategies were all tried may be the cause: they can have failed by accident.
+  // Even one at which all was tried may be the cause: it can have failed by accident.
   constexpr double kLeast = 0.01;
   const RuleId rule = failures_[i];
   const RuleState& state = knowledge_.states[rule];
-  const auto& strategies = knowledge_.rules[rule].strategies;
-  double all = 0;
-  double untried = 0;
-  for (std::size_t s = 0; s < strategies.size(); ++s) {
-    const double belief = knowledge_.beliefs[strategies[s]].mean().value;
-    all += belief;
-    if (!state.tried[s]) untried += belief;
-  }
   const double delay = seconds(state.first_detected() - first) / seconds(knowledge_.rules.cycle);
-  double weight = std::max(kLeast, untried / all) * std::ldexp(1, -std::min(state.round, 50)) *
-                  (own(i) / kCoincidence) / (1 + delay);
+  double weight =
+      std::max(kLeast, still_there(rule, knowledge_)) * (own(i) / kCoincidence) / (1 + delay);
   for (const std::size_t k : circle) {
     if (k != i) weight *= std::max(kLeast, kappa(i, k)) / Coupling::kUsual;
   }

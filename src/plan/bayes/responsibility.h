@@ -18,14 +18,12 @@
 // it with probability omega_i, and otherwise has a cause of its own only by coincidence:
 //
 //     omega_i = w_i / sum_{k in C} w_k
-//     w_i     = (untried_i / all_i) 2^(-rounds_i) (pi_i / pi) 1 / (1 + delay_i)
-//               prod_{k in C, k != i} kappa(i -> k) / kappa0
+//     w_i     = a_i (pi_i / pi) 1 / (1 + delay_i) prod_{k in C, k != i} kappa(i -> k) / kappa0
 //     R_i     = P(root i) (omega_i + (1 - omega_i) pi)
 //
-//   untried_i / all_i   the beliefs in its strategies that were not tried yet, as a share of all:
-//   who
-//                       was adapted in vain is less likely the cause
-//   rounds_i            how often all of them were tried
+//   a_i                 how likely what is wrong at i would still be there after all that was tried
+//                       there (plan/bayes/remedies.h): who was adapted in vain is less likely the
+//                       cause
 //   delay_i             how much later than the first of the circle it was detected (before it came
 //   back,
 //                       if it comes and goes), in cycles

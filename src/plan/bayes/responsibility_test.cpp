@@ -84,8 +84,8 @@ TEST(Responsibility, InACircleFallsToWhoWasNotAdaptedInVain) {
   Scene scene = chain();
   scene.link("c", "a").fail("A").fail("B").fail("C");
   scene.tried("A.restart");
-  const double untried = 0.9 / 1.4;
-  const double omega = untried / (untried + 2);
+  const double still_there = 1 - 0.5;
+  const double omega = still_there / (still_there + 2);
   EXPECT_NEAR(responsibility(scene, "A"), omega + (1 - omega) * kPi, 1e-12);
 }
 

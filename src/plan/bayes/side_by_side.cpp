@@ -106,7 +106,7 @@ class Search {
 double joint_cost(std::span<const Side> sides, std::span<const std::size_t> begins) {
   std::size_t rounds = 0;
   for (const Side& side : sides) rounds = std::max(rounds, side.tries.size());
-  std::vector<double> still_there(sides.size(), 1);
+  std::vector<StillThere> still_there(sides.size());
   std::vector<std::pair<double, double>> times;  // t, p
   double sum = 0;
   for (std::size_t round = 0; round < rounds; ++round) {
@@ -114,9 +114,10 @@ double joint_cost(std::span<const Side> sides, std::span<const std::size_t> begi
     for (std::size_t i = 0; i < sides.size(); ++i) {
       if (round >= sides[i].tries.size()) continue;
       const Option& option = try_of(sides[i], begins[i], round);
-      sum += still_there[i] * (option.cost - option.time);
-      times.emplace_back(option.time, still_there[i]);
-      still_there[i] = std::max(0.0, still_there[i] - option.chance);
+      const double chance = still_there[i].chance();
+      sum += chance * (option.cost - option.time);
+      times.emplace_back(option.time, chance);
+      still_there[i].fails(option);
     }
     std::sort(times.begin(), times.end(), std::greater<>());
     double nobody_longer = 1;

@@ -7,7 +7,7 @@
 //     E = sum_r ( sum_i p_i,r (c_i,r - t_i,r) + T_r )
 //
 //   c_i,r, t_i,r   what the r-th try for failure i costs, and the part of it that its time is
-//   p_i,r          the chance that failure i is still there then: 1 - sum_{q < r} u_i,q
+//   p_i,r          the chance that failure i is still there then: a of those before (value.h)
 //   T_r            the expectation of the longest t_i,r of those that are: with the failures in the
 //                  order of t, longest first, sum_i t_i,r p_i,r prod_{k before i} (1 - p_k,r)
 //

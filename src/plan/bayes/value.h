@@ -12,12 +12,13 @@
 // Expected cost of repairing the failure beginning with s, and going on with the others in the
 // order of u/c (p/c index), as long as they fail:
 //
-//     E_s = c_s + sum_k c_k max(0, 1 - u_s - sum_{l before k} u_l)
+//     E_s = c_s + sum_k c_k a(s and all before k),    a(T) = (1 - sum_{t in T} v_t) prod (1 - q_t)
 //
-//   u   the chances of the strategies (plan/bayes/remedies.h), taken to exclude each other
+//   v, q   of the chances of the strategies (plan/bayes/remedies.h): the probability that one is
+//          what would fix it, and its luck otherwise. a(T): still there after all of T
 //
-// For one failure that order is the cheapest (Smith's rule; exchange two neighbours and compare),
-// so the strategy with the highest u/c has the lowest E.
+// Without luck that order is the cheapest for one failure (Smith's rule; exchange two neighbours
+// and compare), so the strategy with the highest u/c has the lowest E.
 //
 // Value of beginning to repair failure i:
 //
@@ -56,7 +57,20 @@ struct Option {
   double chance = 0;  // u
   double cost = 0;    // c > 0
   double time = 0;    // the part of it that its time costs
+  double luck = 0;    // q <= u
 };
+
+// a: the probability that a failure is still there after some tries.
+class StillThere {
+ public:
+  double chance() const { return left_ * unlucky_; }
+  void fails(const Option& tried);
+
+ private:
+  double left_ = 1;
+  double unlucky_ = 1;
+};
+
 // u/c
 inline double index(const Option& option) { return option.chance / option.cost; }
 // E_s for each of `options`, which are in the order of their indices, highest first.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -38,6 +39,37 @@ TEST(Remedies, GrowLikelierWithEachThatFailed) {
   EXPECT_DOUBLE_EQ(left[2], 0.05 / 0.4);
 }
 
+// Restart and redeploy help against much of the same: beliefs of 28, 43 and 90 %.
+const std::string kOverlapping =
+    "COMPONENT a NODE /a LAUNCH \"a\"\nRULE A\nPOLICIES ERROR\nTRIGGER x > 1\n"
+    "STRATEGY configure 28 10\nADAPTATION a set_parameter p 1 2\n"
+    "STRATEGY restart 43 10\nADAPTATION a restart 5\n"
+    "STRATEGY redeploy 90 10\nADAPTATION a redeploy 15\n";
+
+TEST(Remedies, HelpLessOnceOneFailedThatHelpsAgainstTheSame) {
+  Scene scene(kOverlapping);
+  EXPECT_THAT(chances(scene, *scene, "A"),
+              testing::ElementsAre(testing::DoubleNear(0.28, 1e-9), testing::DoubleNear(0.43, 1e-9),
+                                   testing::DoubleNear(0.9, 1e-9)));
+  scene.tried("A.redeploy");
+  const auto left = chances(scene, *scene, "A");
+  EXPECT_NEAR(left[0], 0.47, 0.01);
+  EXPECT_NEAR(left[1], 0.69, 0.01);
+}
+
+TEST(Remedies, SayHowLikelyWhatIsWrongOutlivesThem) {
+  Scene scene(kOverlapping);
+  EXPECT_DOUBLE_EQ(still_there(scene.rule("A"), *scene), 1);
+  scene.tried("A.redeploy");
+  EXPECT_NEAR(still_there(scene.rule("A"), *scene), 0.1, 1e-9);
+  Scene other(kOverlapping);
+  other.tried("A.configure").tried("A.restart");
+  EXPECT_NEAR(still_there(other.rule("A"), *other), 0.38, 0.01);
+  Scene again(kOverlapping);
+  (*again).states.state(again.rule("A")).round = 1;
+  EXPECT_NEAR(still_there(again.rule("A"), *again), 0.72 * 0.57 * 0.1, 1e-9);
+}
+
 TEST(Remedies, ReplaceAProcessThatIsDown) {
   Scene scene(
       "COMPONENT a NODE /a LAUNCH \"a\"\nCOMPONENT b NODE /b\nRULE A\nPOLICIES ERROR\n"
@@ -62,6 +94,15 @@ TEST(ExpectedCosts, CountTheOthersAsLongAsTheyFail) {
   EXPECT_DOUBLE_EQ(costs[0], 1 + 0.5 * 2 + 0.2 * 4);
   EXPECT_DOUBLE_EQ(costs[1], 2 + 0.7 * 1 + 0.2 * 4);
   EXPECT_DOUBLE_EQ(costs[2], 4 + 0.9 * 1 + 0.4 * 2);
+}
+
+TEST(ExpectedCosts, CountThatOneMayHelpByLuck) {
+  StillThere still_there;
+  const Option lucky{0.6, 1, 0, 0.2};  // its own: 0.5
+  still_there.fails(lucky);
+  EXPECT_DOUBLE_EQ(still_there.chance(), 0.4);
+  still_there.fails({0.5, 1, 0, 0.2});  // its own: 0.375
+  EXPECT_DOUBLE_EQ(still_there.chance(), 0.125 * 0.64);
 }
 
 // The p/c index: no order of the strategies is cheaper than that of u/c. Every order is tried.

@@ -24,6 +24,8 @@ constexpr std::array<std::array<double, kFaultKinds>, kRepairs> kHelps = {{
     {0.80, 0.60, 0.50, 0.60, 0.00, 0.00, 0.10},
     {0.95, 0.90, 0.70, 0.90, 0.97, 0.97, 0.90},
 }};
+constexpr std::array kLevels = {Criticality::kNonCritical, Criticality::kWarning,
+                                Criticality::kError};
 constexpr std::array<int, kRepairs> kImpact = {2, 5, 15};
 constexpr std::array<double, kRepairs> kTakes_s = {0.2, 1, 3};
 
@@ -49,8 +51,8 @@ class Generator {
   RcaScenario run() {
     add_components();
     add_data();
-    add_redundancy();
-    if (setting_.is_cyclic) add_feedback();
+    if (!setting_.is_as_told) add_redundancy();
+    if (setting_.is_cyclic && size() > 1) add_feedback();
     if (setting_.components >= 20) add_infrastructure();
     scenario_.faults = faults(setting_, random_);
     return std::move(scenario_);
@@ -73,6 +75,7 @@ class Generator {
   void add_components() {
     for (std::size_t i = 0; i < size(); ++i) {
       RcaComponent component{"c" + std::to_string(i), Criticality::kError, {}, {}};
+      if (setting_.has_mixed_levels) component.criticality = kLevels[below(kLevels.size())];
       component.detector = {random_.uniform(0, 0.4), setting_.noise, setting_.noise};
       for (std::size_t r = 0; r < kRepairs; ++r) component.treatments.push_back(treatment(r));
       scenario_.components.push_back(std::move(component));
@@ -80,15 +83,19 @@ class Generator {
     }
   }
 
-  // The rules' author knows the rates of the robots before this one, which differ a little.
+  // The rules' author knows the rates of the robots before this one, which differ a little, where
+  // each is carried out: what needs a process is not, once that is gone.
   Treatment treatment(std::size_t repair) {
     Treatment treatment{static_cast<Repair>(repair), 0, 10, kImpact[repair], kTakes_s[repair], {}};
     double sum = 0;
     for (std::size_t k = 0; k < kFaultKinds; ++k) {
       sum += kHelps[repair][k];
-      treatment.helps[k] = std::clamp(kHelps[repair][k] * random_.uniform(0.85, 1.15), 0.0, 0.98);
+      const double own = random_.uniform(0.85, 1.15);
+      treatment.helps[k] =
+          std::clamp(kHelps[repair][k] * (setting_.is_as_told ? 1 : own), 0.0, 0.98);
     }
-    treatment.success = std::round(100 * sum / kFaultKinds);
+    const std::size_t kinds = treatment.repair == Repair::kRedeploy ? kFaultKinds : kFaultKinds - 1;
+    treatment.success = std::round(100 * sum / static_cast<double>(kinds));
     return treatment;
   }
 
@@ -134,7 +141,7 @@ class Generator {
       const std::size_t back = std::min(layer_of(from), 1 + below(3));
       const std::size_t to = first_of(layer_of(from) - back);
       const std::size_t width = first_of(layer_of(from) - back + 1) - to;
-      subscribe(from, to + below(width), kFeedbackPasses);
+      subscribe(from, to + below(width), setting_.is_as_told ? kPasses : kFeedbackPasses);
     }
   }
 
