@@ -18,7 +18,7 @@ TEST(Regret, IsOfSmallRobotsOfEveryKind) {
     seen[setting.is_cyclic][setting.has_mixed_levels] = true;
     const RcaScenario scenario = regret_scenario(campaign, i);
     EXPECT_TRUE(RepairProcess::is_small(scenario)) << i;
-    if (!setting.is_cyclic) EXPECT_FALSE(setting_of(scenario).is_cyclic) << i;
+    EXPECT_TRUE(setting.is_cyclic || !setting_of(scenario).is_cyclic) << i;
   }
   for (const auto& each : seen) EXPECT_TRUE(each[0] && each[1]);
 }
