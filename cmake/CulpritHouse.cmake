@@ -41,18 +41,20 @@ endif()
 # Where CMAKE_UNITY_BUILD is set, a folder's files are compiled several at a time, but for these: their files are variants of one thing and call their parts by the same names.
 set(culprit_folders_of_variants study exemplars)
 
-# culprit_library(<folder> [USES <folder>...] [PACKAGES <target>...]
+# culprit_library(<floor>/<folder> [USES <folder>...] [PACKAGES <target>...]
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL]
 #                 [TEST_LABELS <label>...])
 #
-# Builds src/<folder>/**.cpp but its tests and programs (*_main.cpp), and the test program <folder>_test of *_test.cpp and
+# Builds the library <folder> of src/<floor>/<folder>/**.cpp but its tests and programs (*_main.cpp), and the test program <folder>_test of *_test.cpp and
 # of what only tests use (test_*.cpp).
 # USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
 # *_live_test.cpp make a program of their own, <folder>_live_test: they start the processes of a robot, so they run alone
 # and carry the label "live". The label "threads" is for tests that the thread sanitizer repeats.
-function(culprit_library folder)
+function(culprit_library path)
   cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES" ${ARGN})
-  set(dir ${CMAKE_SOURCE_DIR}/src/${folder})
+  get_filename_component(folder ${path} NAME)
+  set(dir ${CMAKE_SOURCE_DIR}/src/${path})
+  set_property(GLOBAL PROPERTY culprit_folder_of_${folder} ${dir})
   set(headers ${CMAKE_BINARY_DIR}/include/${folder})
   file(MAKE_DIRECTORY ${headers})
   file(CREATE_LINK ${dir} ${headers}/${folder} SYMBOLIC)
@@ -92,7 +94,7 @@ function(culprit_library folder)
   endif()
 endfunction()
 
-# culprit_embed(<folder> <header> <file>...): makes <header> of <header>.in, with the text of rules/some-name.rules in
+# culprit_embed(<folder> <header> <file>...): makes <folder>/<header> of <header>.in in that folder, with the text of rules/some-name.rules in
 # place of @SOME_NAME_RULES@ (of report.css in place of @REPORT_CSS@), so that a program needs no file beside it.
 function(culprit_embed folder header)
   foreach(file ${ARGN})
@@ -102,7 +104,8 @@ function(culprit_embed folder header)
     file(READ ${CMAKE_SOURCE_DIR}/${file} ${name})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${file})
   endforeach()
-  configure_file(${header}.in ${CMAKE_BINARY_DIR}/include/${folder}-generated/${header} @ONLY)
+  get_property(dir GLOBAL PROPERTY culprit_folder_of_${folder})
+  configure_file(${dir}/${header}.in ${CMAKE_BINARY_DIR}/include/${folder}-generated/${folder}/${header} @ONLY)
   target_include_directories(${folder} PRIVATE ${CMAKE_BINARY_DIR}/include/${folder}-generated)
 endfunction()
 

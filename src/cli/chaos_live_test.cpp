@@ -22,8 +22,8 @@
 #include "journal/json.h"
 #include "journal/reader.h"
 #include "journal/session.h"
+#include "owners/proc.h"
 #include "plan/bayes/bayes_planner.h"
-#include "process/proc.h"
 #include "replay/replay.h"
 
 namespace culprit::cli {
@@ -162,7 +162,7 @@ struct Chaos : testing::Test {
     for (const sunset::Member member : sunset::kMembers) {
       for (const int pid : robot.processes(member))
         std::cout << name_of(member) << ": process " << pid << ", "
-                  << process::state_letter(pid).value_or('?') << "\n";
+                  << owners::state_letter(pid).value_or('?') << "\n";
     }
     // The temporary folder of this process goes with it.
     const fs::path kept =

@@ -27,11 +27,11 @@ Expected<ros2::DomainLock> make_own_domain(std::optional<std::uint32_t> wanted) 
   return domain;
 }
 
-process::Supervisor::Options demo_processes(const std::filesystem::path& state) {
-  process::Supervisor::Options options;
+owners::Supervisor::Options demo_processes(const std::filesystem::path& state) {
+  owners::Supervisor::Options options;
   options.log_folder = state / "log";
   options.search_first = {own_folder()};
-  options.lifetime = process::Lifetime::kStarter;
+  options.lifetime = owners::Lifetime::kStarter;
   return options;
 }
 
@@ -41,7 +41,7 @@ void say_domain(const char* robot, std::uint32_t domain) {
       robot, domain);
 }
 
-void start_all(process::Supervisor& supervisor, const RuleSet& rules) {
+void start_all(owners::Supervisor& supervisor, const RuleSet& rules) {
   for (std::size_t c = 0; c < rules.components.size(); ++c) supervisor.start({}, ComponentId(c));
 }
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "language/rule_set.h"
-#include "process/supervisor.h"
+#include "owners/supervisor.h"
 #include "ros2/domain_lock.h"
 
 namespace culprit::cli {
@@ -23,12 +23,12 @@ Expected<std::filesystem::path> make_state_folder();
 Expected<ros2::DomainLock> make_own_domain(std::optional<std::uint32_t> wanted);
 
 // How processes of a demonstration are started: logs below `state`, and they end with it.
-process::Supervisor::Options demo_processes(const std::filesystem::path& state);
+owners::Supervisor::Options demo_processes(const std::filesystem::path& state);
 
 // On which domain the robot is, and how to look at it there.
 void say_domain(const char* robot, std::uint32_t domain);
 
 // Starts each component's process.
-void start_all(process::Supervisor& supervisor, const RuleSet& rules);
+void start_all(owners::Supervisor& supervisor, const RuleSet& rules);
 
 }  // namespace culprit::cli

@@ -7,7 +7,7 @@ namespace culprit::cli {
 Expected<std::unique_ptr<LiveRobot>> LiveRobot::open(const RuleSet& rules, Options options) {
   std::unique_ptr<LiveRobot> robot(new LiveRobot(rules));
   robot->supervisor_ =
-      std::make_unique<process::Supervisor>(rules, std::move(options.supervisor), robot->inbox_);
+      std::make_unique<owners::Supervisor>(rules, std::move(options.supervisor), robot->inbox_);
   auto link = ros2::Link::open(rules, std::move(options.link), robot->inbox_);
   if (!link) return Error{link.error()};
   robot->link_ = std::move(*link);
@@ -64,7 +64,7 @@ void LiveRobot::execute(const Command& command) {
         rules_[command.purpose.strategy].adaptations[command.purpose.adaptation];
     const bool is_replaced = what.type == AdaptationType::kRedeploy;
     supervisor_->stop(command.id, command.component,
-                      is_replaced ? process::Ending::kToStartAgain : process::Ending::kForGood);
+                      is_replaced ? owners::Ending::kToStartAgain : owners::Ending::kForGood);
   } else if (std::holds_alternative<StartProcess>(command.what)) {
     supervisor_->start(command.id, command.component);
   } else {

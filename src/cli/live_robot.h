@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "process/supervisor.h"
+#include "owners/supervisor.h"
 #include "robot/inbox.h"
 #include "robot/robot.h"
 #include "ros2/link.h"
@@ -15,7 +15,7 @@ class LiveRobot : public Robot {
  public:
   struct Options {
     ros2::Link::Options link;
-    process::Supervisor::Options supervisor;
+    owners::Supervisor::Options supervisor;
   };
 
   // `rules` must outlive the robot. Errors: the DDS domain cannot be joined.
@@ -35,7 +35,7 @@ class LiveRobot : public Robot {
   void report(std::string trouble) { inbox_.put(LinkTrouble{std::move(trouble)}); }
 
   ros2::Link& link() { return *link_; }
-  process::Supervisor& supervisor() { return *supervisor_; }
+  owners::Supervisor& supervisor() { return *supervisor_; }
 
  private:
   explicit LiveRobot(const RuleSet& rules) : rules_(rules), binding_(rules) {}
@@ -46,7 +46,7 @@ class LiveRobot : public Robot {
   const RuleSet& rules_;
   Inbox inbox_;
   ComponentBinding binding_;
-  std::unique_ptr<process::Supervisor> supervisor_;
+  std::unique_ptr<owners::Supervisor> supervisor_;
   std::unique_ptr<ros2::Link> link_;
   std::optional<Time> deaf_since_;
 };

@@ -7,7 +7,7 @@
 #include "cli/paths.h"
 #include "cli/progress.h"
 #include "language/text_file.h"
-#include "process/spawn.h"
+#include "owners/spawn.h"
 
 namespace culprit::cli {
 namespace {
@@ -62,7 +62,7 @@ Expected<void> StudyRunner::start(const web::Studies::Campaign& campaign) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   for (const char* name : {kResult, kReport, kLog}) std::filesystem::remove(file(name), error);
-  const auto pid = process::spawn(
+  const auto pid = owners::spawn(
       {command_of(campaign, file(kResult).string(), file(kReport).string()), {}, file(kLog)});
   if (!pid) return Error{pid.error()};
   pid_ = *pid;

@@ -117,7 +117,7 @@ Expected<void> SuaveDemo::start_processes() {
   if (auto written = write_text(modes, kSuaveModes); !written) return written;
   processes_ = embedded_rules("processes.rules", processes_with(modes).c_str());
   supervisor_ =
-      std::make_unique<process::Supervisor>(processes_, demo_processes(state_), processes_inbox_);
+      std::make_unique<owners::Supervisor>(processes_, demo_processes(state_), processes_inbox_);
   start_all(*supervisor_, processes_);
   return {};
 }

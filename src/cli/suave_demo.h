@@ -74,7 +74,7 @@ class SuaveDemo {
 
   RuleSet processes_;  // as components of their own: what is managed are their nodes
   Inbox processes_inbox_;
-  std::unique_ptr<process::Supervisor> supervisor_;
+  std::unique_ptr<owners::Supervisor> supervisor_;
   std::unique_ptr<LiveRobot> robot_;
   std::unique_ptr<suave::MissionObserver> observer_;
   std::unique_ptr<Manager> manager_;

@@ -68,14 +68,14 @@ Expected<void> SunsetDemo::open() {
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
 
-  const process::Supervisor::Options processes = demo_processes(state_);
+  const owners::Supervisor::Options processes = demo_processes(state_);
   LiveRobot::Options robot;
   robot.link.participant = *participant;
   robot.supervisor = processes;
   auto opened = LiveRobot::open(rules_, std::move(robot));
   if (!opened) return Error{opened.error()};
   robot_ = std::move(*opened);
-  extras_ = std::make_unique<process::Supervisor>(extras_rules_, processes, extras_inbox_);
+  extras_ = std::make_unique<owners::Supervisor>(extras_rules_, processes, extras_inbox_);
   start_all(*extras_, extras_rules_);
   start_all(robot_->supervisor(), rules_);
 

@@ -102,7 +102,7 @@ class SunsetDemo {
   // The bag player and the evaluator: processes that nobody manages.
   RuleSet extras_rules_;
   Inbox extras_inbox_;
-  std::unique_ptr<process::Supervisor> extras_;
+  std::unique_ptr<owners::Supervisor> extras_;
 
   std::unique_ptr<LiveRobot> robot_;
   std::unique_ptr<sunset::Experiment> experiment_;

@@ -29,8 +29,8 @@ Source members() {
 
 LiveSunset::LiveSunset(const TestWorld& world)
     : domain_(ros2::options_from_environment()->domain), members_(*check(members()).rules) {
-  const process::Supervisor::Options options{world.folder() / "log", {own_folder()}};
-  processes_ = std::make_unique<process::Supervisor>(members_, options, inbox_);
+  const owners::Supervisor::Options options{world.folder() / "log", {own_folder()}};
+  processes_ = std::make_unique<owners::Supervisor>(members_, options, inbox_);
   for (std::size_t c = 0; c < members_.components.size(); ++c)
     processes_->start({}, ComponentId(c));
   auto experiment =

@@ -9,7 +9,7 @@
 
 #include "cli/test_program.h"
 #include "exemplars/sunset/experiment.h"
-#include "process/supervisor.h"
+#include "owners/supervisor.h"
 
 namespace culprit::cli {
 
@@ -37,7 +37,7 @@ class LiveSunset {
   std::uint32_t domain_;
   RuleSet members_;
   Inbox inbox_;
-  std::unique_ptr<process::Supervisor> processes_;
+  std::unique_ptr<owners::Supervisor> processes_;
   std::unique_ptr<sunset::Experiment> experiment_;
   std::jthread slow_;
 };

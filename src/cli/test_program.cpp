@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "cli/paths.h"
-#include "process/spawn.h"
+#include "owners/spawn.h"
 
 namespace culprit::cli {
 namespace {
@@ -61,7 +61,7 @@ int pid_in(const std::string& output, const std::string& component) {
 TestProgram::TestProgram(const TestWorld& world, std::vector<std::string> arguments) {
   static int count = 0;
   log_ = world.folder() / (arguments.at(0) + "-" + std::to_string(++count) + ".log");
-  pid_ = value_of(process::spawn({std::move(arguments), {own_folder()}, log_}));
+  pid_ = value_of(owners::spawn({std::move(arguments), {own_folder()}, log_}));
 }
 
 TestProgram::~TestProgram() {

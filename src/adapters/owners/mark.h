@@ -1,0 +1,32 @@
+// The mark that processes of components carry in their environment, so that whoever supervises the
+// same robot later knows them again.
+//
+// What a process starts in turn inherits the mark and is not the component: a second variable says
+// which process is, by its number, and a third where that number counts, for in another PID
+// namespace it is somebody else's.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace culprit::owners {
+
+inline constexpr const char* kPidVariable = "CULPRIT_PROCESS";
+
+// What is added to the environment of a component's process, beside its number. `component`:
+// "0/sunset/camera".
+std::vector<std::string> mark_of(const std::string& component);
+
+// Whether it, or what started it, carries the mark.
+bool carries_mark(int pid, const std::string& component);
+
+// Not one that a marked process started in turn.
+bool is_what_was_launched(int pid);
+
+// What the process `pid` and all that it started have in their environment.
+std::string variable_of(int pid);
+
+// Processes that were launched as the component and have not ended.
+std::vector<int> launched_as(const std::string& component);
+
+}  // namespace culprit::owners

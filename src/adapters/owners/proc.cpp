@@ -1,0 +1,203 @@
+#include "owners/proc.h"
+
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <unistd.h>
+
+namespace culprit::owners {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What /proc/<pid>/stat says after the command, which is in parentheses and may hold anything.
+std::string stat_after_command(int pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string line;
+  std::getline(file, line);
+  const auto end = line.rfind(')');
+  return end == std::string::npos || end + 2 >= line.size() ? "" : line.substr(end + 2);
+}
+
+// All processes that can be seen.
+std::vector<int> all_processes() {
+  std::vector<int> pids;
+  std::error_code error;
+  for (fs::directory_iterator i("/proc", error); !error && i != fs::directory_iterator();
+       i.increment(error)) {
+    const std::string name = i->path().filename().native();
+    int pid = 0;
+    const auto [rest, failed] = std::from_chars(name.data(), name.data() + name.size(), pid);
+    if (failed == std::errc() && rest == name.data() + name.size()) pids.push_back(pid);
+  }
+  return pids;
+}
+
+struct Family {
+  char state = 'X';
+  int parent = 0;
+  int group = 0;
+  int session = 0;
+};
+
+Family family_of(int pid) {
+  std::istringstream rest(stat_after_command(pid));
+  Family family;
+  rest >> family.state >> family.parent >> family.group >> family.session;
+  return family;
+}
+
+std::vector<std::string> arguments_of(int pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/cmdline", std::ios::binary);
+  std::vector<std::string> arguments;
+  for (std::string text; std::getline(file, text, '\0');) arguments.push_back(std::move(text));
+  return arguments;
+}
+
+bool is_interpreter(const fs::path& program) {
+  constexpr std::array kNames = {"python", "perl", "ruby", "node", "bash", "dash", "sh"};
+  const std::string name = program.filename().native();
+  for (const char* each : kNames) {
+    const std::size_t length = std::strlen(each);
+    // "python3.11" is Python, "shutdown" is no shell.
+    if (name.starts_with(each) && name.find_first_not_of("0123456789.", length) == name.npos)
+      return true;
+  }
+  return false;
+}
+
+// The first argument that is no option: of `-m` and `-c` what they name.
+std::string script_of(int pid) {
+  const std::vector<std::string> arguments = arguments_of(pid);
+  std::error_code error;
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const std::string& word = arguments[i];
+    if ((word == "-m" || word == "-c") && i + 1 < arguments.size())
+      return word + " " + arguments[i + 1];
+    if (word.starts_with('-')) continue;
+    const fs::path folder = fs::read_symlink("/proc/" + std::to_string(pid) + "/cwd", error);
+    return (folder / word).lexically_normal().native();
+  }
+  return "";
+}
+
+Duration now_on(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
+}
+
+}  // namespace
+
+std::optional<char> state_letter(int pid) {
+  const std::string rest = stat_after_command(pid);
+  return rest.empty() ? std::nullopt : std::optional(rest.front());
+}
+
+std::optional<Time> started_at(int pid) {
+  std::istringstream rest(stat_after_command(pid));
+  std::string skipped;
+  constexpr int kBefore = 19;  // fields between the command and starttime (proc(5))
+  for (int i = 0; i < kBefore; ++i) rest >> skipped;
+  std::int64_t ticks = 0;
+  if (!(rest >> ticks)) return std::nullopt;
+  const std::int64_t in_second = sysconf(_SC_CLK_TCK);
+  // It counts from the start of the machine, sleep included; our clock leaves sleep out.
+  const Duration sleep = now_on(CLOCK_BOOTTIME) - now_on(CLOCK_MONOTONIC);
+  return Time(std::chrono::nanoseconds(ticks * (1'000'000'000 / in_second)) - sleep);
+}
+
+bool has_variable(int pid, const std::string& variable) {
+  std::ifstream environment("/proc/" + std::to_string(pid) + "/environ", std::ios::binary);
+  for (std::string text; std::getline(environment, text, '\0');) {
+    if (text == variable) return true;
+  }
+  return false;
+}
+
+std::vector<int> processes_with(const std::string& variable) {
+  std::vector<int> pids = all_processes();
+  std::erase_if(pids, [&](int pid) { return !has_variable(pid, variable); });
+  return pids;
+}
+
+std::string pid_namespace_of(int pid) {
+  std::error_code error;
+  return fs::read_symlink("/proc/" + std::to_string(pid) + "/ns/pid", error).native();
+}
+
+int own_number_of(int pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("NSpid:")) continue;
+    std::istringstream numbers(line.substr(6));
+    int number = 0;
+    for (int each = 0; numbers >> each;) number = each;  // the innermost is the last
+    return number;
+  }
+  return 0;
+}
+
+std::optional<Identity> identity_of(int pid) {
+  const std::string process = "/proc/" + std::to_string(pid);
+  std::error_code error;
+  std::string program = fs::read_symlink(process + "/exe", error).native();
+  if (error) return std::nullopt;
+  constexpr std::string_view kDeleted = " (deleted)";  // it was installed anew since
+  if (program.ends_with(kDeleted)) program.resize(program.size() - kDeleted.size());
+  std::ifstream status(process + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (!line.starts_with("Uid:")) continue;
+    std::istringstream users(line.substr(4));
+    unsigned real = 0, effective = 0;
+    if (!(users >> real >> effective)) break;
+    const std::string script = is_interpreter(program) ? script_of(pid) : "";
+    return Identity{effective, program, script};
+  }
+  return std::nullopt;
+}
+
+std::string to_string(const Identity& identity) {
+  return identity.program + (identity.script.empty() ? "" : " " + identity.script) + " of user " +
+         std::to_string(identity.user);
+}
+
+std::vector<Relative> descendants_of(int pid) {
+  std::vector<std::pair<int, int>> parents;  // child, parent
+  for (const int each : all_processes()) {
+    const Family family = family_of(each);
+    if (family.state != 'Z' && family.state != 'X') parents.emplace_back(each, family.parent);
+  }
+  std::vector<Relative> found;
+  std::vector<int> open = {pid};
+  // Numbers are given out anew while they are read: no more are found than there are.
+  while (!open.empty() && found.size() <= parents.size()) {
+    const int parent = open.back();
+    open.pop_back();
+    for (const auto& [child, its_parent] : parents) {
+      if (its_parent != parent) continue;
+      std::ifstream file("/proc/" + std::to_string(child) + "/comm");
+      std::string command;
+      std::getline(file, command);
+      found.push_back({child, std::move(command)});
+      open.push_back(child);
+    }
+  }
+  return found;
+}
+
+std::vector<int> members_of_group(int leader) {
+  std::vector<int> pids = all_processes();
+  std::erase_if(pids, [&](int pid) {
+    const Family family = family_of(pid);
+    return family.group != leader || family.session != leader || family.state == 'Z';
+  });
+  return pids;
+}
+
+}  // namespace culprit::owners

@@ -1,0 +1,50 @@
+// What the kernel tells of processes in /proc.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot/time.h"
+
+namespace culprit::owners {
+
+// 'R', 'S', 'T' (stopped), 'Z' (ended, not reaped) ...; nothing if there is no such process.
+std::optional<char> state_letter(int pid);
+
+// On live_now()'s clock, to a hundredth of a second.
+std::optional<Time> started_at(int pid);
+
+// Whether `variable` ("NAME=value") is in the environment that the process was started with, which
+// others may not read: false for processes of another user, unless one may read all.
+bool has_variable(int pid, const std::string& variable);
+// All such processes.
+std::vector<int> processes_with(const std::string& variable);
+
+// Where processes are counted: "pid:[4026531836]". Empty if it cannot be told.
+std::string pid_namespace_of(int pid);
+// The number that a process has in the innermost namespace that it is in; 0 if it cannot be told.
+int own_number_of(int pid);
+
+// What a process runs: `script` is what an interpreter was given, as `ros2 run` is Python's.
+struct Identity {
+  unsigned user = 0;    // effective
+  std::string program;  // with its path
+  std::string script;   // with its path; empty for other programs
+  bool operator==(const Identity&) const = default;
+};
+// Nothing: there is no such process, or it may not be seen.
+std::optional<Identity> identity_of(int pid);
+// "/usr/bin/python3 /opt/ros/bin/ros2 of user 1000"
+std::string to_string(const Identity& identity);
+
+struct Relative {
+  int pid = 0;
+  std::string command;  // as the kernel shortens it
+};
+// Those that `pid` started, and what those started.
+std::vector<Relative> descendants_of(int pid);
+// Those in the process group and in the session that `leader` made, itself included.
+std::vector<int> members_of_group(int leader);
+
+}  // namespace culprit::owners

@@ -1,0 +1,275 @@
+#include "owners/spawn.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sstream>
+#include <string_view>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+
+extern char** environ;
+
+namespace culprit::owners {
+namespace {
+
+// Where the program may be, in the order of looking.
+std::vector<std::string> places_of(const Program& program) {
+  const std::string& name = program.arguments.front();
+  if (name.find('/') != std::string::npos) return {name};
+  std::vector<std::string> places;
+  for (const auto& folder : program.search_first) places.push_back((folder / name).native());
+  if (const char* path = std::getenv("PATH")) {
+    std::istringstream list(path);
+    for (std::string folder; std::getline(list, folder, ':');)
+      places.push_back((folder.empty() ? "." : folder) + "/" + name);
+  }
+  return places;
+}
+
+// What is inherited, without what `added` has a value for, and `added`.
+std::vector<char*> environment_with(std::vector<std::string>& added) {
+  std::vector<char*> all;
+  for (char** each = environ; *each != nullptr; ++each) {
+    const std::string_view variable(*each);
+    const std::string_view name = variable.substr(0, variable.find('=') + 1);
+    const bool is_replaced = std::any_of(added.begin(), added.end(),
+                                         [&](const std::string& a) { return a.starts_with(name); });
+    if (!is_replaced) all.push_back(*each);
+  }
+  for (std::string& each : added) all.push_back(each.data());
+  all.push_back(nullptr);
+  return all;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+// All that is needed from fork() to execve(). After the fork of a program with threads only system
+// calls are safe, on what was made ready before.
+struct Preparation {
+  char* const* places;
+  const char* log;
+  char* const* arguments;
+  char* const* environment;
+  char* pid_digits;  // where the pid's are to be written; null: nowhere
+  int kept;
+  Until until;
+  pid_t ends_with;  // whose end ends it; 0: nobody's
+};
+constexpr std::size_t kPidDigits = 10;
+
+void write_pid(char* digits) {
+  int pid = getpid();
+  std::size_t count = 1;
+  for (int rest = pid / 10; rest > 0; rest /= 10) ++count;
+  for (std::size_t i = count; i-- > 0; pid /= 10) digits[i] = static_cast<char>('0' + pid % 10);
+  digits[count] = '\0';
+}
+
+void reset_signals() {
+  struct sigaction otherwise {};
+  otherwise.sa_handler = SIG_DFL;
+  for (int number = 1; number < NSIG; ++number) sigaction(number, &otherwise, nullptr);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+}
+
+bool redirect(const char* log) {
+  const int input = open("/dev/null", O_RDONLY);
+  const int output = open(log, O_WRONLY | O_CREAT | O_APPEND, 0644);
+  return input >= 0 && output >= 0 && dup2(input, STDIN_FILENO) >= 0 &&
+         dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0;
+}
+
+const char* first_executable(char* const* places) {
+  for (; *places != nullptr; ++places) {
+    struct stat status {};
+    if (stat(*places, &status) == 0 && S_ISREG(status.st_mode) && access(*places, X_OK) == 0)
+      return *places;
+  }
+  return nullptr;
+}
+
+// What execve() would find out of a script: whether the program that its first line names can be
+// run. Sets errno.
+bool has_interpreter(const char* path) {
+  std::array<char, 256> line{};
+  const int file = open(path, O_RDONLY | O_CLOEXEC);
+  if (file < 0) return true;  // it may be executable and not readable
+  const ssize_t size = read(file, line.data(), line.size() - 1);
+  close(file);
+  if (size < 3 || line[0] != '#' || line[1] != '!') return true;
+  char* begin = line.data() + 2;
+  while (*begin == ' ' || *begin == '\t') ++begin;
+  char* end = begin;
+  while (*end != '\0' && *end != ' ' && *end != '\t' && *end != '\n') ++end;
+  *end = '\0';
+  return access(begin, X_OK) == 0;
+}
+
+// Where the child says why it failed; closed by a successful execve(). What it keeps is beside it.
+constexpr int kReport = STDERR_FILENO + 1;
+constexpr int kKept = kReport + 1;
+
+enum class Step : std::int32_t { kPrepare, kFind, kOpenLog, kRun };
+struct Failure {
+  Step step;
+  std::int32_t why;  // errno
+};
+
+// In the child. Comes back only if it fails, or if it is not to be run.
+Failure become(const Preparation& ready, int report) {
+  // Neither may be in the other's place.
+  const int kept = ready.kept < 0 ? -1 : fcntl(ready.kept, F_DUPFD_CLOEXEC, kKept + 1);
+  if (ready.kept >= 0 && kept < 0) return {Step::kPrepare, errno};
+  if (report != kReport && dup3(report, kReport, O_CLOEXEC) < 0) return {Step::kPrepare, errno};
+  if (kept >= 0 && dup3(kept, kKept, O_CLOEXEC) < 0) return {Step::kPrepare, errno};
+  setsid();
+  if (ready.ends_with != 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != ready.ends_with) _exit(127);  // it ended before it could be told
+  }
+  prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
+  // Our DDS sockets are not marked close-on-exec; a child that kept one would keep its port.
+  closefrom(kept >= 0 ? kKept + 1 : kReport + 1);
+  if (!redirect(ready.log)) return {Step::kOpenLog, errno};
+  closefrom(kept >= 0 ? kKept + 1 : kReport + 1);
+  const char* path = first_executable(ready.places);
+  if (path == nullptr) return {Step::kFind, ENOENT};
+  if (ready.until == Until::kItCouldRun) return {Step::kRun, has_interpreter(path) ? 0 : errno};
+  if (ready.pid_digits != nullptr) write_pid(ready.pid_digits);
+  reset_signals();
+  execve(path, ready.arguments, ready.environment);
+  return {Step::kRun, errno};
+}
+
+std::string description(const Failure& failure, const std::string& name,
+                        const std::filesystem::path& log) {
+  if (failure.step == Step::kFind)
+    return "there is no program '" + name + "'" +
+           (name.find('/') == std::string::npos ? " in PATH" : ", or it is not executable");
+  const std::string why = std::strerror(failure.why);
+  if (failure.step == Step::kOpenLog)
+    return "cannot start '" + name + "': its log " + log.string() + " cannot be written: " + why;
+  return "cannot start '" + name + "': " + why;
+}
+
+}  // namespace
+
+Expected<Launch> Launch::begin(const Program& program, Until until) {
+  if (program.arguments.empty()) return Error{"the launch command is empty"};
+  std::error_code error;
+  if (program.log.has_parent_path())
+    std::filesystem::create_directories(program.log.parent_path(), error);
+
+  std::vector<std::string> arguments = program.arguments;
+  std::vector<std::string> places = places_of(program);
+  std::vector<std::string> added = program.environment;
+  if (!program.pid_variable.empty())
+    added.push_back(program.pid_variable + "=" + std::string(kPidDigits + 1, '\0'));
+  const std::vector<char*> argument_pointers = pointers_to(arguments);
+  const std::vector<char*> place_pointers = pointers_to(places);
+  const std::vector<char*> environment = environment_with(added);
+  const Preparation ready{
+      place_pointers.data(),
+      program.log.c_str(),
+      argument_pointers.data(),
+      environment.data(),
+      program.pid_variable.empty() ? nullptr : &added.back()[program.pid_variable.size() + 1],
+      program.kept_until_it_runs,
+      until,
+      program.lifetime == Lifetime::kStarter ? getpid() : 0};
+
+  const std::string& name = program.arguments.front();
+  const auto failed = [&](int why) {
+    return Error{description({Step::kPrepare, why}, name, program.log)};
+  };
+  std::array<int, 2> report{};
+  if (pipe2(report.data(), O_CLOEXEC) != 0) return failed(errno);
+  FileDescriptor read_end(report[0]);
+  const FileDescriptor write_end(report[1]);
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);  // no handler of ours runs in the child
+  const pid_t pid = fork();
+  if (pid == 0) {
+    const Failure failure = become(ready, write_end.get());
+    if (failure.why != 0) {
+      [[maybe_unused]] const auto written = write(kReport, &failure, sizeof failure);
+    }
+    _exit(127);
+  }
+  const int why = errno;
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  if (pid < 0) return failed(why);
+  return Launch(pid, std::move(read_end), until, name, program.log);
+}
+
+Launch::Launch(Launch&& other) noexcept
+    : pid_(std::exchange(other.pid_, 0)),
+      report_(std::move(other.report_)),
+      until_(other.until_),
+      name_(std::move(other.name_)),
+      log_(std::move(other.log_)) {}
+
+Launch& Launch::operator=(Launch&& other) noexcept {
+  std::swap(pid_, other.pid_);
+  std::swap(report_, other.report_);
+  std::swap(until_, other.until_);
+  std::swap(name_, other.name_);
+  std::swap(log_, other.log_);
+  return *this;
+}
+
+Launch::~Launch() {
+  if (pid_ == 0) return;
+  pollfd report{report_.get(), POLLIN, 0};
+  const bool is_decided = poll(&report, 1, 0) > 0;
+  if (is_decided) {
+    (void)outcome();
+    return;
+  }
+  kill(pid_, SIGKILL);
+  // One that hangs in a file system dies when that lets it go: nobody can wait for it.
+  waitpid(pid_, nullptr, WNOHANG);
+}
+
+Expected<void> Launch::outcome() {
+  const int pid = std::exchange(pid_, 0);
+  Failure failure{};
+  ssize_t size = 0;
+  do size = read(report_.get(), &failure, sizeof failure);
+  while (size < 0 && errno == EINTR);
+  report_ = FileDescriptor();
+  const bool has_failed = size == sizeof failure;
+  if (has_failed || until_ == Until::kItCouldRun) waitpid(pid, nullptr, 0);
+  if (has_failed) return Error{description(failure, name_, log_)};
+  return {};
+}
+
+Expected<int> spawn(const Program& program) {
+  auto launch = Launch::begin(program, Until::kItRuns);
+  if (!launch) return Error{launch.error()};
+  const int pid = launch->pid();
+  if (const auto runs = launch->outcome(); !runs) return Error{runs.error()};
+  return pid;
+}
+
+}  // namespace culprit::owners

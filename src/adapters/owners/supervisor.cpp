@@ -1,0 +1,404 @@
+#include "owners/supervisor.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <set>
+#include <sys/eventfd.h>
+#include <sys/file.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "owners/bounded_log.h"
+#include "owners/mark.h"
+
+namespace culprit::owners {
+namespace {
+
+// Numbers are given out anew.
+bool was_there(int pid, Time known) {
+  const auto started = started_at(pid);
+  return started && *started <= known;
+}
+
+bool is_child(int pid) {
+  siginfo_t info{};
+  return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0;
+}
+
+bool is_readable(int descriptor) {
+  pollfd file{descriptor, POLLIN, 0};
+  return poll(&file, 1, 0) > 0;
+}
+
+}  // namespace
+
+Supervisor::Supervisor(const RuleSet& rules, Options options, Inbox& inbox)
+    : rules_(rules),
+      options_(std::move(options)),
+      inbox_(inbox),
+      wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  for (std::size_t c = 0; c < rules_.components.size(); ++c) take_over(ComponentId(c));
+  thread_ = std::thread([this] { run(); });
+}
+
+Supervisor::~Supervisor() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  wake();
+  thread_.join();
+}
+
+std::string Supervisor::marked_as(ComponentId component) const {
+  return options_.robot + "/" + rules_[component].name;
+}
+
+void Supervisor::answer(CommandId command, Outcome outcome, std::string text) const {
+  inbox_.put(Reply{command, outcome, {}, std::move(text)});
+}
+
+void Supervisor::take_over(ComponentId component) {
+  if (options_.robot.empty() || rules_[component].launch.empty()) return;
+  for (const int pid : launched_as(marked_as(component))) {
+    if (!is_known(component, pid)) watch(component, pid, Relation::kMarked);
+  }
+}
+
+// ---- starting
+
+Program Supervisor::program_of(ComponentId component) const {
+  const Component& what = rules_[component];
+  Program program{
+      what.launch, options_.search_first, options_.log_folder / (what.name + ".log"), {}, {}};
+  program.lifetime = options_.lifetime;
+  if (!options_.robot.empty()) {
+    program.environment = mark_of(marked_as(component));
+    program.pid_variable = kPidVariable;
+  }
+  return program;
+}
+
+// From the decision to start until the program runs, and carries the mark, it is nobody else's to
+// start. The kernel lets go of it when the last one that holds it has ended or runs the program.
+Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const {
+  const std::filesystem::path log = program_of(component).log;
+  std::error_code error;
+  std::filesystem::create_directories(log.parent_path(), error);
+  FileDescriptor lock(
+      open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0644));
+  const std::string& name = rules_[component].name;
+  if (!lock)
+    return Error{"cannot start " + name + ": its log " + log.string() +
+                 " cannot be written: " + std::strerror(errno)};
+  if (flock(lock.get(), LOCK_EX | LOCK_NB) == 0) return Expected<FileDescriptor>(std::move(lock));
+  return Error{errno == EWOULDBLOCK
+                   ? name + " is being started already; look at what its program waits for"
+                   : "cannot start " + name +
+                         ": its log cannot be locked: " + std::strerror(errno)};
+}
+
+void Supervisor::start(CommandId command, ComponentId component) {
+  const Component& what = rules_[component];
+  if (what.launch.empty())
+    return answer(command, Outcome::kUnreachable, what.name + " has no LAUNCH command");
+  const std::lock_guard lock(mutex_);
+  if (!is_gone(component))
+    return answer(command, Outcome::kRefused, what.name + " is running already");
+  if (const auto begun = begin_start(command, component); !begun)
+    return answer(command, Outcome::kUnreachable, begun.error());
+  wake();
+}
+
+Expected<void> Supervisor::begin_start(CommandId command, ComponentId component) {
+  auto lock = lock_start_of(component);
+  if (!lock) return Error{lock.error()};
+  // Whatever was started before has the lock no more, and is seen.
+  take_over(component);
+  if (!is_gone(component)) {
+    answer(command, Outcome::kRefused, rules_[component].name + " is running already");
+    return {};
+  }
+  Program program = program_of(component);
+  program.kept_until_it_runs = lock->get();
+  auto launch = Launch::begin(program, Until::kItRuns);
+  if (!launch) return Error{launch.error()};
+  // Nothing runs unwatched: if it cannot be held, the launch goes, and kills it.
+  auto process = WatchedProcess::watch(launch->pid(), Relation::kChild);
+  if (!process) return Error{process.error()};
+  members_.push_back({component, std::move(*process), ProcessState::kRunning, std::move(*launch),
+                      command, std::move(*lock)});
+  return {};
+}
+
+// Those whose programs run by now, or never will.
+void Supervisor::finish_starts() {
+  for (Member& member : members_) {
+    if (!member.launch || !is_readable(member.launch->descriptor())) continue;
+    const auto runs = member.launch->outcome();
+    member.launch.reset();
+    member.lock = FileDescriptor();
+    if (!runs) {
+      answer(member.command, Outcome::kUnreachable, runs.error());
+      member.state = ProcessState::kGone;  // it is reaped, and was never the component
+      continue;
+    }
+    const int pid = member.process.pid();
+    inbox_.put(ProcessSeen{member.component, ProcessState::kRunning, pid, ""});
+    inbox_.put(Reply{member.command, Outcome::kDone, Value(std::int64_t{pid}), ""});
+  }
+  std::erase_if(members_, [](const Member& m) { return m.state == ProcessState::kGone; });
+}
+
+// ---- taking over what runs
+
+void Supervisor::adopt(ComponentId component, int pid, Time known) {
+  const std::lock_guard lock(mutex_);
+  if (is_known(component, pid)) return;
+  if (!was_there(pid, known)) {
+    inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, "ended"});
+    return;
+  }
+  watch(component, pid, Relation::kAdopted);
+}
+
+void Supervisor::adopt_again(ComponentId component, int pid, Time known) {
+  const bool has_ended = state_letter(pid).value_or('X') == 'Z';
+  if (!has_ended && was_there(pid, known)) return adopt(component, pid, known);
+  const std::lock_guard lock(mutex_);
+  if (is_gone(component))
+    inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, "it ended unseen"});
+}
+
+void Supervisor::watch(ComponentId component, int pid, Relation relation) {
+  // A supervisor before this one may have started it.
+  if (is_child(pid)) relation = Relation::kChild;
+  auto process = WatchedProcess::watch(pid, relation);
+  if (!process) {
+    inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, process.error()});
+    return;
+  }
+  const bool is_others = relation == Relation::kAdopted && !carries_mark(pid, marked_as(component));
+  if (const auto identity = is_others ? identity_of(pid) : std::nullopt)
+    identities_.try_emplace(component, *identity);
+  members_.push_back({component, std::move(*process)});
+  inbox_.put(ProcessSeen{component, ProcessState::kRunning, pid, ""});
+  wake();
+}
+
+// ---- ending
+
+// Why it is not proven that the process is the component's; nothing if it is.
+std::optional<std::string> Supervisor::doubt(const Member& member) const {
+  const int pid = member.process.pid();
+  if (member.process.relation() != Relation::kAdopted ||
+      carries_mark(pid, marked_as(member.component)))
+    return std::nullopt;
+  const auto found = identities_.find(member.component);
+  const auto identity = identity_of(pid);
+  if (!identity && member.process.state() == ProcessState::kGone) return std::nullopt;
+  const std::string process = "process " + std::to_string(pid);
+  if (!identity || found == identities_.end())
+    return process + " is not ended: it cannot be seen what it runs";
+  if (*identity == found->second) return std::nullopt;
+  return process + " is not ended: it runs " + to_string(*identity) + ", but " +
+         rules_[member.component].name + " was " + to_string(found->second) +
+         "; if that is right, start culprit anew";
+}
+
+void Supervisor::stop(CommandId command, ComponentId component, Ending ending) {
+  const std::lock_guard lock(mutex_);
+  for (const Member& member : members_) {
+    if (member.component != component) continue;
+    if (auto why = doubt(member)) return answer(command, Outcome::kRefused, std::move(*why));
+  }
+  if (ending == Ending::kForGood || is_gone(component)) {
+    begin_shutdown(command, component);
+  } else {
+    const auto lock_of_start = lock_start_of(component);
+    if (!lock_of_start) return answer(command, Outcome::kRefused, lock_of_start.error());
+    auto launch = Launch::begin(program_of(component), Until::kItCouldRun);
+    if (!launch) return answer(command, Outcome::kRefused, launch.error());
+    trials_.push_back({command, component, std::move(*launch), later(live_now(), kTrial)});
+  }
+  wake();
+}
+
+void Supervisor::finish_trials(Time now) {
+  for (Trial& trial : trials_) {
+    const bool is_over = is_readable(trial.launch.descriptor());
+    if (!is_over && now < trial.until) continue;
+    const std::string& name = rules_[trial.component].name;
+    const auto could_run =
+        is_over ? trial.launch.outcome()
+                : Expected<void>(Error{"its start was tried and hung for " +
+                                       culprit::to_string(kTrial) +
+                                       "; does the file system of its program answer?"});
+    if (could_run) {
+      begin_shutdown(trial.command, trial.component);
+    } else {
+      answer(trial.command, Outcome::kRefused,
+             name + " is not ended, for it could not be started again: " + could_run.error());
+    }
+    trial.until = kLongAgo;
+  }
+  std::erase_if(trials_, [](const Trial& t) { return t.until == kLongAgo; });
+}
+
+void Supervisor::begin_shutdown(CommandId command, ComponentId component) {
+  for (Member& member : members_) {
+    if (member.component != component || member.process.relation() != Relation::kAdopted) continue;
+    member.left = descendants_of(member.process.pid());
+    member.left_at = live_now();
+  }
+  shutdowns_.push_back({command, component, 0, live_now()});
+}
+
+void Supervisor::stop_all() {
+  std::unique_lock lock(mutex_);
+  std::set<ComponentId> started;
+  for (const Member& member : members_) {
+    if (member.process.relation() == Relation::kChild) started.insert(member.component);
+  }
+  for (const ComponentId component : started) begin_shutdown({}, component);
+  wake();
+  something_ended_.wait(lock, [&] {
+    return std::all_of(started.begin(), started.end(), [&](ComponentId c) { return is_gone(c); });
+  });
+}
+
+bool Supervisor::is_known(ComponentId component, int pid) const {
+  return std::any_of(members_.begin(), members_.end(), [&](const Member& m) {
+    return m.process.pid() == pid && m.component == component;
+  });
+}
+
+bool Supervisor::is_gone(ComponentId component) const {
+  return std::none_of(members_.begin(), members_.end(),
+                      [&](const Member& m) { return m.component == component; });
+}
+
+void Supervisor::end_member(Member& member) {
+  // What the process had started must not live on beside its successor. While it is not reaped, no
+  // other group can have its number.
+  member.process.kill_group();
+  const std::string remark = member.process.reap();
+  inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), remark});
+  tell_what_stays(member);
+}
+
+// What somebody else's process had started is not ours to end.
+void Supervisor::tell_what_stays(const Member& member) const {
+  std::string stays;
+  for (const Relative& each : member.left) {
+    const bool has_ended = state_letter(each.pid).value_or('X') == 'Z';
+    if (!has_ended && was_there(each.pid, member.left_at))
+      stays += (stays.empty() ? "" : ", ") + std::to_string(each.pid) + " (" + each.command + ")";
+  }
+  if (!stays.empty())
+    inbox_.put(LinkTrouble{rules_[member.component].name +
+                           " was ended, and what it had started goes on: process " + stays});
+}
+
+// ---- the thread
+
+Time Supervisor::next_deadline() const {
+  Time next = kNever;
+  for (const Shutdown& shutdown : shutdowns_) next = std::min(next, shutdown.escalate);
+  for (const Trial& trial : trials_) next = std::min(next, trial.until);
+  return next;
+}
+
+void Supervisor::wake() {
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const auto written = write(wake_.get(), &one, sizeof one);
+}
+
+void Supervisor::run() {
+  std::unique_lock lock(mutex_);
+  Time next_look = live_now();
+  std::vector<std::filesystem::path> logs;
+  while (!is_ending_) {
+    std::vector<pollfd> watched{{wake_.get(), POLLIN, 0}};
+    for (const Member& member : members_) {
+      watched.push_back({member.process.descriptor(), POLLIN, 0});
+      if (member.launch) watched.push_back({member.launch->descriptor(), POLLIN, 0});
+    }
+    for (const Trial& trial : trials_) watched.push_back({trial.launch.descriptor(), POLLIN, 0});
+    const Time until = members_.empty() ? next_deadline() : std::min(next_look, next_deadline());
+    const auto wait =
+        until == kNever ? Duration(-1) : std::max(Duration::zero(), until - live_now());
+    lock.unlock();
+    // Without the lock: nobody waits for a disk.
+    for (const std::filesystem::path& log : std::exchange(logs, {})) bound_log(log);
+    // Round up: a deadline that is a fraction of a millisecond away must not be polled for in a
+    // hurry.
+    const auto milliseconds =
+        wait < Duration::zero()
+            ? -1
+            : static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(wait).count());
+    poll(watched.data(), watched.size(), milliseconds);
+    std::uint64_t count = 0;
+    [[maybe_unused]] const auto taken = read(wake_.get(), &count, sizeof count);
+    lock.lock();
+    const Time now = live_now();
+    look(now);
+    if (now < next_look) continue;
+    next_look = later(now, kStatePeriod);
+    for (const Member& member : members_) logs.push_back(program_of(member.component).log);
+  }
+}
+
+void Supervisor::look(Time now) {
+  finish_starts();
+  for (Member& member : members_) {
+    if (member.launch) continue;
+    const ProcessState state = member.process.state();
+    if (state == ProcessState::kGone) {
+      end_member(member);
+    } else if (state != member.state) {
+      inbox_.put(ProcessSeen{member.component, state, member.process.pid(), ""});
+    }
+    member.state = state;
+  }
+  std::erase_if(members_, [](const Member& m) { return m.state == ProcessState::kGone; });
+  finish_trials(now);
+  finish_shutdowns(now);
+  something_ended_.notify_all();
+}
+
+void Supervisor::finish_shutdowns(Time now) {
+  for (Shutdown& shutdown : shutdowns_) {
+    if (!is_gone(shutdown.component)) {
+      if (shutdown.escalate <= now) escalate(shutdown, now);
+    } else if (shutdown.command != CommandId{}) {
+      answer(shutdown.command, Outcome::kDone, "");
+    }
+  }
+  std::erase_if(shutdowns_, [&](const Shutdown& s) { return is_gone(s.component); });
+}
+
+void Supervisor::escalate(Shutdown& shutdown, Time now) {
+  const bool is_stopped = std::any_of(members_.begin(), members_.end(), [&](const Member& m) {
+    return m.component == shutdown.component && m.state == ProcessState::kStopped;
+  });
+  if (is_stopped || shutdown.signal == SIGTERM || shutdown.signal == SIGKILL) {
+    shutdown.signal = SIGKILL;
+    shutdown.escalate = later(now, kFirm);
+  } else if (shutdown.signal == SIGINT) {
+    shutdown.signal = SIGTERM;
+    shutdown.escalate = later(now, kFirm);
+  } else {
+    shutdown.signal = SIGINT;
+    shutdown.escalate = later(now, kPolite);
+  }
+  for (const Member& member : members_) {
+    if (member.component == shutdown.component) member.process.signal(shutdown.signal);
+  }
+}
+
+}  // namespace culprit::owners

@@ -1,0 +1,152 @@
+// Starts, stops and watches the processes of components.
+//
+// In the words of Erlang/OTP: the supervisor starts a child from its launch command, shuts it down
+// by escalation (SIGINT, after kPolite SIGTERM, after kFirm SIGKILL), and tells what becomes of it.
+// It decides nothing: restarting is up to the manager. A stopped process cannot act on a polite
+// signal and must not wake up to do so late: it is killed at once.
+//
+// What it starts carries a mark (mark.h), so that whoever supervises the same robot later knows it
+// again, also if this process died the moment after: a component is never started beside a process
+// that runs already. Until its program runs it is not marked: so long it has a lock on the log,
+// which outlives us, too. (The tools of ROS 2 leave a daemon behind, which outlives whatever was
+// launched with them.)
+//
+// Proof before harm. What was not started here, and carries no mark of ours, is ended only if it is
+// what the component was when its process was found first: the same program of the same user. What
+// is ended to be started again is ended only if the start was tried, all but its last step. Nobody
+// waits here for a program whose file system does not answer.
+//
+// Whatever it started goes on running when the supervisor ends, unless stop_all() was called or its
+// lifetime is the starter's.
+#pragma once
+
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "owners/proc.h"
+#include "owners/spawn.h"
+#include "owners/watched_process.h"
+#include "robot/command.h"
+#include "robot/inbox.h"
+
+namespace culprit::owners {
+
+enum class Ending : std::uint8_t { kForGood, kToStartAgain };
+
+// All members may be called from any thread. Observations (ProcessSeen, Reply) go to the inbox.
+class Supervisor {
+ public:
+  static constexpr Duration kPolite = std::chrono::seconds(2);
+  static constexpr Duration kFirm = std::chrono::seconds(1);
+  // How often it is looked whether a process was stopped; its end is known at once.
+  static constexpr Duration kStatePeriod = std::chrono::milliseconds(200);
+  // How long the trial of a start may take.
+  static constexpr Duration kTrial = std::chrono::seconds(5);
+
+  struct Options {
+    std::filesystem::path log_folder;  // on this machine: nobody waits for it elsewhere
+    std::vector<std::filesystem::path> search_first;  // for launch commands without a path
+    // Which robot, of all on this machine: "0/sunset". Empty: nothing is marked, and what other
+    // supervisors started is not looked for.
+    std::string robot{};
+    Lifetime lifetime = Lifetime::kOwn;  // of what is started
+  };
+
+  // `rules` and `inbox` must outlive the supervisor. Takes over what carries its mark.
+  Supervisor(const RuleSet& rules, Options options, Inbox& inbox);
+  ~Supervisor();
+
+  // Starts the component's launch command and replies when it runs.
+  void start(CommandId command, ComponentId component);
+
+  // Ends all processes of the component that are watched, and no others, whatever their numbers;
+  // replies when they are gone. Refuses if one of them is not proven to be the component's, or if
+  // it could not be started again: then none is ended.
+  void stop(CommandId command, ComponentId component, Ending ending);
+
+  // Watches the process that had this number at `known` as the component's; one that began later is
+  // another. Tells that it is gone if it is. Does nothing if it is watched already.
+  void adopt(ComponentId component, int pid, Time known);
+
+  // Likewise, of a process that an earlier run of culprit knew, if it is not a zombie now. Says
+  // nothing where another process of the component is watched.
+  void adopt_again(ComponentId component, int pid, Time known);
+
+  // Ends every process that was started here, and waits until all are gone.
+  void stop_all();
+
+ private:
+  struct Member {
+    ComponentId component;
+    WatchedProcess process;
+    ProcessState state = ProcessState::kRunning;
+    // While its program does not run yet: the start, what it answers, and the lock that it has.
+    std::optional<Launch> launch{};
+    CommandId command{};
+    FileDescriptor lock{};
+    std::vector<Relative> left{};  // what somebody else's had started when its end was ordered
+    Time left_at{};
+  };
+  // A start that is tried before an end.
+  struct Trial {
+    CommandId command;
+    ComponentId component;
+    Launch launch;
+    Time until;
+  };
+  // A shutdown under way.
+  struct Shutdown {
+    CommandId command;  // number 0: nobody waits for a reply
+    ComponentId component;
+    int signal = 0;          // sent last
+    Time escalate = kNever;  // when the next one is due
+  };
+
+  std::string marked_as(ComponentId component) const;
+  Program program_of(ComponentId component) const;
+  Expected<FileDescriptor> lock_start_of(ComponentId component) const;
+  void answer(CommandId command, Outcome outcome, std::string text) const;
+
+  // With the mutex.
+  void take_over(ComponentId component);
+  void watch(ComponentId component, int pid, Relation relation);
+  Expected<void> begin_start(CommandId command, ComponentId component);
+  std::optional<std::string> doubt(const Member& member) const;
+  void finish_starts();
+  void finish_trials(Time now);
+  void finish_shutdowns(Time now);
+  void tell_what_stays(const Member& member) const;
+
+  void run();
+  void look(Time now);
+  void escalate(Shutdown& shutdown, Time now);
+  bool is_known(ComponentId component, int pid) const;
+  bool is_gone(ComponentId component) const;
+  void begin_shutdown(CommandId command, ComponentId component);
+  void end_member(Member& member);
+  Time next_deadline() const;
+  void wake();
+
+  const RuleSet& rules_;
+  Options options_;
+  Inbox& inbox_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable something_ended_;
+  std::vector<Member> members_;
+  std::vector<Trial> trials_;
+  std::vector<Shutdown> shutdowns_;
+  std::map<ComponentId, Identity> identities_;  // of what others started, when it was found first
+  bool is_ending_ = false;
+  FileDescriptor wake_;
+  std::thread thread_;
+};
+
+}  // namespace culprit::owners

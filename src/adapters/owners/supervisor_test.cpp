@@ -1,0 +1,655 @@
+#include "owners/supervisor.h"
+
+#include <array>
+#include <fcntl.h>
+#include <fstream>
+#include <linux/capability.h>
+#include <optional>
+#include <poll.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+#include "owners/bounded_log.h"
+#include "owners/proc.h"
+#include "owners/spawn.h"
+
+namespace culprit::owners {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Supervises component c with the given launch command and tells what came of it.
+class Supervised {
+ public:
+  explicit Supervised(const std::string& launch, const std::string& robot = "")
+      : folder_(std::filesystem::temp_directory_path() /
+                ("culprit-test-" + std::to_string(getpid()))),
+        rules_(*check(Source("test.rules", "COMPONENT c LAUNCH \"" + launch + "\"\n")).rules),
+        robot_(robot) {
+    supervise();
+  }
+  // Anew, as after a restart of culprit.
+  void supervise(const std::filesystem::path& logs = {}) {
+    supervisor.reset();
+    supervisor.emplace(rules_, Supervisor::Options{logs.empty() ? folder_ : logs, {}, robot_},
+                       inbox);
+  }
+  ~Supervised() {
+    if (supervisor) supervisor->stop_all();
+    supervisor.reset();
+    std::filesystem::remove_all(folder_);
+  }
+
+  int start() {
+    supervisor->start({1}, ComponentId(0));
+    const Reply reply = reply_to({1});
+    EXPECT_EQ(reply.outcome, Outcome::kDone) << reply.text;
+    const auto* pid = std::get_if<Value>(&reply.value);
+    return pid == nullptr ? 0 : static_cast<int>(std::get<std::int64_t>(*pid));
+  }
+  void stop() {
+    supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+    EXPECT_EQ(reply_to({2}).outcome, Outcome::kDone);
+  }
+  std::string trouble() {
+    return wait<LinkTrouble>([](const LinkTrouble&) { return true; }).text;
+  }
+  Reply stop_to_start_again() {
+    supervisor->stop({7}, ComponentId(0), Ending::kToStartAgain);
+    return reply_to({7});
+  }
+  const std::filesystem::path& folder() const { return folder_; }
+  Reply reply_to(CommandId command) {
+    return wait<Reply>([&](const Reply& r) { return r.command == command; });
+  }
+  ProcessSeen state(ProcessState state) {
+    return wait<ProcessSeen>([&](const ProcessSeen& s) { return s.state == state; });
+  }
+  std::string log_when(const std::string& part) {
+    std::string text;
+    for (int tries = 0; tries < 1000 && text.find(part) == std::string::npos; ++tries) {
+      std::this_thread::sleep_for(10ms);
+      std::ifstream file(folder_ / "c.log");
+      text.assign(std::istreambuf_iterator<char>(file), {});
+    }
+    return text;
+  }
+
+  Inbox inbox;
+  std::optional<Supervisor> supervisor;
+
+ private:
+  // The first observation of this kind that fits; waits up to half a minute, on any machine enough.
+  template <class What, class Fits>
+  What wait(Fits fits) {
+    const Time end = live_now() + 30s;
+    while (live_now() < end) {
+      for (std::size_t i = 0; i < seen_.size(); ++i) {
+        const auto* what = std::get_if<What>(&seen_[i].what);
+        if (what == nullptr || !fits(*what)) continue;
+        const What found = *what;
+        seen_.erase(seen_.begin(), seen_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        return found;
+      }
+      inbox.take(end, seen_);
+    }
+    ADD_FAILURE() << "nothing of the kind was observed";
+    return {};
+  }
+
+  std::filesystem::path folder_;
+  RuleSet rules_;
+  std::string robot_;
+  std::vector<Observation> seen_;
+};
+
+bool exists(int pid) { return kill(pid, 0) == 0; }
+
+// A node that writes megabytes a second, for ever.
+TEST(Supervisor, KeepsTheEndOfALogAndNotAllOfIt) {
+  Supervised c("sh -c 'while sleep 0.02; do seq 20000; done'");
+  c.start();
+  const std::filesystem::path older = c.folder() / "c.log.1";
+  for (int tries = 0; tries < 6000 && !std::filesystem::exists(older); ++tries)
+    std::this_thread::sleep_for(10ms);
+  ASSERT_TRUE(std::filesystem::exists(older));
+  std::filesystem::remove(older);
+  for (int tries = 0; tries < 6000 && !std::filesystem::exists(older); ++tries)
+    std::this_thread::sleep_for(10ms);
+  ASSERT_TRUE(std::filesystem::exists(older)) << "again and again";
+  c.stop();
+  EXPECT_LE(std::filesystem::file_size(older), kMostOfLog);
+}
+
+TEST(Supervisor, StartsAndStopsPolitely) {
+  Supervised c("sleep 1000");
+  const int pid = c.start();
+  EXPECT_TRUE(exists(pid));
+  EXPECT_EQ(getpgid(pid), pid) << "it leads its own process group";
+  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  EXPECT_EQ(c.state(ProcessState::kGone).remark, "killed by signal 2");
+  EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
+}
+
+TEST(Supervisor, TellsHowAProcessEnded) {
+  Supervised c("sh -c 'exit 3'");
+  c.start();
+  EXPECT_EQ(c.state(ProcessState::kGone).remark, "exit code 3");
+}
+
+TEST(Supervisor, TellsThatAProcessWasKilled) {
+  Supervised c("sleep 1000");
+  kill(c.start(), SIGKILL);
+  EXPECT_EQ(c.state(ProcessState::kGone).remark, "killed by signal 9");
+}
+
+TEST(Supervisor, KillsWhatDoesNotListen) {
+  Supervised c("sh -c 'trap \\\"\\\" INT TERM; echo ready; while true; do sleep 0.1; done'");
+  const int pid = c.start();
+  c.log_when("ready");
+  const Time begin = live_now();
+  c.stop();
+  EXPECT_FALSE(exists(pid));
+  EXPECT_GE(live_now() - begin, Supervisor::kPolite + Supervisor::kFirm) << "it had its chances";
+}
+
+TEST(Supervisor, KillsAStoppedProcessAtOnce) {
+  Supervised c("sleep 1000");
+  const int pid = c.start();
+  kill(pid, SIGSTOP);
+  EXPECT_EQ(c.state(ProcessState::kStopped).pid, pid);
+  c.stop();
+  EXPECT_FALSE(exists(pid));
+}
+
+TEST(Supervisor, NoticesThatAStoppedProcessGoesOn) {
+  Supervised c("sleep 1000");
+  const int pid = c.start();
+  kill(pid, SIGSTOP);
+  c.state(ProcessState::kStopped);
+  kill(pid, SIGCONT);
+  EXPECT_EQ(c.state(ProcessState::kRunning).pid, pid);
+}
+
+TEST(Supervisor, EndsWhatTheProcessHadStarted) {
+  Supervised c("sh -c 'sleep 1000 & echo child $!; wait'");
+  c.start();
+  const std::string log = c.log_when("child ");
+  const int child = std::stoi(log.substr(log.find("child ") + 6));
+  EXPECT_TRUE(exists(child));
+  c.stop();
+  for (int tries = 0; tries < 1000 && exists(child); ++tries) std::this_thread::sleep_for(10ms);
+  EXPECT_FALSE(exists(child));
+}
+
+TEST(Supervisor, CapturesOutput) {
+  Supervised c("sh -c 'echo out; echo err >&2'");
+  c.start();
+  const std::string log = c.log_when("err");
+  EXPECT_EQ(log, "out\nerr\n");
+}
+
+TEST(Supervisor, SaysWhenThereIsNoSuchProgram) {
+  Supervised c("no-such-program-anywhere");
+  c.supervisor->start({1}, ComponentId(0));
+  const Reply reply = c.reply_to({1});
+  EXPECT_EQ(reply.outcome, Outcome::kUnreachable);
+  EXPECT_EQ(reply.text, "there is no program 'no-such-program-anywhere' in PATH");
+}
+
+TEST(Supervisor, StartsNoSecondProcessBesideALivingOne) {
+  Supervised c("sleep 1000");
+  c.start();
+  c.supervisor->start({3}, ComponentId(0));
+  EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused);
+}
+
+TEST(Supervisor, AdoptsAndEndsAProcessThatWasThere) {
+  Supervised c("sleep 1000");
+  const auto foreign = spawn({{"sleep", "1000"}, {}, "/dev/null"});
+  ASSERT_TRUE(foreign);
+  c.supervisor->adopt(ComponentId(0), *foreign, live_now());
+  EXPECT_EQ(c.state(ProcessState::kRunning).pid, *foreign);
+  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
+  EXPECT_FALSE(exists(*foreign)) << "what is a child of this program is reaped, too";
+}
+
+TEST(Supervisor, LeavesItsProcessesRunningWhenItEnds) {
+  int pid = 0;
+  {
+    const RuleSet rules = *check(Source("test.rules", "COMPONENT c LAUNCH \"sleep 1000\"\n")).rules;
+    Inbox inbox;
+    Supervisor supervisor(rules, {std::filesystem::temp_directory_path(), {}}, inbox);
+    supervisor.start({1}, ComponentId(0));
+    std::vector<Observation> seen;
+    for (const Time end = live_now() + 30s; pid == 0 && live_now() < end;) {
+      inbox.take(end, seen);
+      for (const Observation& o : seen) {
+        if (const auto* process = std::get_if<ProcessSeen>(&o.what)) pid = process->pid;
+      }
+    }
+  }
+  ASSERT_NE(pid, 0);
+  EXPECT_TRUE(exists(pid));
+  kill(pid, SIGKILL);
+  waitpid(pid, nullptr, 0);
+}
+
+TEST(Launch, WhatRunsGoesOnWhetherOrNotAnybodyAsked) {
+  const auto log =
+      std::filesystem::temp_directory_path() / ("culprit-launch-" + std::to_string(getpid()));
+  int pid = 0;
+  {
+    const auto launch = Launch::begin({{"sleep", "1000"}, {}, log}, Until::kItRuns);
+    ASSERT_TRUE(launch) << launch.error();
+    pid = launch->pid();
+    pollfd report{launch->descriptor(), POLLIN, 0};
+    ASSERT_EQ(poll(&report, 1, 30'000), 1);
+  }
+  EXPECT_EQ(state_letter(pid).value_or('X') == 'Z', false);
+  kill(pid, SIGKILL);
+  siginfo_t info{};
+  ASSERT_EQ(waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED), 0) << "it is ours to reap";
+  std::filesystem::remove(log);
+}
+
+// As after a crash: nothing is known but what the operating system says.
+TEST(Supervisor, TakesOverWhatAnotherOneOfTheSameRobotStarted) {
+  const std::string robot = "test/" + std::to_string(getpid());
+  auto first = std::make_unique<Supervised>("sleep 1000", robot);
+  const int pid = first->start();
+  kill(pid, SIGSTOP);
+  first->state(ProcessState::kStopped);
+  first->supervisor.reset();
+
+  Supervised stranger("sleep 1000", robot + "0");
+  EXPECT_NE(stranger.start(), pid) << "another robot's component of the same name";
+  Supervised second("sleep 1000", robot);
+  EXPECT_EQ(second.state(ProcessState::kRunning).pid, pid);
+  second.supervisor->start({3}, ComponentId(0));
+  EXPECT_EQ(second.reply_to({3}).outcome, Outcome::kRefused);
+  second.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  EXPECT_EQ(second.reply_to({2}).outcome, Outcome::kDone);
+  EXPECT_FALSE(exists(pid));
+  EXPECT_NE(second.start(), pid);
+}
+
+// As the tools of ROS 2 leave their daemon behind: in a session of its own, with all that it
+// inherited.
+TEST(Supervisor, IsNotMistakenAboutWhatAProcessLeftBehind) {
+  const std::string robot = "test/daemon/" + std::to_string(getpid());
+  Supervised c("sh -c 'setsid sleep 1000 & echo daemon $!; wait'", robot);
+  const int first = c.start();
+  const std::string log = c.log_when("daemon ");
+  const int daemon = std::stoi(log.substr(log.find("daemon ") + 7));
+  c.stop();
+  EXPECT_FALSE(exists(first));
+  ASSERT_TRUE(exists(daemon)) << "it leads a group of its own";
+  EXPECT_NE(c.start(), daemon) << "the component runs no more, so it can be started";
+  kill(daemon, SIGKILL);
+}
+
+TEST(Supervisor, AdoptsAProcessAgainOnlyIfItIsTheSameOne) {
+  Supervised c("sleep 1000");
+  const Time before = live_now() - 1s;
+  const auto foreign = spawn({{"sleep", "1000"}, {}, "/dev/null", {}});
+  ASSERT_TRUE(foreign);
+  c.supervisor->adopt_again(ComponentId(0), *foreign, before);
+  const int started = c.start();
+  EXPECT_NE(started, *foreign) << "a number that was given out anew since is not adopted";
+  c.stop();
+  c.supervisor->adopt_again(ComponentId(0), *foreign, live_now());
+  c.supervisor->start({3}, ComponentId(0));
+  EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused);
+  c.supervisor->stop({4}, ComponentId(0), Ending::kForGood);
+  EXPECT_EQ(c.reply_to({4}).outcome, Outcome::kDone);
+  EXPECT_FALSE(exists(*foreign));
+}
+
+TEST(Supervisor, AProcessThatBeganLaterIsAnother) {
+  Supervised c("sleep 1000");
+  const auto stranger = spawn({{"sleep", "1000"}, {}, "/dev/null", {}});
+  ASSERT_TRUE(stranger);
+  c.supervisor->adopt(ComponentId(0), *stranger, live_now() - 1s);
+  EXPECT_EQ(c.state(ProcessState::kGone).pid, *stranger) << "what had its number is gone";
+  c.stop();
+  EXPECT_TRUE(exists(*stranger)) << "it is nobody's business";
+  kill(*stranger, SIGKILL);
+  waitpid(*stranger, nullptr, 0);
+}
+
+// ---- proof before harm
+
+// No more than `count`, for as long as it lives.
+class DescriptorsLeft {
+ public:
+  explicit DescriptorsLeft(std::size_t count) {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    rlimit few = before_;
+    few.rlim_cur = 200;
+    setrlimit(RLIMIT_NOFILE, &few);
+    for (int fd = 0; (fd = fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)) >= 0;) taken_.emplace_back(fd);
+    taken_.resize(taken_.size() - count);
+  }
+  ~DescriptorsLeft() { setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+  std::vector<FileDescriptor> taken_;
+};
+
+// Runs the program as somebody else's: neither our child nor marked.
+int start_by_others(const std::string& command) {
+  std::array<int, 2> told{};
+  EXPECT_EQ(pipe(told.data()), 0);
+  const int between = fork();
+  if (between == 0) {
+    const int pid = fork();
+    if (pid == 0) {
+      setsid();
+      execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+      _exit(127);
+    }
+    [[maybe_unused]] const auto written = write(told[1], &pid, sizeof pid);
+    _exit(0);
+  }
+  int pid = 0;
+  EXPECT_EQ(read(told[0], &pid, sizeof pid), static_cast<ssize_t>(sizeof pid));
+  close(told[0]);
+  close(told[1]);
+  waitpid(between, nullptr, 0);
+  return pid;
+}
+
+bool runs(int pid) {
+  const auto letter = state_letter(pid);
+  return letter && *letter != 'Z';
+}
+
+bool becomes(int pid, const std::string& program) {
+  for (int tries = 0; tries < 3000; ++tries) {
+    const auto identity = identity_of(pid);
+    if (identity && identity->program.ends_with(program)) return true;
+    std::this_thread::sleep_for(10ms);
+  }
+  return false;
+}
+
+TEST(Supervisor, EndsAndStartsAgainWhatCanBeStartedAgain) {
+  Supervised c("sleep 1000");
+  const int pid = c.start();
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
+  EXPECT_FALSE(exists(pid));
+  EXPECT_NE(c.start(), pid);
+}
+
+TEST(Supervisor, DoesNotEndWhatItCannotStartAgain) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("culprit-gone-" + std::to_string(getpid()));
+  std::filesystem::create_directory(folder);
+  std::filesystem::copy_file("/bin/sleep", folder / "node");
+  {
+    Supervised c((folder / "node").string() + " 1000", "test/again/" + std::to_string(getpid()));
+    const int pid = c.start();
+    {
+      const DescriptorsLeft none(0);
+      const Reply reply = c.stop_to_start_again();
+      EXPECT_EQ(reply.outcome, Outcome::kRefused);
+      EXPECT_NE(reply.text.find("Too many open files"), std::string::npos) << reply.text;
+    }
+    EXPECT_TRUE(exists(pid));
+
+    std::ofstream(folder / "no folder") << "";
+    c.supervise(folder / "no folder");  // where no log can be written
+    const Reply no_log = c.stop_to_start_again();
+    EXPECT_EQ(no_log.outcome, Outcome::kRefused);
+    EXPECT_NE(no_log.text.find("cannot be written: Not a directory"), std::string::npos)
+        << no_log.text;
+    EXPECT_TRUE(exists(pid));
+
+    c.supervise();
+    std::filesystem::remove(folder / "node");
+    const Reply no_program = c.stop_to_start_again();
+    EXPECT_EQ(no_program.outcome, Outcome::kRefused);
+    EXPECT_EQ(no_program.text,
+              "c is not ended, for it could not be started again: there is no program '" +
+                  (folder / "node").string() + "', or it is not executable");
+    EXPECT_TRUE(exists(pid));
+
+    std::ofstream(folder / "node") << "#!/no/such/interpreter\n";
+    std::filesystem::permissions(folder / "node", std::filesystem::perms::owner_all);
+    EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kRefused);
+    EXPECT_TRUE(exists(pid));
+    c.stop();
+    EXPECT_FALSE(exists(pid)) << "for good, it is ended all the same";
+  }
+  std::filesystem::remove_all(folder);
+}
+
+// What others started is known by what it ran when it was found first.
+TEST(Supervisor, DoesNotEndAnotherProgramThanTheComponentWas) {
+  Supervised c("sleep 1000");
+  const int node = start_by_others("exec sleep 1000");
+  const int victim = start_by_others("exec tail -f /dev/null");
+  ASSERT_TRUE(becomes(node, "sleep"));
+  ASSERT_TRUE(becomes(victim, "tail"));
+  c.supervisor->adopt(ComponentId(0), node, live_now());
+  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
+  EXPECT_FALSE(runs(node));
+
+  c.supervisor->adopt(ComponentId(0), victim, live_now());
+  c.supervisor->stop({3}, ComponentId(0), Ending::kForGood);
+  const Reply reply = c.reply_to({3});
+  EXPECT_EQ(reply.outcome, Outcome::kRefused);
+  EXPECT_NE(reply.text.find("tail of user"), std::string::npos) << reply.text;
+  EXPECT_NE(reply.text.find("sleep of user"), std::string::npos) << reply.text;
+  EXPECT_TRUE(runs(victim));
+  kill(victim, SIGKILL);
+}
+
+TEST(Supervisor, LeavesTheGroupOfSomebodyElseAloneAndSaysWhatStays) {
+  Supervised c("sleep 1000");
+  const int node = start_by_others("sleep 1000 & wait");
+  std::vector<Relative> started;
+  for (int tries = 0; tries < 3000 && started.empty(); ++tries) {
+    started = descendants_of(node);
+    std::this_thread::sleep_for(10ms);
+  }
+  ASSERT_EQ(started.size(), 1u);
+  const int child = started.front().pid;
+  ASSERT_TRUE(becomes(child, "sleep"));
+  c.supervisor->adopt(ComponentId(0), node, live_now());
+  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  const std::string told = c.trouble();
+  EXPECT_EQ(told, "c was ended, and what it had started goes on: process " + std::to_string(child) +
+                      " (sleep)");
+  EXPECT_FALSE(runs(node));
+  EXPECT_TRUE(runs(child));
+  kill(child, SIGKILL);
+}
+
+// A culprit that was killed had started it: nobody's child any more, and the group is ours.
+TEST(Supervisor, EndsTheGroupThatAnEarlierOneHadMade) {
+  const std::string robot = "test/group/" + std::to_string(getpid());
+  Supervised c("sleep 1000", robot);
+  std::string marks = "CULPRIT_COMPONENT=" + robot + "/c CULPRIT_PROCESS_COUNTS_IN='" +
+                      pid_namespace_of(getpid()) + "' ";
+  const int node = start_by_others("exec env " + marks +
+                                   "sh -c 'export CULPRIT_PROCESS=$$; exec sh -c \"sleep 1000 & "
+                                   "sleep 1000 & wait\"'");
+  std::vector<Relative> started;
+  for (int tries = 0; tries < 3000 && started.size() < 2; ++tries) {
+    started = descendants_of(node);
+    std::this_thread::sleep_for(10ms);
+  }
+  ASSERT_EQ(started.size(), 2u);
+  c.supervise();
+  EXPECT_EQ(c.state(ProcessState::kRunning).pid, node);
+  kill(node, SIGKILL);  // by itself, as a node crashes
+  EXPECT_EQ(c.state(ProcessState::kGone).pid, node);
+  for (const Relative& each : started) {
+    for (int tries = 0; tries < 3000 && runs(each.pid); ++tries) std::this_thread::sleep_for(10ms);
+    EXPECT_FALSE(runs(each.pid)) << "it would live on beside the successor";
+  }
+}
+
+// In another PID namespace the same number is another process.
+TEST(Supervisor, AMarkCountsOnlyWhereItsNumberDoes) {
+  const std::string robot = "test/namespace/" + std::to_string(getpid());
+  Supervised c("sleep 1000", robot);
+  const int stranger = start_by_others(
+      "exec env CULPRIT_COMPONENT=" + robot +
+      "/c CULPRIT_PROCESS_COUNTS_IN='pid:[1]' sh -c 'export CULPRIT_PROCESS=$$; exec sleep 1000'");
+  ASSERT_TRUE(becomes(stranger, "sleep"));
+  c.supervise();
+  EXPECT_NE(c.start(), stranger);
+  EXPECT_TRUE(runs(stranger));
+  kill(stranger, SIGKILL);
+}
+
+// Between fork() and execve() a process carries no mark yet.
+TEST(Supervisor, StartsNothingWhileAnotherCulpritStartsIt) {
+  Supervised c("sleep 1000");
+  std::filesystem::create_directories(c.folder());
+  const int lock = open((c.folder() / "c.log").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  ASSERT_EQ(flock(lock, LOCK_EX), 0);
+  c.supervisor->start({1}, ComponentId(0));
+  const Reply reply = c.reply_to({1});
+  EXPECT_EQ(reply.outcome, Outcome::kUnreachable);
+  EXPECT_NE(reply.text.find("is being started already"), std::string::npos) << reply.text;
+  close(lock);
+  EXPECT_NE(c.start(), 0);
+}
+
+// As on a file system that does not answer: a script whose interpreter is a pipe nobody writes to
+// would hang; so does a program on a stopped server. Here the log is what the child waits for.
+TEST(Supervisor, WaitsForNoFileSystemOfAProgram) {
+  Supervised c("sleep 1000");
+  Program program{{"sleep", "1000"}, {}, c.folder() / "pipe", {}, {}};
+  std::filesystem::create_directories(c.folder());
+  ASSERT_EQ(mkfifo(program.log.c_str(), 0600), 0);  // opening it waits for a reader
+  auto launch = Launch::begin(program, Until::kItRuns);
+  ASSERT_TRUE(launch) << launch.error();
+  pollfd report{launch->descriptor(), POLLIN, 0};
+  EXPECT_EQ(poll(&report, 1, 100), 0) << "it is not there yet, and we are here";
+  const int pid = launch->pid();
+  *launch = std::move(*Launch::begin({{"true"}, {}, c.folder() / "log"}, Until::kItCouldRun));
+  for (int tries = 0; tries < 3000 && runs(pid); ++tries) std::this_thread::sleep_for(10ms);
+  EXPECT_FALSE(runs(pid)) << "what is given up is killed";
+  EXPECT_TRUE(launch->outcome());
+}
+
+TEST(Supervisor, NothingRunsThatCannotBeWatched) {
+  while (waitpid(-1, nullptr, WNOHANG) > 0) continue;  // what other tests gave up
+  Supervised c("sleep 1000");
+  for (const std::size_t left : {0, 1, 2, 3, 4, 5}) {
+    const DescriptorsLeft few(left);
+    c.supervisor->start({4}, ComponentId(0));
+    if (c.reply_to({4}).outcome == Outcome::kDone) {
+      c.stop();
+    } else {
+      EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "there is no child with " << left;
+    }
+  }
+}
+
+TEST(Supervisor, AProcessWhoseMainThreadEndedRuns) {
+  const int pid = fork();
+  if (pid == 0) {
+    std::thread([] { pause(); }).detach();
+    syscall(SYS_exit, 0);  // of this thread alone
+  }
+  for (int tries = 0; tries < 3000 && state_letter(pid) != 'Z'; ++tries)
+    std::this_thread::sleep_for(10ms);
+  const auto process = WatchedProcess::watch(pid, Relation::kAdopted);
+  ASSERT_TRUE(process);
+  EXPECT_EQ(process->state(), ProcessState::kRunning);
+  kill(pid, SIGKILL);
+  siginfo_t info{};
+  waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOWAIT);
+  EXPECT_EQ(process->state(), ProcessState::kGone) << "a zombie is no process";
+  waitpid(pid, nullptr, 0);
+}
+
+TEST(Proc, APythonNodeIsItsScript) {
+  const auto script =
+      std::filesystem::temp_directory_path() / ("culprit-script-" + std::to_string(getpid()));
+  std::ofstream(script) << "sleep 1000; true\n";
+  const int pid = start_by_others("exec bash -e " + script.string());
+  ASSERT_TRUE(becomes(pid, "bash"));
+  EXPECT_EQ(identity_of(pid)->script, script.string());
+  EXPECT_EQ(identity_of(pid)->user, geteuid());
+  kill(-pid, SIGKILL);
+  std::filesystem::remove(script);
+}
+
+TEST(Spawn, PassesArgumentsAsTheyAre) {
+  const auto log =
+      std::filesystem::temp_directory_path() / ("culprit-spawn-" + std::to_string(getpid()));
+  const auto pid = spawn({{"printf", "%s|", "a b", "$HOME", "; rm", "*"}, {}, log});
+  ASSERT_TRUE(pid) << pid.error();
+  waitpid(*pid, nullptr, 0);
+  std::ifstream file(log);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "a b|$HOME|; rm|*|");
+  std::filesystem::remove(log);
+}
+
+TEST(Spawn, TellsTheProgramItsPid) {
+  const auto log =
+      std::filesystem::temp_directory_path() / ("culprit-pid-" + std::to_string(getpid()));
+  const auto pid =
+      spawn({{"sh", "-c", "sh -c 'echo $CULPRIT_PROCESS'"}, {}, log, {}, "CULPRIT_PROCESS"});
+  ASSERT_TRUE(pid) << pid.error();
+  waitpid(*pid, nullptr, 0);
+  std::ifstream file(log);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), std::to_string(*pid) + "\n");
+  std::filesystem::remove(log);
+}
+
+TEST(Spawn, PassesNoCapabilityOn) {
+  if (prctl(PR_CAPBSET_READ, CAP_KILL) != 1) GTEST_SKIP() << "there is none to pass on";
+  __user_cap_header_struct who{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct has[2] = {};
+  ASSERT_EQ(syscall(SYS_capget, &who, has), 0);
+  has[0].inheritable |= 1U << CAP_KILL;
+  if (syscall(SYS_capset, &who, has) != 0 ||
+      prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_RAISE, CAP_KILL, 0, 0) != 0)
+    GTEST_SKIP() << "this user cannot pass it on";
+  const auto log =
+      std::filesystem::temp_directory_path() / ("culprit-capability-" + std::to_string(getpid()));
+  const auto pid = spawn({{"grep", "CapAmb", "/proc/self/status"}, {}, log});
+  prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
+  ASSERT_TRUE(pid) << pid.error();
+  waitpid(*pid, nullptr, 0);
+  std::ifstream file(log);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "CapAmb:\t0000000000000000\n");
+  std::filesystem::remove(log);
+}
+
+TEST(Spawn, SaysWhyAProgramCannotBeStarted) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("culprit-spawn-" + std::to_string(getpid()));
+  std::filesystem::create_directory(folder);
+  const auto bad = folder / "bad";
+  std::ofstream(bad) << "#!/no/such/interpreter\n";
+  std::filesystem::permissions(bad, std::filesystem::perms::owner_all);
+  const auto pid = spawn({{bad}, {}, folder / "log"});
+  ASSERT_FALSE(pid);
+  EXPECT_EQ(pid.error(), "cannot start '" + bad.string() + "': No such file or directory");
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace culprit::owners
