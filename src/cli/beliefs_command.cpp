@@ -2,11 +2,11 @@
 
 #include <fmt/core.h>
 
+#include "base/text_file.h"
 #include "cli/commands.h"
 #include "cli/journal_file.h"
 #include "journal/session.h"
 #include "journal/writer.h"
-#include "language/text_file.h"
 
 namespace culprit::cli {
 namespace {

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "base/text_file.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/demo_setup.h"
@@ -19,7 +20,6 @@
 #include "cli/sunset_demo.h"
 #include "cli/web_service.h"
 #include "cli/what_if_route.h"
-#include "language/text_file.h"
 #include "web/fault_routes.h"
 #include "web/live_routes.h"
 #include "web/name_routes.h"

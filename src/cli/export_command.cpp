@@ -3,9 +3,9 @@
 
 #include <fmt/core.h>
 
+#include "base/text_file.h"
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "language/text_file.h"
 #include "rule_json/to_json.h"
 
 namespace culprit::cli {

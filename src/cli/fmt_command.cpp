@@ -3,11 +3,11 @@
 
 #include <fmt/core.h>
 
+#include "base/text_file.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/layout_diff.h"
 #include "language/formatter.h"
-#include "language/text_file.h"
 
 namespace culprit::cli {
 namespace {

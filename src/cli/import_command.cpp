@@ -4,9 +4,9 @@
 
 #include <fmt/core.h>
 
+#include "base/text_file.h"
 #include "cli/commands.h"
 #include "language/import/importer.h"
-#include "language/text_file.h"
 #include "rule_json/from_json.h"
 
 namespace culprit::cli {

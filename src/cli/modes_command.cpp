@@ -2,9 +2,9 @@
 
 #include <fmt/core.h>
 
+#include "base/text_file.h"
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "language/text_file.h"
 #include "modes/mode_manager.h"
 #include "modes/read_model.h"
 

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "plan/planner.h"
 
 namespace culprit::cli {

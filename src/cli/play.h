@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/expected.h"
 #include "exemplars/sunset/scenario.h"
-#include "language/expected.h"
 
 namespace culprit::cli {
 

@@ -7,11 +7,11 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
+#include "base/text_file.h"
 #include "cli/commands.h"
 #include "cli/paths.h"
 #include "cli/rule_file.h"
 #include "cli/unit_settings.h"
-#include "language/text_file.h"
 #include "ros2/options.h"
 #include "ros2/policy.h"
 

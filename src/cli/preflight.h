@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/time.h"
 #include "language/source.h"
-#include "robot/time.h"
 #include "ros2/survey.h"
 
 namespace culprit::cli {

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "base/time.h"
 #include "cli/host_claim.h"
 #include "journal/standing_orders.h"
 #include "language/rule_set.h"
-#include "robot/time.h"
 #include "ros2/link.h"
 
 namespace culprit::cli {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit::cli {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "robot/time.h"
+#include "base/time.h"
 
 namespace culprit::cli {
 

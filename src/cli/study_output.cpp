@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "language/text_file.h"
+#include "base/text_file.h"
 #include "study/csv.h"
 #include "study/json.h"
 #include "study/plot/plots.h"

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "study/findings.h"
 #include "study/suave/campaign.h"
 #include "study/suave/validation.h"

@@ -4,9 +4,9 @@
 #include <csignal>
 #include <sys/wait.h>
 
+#include "base/text_file.h"
 #include "cli/paths.h"
 #include "cli/progress.h"
-#include "language/text_file.h"
 #include "owners/spawn.h"
 
 namespace culprit::cli {

@@ -9,9 +9,9 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "base/text_file.h"
 #include "cli/study_output.h"
 #include "cli/study_runs.h"
-#include "language/text_file.h"
 #include "study/shards/suave_record.h"
 #include "study/suave/fit.h"
 #include "study/suave/settings_json.h"

@@ -6,9 +6,9 @@
 
 #include <fmt/core.h>
 
+#include "base/text_file.h"
 #include "cli/demo_setup.h"
 #include "cli/embedded_rules.h"
-#include "language/text_file.h"
 
 namespace culprit::cli {
 namespace {

@@ -6,10 +6,10 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "base/text_file.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/demo_setup.h"
-#include "language/text_file.h"
 
 namespace culprit::cli {
 namespace {

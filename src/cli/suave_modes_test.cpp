@@ -1,8 +1,8 @@
 // The mode file of the live SUAVE says what its model says.
 #include <gtest/gtest.h>
 
+#include "base/text_file.h"
 #include "exemplars/suave/model/mission.h"
-#include "language/text_file.h"
 #include "modes/read_model.h"
 
 namespace culprit::cli {

@@ -15,8 +15,8 @@
 #include <thread>
 #include <vector>
 
-#include "language/expected.h"
-#include "robot/time.h"
+#include "base/expected.h"
+#include "base/time.h"
 
 namespace culprit::cli {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "language/units.h"
+#include "base/units.h"
 #include "ros2/domain_lock.h"
 
 namespace culprit::cli {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "web/routes.h"
 
 namespace culprit::web {

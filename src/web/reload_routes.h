@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "web/routes.h"
 
 namespace culprit::web {

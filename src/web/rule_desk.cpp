@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "language/text_file.h"
+#include "base/text_file.h"
 
 namespace culprit::web {
 namespace {

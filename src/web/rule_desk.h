@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit::web {
 

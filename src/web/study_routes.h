@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "web/routes.h"
 
 namespace culprit::web {

@@ -10,7 +10,7 @@
 
 #include "bag/bag_contents.h"
 #include "bag/decompression.h"
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit::bag {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 struct ZSTD_DCtx_s;
 

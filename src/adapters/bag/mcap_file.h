@@ -12,7 +12,7 @@
 #include "bag/bag_contents.h"
 #include "bag/byte_source.h"
 #include "bag/decompression.h"
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit::bag {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "robot/time.h"
+#include "base/time.h"
 
 namespace culprit::journal {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 struct sqlite3;
 struct sqlite3_stmt;

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit::journal {
 

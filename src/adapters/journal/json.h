@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/expected.h"
 #include "knowledge/event.h"
-#include "language/expected.h"
 #include "robot/command.h"
 
 namespace culprit::journal {

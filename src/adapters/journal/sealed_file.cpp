@@ -6,8 +6,8 @@
 #include <iterator>
 #include <sys/stat.h>
 
+#include "base/text_file.h"
 #include "journal/entry.h"
-#include "language/text_file.h"
 
 namespace culprit::journal {
 namespace {

@@ -1,10 +1,10 @@
 // One run of culprit: all that the manager was made with, so that a replay can make it anew.
 #pragma once
 
+#include "base/time.h"
 #include "journal/json.h"
 #include "journal/learned.h"
 #include "language/rule_set.h"
-#include "robot/time.h"
 
 namespace culprit::journal {
 

@@ -15,8 +15,8 @@
 #include <span>
 #include <vector>
 
+#include "base/expected.h"
 #include "journal/bytes.h"
-#include "language/expected.h"
 #include "language/rule_set.h"
 #include "robot/observation.h"
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "language/value.h"
+#include "base/value.h"
 
 namespace culprit::modes {
 

@@ -23,7 +23,7 @@
 
 #include <string>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "modes/model.h"
 
 namespace culprit::modes {

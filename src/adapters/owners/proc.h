@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "robot/time.h"
+#include "base/time.h"
 
 namespace culprit::owners {
 

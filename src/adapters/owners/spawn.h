@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "owners/file_descriptor.h"
 
 namespace culprit::owners {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "owners/file_descriptor.h"
 #include "robot/observation.h"
 

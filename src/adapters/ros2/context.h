@@ -19,7 +19,7 @@
 #include <set>
 #include <string>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "ros2/discovery_info.h"
 #include "ros2/executor.h"
 #include "ros2/graph.h"

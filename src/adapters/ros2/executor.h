@@ -20,7 +20,7 @@
 #include <thread>
 #include <utility>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit::ros2 {
 

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "language/expected.h"
-#include "language/value.h"
+#include "base/expected.h"
+#include "base/value.h"
 #include "ros2/cdr.h"
 #include "ros2/message_library.h"
 

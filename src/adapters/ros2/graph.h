@@ -28,7 +28,7 @@
 #include <variant>
 #include <vector>
 
-#include "robot/observation.h"
+#include "base/endpoint_kind.h"
 #include "ros2/discovery_info.h"
 #include "ros2/names.h"
 #include "ros2/participant.h"

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "language/expected.h"
-#include "robot/time.h"
+#include "base/expected.h"
+#include "base/time.h"
 #include "ros2/participant.h"
 #include "ros2/timer.h"
 

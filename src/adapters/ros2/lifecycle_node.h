@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "ros2/lifecycle.h"
 #include "ros2/node.h"
 

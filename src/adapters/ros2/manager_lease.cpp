@@ -10,7 +10,7 @@
 #include <openssl/evp.h>
 #include <openssl/hmac.h>
 
-#include "language/ros_names.h"
+#include "base/ros_names.h"
 #include "ros2/service_mapping.h"
 
 namespace culprit::ros2 {

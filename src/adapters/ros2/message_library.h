@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "ros2/message_definition.h"
 
 namespace culprit::ros2 {

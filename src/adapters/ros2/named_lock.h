@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit::ros2 {
 

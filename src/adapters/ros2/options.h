@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "ros2/discovery_info.h"
 #include "ros2/security.h"
 

@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "language/expected.h"
-#include "language/value.h"
+#include "base/expected.h"
+#include "base/value.h"
 #include "ros2/messages.h"
 
 namespace culprit::ros2 {

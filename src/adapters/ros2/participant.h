@@ -20,7 +20,7 @@
 #include <variant>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "ros2/cdr.h"
 #include "ros2/datagram_filter.h"
 #include "ros2/datagram_sources.h"

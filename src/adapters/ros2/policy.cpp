@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "language/ros_names.h"
+#include "base/ros_names.h"
 #include "ros2/component_needs.h"
 #include "ros2/diagnostics_reading.h"
 #include "ros2/discovery_info.h"

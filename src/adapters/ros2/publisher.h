@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "ros2/cdr.h"
 #include "ros2/context.h"
 #include "ros2/participant.h"

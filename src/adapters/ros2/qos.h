@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "language/units.h"
+#include "base/units.h"
 
 namespace culprit::ros2 {
 

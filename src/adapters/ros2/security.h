@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit::ros2 {
 

@@ -28,8 +28,8 @@
 #include <utility>
 #include <vector>
 
-#include "language/expected.h"
-#include "language/units.h"
+#include "base/expected.h"
+#include "base/units.h"
 #include "ros2/cdr.h"
 #include "ros2/context.h"
 #include "ros2/executor.h"

@@ -16,7 +16,7 @@
 #include <string>
 #include <variant>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "ros2/cdr.h"
 #include "ros2/context.h"
 #include "ros2/executor.h"

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "language/units.h"
+#include "base/units.h"
 #include "ros2/executor.h"
 
 namespace culprit::ros2 {

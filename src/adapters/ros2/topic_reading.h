@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "base/time.h"
 #include "language/live_inventory.h"
-#include "robot/time.h"
 #include "ros2/field_reader.h"
 #include "ros2/subscription.h"
 

@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "robot/time.h"
+#include "base/time.h"
 
 namespace culprit::simulation {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <variant>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "simulation/topic.h"
 
 namespace culprit::simulation {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "base/ros_names.h"
 #include "language/evaluate.h"
-#include "language/ros_names.h"
 
 namespace culprit::execute {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <deque>
 
-#include "robot/time.h"
+#include "base/time.h"
 
 namespace culprit {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "language/ids.h"
-#include "robot/time.h"
+#include "base/ids.h"
+#include "base/time.h"
 
 namespace culprit {
 

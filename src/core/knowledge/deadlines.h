@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "robot/time.h"
+#include "base/time.h"
 
 namespace culprit {
 

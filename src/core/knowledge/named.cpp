@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/ros_names.h"
 #include "language/diagnostic.h"
-#include "language/ros_names.h"
 
 namespace culprit {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <vector>
 
-#include "language/ids.h"
-#include "robot/time.h"
+#include "base/ids.h"
+#include "base/time.h"
 
 namespace culprit {
 

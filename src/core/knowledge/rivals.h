@@ -12,8 +12,8 @@
 #include <map>
 #include <string>
 
-#include "language/ids.h"
-#include "robot/time.h"
+#include "base/ids.h"
+#include "base/time.h"
 
 namespace culprit {
 

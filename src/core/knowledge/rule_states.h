@@ -12,9 +12,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/time.h"
 #include "knowledge/attempt.h"
 #include "language/rule_set.h"
-#include "robot/time.h"
 
 namespace culprit {
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
+#include "base/time.h"
 #include "language/rule_set.h"
-#include "robot/time.h"
 
 namespace culprit {
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "base/time.h"
 #include "language/evaluate.h"
 #include "language/rule_set.h"
-#include "robot/time.h"
 
 namespace culprit {
 

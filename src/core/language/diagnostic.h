@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/closest.h"
 #include "language/source.h"
 
 namespace culprit {
@@ -97,10 +98,6 @@ enum class Colour : std::uint8_t { kOff, kOn };
 // As a compiler shows it: place and cause, the line with carets under the span, the remedy.
 std::string render(const Diagnostic& diagnostic, const Source& source,
                    Colour colour = Colour::kOff);
-
-// The known name that `name` was probably meant to be; empty if none is near.
-// Near is an edit distance of at most a third of the longer name.
-std::string closest(std::string_view name, const std::vector<std::string_view>& known);
 
 // The edit that puts the name found by closest() in its place; nothing if none was found.
 std::optional<Edit> replacement(Span span, const std::string& near);

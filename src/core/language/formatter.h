@@ -12,8 +12,8 @@
 
 #include <string>
 
+#include "base/expected.h"
 #include "language/diagnostic.h"
-#include "language/expected.h"
 #include "language/source.h"
 
 namespace culprit {

@@ -4,9 +4,9 @@
 #include <set>
 #include <unordered_map>
 
+#include "base/ros_names.h"
 #include "language/occurrences.h"
 #include "language/parser.h"
-#include "language/ros_names.h"
 
 namespace culprit {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "language/ros_names.h"
+#include "base/ros_names.h"
 
 namespace culprit {
 namespace {

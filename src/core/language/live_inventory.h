@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/value.h"
 #include "language/rule_set.h"
-#include "language/value.h"
 
 namespace culprit {
 

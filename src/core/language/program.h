@@ -15,9 +15,9 @@
 #include <string_view>
 #include <vector>
 
-#include "language/ids.h"
-#include "language/units.h"
-#include "language/value.h"
+#include "base/ids.h"
+#include "base/units.h"
+#include "base/value.h"
 
 namespace culprit {
 

@@ -10,10 +10,10 @@
 #include <variant>
 #include <vector>
 
-#include "language/ids.h"
+#include "base/ids.h"
+#include "base/units.h"
 #include "language/program.h"
 #include "language/syntax.h"
-#include "language/units.h"
 
 namespace culprit {
 

@@ -6,7 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
+#include "base/text_file.h"
 
 namespace culprit {
 
@@ -27,7 +28,7 @@ class Source {
  public:
   // The largest rule file that is read, in bytes. Far above any real one; it bounds what a hostile
   // file can cost.
-  static constexpr std::size_t kMaxSize = 64u << 20;
+  static constexpr std::size_t kMaxSize = kMaxTextSize;
 
   // `name` is what messages call it, usually its path. A UTF-8 byte order mark at the start is
   // dropped.

@@ -11,9 +11,9 @@
 #include <variant>
 #include <vector>
 
+#include "base/units.h"
+#include "base/value.h"
 #include "language/source.h"
-#include "language/units.h"
-#include "language/value.h"
 
 namespace culprit::syntax {
 

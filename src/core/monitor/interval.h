@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "language/units.h"
+#include "base/units.h"
 
 namespace culprit::monitor {
 

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/time.h"
 #include "monitor/ring.h"
-#include "robot/time.h"
 
 namespace culprit::monitor {
 

@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "base/time.h"
 #include "monitor/ring.h"
-#include "robot/time.h"
 
 namespace culprit::monitor {
 

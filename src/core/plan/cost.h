@@ -6,7 +6,7 @@
 // in the rule set.
 #pragma once
 
-#include "language/units.h"
+#include "base/units.h"
 
 namespace culprit::plan {
 

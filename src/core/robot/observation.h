@@ -9,10 +9,11 @@
 #include <string>
 #include <variant>
 
-#include "language/ids.h"
-#include "language/value.h"
+#include "base/endpoint_kind.h"
+#include "base/ids.h"
+#include "base/time.h"
+#include "base/value.h"
 #include "robot/order.h"
-#include "robot/time.h"
 
 namespace culprit {
 
@@ -34,8 +35,6 @@ struct NamesakesSeen {
   std::string node;
   int others = 0;
 };
-
-enum class EndpointKind : std::uint8_t { kPublisher, kSubscriber, kServer, kClient };
 
 // A node offers or uses a topic (publisher, subscriber) or a service (server, client). `name` is
 // the ROS name of it.

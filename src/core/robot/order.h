@@ -10,8 +10,8 @@
 #include <string>
 #include <variant>
 
-#include "language/ids.h"
-#include "language/units.h"
+#include "base/ids.h"
+#include "base/units.h"
 
 namespace culprit {
 

@@ -10,8 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/expected.h"
 #include "knowledge/event.h"
-#include "language/expected.h"
 #include "study/timeline.h"
 
 namespace culprit::study {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdio>
 
-#include "language/ros_names.h"
+#include "base/ros_names.h"
 
 namespace culprit::lsp {
 namespace {

@@ -1,6 +1,6 @@
 #include "lsp/live_names.h"
 
-#include "language/ros_names.h"
+#include "base/ros_names.h"
 
 namespace culprit::lsp {
 

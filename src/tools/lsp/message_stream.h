@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit::lsp {
 

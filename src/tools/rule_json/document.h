@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "rule_json/spelling.h"
 
 namespace culprit::rule_json {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit::rule_json {
 

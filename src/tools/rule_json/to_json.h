@@ -2,8 +2,8 @@
 // its parts, every comment, every blank line. Layout is left out; there is one canonical one.
 #pragma once
 
+#include "base/expected.h"
 #include "language/diagnostic.h"
-#include "language/expected.h"
 #include "language/source.h"
 #include "rule_json/spelling.h"
 

@@ -9,7 +9,7 @@
 // there are no levels, no strategies and no impacts.
 #pragma once
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "language/import/foreign_rules.h"
 #include "language/source.h"
 

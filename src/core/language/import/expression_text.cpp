@@ -1,6 +1,6 @@
 #include "language/import/expression_text.h"
 
-#include "language/value.h"
+#include "base/value.h"
 
 namespace culprit::foreign {
 namespace {

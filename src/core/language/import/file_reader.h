@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "language/import/foreign_rules.h"
 #include "language/source.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "language/import/writer.h"
 #include "language/source.h"
 

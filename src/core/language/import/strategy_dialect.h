@@ -10,7 +10,7 @@
 // paper (NON_CRITICAL, WARNING, ERROR; actions without action_) are understood too.
 #pragma once
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "language/import/foreign_rules.h"
 #include "language/source.h"
 

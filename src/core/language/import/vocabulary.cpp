@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/ros_names.h"
 #include "language/line_reader.h"
-#include "language/ros_names.h"
 
 namespace culprit::foreign {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/value.h"
 #include "language/import/vocabulary.h"
-#include "language/value.h"
 
 namespace culprit::foreign {
 namespace {

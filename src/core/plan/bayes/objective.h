@@ -13,7 +13,7 @@
 
 #include <string_view>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit {
 

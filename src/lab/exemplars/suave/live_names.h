@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "language/units.h"
+#include "base/units.h"
 #include "ros2/qos.h"
 
 namespace culprit::suave {

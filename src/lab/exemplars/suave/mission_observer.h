@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/time.h"
 #include "exemplars/suave/live_names.h"
-#include "robot/time.h"
 #include "ros2/node.h"
 
 namespace culprit::suave {

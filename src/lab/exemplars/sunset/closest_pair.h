@@ -6,7 +6,7 @@
 #include <deque>
 #include <optional>
 
-#include "language/units.h"
+#include "base/units.h"
 #include "ros2/messages.h"
 
 namespace culprit::sunset {

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "robot/time.h"
+#include "base/time.h"
 
 namespace culprit::sunset {
 

@@ -18,10 +18,10 @@
 #include <thread>
 #include <vector>
 
+#include "base/expected.h"
 #include "exemplars/sunset/node_control.h"
 #include "exemplars/sunset/observer.h"
 #include "exemplars/sunset/scenario.h"
-#include "language/expected.h"
 #include "ros2/node.h"
 #include "ros2/options.h"
 #include "ros2/timer.h"

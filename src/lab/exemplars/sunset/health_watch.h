@@ -11,8 +11,8 @@
 #include <optional>
 #include <string>
 
+#include "base/time.h"
 #include "exemplars/sunset/members.h"
-#include "robot/time.h"
 #include "ros2/lifecycle.h"
 
 namespace culprit::sunset {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "language/expected.h"
-#include "language/units.h"
+#include "base/expected.h"
+#include "base/units.h"
 #include "ros2/messages.h"
 #include "ros2/node.h"
 #include "ros2/timer.h"

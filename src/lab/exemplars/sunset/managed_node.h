@@ -22,11 +22,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/expected.h"
 #include "exemplars/sunset/heartbeat.h"
 #include "exemplars/sunset/members.h"
 #include "exemplars/sunset/node_options.h"
 #include "exemplars/sunset/parameter_file.h"
-#include "language/expected.h"
 #include "ros2/executor.h"
 #include "ros2/lifecycle_node.h"
 

@@ -2,7 +2,7 @@
 // in the process, heartbeats and services included, as it does there.
 #pragma once
 
-#include "language/units.h"
+#include "base/units.h"
 
 namespace culprit::sunset {
 

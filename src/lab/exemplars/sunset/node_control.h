@@ -9,8 +9,8 @@
 #include <memory>
 #include <string>
 
-#include "language/expected.h"
-#include "language/value.h"
+#include "base/expected.h"
+#include "base/value.h"
 #include "ros2/lifecycle.h"
 #include "ros2/node.h"
 #include "ros2/services.h"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "language/units.h"
+#include "base/units.h"
 
 namespace culprit::sunset {
 

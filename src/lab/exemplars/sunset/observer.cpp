@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "base/value.h"
 #include "exemplars/sunset/scene.h"
-#include "language/value.h"
 #include "robot/inbox.h"
 
 namespace culprit::sunset {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "base/expected.h"
 #include "exemplars/sunset/downtime.h"
 #include "exemplars/sunset/health_watch.h"
 #include "exemplars/sunset/members.h"
-#include "language/expected.h"
 #include "ros2/node.h"
 
 namespace culprit::sunset {

@@ -13,8 +13,8 @@
 #include <string>
 #include <string_view>
 
-#include "language/expected.h"
-#include "language/value.h"
+#include "base/expected.h"
+#include "base/value.h"
 
 namespace culprit::sunset {
 

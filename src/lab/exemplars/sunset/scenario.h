@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "base/expected.h"
+#include "base/value.h"
 #include "exemplars/sunset/members.h"
-#include "language/expected.h"
 #include "language/rule_set.h"
-#include "language/value.h"
 
 namespace culprit::sunset {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
-#include "language/text_file.h"
+#include "base/text_file.h"
 #include "study/markup.h"
 #include "study/plot/distribution_plot.h"
 #include "study/plot/learning_plot.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "study/findings.h"
 #include "study/plot/svg.h"
 

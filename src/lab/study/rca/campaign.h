@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "plan/bayes/objective.h"
 #include "study/campaign.h"
 #include "study/rca/episode.h"

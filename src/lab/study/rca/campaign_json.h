@@ -12,7 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "study/rca/campaign.h"
 
 namespace culprit::study::rca {

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "study/rca/scenario.h"
 
 namespace culprit::study::rca {

@@ -6,9 +6,9 @@
 #include <map>
 #include <string>
 
-#include "language/value.h"
+#include "base/time.h"
+#include "base/value.h"
 #include "plan/paper_planner.h"
-#include "robot/time.h"
 
 namespace culprit::study {
 

@@ -19,8 +19,8 @@
 
 #include <memory>
 
+#include "base/expected.h"
 #include "knowledge/signal_store.h"
-#include "language/expected.h"
 #include "manager/managing_system.h"
 #include "study/reference/analysis.h"
 #include "study/reference/execution.h"

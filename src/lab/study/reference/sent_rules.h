@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "language/ids.h"
+#include "base/ids.h"
 
 namespace culprit::study::reference {
 

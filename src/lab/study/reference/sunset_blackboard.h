@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "language/value.h"
+#include "base/value.h"
 
 namespace culprit::study {
 

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "language/rule_set.h"
 #include "study/reference/options.h"
 

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "study/campaign_result.h"
 #include "study/suave/campaign.h"
 

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "study/campaign.h"
 #include "study/run_metrics.h"
 

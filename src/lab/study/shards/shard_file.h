@@ -20,7 +20,7 @@
 #include <string>
 #include <variant>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "study/shards/shard_kind.h"
 #include "study/shards/shard_lines.h"
 

@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "language/text_file.h"
+#include "base/text_file.h"
 #include "study/suave/run.h"
 
 namespace culprit::study {

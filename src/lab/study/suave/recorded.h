@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "study/statistics/moments.h"
 
 namespace culprit::study {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit::study {
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "language/rule_set.h"
 #include "manager/manager.h"
 #include "study/campaign.h"

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/text_file.h"
 #include "exemplars/sunset/model/sunset_model.h"
 #include "language/checker.h"
-#include "language/text_file.h"
 #include "manager/runtime.h"
 #include "plan/bayes/bayes_planner.h"
 #include "simulation/simulated_robot.h"

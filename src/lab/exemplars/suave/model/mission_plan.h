@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "language/expected.h"
+#include "base/expected.h"
 #include "simulation/fault.h"
 
 namespace culprit::suave::model {

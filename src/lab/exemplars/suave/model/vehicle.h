@@ -10,8 +10,8 @@
 
 #include <array>
 
+#include "base/units.h"
 #include "exemplars/suave/model/position.h"
-#include "language/units.h"
 #include "simulation/random.h"
 
 namespace culprit::suave::model {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "language/units.h"
-#include "language/value.h"
+#include "base/units.h"
+#include "base/value.h"
 
 namespace culprit::sunset::model {
 

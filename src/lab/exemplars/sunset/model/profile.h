@@ -9,8 +9,8 @@
 #include <span>
 #include <string_view>
 
-#include "language/expected.h"
-#include "language/units.h"
+#include "base/expected.h"
+#include "base/units.h"
 #include "simulation/node.h"
 
 namespace culprit::sunset::model {

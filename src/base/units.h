@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "language/expected.h"
+#include "base/expected.h"
 
 namespace culprit {
 

@@ -1,4 +1,4 @@
-#include "language/text_file.h"
+#include "base/text_file.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -9,8 +9,6 @@
 #include <iostream>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include "language/source.h"
 
 namespace culprit {
 namespace {
@@ -24,8 +22,7 @@ Expected<std::string> read_all(std::istream& in, const std::string& path) {
   char block[1 << 16];
   while (in.read(block, sizeof block) || in.gcount() > 0) {
     text.append(block, static_cast<std::size_t>(in.gcount()));
-    if (text.size() > Source::kMaxSize)
-      return Error{"'" + path + "' is larger than 64 MiB; is it a rule file?"};
+    if (text.size() > kMaxTextSize) return Error{"'" + path + "' is larger than 64 MiB"};
   }
   if (in.bad() || !in.eof()) return Error{"cannot read '" + path + "': is it a directory?"};
   return text;

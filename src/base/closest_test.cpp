@@ -1,4 +1,4 @@
-#include "language/diagnostic.h"
+#include "base/closest.h"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-#include "language/units.h"
+#include "base/units.h"
 
 namespace culprit {
 

@@ -1,9 +1,9 @@
-#include "language/ros_names.h"
+#include "base/ros_names.h"
 
 #include <algorithm>
 #include <cctype>
 
-#include "language/diagnostic.h"
+#include "base/closest.h"
 
 namespace culprit {
 namespace {

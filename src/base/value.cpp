@@ -1,4 +1,4 @@
-#include "language/value.h"
+#include "base/value.h"
 
 #include <charconv>
 #include <cmath>

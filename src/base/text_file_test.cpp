@@ -1,5 +1,5 @@
 // Files that people wrote are replaced whole or not at all.
-#include "language/text_file.h"
+#include "base/text_file.h"
 
 #include <csignal>
 #include <filesystem>
