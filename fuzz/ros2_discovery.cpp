@@ -11,9 +11,9 @@
 #include <set>
 #include <string>
 
+#include "link/manager_lease.h"
 #include "ros2/discovery_info.h"
 #include "ros2/graph.h"
-#include "ros2/manager_lease.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "knowledge/knowledge.h"
-#include "ros2/link.h"
+#include "link/link.h"
 
 namespace culprit::cli {
 

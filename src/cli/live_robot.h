@@ -4,10 +4,10 @@
 #include <memory>
 #include <optional>
 
+#include "link/link.h"
 #include "owners/supervisor.h"
 #include "robot/inbox.h"
 #include "robot/robot.h"
-#include "ros2/link.h"
 
 namespace culprit::cli {
 

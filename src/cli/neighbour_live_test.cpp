@@ -17,9 +17,9 @@
 #include "cli/test_program.h"
 #include "exemplars/sunset/node_process.h"
 #include "journal/standing_orders.h"
+#include "link/survey.h"
 #include "robot/inbox.h"
 #include "ros2/options.h"
-#include "ros2/survey.h"
 
 namespace culprit::cli {
 namespace {

@@ -12,8 +12,8 @@
 #include "cli/paths.h"
 #include "cli/rule_file.h"
 #include "cli/unit_settings.h"
+#include "link/policy.h"
 #include "ros2/options.h"
-#include "ros2/policy.h"
 
 namespace culprit::cli {
 namespace {

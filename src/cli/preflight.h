@@ -12,7 +12,7 @@
 
 #include "base/time.h"
 #include "language/source.h"
-#include "ros2/survey.h"
+#include "link/survey.h"
 
 namespace culprit::cli {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "ros2/survey.h"
+#include "link/survey.h"
 
 namespace culprit::cli {
 

@@ -15,7 +15,7 @@
 #include "cli/host_claim.h"
 #include "journal/standing_orders.h"
 #include "language/rule_set.h"
-#include "ros2/link.h"
+#include "link/link.h"
 
 namespace culprit::cli {
 

@@ -11,9 +11,9 @@
 
 #include "bag/bag_contents.h"
 #include "language/rule_set.h"
+#include "link/diagnostics_reading.h"
 #include "robot/component_binding.h"
 #include "robot/observation.h"
-#include "ros2/diagnostics_reading.h"
 #include "ros2/field_reader.h"
 
 namespace culprit::bag {

@@ -4,7 +4,7 @@
 #include <random>
 #include <utility>
 
-#include "robot/inbox.h"
+#include "base/live_clock.h"
 
 namespace culprit::ros2 {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "robot/inbox.h"
+#include "base/live_clock.h"
 #include "ros2/hearing.h"
 #include "ros2/live_test.h"
 #include "ros2/test_datagram.h"

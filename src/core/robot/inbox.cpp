@@ -14,10 +14,6 @@ Steady::time_point as_steady(Time time) {
 
 }  // namespace
 
-Time live_now() {
-  return Time(std::chrono::duration_cast<Duration>(Steady::now().time_since_epoch()));
-}
-
 void Inbox::put(Observation observation, Urgency urgency) {
   bool wake = false;
   {

@@ -6,12 +6,10 @@
 #include <mutex>
 #include <vector>
 
+#include "base/live_clock.h"
 #include "robot/observation.h"
 
 namespace culprit {
-
-// The clock of a live robot: monotonic, so that no setting of the wall clock looks like a silence.
-Time live_now();
 
 // Whether somebody should act on it at once. A sample of a topic that speaks anyway changes nothing
 // by itself: such observations are handed over together, a little later, so that thousands a second

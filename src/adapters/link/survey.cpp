@@ -1,4 +1,4 @@
-#include "ros2/survey.h"
+#include "link/survey.h"
 
 namespace culprit::ros2 {
 namespace {

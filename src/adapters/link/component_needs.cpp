@@ -1,4 +1,4 @@
-#include "ros2/component_needs.h"
+#include "link/component_needs.h"
 
 namespace culprit::ros2 {
 namespace {

@@ -19,16 +19,16 @@
 #include <vector>
 
 #include "language/rule_set.h"
+#include "link/component_link.h"
+#include "link/diagnostics_watch.h"
+#include "link/manager_lease.h"
+#include "link/topic_watch.h"
 #include "robot/command.h"
 #include "robot/component_binding.h"
 #include "robot/inbox.h"
-#include "ros2/component_link.h"
-#include "ros2/diagnostics_watch.h"
 #include "ros2/hearing.h"
-#include "ros2/manager_lease.h"
 #include "ros2/node.h"
 #include "ros2/timer.h"
-#include "ros2/topic_watch.h"
 
 namespace culprit::ros2 {
 

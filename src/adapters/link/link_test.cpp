@@ -1,4 +1,4 @@
-#include "ros2/link.h"
+#include "link/link.h"
 
 #include <algorithm>
 #include <arpa/inet.h>

@@ -1,4 +1,4 @@
-#include "ros2/topic_watch.h"
+#include "link/topic_watch.h"
 
 #include <algorithm>
 

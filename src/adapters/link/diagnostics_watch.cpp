@@ -1,4 +1,4 @@
-#include "ros2/diagnostics_watch.h"
+#include "link/diagnostics_watch.h"
 
 namespace culprit::ros2 {
 

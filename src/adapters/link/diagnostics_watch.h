@@ -5,8 +5,8 @@
 #include <string>
 #include <unordered_map>
 
+#include "link/diagnostics_reading.h"
 #include "robot/inbox.h"
-#include "ros2/diagnostics_reading.h"
 #include "ros2/subscription.h"
 
 namespace culprit::ros2 {

@@ -1,4 +1,4 @@
-#include "ros2/topic_reading.h"
+#include "link/topic_reading.h"
 
 #include <algorithm>
 

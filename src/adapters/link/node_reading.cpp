@@ -1,4 +1,4 @@
-#include "ros2/node_reading.h"
+#include "link/node_reading.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "ros2/component_link.h"
+#include "link/component_link.h"
 
 #include "ros2/lifecycle.h"
 #include "ros2/parameter_store.h"

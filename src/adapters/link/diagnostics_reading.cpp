@@ -1,4 +1,4 @@
-#include "ros2/diagnostics_reading.h"
+#include "link/diagnostics_reading.h"
 
 namespace culprit::ros2 {
 

@@ -1,6 +1,6 @@
 // The rights of whole rule files are golden files; that culprit gets along with them on a secured
 // domain, and with nothing less, is shown by cli/secured_live_test.cpp.
-#include "ros2/policy.h"
+#include "link/policy.h"
 
 #include <cstdlib>
 #include <fstream>
@@ -52,7 +52,7 @@ TEST(Policy, IsGoldenForTheRobotsOfTheExamples) {
     ASSERT_TRUE(source) << source.error();
     const RuleSet rules = *check(*source).rules;
     const Rights rights = rights_of(rules, kSelf);
-    const std::string golden = "src/adapters/ros2/golden/" + robot;
+    const std::string golden = "src/adapters/link/golden/" + robot;
     expect_golden(golden + ".policy.xml", sros2_policy(rights, kSelf, "/culprit"));
     expect_golden(
         golden + ".permissions.xml",

@@ -1,4 +1,4 @@
-#include "ros2/manager_lease.h"
+#include "link/manager_lease.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

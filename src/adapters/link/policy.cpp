@@ -1,13 +1,13 @@
-#include "ros2/policy.h"
+#include "link/policy.h"
 
 #include <algorithm>
 
 #include "base/ros_names.h"
-#include "ros2/component_needs.h"
-#include "ros2/diagnostics_reading.h"
+#include "link/component_needs.h"
+#include "link/diagnostics_reading.h"
+#include "link/manager_lease.h"
 #include "ros2/discovery_info.h"
 #include "ros2/hearing.h"
-#include "ros2/manager_lease.h"
 
 namespace culprit::ros2 {
 namespace {

@@ -16,9 +16,9 @@
 #include <string>
 
 #include "language/rule_set.h"
+#include "link/component_needs.h"
 #include "robot/command.h"
 #include "robot/inbox.h"
-#include "ros2/component_needs.h"
 #include "ros2/service_client.h"
 #include "ros2/subscription.h"
 

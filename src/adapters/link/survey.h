@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "language/live_inventory.h"
+#include "link/node_reading.h"
+#include "link/topic_reading.h"
 #include "ros2/node.h"
-#include "ros2/node_reading.h"
-#include "ros2/topic_reading.h"
 
 namespace culprit::ros2 {
 

@@ -1,0 +1,12 @@
+#include "base/live_clock.h"
+
+#include <chrono>
+
+namespace culprit {
+
+Time live_now() {
+  const auto now = std::chrono::steady_clock::now();
+  return Time(std::chrono::duration_cast<Duration>(now.time_since_epoch()));
+}
+
+}  // namespace culprit
