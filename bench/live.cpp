@@ -12,7 +12,7 @@
 #include <unistd.h>
 #include <utility>
 
-#include "cli/paths.h"
+#include "base/environment.h"
 #include "owners/spawn.h"
 
 namespace culprit::bench {
@@ -76,7 +76,7 @@ Child::Child(const World& world, const std::string& name, std::vector<std::strin
   static int count = 0;
   log_ = world.folder() / (name + "-" + std::to_string(++count) + ".log");
   arguments.insert(arguments.begin(), name);
-  pid_ = value_of(owners::spawn({std::move(arguments), {cli::own_folder()}, log_}));
+  pid_ = value_of(owners::spawn({std::move(arguments), {own_folder()}, log_}));
 }
 
 Child::~Child() { terminate(); }

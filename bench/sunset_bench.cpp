@@ -7,7 +7,7 @@
 #include <benchmark/benchmark.h>
 
 #include "claims.h"
-#include "cli/sunset_demo.h"
+#include "demo/sunset_demo.h"
 #include "live.h"
 
 namespace culprit::bench {
@@ -59,12 +59,12 @@ class RedeployClock {
 void redeploy(benchmark::State& state) {
   const std::atomic<bool> stop = false;
   RedeployClock clock;
-  cli::SunsetDemo::Options options;
+  lab::SunsetDemo::Options options;
   options.on_event = [&clock](const Event& event, const RuleSet& rules, Time) {
     clock.rule_of = [&rules](StrategyId strategy) { return rules[strategy].rule; };
     clock.on(event);
   };
-  auto demo = cli::SunsetDemo::start(std::move(options), stop);
+  auto demo = lab::SunsetDemo::start(std::move(options), stop);
   if (!demo) {
     state.SkipWithError(demo.error().c_str());
     return;

@@ -45,8 +45,9 @@ set(culprit_folders_of_variants study exemplars)
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL]
 #                 [TEST_LABELS <label>...])
 #
-# Builds the library <folder> of src/<floor>/<folder>/**.cpp but its tests and programs (*_main.cpp), and the test program <folder>_test of *_test.cpp and
-# of what only tests use (test_*.cpp).
+# Builds the library <folder> of src/<floor>/<folder>/**.cpp, but for its tests and programs (*_main.cpp); the library
+# <folder>_testing of what only tests use (test_*.cpp), for others' tests too; and the test program <folder>_test of
+# *_test.cpp.
 # USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
 # *_live_test.cpp make a program of their own, <folder>_live_test: they start the processes of a robot, so they run alone
 # and carry the label "live". The label "threads" is for tests that the thread sanitizer repeats.
@@ -54,18 +55,21 @@ function(culprit_library path)
   cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES" ${ARGN})
   get_filename_component(folder ${path} NAME)
   set(dir ${CMAKE_SOURCE_DIR}/src/${path})
-  set_property(GLOBAL PROPERTY culprit_folder_of_${folder} ${dir})
+  culprit_check_floors(${path} ${ARG_USES})
+  set_property(GLOBAL PROPERTY culprit_path_of_${folder} ${path})
   set(headers ${CMAKE_BINARY_DIR}/include/${folder})
   file(MAKE_DIRECTORY ${headers})
   file(CREATE_LINK ${dir} ${headers}/${folder} SYMBOLIC)
 
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${dir}/*.cpp)
-  set(tests ${sources})
+  file(GLOB_RECURSE all CONFIGURE_DEPENDS ${dir}/*.cpp)
+  foreach(kind sources testing tests live_tests)
+    set(${kind} ${all})
+  endforeach()
   list(FILTER sources EXCLUDE REGEX "(_test|_main|/test_[a-z_]+)\\.cpp$")
-  list(FILTER tests INCLUDE REGEX "(_test|/test_[a-z_]+)\\.cpp$")
-  set(live_tests ${tests})
+  list(FILTER testing INCLUDE REGEX "/test_[a-z_]+\\.cpp$")
+  list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
   list(FILTER tests EXCLUDE REGEX "_live_test\\.cpp$")
-  list(FILTER live_tests INCLUDE REGEX "(_live_test|/test_[a-z_]+)\\.cpp$")
+  list(FILTER live_tests INCLUDE REGEX "_live_test\\.cpp$")
 
   if(sources)
     add_library(${folder} STATIC ${sources})
@@ -80,18 +84,50 @@ function(culprit_library path)
   target_include_directories(${folder} ${scope} ${headers})
   target_link_libraries(${folder} ${scope} ${ARG_USES} ${ARG_PACKAGES} culprit_options)
 
-  if(CULPRIT_TESTS AND tests)
+  if(NOT CULPRIT_TESTS)
+    return()
+  endif()
+  set(with ${folder} ${ARG_TEST_USES})
+  if(testing)
+    add_library(${folder}_testing STATIC EXCLUDE_FROM_ALL ${testing})
+    set_target_properties(${folder}_testing PROPERTIES UNITY_BUILD OFF)
+    target_precompile_headers(${folder}_testing REUSE_FROM culprit_test_main)
+    target_link_libraries(${folder}_testing PUBLIC ${with} ${ARG_TEST_PACKAGES} GTest::gtest GTest::gmock rapidcheck
+                                            PRIVATE culprit_test_options)
+    list(APPEND with ${folder}_testing)
+  endif()
+  if(tests)
     set(serial "")
     if(ARG_TEST_SERIAL)
       set(serial SERIAL)
     endif()
-    culprit_test(${folder}_test SOURCES ${tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES}
+    culprit_test(${folder}_test SOURCES ${tests} USES ${with} PACKAGES ${ARG_TEST_PACKAGES}
                  LABELS ${ARG_TEST_LABELS} CASES ${ARG_TEST_CASES} ${serial})
   endif()
-  if(CULPRIT_TESTS AND live_tests MATCHES "_live_test\\.cpp")
-    culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${folder} ${ARG_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES}
+  if(live_tests)
+    culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${with} PACKAGES ${ARG_TEST_PACKAGES}
                  SERIAL LABELS live)
   endif()
+endfunction()
+
+# An arrow goes down, or stays on its floor; the laboratory is used by nobody, and uses all but cli.
+set(culprit_floors base core adapters tools live web terminal cli)
+function(culprit_check_floors path)
+  string(REGEX REPLACE "/.*" "" floor ${path})
+  list(FIND culprit_floors ${floor} height)
+  foreach(used ${ARGN})
+    get_property(other GLOBAL PROPERTY culprit_path_of_${used})
+    string(REGEX REPLACE "/.*" "" other "${other}")
+    list(FIND culprit_floors "${other}" other_height)
+    if(floor STREQUAL "lab")
+      set(is_fit NOT other STREQUAL "cli")
+    else()
+      set(is_fit NOT other STREQUAL "lab" AND NOT other_height GREATER height)
+    endif()
+    if(NOT (${is_fit}))
+      message(FATAL_ERROR "src/${path} may not use ${used}: it is in src/${other}, on a higher floor")
+    endif()
+  endforeach()
 endfunction()
 
 # culprit_embed(<folder> <header> <file>...): makes <folder>/<header> of <header>.in in that folder, with the text of rules/some-name.rules in
@@ -104,8 +140,8 @@ function(culprit_embed folder header)
     file(READ ${CMAKE_SOURCE_DIR}/${file} ${name})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${file})
   endforeach()
-  get_property(dir GLOBAL PROPERTY culprit_folder_of_${folder})
-  configure_file(${dir}/${header}.in ${CMAKE_BINARY_DIR}/include/${folder}-generated/${folder}/${header} @ONLY)
+  get_property(path GLOBAL PROPERTY culprit_path_of_${folder})
+  configure_file(${CMAKE_SOURCE_DIR}/src/${path}/${header}.in ${CMAKE_BINARY_DIR}/include/${folder}-generated/${folder}/${header} @ONLY)
   target_include_directories(${folder} PRIVATE ${CMAKE_BINARY_DIR}/include/${folder}-generated)
 endfunction()
 

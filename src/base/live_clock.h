@@ -1,11 +1,17 @@
-// The clock of a live robot (base/time.h).
+// The clocks of this machine.
 #pragma once
+
+#include <cstdint>
 
 #include "base/time.h"
 
 namespace culprit {
 
-// Monotonic, so that no setting of the wall clock looks like a silence.
+// The clock of a live robot (base/time.h): monotonic, so that no setting of the wall clock looks
+// like a silence.
 Time live_now();
+
+// What the wall clock shows, in nanoseconds since 1970 (UTC).
+std::int64_t wall_now();
 
 }  // namespace culprit

@@ -34,12 +34,12 @@ int verify(const VerifyOptions& options) {
   std::optional<journal::Link> noted;
   if (!options.noted.empty()) {
     noted = link_from(options.noted);
-    if (!noted) return complain("--noted wants <row>:<hash>, as this command prints it"), kUsage;
+    if (!noted) return fail("--noted wants <row>:<hash>, as this command prints it"), kUsage;
   }
   const auto journal = options.journal.open();
-  if (!journal) return complain(journal.error());
+  if (!journal) return fail(journal.error());
   const auto result = journal::verify(*journal, noted);
-  if (!result) return complain(result.error());
+  if (!result) return fail(result.error());
   constexpr std::size_t kShown = 20;
   for (std::size_t i = 0; i < std::min(kShown, result->findings.size()); ++i)
     fmt::print("{}\n", result->findings[i]);

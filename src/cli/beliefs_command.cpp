@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "base/live_clock.h"
 #include "base/text_file.h"
 #include "cli/commands.h"
 #include "cli/journal_file.h"
@@ -25,9 +26,9 @@ double learned_of(double now, double prior) { return now - prior; }
 
 int show(const BeliefsOptions& options) {
   const auto journal = options.journal.open();
-  if (!journal) return complain(journal.error());
+  if (!journal) return fail(journal.error());
   const auto learned = journal->learned();
-  if (!learned) return complain(learned.error());
+  if (!learned) return fail(learned.error());
   if (learned->beliefs.empty()) {
     fmt::print("nothing was learned yet\n");
     return kOk;
@@ -50,13 +51,13 @@ int show(const BeliefsOptions& options) {
 
 int write_out(const BeliefsOptions& options) {
   const auto journal = options.journal.open();
-  if (!journal) return complain(journal.error());
+  if (!journal) return fail(journal.error());
   const auto learned = journal->learned();
-  if (!learned) return complain(learned.error());
+  if (!learned) return fail(learned.error());
   journal::Json document = {{"format", kFormat}, {"format_version", 1}};
   document.update(journal::to_json(*learned));
   const auto written = write_text(options.output, document.dump(2) + "\n");
-  return written ? kOk : complain(written.error());
+  return written ? kOk : fail(written.error());
 }
 
 Expected<journal::Learned> read_file(const std::string& path) {
@@ -81,17 +82,17 @@ int read_in(const BeliefsOptions& options) {
   journal::Learned added;
   for (const std::string& path : options.files) {
     const auto learned = read_file(path);
-    if (!learned) return complain(learned.error());
+    if (!learned) return fail(learned.error());
     journal::merge(added, *learned);
   }
   auto writer = open_writer(options);
-  if (!writer) return complain(writer.error());
+  if (!writer) return fail(writer.error());
   auto learned = writer->learned();
-  if (!learned) return complain(learned.error());
+  if (!learned) return fail(learned.error());
   journal::merge(*learned, added);
   const auto written =
       writer->append({{}, *learned}, wall_now(), journal::Durability::kPowerFailure);
-  if (!written) return complain(written.error());
+  if (!written) return fail(written.error());
   fmt::print("{} beliefs and {} couplings added to '{}'\n", added.beliefs.size(),
              added.couplings.size(), writer->path().string());
   return kOk;
@@ -99,11 +100,11 @@ int read_in(const BeliefsOptions& options) {
 
 int reset(const BeliefsOptions& options) {
   if (options.rule.empty() == !options.all)
-    return complain("say which rule to forget, or --all"), kUsage;
+    return fail("say which rule to forget, or --all"), kUsage;
   auto writer = open_writer(options);
-  if (!writer) return complain(writer.error());
+  if (!writer) return fail(writer.error());
   const auto count = writer->forget(options.rule, wall_now());
-  if (!count) return complain(count.error());
+  if (!count) return fail(count.error());
   fmt::print("{} beliefs forgotten\n", *count);
   return kOk;
 }

@@ -16,15 +16,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/paths.h"
-#include "cli/test_live_sunset.h"
-#include "cli/test_program.h"
+#include "base/environment.h"
+#include "demo/test_live_sunset.h"
 #include "journal/json.h"
 #include "journal/reader.h"
 #include "journal/session.h"
 #include "owners/proc.h"
 #include "plan/bayes/bayes_planner.h"
 #include "replay/replay.h"
+#include "terminal/test_program.h"
 
 namespace culprit::cli {
 namespace {

@@ -5,12 +5,12 @@
 #include <fmt/core.h>
 
 #include "cli/commands.h"
-#include "cli/console.h"
 #include "cli/diagnostic_report.h"
-#include "cli/preflight.h"
-#include "cli/robot_survey.h"
 #include "language/live_checks.h"
 #include "language/live_findings.h"
+#include "live/preflight.h"
+#include "live/robot_survey.h"
+#include "terminal/console.h"
 
 namespace culprit::cli {
 namespace {

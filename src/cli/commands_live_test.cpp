@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/paths.h"
-#include "cli/test_program.h"
+#include "base/environment.h"
+#include "terminal/test_program.h"
 
 namespace culprit::cli {
 namespace {

@@ -23,11 +23,11 @@ int explain_row(const ExplainOptions& options) {
   const std::string& text = options.what;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
   if (!options.last && (error != std::errc() || end != text.data() + text.size() || id < 1))
-    return complain("'" + text + "' is no row of a journal"), kUsage;
+    return fail("'" + text + "' is no row of a journal"), kUsage;
   const auto journal = options.journal.open();
-  if (!journal) return complain(journal.error());
+  if (!journal) return fail(journal.error());
   const auto report = explain_decision(*journal, id);
-  if (!report) return complain(report.error());
+  if (!report) return fail(report.error());
   fmt::print("{}", *report);
   return kOk;
 }

@@ -5,8 +5,8 @@
 
 #include "base/text_file.h"
 #include "cli/commands.h"
-#include "cli/console.h"
 #include "rule_json/to_json.h"
+#include "terminal/console.h"
 
 namespace culprit::cli {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "base/text_file.h"
 #include "cli/commands.h"
-#include "cli/console.h"
 #include "cli/layout_diff.h"
 #include "language/formatter.h"
+#include "terminal/console.h"
 
 namespace culprit::cli {
 namespace {

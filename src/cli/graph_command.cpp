@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/live_robot.h"
 #include "knowledge/dependency_graph.h"
+#include "live/live_robot.h"
 
 namespace culprit::cli {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <fmt/core.h>
 
+#include "base/environment.h"
 #include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/paths.h"
 #include "journal/json.h"
+#include "terminal/console.h"
 
 namespace culprit::cli {
 
@@ -48,11 +48,6 @@ Expected<journal::Reader> JournalOption::open() const {
   return journal::Reader::open(*name);
 }
 
-int complain(const std::string& what) {
-  say(stderr, "culprit: {}\n", what);
-  return kFailed;
-}
-
 std::string timestamp(std::int64_t at) {
   const std::int64_t milliseconds = at / 1'000'000;
   const auto seconds = static_cast<std::time_t>(milliseconds / 1000);
@@ -83,12 +78,6 @@ std::string log_line(const journal::Entry& entry) {
     text = fmt::format("{} is to be {}", journal::text_of(body, "component"),
                        journal::text_of(body, "lifecycle"));
   return fmt::format("{:>7}  {}  {:<18}  {}", entry.id, timestamp(entry.at), what, text);
-}
-
-std::int64_t wall_now() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 }  // namespace culprit::cli

@@ -24,16 +24,10 @@ struct JournalOption {
   Expected<journal::Reader> open() const;
 };
 
-// Says what went wrong on stderr, and gives kFailed.
-int complain(const std::string& what);
-
 // "2026-11-21 18:36:01.123", UTC. `at`: nanoseconds since 1970.
 std::string timestamp(std::int64_t at);
 
 // "   123  2026-11-21 18:36:01.123  strategy chosen    camera is held responsible …"
 std::string log_line(const journal::Entry& entry);
-
-// Now, in nanoseconds since 1970.
-std::int64_t wall_now();
 
 }  // namespace culprit::cli

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/test_program.h"
+#include "terminal/test_program.h"
 
 namespace culprit::cli {
 namespace {

@@ -5,13 +5,13 @@
 
 #include <fmt/core.h>
 
-#include "cli/console.h"
-#include "cli/health.h"
 #include "cli/journal_file.h"
-#include "cli/role.h"
 #include "journal/requests.h"
 #include "knowledge/describe.h"
+#include "live/health.h"
+#include "live/role.h"
 #include "replay/replay.h"
+#include "terminal/console.h"
 #include "web/event_json.h"
 
 namespace culprit::cli {

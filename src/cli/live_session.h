@@ -9,12 +9,12 @@
 #include <set>
 #include <string>
 
-#include "cli/live_robot.h"
 #include "cli/order_keeper.h"
-#include "cli/preflight.h"
 #include "cli/rule_file.h"
-#include "cli/run_journal.h"
 #include "cli/run_options.h"
+#include "live/live_robot.h"
+#include "live/preflight.h"
+#include "live/run_journal.h"
 #include "manager/runtime.h"
 #include "web/watched_manager.h"
 

@@ -28,16 +28,16 @@ int show(const LogOptions& options) {
   std::int64_t earliest = INT64_MIN;
   if (!options.since.empty()) {
     const auto age = parse_duration(options.since);
-    if (!age) return complain("--since: " + age.error()), kUsage;
+    if (!age) return fail("--since: " + age.error()), kUsage;
     earliest = wall_now() - age->count();
   }
   const auto journal = options.journal.open();
-  if (!journal) return complain(journal.error());
+  if (!journal) return fail(journal.error());
   const bool is_bounded = options.since.empty() && options.kind.empty();
   const auto from = is_bounded ? journal->tail(options.lines) : Expected<std::int64_t>(1);
-  if (!from) return complain(from.error());
+  if (!from) return fail(from.error());
   auto rows = journal->entries(journal::Which::kReadable, *from);
-  if (!rows) return complain(rows.error());
+  if (!rows) return fail(rows.error());
   journal::Entry entry;
   auto more = rows->next(entry);
   for (; more && *more; more = rows->next(entry)) {
@@ -48,7 +48,7 @@ int show(const LogOptions& options) {
       fmt::print("{}\n", log_line(entry));
     }
   }
-  return more ? kOk : complain(more.error());
+  return more ? kOk : fail(more.error());
 }
 
 }  // namespace

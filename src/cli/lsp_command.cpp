@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "cli/commands.h"
-#include "cli/robot_survey.h"
+#include "live/robot_survey.h"
 #include "lsp/message_stream.h"
 #include "lsp/server.h"
 #include "robot/inbox.h"

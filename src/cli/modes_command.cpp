@@ -4,9 +4,9 @@
 
 #include "base/text_file.h"
 #include "cli/commands.h"
-#include "cli/console.h"
 #include "modes/mode_manager.h"
 #include "modes/read_model.h"
+#include "terminal/console.h"
 
 namespace culprit::cli {
 namespace {

@@ -14,12 +14,12 @@
 #include <gtest/gtest.h>
 
 #include "cli/test_network.h"
-#include "cli/test_program.h"
 #include "exemplars/sunset/node_process.h"
 #include "journal/standing_orders.h"
 #include "link/survey.h"
 #include "robot/inbox.h"
 #include "ros2/options.h"
+#include "terminal/test_program.h"
 
 namespace culprit::cli {
 namespace {

@@ -5,9 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/test_live_sunset.h"
-#include "cli/test_program.h"
+#include "demo/test_live_sunset.h"
 #include "exemplars/sunset/node_process.h"
+#include "terminal/test_program.h"
 
 namespace culprit::cli {
 namespace {

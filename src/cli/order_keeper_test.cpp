@@ -12,9 +12,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/run_journal.h"
 #include "journal/test_folder.h"
 #include "language/checker.h"
+#include "live/run_journal.h"
 #include "robot/inbox.h"
 
 namespace culprit::cli {

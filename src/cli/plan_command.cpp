@@ -5,19 +5,19 @@
 
 #include <fmt/core.h>
 
+#include "base/environment.h"
 #include "cli/commands.h"
-#include "cli/console.h"
 #include "cli/diagnostic_report.h"
-#include "cli/live_robot.h"
-#include "cli/paths.h"
-#include "cli/plan_report.h"
-#include "cli/planner_options.h"
-#include "cli/preflight.h"
 #include "cli/rule_file.h"
+#include "live/live_robot.h"
+#include "live/preflight.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
 #include "plan/onlooker.h"
+#include "rule_test/plan_report.h"
 #include "rule_test/state.h"
+#include "terminal/console.h"
+#include "terminal/planner_options.h"
 
 namespace culprit::cli {
 namespace {

@@ -7,9 +7,9 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
+#include "base/environment.h"
 #include "base/text_file.h"
 #include "cli/commands.h"
-#include "cli/paths.h"
 #include "cli/rule_file.h"
 #include "cli/unit_settings.h"
 #include "link/policy.h"

@@ -6,12 +6,12 @@
 
 #include "bag/bag_file.h"
 #include "bag/bag_reading.h"
+#include "base/environment.h"
 #include "cli/commands.h"
-#include "cli/console.h"
 #include "cli/journal_file.h"
-#include "cli/paths.h"
 #include "cli/rule_file.h"
 #include "manager/manager.h"
+#include "terminal/console.h"
 
 namespace culprit::cli {
 namespace {
@@ -65,7 +65,7 @@ int replay_bag(const BagReplay& options) {
   const auto rules = load_rules(options.rules);
   if (rules == nullptr) return kFailed;
   auto bag = bag::BagFile::open(options.bag);
-  if (!bag) return complain(bag.error());
+  if (!bag) return fail(bag.error());
   ros2::MessageLibrary library(
       ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH")));
   bag::BagReading reading(*rules, bag->contents(), library);

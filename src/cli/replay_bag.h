@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/planner_options.h"
+#include "terminal/planner_options.h"
 
 namespace culprit::cli {
 

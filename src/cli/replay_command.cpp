@@ -5,14 +5,14 @@
 
 #include "bag/bag_file.h"
 #include "cli/commands.h"
-#include "cli/console.h"
 #include "cli/governor_options.h"
 #include "cli/journal_file.h"
-#include "cli/planner_options.h"
 #include "cli/replay_bag.h"
 #include "cli/rule_file.h"
 #include "knowledge/describe.h"
 #include "replay/replay.h"
+#include "terminal/console.h"
+#include "terminal/planner_options.h"
 
 namespace culprit::cli {
 namespace {
@@ -27,7 +27,7 @@ struct ReplayOptions {
 };
 
 int complain_about(const ReplayOptions& options, const std::string& what) {
-  return complain("cannot replay '" + options.journal + "': " + what);
+  return fail("cannot replay '" + options.journal + "': " + what);
 }
 
 int repeat(const ReplayOptions& options, const journal::Reader& journal,
@@ -149,11 +149,11 @@ int compare(const ReplayOptions& options, replay::Recording& recording, bool oth
 
 int replay_any(const ReplayOptions& options, bool other_planner) {
   if (bag::is_bag(options.journal)) {
-    if (options.rules.empty()) return complain("a bag has no rules: add --rules"), kUsage;
+    if (options.rules.empty()) return fail("a bag has no rules: add --rules"), kUsage;
     return replay_bag({options.journal, options.rules, options.message_path, options.planner});
   }
   const auto journal = journal::Reader::open(options.journal);
-  if (!journal) return complain(journal.error());
+  if (!journal) return fail(journal.error());
   auto recording = replay::Recording::open(*journal, options.session);
   if (!recording) return complain_about(options, recording.error());
   if (options.rules.empty() && !other_planner) return repeat(options, *journal, *recording);

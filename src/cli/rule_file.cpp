@@ -4,8 +4,8 @@
 
 #include <fmt/core.h>
 
-#include "cli/console.h"
 #include "language/improvise.h"
+#include "terminal/console.h"
 
 namespace culprit::cli {
 

@@ -7,9 +7,9 @@
 #include <fmt/core.h>
 
 #include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/planner_options.h"
 #include "rule_test/file_run.h"
+#include "terminal/console.h"
+#include "terminal/planner_options.h"
 
 namespace culprit::cli {
 namespace {

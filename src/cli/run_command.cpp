@@ -3,23 +3,23 @@
 
 #include <fmt/core.h>
 
-#include "cli/begin_anew.h"
 #include "cli/commands.h"
-#include "cli/console.h"
 #include "cli/journal_file.h"
 #include "cli/live_session.h"
-#include "cli/robot_names.h"
-#include "cli/role.h"
-#include "cli/rule_trust.h"
 #include "cli/run_options.h"
-#include "cli/service_manager.h"
-#include "cli/what_if_route.h"
+#include "live/begin_anew.h"
+#include "live/robot_names.h"
+#include "live/role.h"
+#include "live/rule_trust.h"
+#include "live/service_manager.h"
+#include "terminal/console.h"
 #include "web/live_routes.h"
 #include "web/name_routes.h"
 #include "web/order_routes.h"
 #include "web/reload_routes.h"
 #include "web/rule_routes.h"
 #include "web/status_routes.h"
+#include "web/what_if_route.h"
 
 namespace culprit::cli {
 namespace {
@@ -168,7 +168,7 @@ std::vector<web::Route> web_routes(web::Hub& hub, const web::Metrics& metrics, w
             [&names](const LiveInterest& interest) { return names.look(interest); })}) {
     for (web::Route& route : routes) all.push_back(std::move(route));
   }
-  all.push_back(what_if_route(std::move(planner)));
+  all.push_back(web::what_if_route(std::move(planner)));
   return all;
 }
 
@@ -187,7 +187,7 @@ std::unique_ptr<LiveSession> in_role(const RoleOfCulprit& role, std::unique_ptr<
   old.reset();
   take_role(frame, role);
   auto session = LiveSession::open(frame, std::move(rules));
-  if (!session) return complain(session.error()), nullptr;
+  if (!session) return fail(session.error()), nullptr;
   (*session)->begin(stopped, known);
   (*session)->announce("role", role.reason());
   stage.enter(session->get());
@@ -228,7 +228,7 @@ int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, Role
       orders.close();
       stage.enter(nullptr);
       session->end();
-      complain(begin_anew());
+      fail(begin_anew());
       std::_Exit(kFailed);
     }
     // Without a journal nobody would know what is under way: then the new rules wait for its end.
@@ -253,14 +253,14 @@ int manage(std::unique_ptr<LiveSession> session, LiveSession::Frame& frame, Role
 
 int run(const RunOptions& options) {
   auto rules = rules_for(options, colour_of(STDERR_FILENO));
-  if (!rules) return complain(rules.error());
+  if (!rules) return fail(rules.error());
   const auto trusted = trust_state(options.state_path(), options.journal_path(rules->rules));
-  if (!trusted) return complain(trusted.error());
+  if (!trusted) return fail(trusted.error());
   say(stderr, "{}", rules->remarks);
   const auto governor = options.governor.options();
-  if (!governor) return complain(governor.error()), kUsage;
+  if (!governor) return fail(governor.error()), kUsage;
   auto role = claim_robot(rules->rules, options);
-  if (!role) return complain(role.error()), kUsage;
+  if (!role) return fail(role.error()), kUsage;
   if (!role->reason().empty()) say(stdout, "culprit: {}\n", role->reason());
   StopSignals signals(Hangup::kReloads);
   signals.end_within(kEndsWithin);
@@ -273,7 +273,7 @@ int run(const RunOptions& options) {
   take_role(frame, *role);
   const std::string robot = name_of(rules->rules);
   auto session = LiveSession::open(frame, std::move(*rules));
-  if (!session) return complain(session.error());
+  if (!session) return fail(session.error());
   signals.on_stop([&] { stage.leave(); });
   say(stdout,
       "culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot "
@@ -292,7 +292,7 @@ int run(const RunOptions& options) {
     server = serve(options.web,
                    web_routes(hub, metrics, desk, orders, stage, names, options.planner.factory()),
                    &hub);
-    if (!server) return complain(server.error()), kUsage;
+    if (!server) return fail(server.error()), kUsage;
   }
   signals.on_reload([&] {
     if (const auto count = stage.reload("SIGHUP"); !count)

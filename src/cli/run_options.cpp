@@ -1,7 +1,7 @@
 #include "cli/run_options.h"
 
+#include "base/environment.h"
 #include "cli/journal_file.h"
-#include "cli/paths.h"
 
 namespace culprit::cli {
 

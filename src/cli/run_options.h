@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "cli/governor_options.h"
-#include "cli/live_robot.h"
-#include "cli/planner_options.h"
-#include "cli/web_service.h"
+#include "live/live_robot.h"
 #include "manager/manager.h"
+#include "terminal/planner_options.h"
+#include "terminal/web_service.h"
 
 namespace culprit::cli {
 

@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/paths.h"
-#include "cli/test_program.h"
+#include "base/environment.h"
 #include "ros2/test_keystore.h"
+#include "terminal/test_program.h"
 
 namespace culprit::cli {
 namespace {

@@ -10,8 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/test_live_sunset.h"
-#include "cli/test_program.h"
+#include "demo/test_live_sunset.h"
+#include "terminal/test_program.h"
 
 namespace culprit::cli {
 namespace {

@@ -6,11 +6,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/paths.h"
-#include "cli/test_program.h"
+#include "base/environment.h"
 #include "exemplars/sunset/node_process.h"
 #include "robot/inbox.h"
 #include "ros2/options.h"
+#include "terminal/test_program.h"
 
 namespace culprit::cli {
 namespace {

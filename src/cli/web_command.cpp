@@ -1,14 +1,14 @@
 #include <fmt/core.h>
 
+#include "base/environment.h"
 #include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/paths.h"
-#include "cli/robot_names.h"
-#include "cli/single_run_route.h"
-#include "cli/study_runner.h"
-#include "cli/web_service.h"
+#include "live/robot_names.h"
+#include "terminal/console.h"
+#include "terminal/web_service.h"
 #include "web/name_routes.h"
 #include "web/rule_routes.h"
+#include "web/single_run_route.h"
+#include "web/study_runner.h"
 
 namespace culprit::cli {
 namespace {
@@ -26,10 +26,10 @@ int edit(const WebCommandOptions& options) {
     return kFailed;
   }
   StopSignals signals;
-  StudyRunner studies(default_state_folder() / "studies");
+  web::StudyRunner studies(default_state_folder() / "studies");
   std::vector<web::Route> routes = web::rule_routes(desk);
   for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
-  routes.push_back(single_run_route());
+  routes.push_back(web::single_run_route());
   RobotNames names;
   if (options.robot) {
     for (web::Route& route :

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/paths.h"
-#include "cli/test_program.h"
+#include "base/environment.h"
+#include "terminal/test_program.h"
 #include "web/app.h"
 
 namespace culprit::cli {

@@ -1,0 +1,39 @@
+#include "base/environment.h"
+
+#include <cstdlib>
+#include <sstream>
+#include <system_error>
+#include <unistd.h>
+
+namespace culprit {
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+std::filesystem::path default_state_folder() {
+  const std::string state = environment("XDG_STATE_HOME");
+  if (!state.empty()) return std::filesystem::path(state) / "culprit";
+  const std::string home = environment("HOME");
+  return std::filesystem::path(home.empty() ? "/tmp" : home) / ".local" / "state" / "culprit";
+}
+
+std::filesystem::path own_folder() {
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+}
+
+Expected<std::filesystem::path> find_laboratory() {
+  constexpr const char* kProgram = "culprit-lab";
+  std::istringstream folders(own_folder().native() + ":" + environment("PATH"));
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::filesystem::path place = std::filesystem::path(folder) / kProgram;
+    if (!folder.empty() && access(place.c_str(), X_OK) == 0) return place;
+  }
+  return Error{
+      "studies, torture and demonstrations are of culprit-lab, which is neither beside culprit nor "
+      "in PATH; install it, or build it: cmake --build --preset release --target culprit-lab"};
+}
+
+}  // namespace culprit

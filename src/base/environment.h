@@ -1,0 +1,27 @@
+// Where things are on this machine, and what the environment says.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "base/expected.h"
+
+namespace culprit {
+
+// $XDG_STATE_HOME/culprit, or ~/.local/state/culprit.
+std::filesystem::path default_state_folder();
+
+// The folder that holds the running program: the exemplars' programs are beside it.
+std::filesystem::path own_folder();
+
+// culprit-lab, a program of its own that holds studies, torture and demonstrations: beside the
+// running program, or in PATH. Errors: it is in neither.
+Expected<std::filesystem::path> find_laboratory();
+
+// A variable of the environment; empty if it is not set.
+std::string environment(const char* name);
+
+// "lines" in this variable: progress is told where there is no terminal, too.
+inline constexpr const char* kProgressVariable = "CULPRIT_PROGRESS";
+
+}  // namespace culprit

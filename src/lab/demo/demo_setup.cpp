@@ -1,0 +1,48 @@
+#include "demo/demo_setup.h"
+
+#include <stdlib.h>
+
+#include "base/environment.h"
+#include "language/checker.h"
+#include "terminal/console.h"
+
+namespace culprit::lab {
+
+RuleSet embedded_rules(const char* name, const char* text) {
+  return *check(Source(name, text)).rules;
+}
+
+Expected<std::filesystem::path> make_state_folder() {
+  std::string path = (std::filesystem::temp_directory_path() / "culprit-demo-XXXXXX").string();
+  if (mkdtemp(path.data()) == nullptr)
+    return Error{"cannot make a folder in " + std::filesystem::temp_directory_path().string()};
+  return std::filesystem::path(path);
+}
+
+Expected<ros2::DomainLock> make_own_domain(std::optional<std::uint32_t> wanted) {
+  auto domain = wanted ? ros2::DomainLock::reserve(*wanted, *wanted) : ros2::DomainLock::reserve();
+  if (!domain) return domain;
+  setenv("ROS_DOMAIN_ID", std::to_string(domain->domain()).c_str(), 1);
+  setenv("ROS_LOCALHOST_ONLY", "1", 1);
+  return domain;
+}
+
+owners::Supervisor::Options demo_processes(const std::filesystem::path& state) {
+  owners::Supervisor::Options options;
+  options.log_folder = state / "log";
+  options.search_first = {own_folder()};
+  options.lifetime = owners::Lifetime::kStarter;
+  return options;
+}
+
+void say_domain(const char* robot, std::uint32_t domain) {
+  say(stdout,
+      "{0} is on domain {1}; to look at it: ROS_DOMAIN_ID={1} ROS_LOCALHOST_ONLY=1 culprit graph\n",
+      robot, domain);
+}
+
+void start_all(owners::Supervisor& supervisor, const RuleSet& rules) {
+  for (std::size_t c = 0; c < rules.components.size(); ++c) supervisor.start({}, ComponentId(c));
+}
+
+}  // namespace culprit::lab

@@ -1,0 +1,34 @@
+// What the demonstrations have in common: a world of their own for a live robot.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "language/rule_set.h"
+#include "owners/supervisor.h"
+#include "ros2/domain_lock.h"
+
+namespace culprit::lab {
+
+// The rules of an embedded file, which has no errors.
+RuleSet embedded_rules(const char* name, const char* text);
+
+// A new folder for logs and state.
+Expected<std::filesystem::path> make_state_folder();
+
+// A DDS domain on loopback that nobody else uses, as long as the lock lives: this one, or any. Sets
+// ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY of this process, so call it before there are threads that
+// read the environment.
+Expected<ros2::DomainLock> make_own_domain(std::optional<std::uint32_t> wanted);
+
+// How processes of a demonstration are started: logs below `state`, and they end with it.
+owners::Supervisor::Options demo_processes(const std::filesystem::path& state);
+
+// On which domain the robot is, and how to look at it there.
+void say_domain(const char* robot, std::uint32_t domain);
+
+// Starts each component's process.
+void start_all(owners::Supervisor& supervisor, const RuleSet& rules);
+
+}  // namespace culprit::lab

@@ -1,0 +1,53 @@
+// What happened between breaking a robot and its recovery, counted from the manager's events.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "knowledge/event.h"
+
+namespace culprit::lab {
+
+class Episode {
+ public:
+  // `rules` must outlive the episode.
+  explicit Episode(const RuleSet& rules) : rules_(rules) {}
+
+  void add(const Event& event);
+
+  // Failures in the order of their detection; one that came twice is there twice.
+  const std::vector<std::string>& failures() const { return failures_; }
+  // Strategies in the order of their execution.
+  const std::vector<std::string>& strategies() const { return strategies_; }
+  int strategies_succeeded() const { return strategies_succeeded_; }
+  // Executed strategies that redeploy a component.
+  int redeployments() const { return redeployments_; }
+  // From detection to resolution, for each failure that was resolved.
+  const std::vector<Duration>& reactions() const { return reactions_; }
+
+  // Failures that are there now, exhausted ones included.
+  std::size_t open() const { return open_.size(); }
+  bool is_exhausted() const { return is_exhausted_; }
+
+ private:
+  void on(const FailureDetected& e);
+  void on(const FailureResolved& e);
+  void on(const FailureLost& e) { open_.erase(e.rule); }
+  void on(const StrategyChosen& e);
+  void on(const RuleExhausted&) { is_exhausted_ = true; }
+  template <class Other>
+  void on(const Other&) {}
+
+  const RuleSet& rules_;
+  std::vector<std::string> failures_;
+  std::vector<Duration> reactions_;
+  std::set<RuleId> open_;
+  std::vector<std::string> strategies_;
+  int strategies_succeeded_ = 0;
+  int redeployments_ = 0;
+  bool is_exhausted_ = false;
+};
+
+}  // namespace culprit::lab

@@ -1,0 +1,126 @@
+// A live SUNSET with culprit managing it, in a world of its own: its own DDS domain on loopback,
+// its own state folder, and nothing left behind.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "demo/episode.h"
+#include "demo/play.h"
+#include "exemplars/sunset/experiment.h"
+#include "live/live_robot.h"
+#include "manager/manager.h"
+#include "manager/runtime.h"
+#include "plan/bayes/bayes_planner.h"
+#include "ros2/domain_lock.h"
+#include "web/watched_manager.h"
+
+namespace culprit::lab {
+
+// How one play went. Times are seconds on the clock.
+struct PlayOutcome {
+  std::string name;
+  std::vector<std::string> faults;
+  std::vector<std::string> failures;
+  std::vector<std::string> strategies;  // executed, in their order
+  int strategies_succeeded = 0;
+  int unnecessary_redeployments = 0;
+  std::vector<double> reaction_times;
+  double downtime = 0;  // of the segmentation as the evaluator sees it, open gaps included
+  std::optional<double> mean_iou;
+  std::size_t unresolved = 0;  // failures
+  std::string complaint;       // what is still wrong with the robot; empty: nothing
+  bool is_resolved() const { return unresolved == 0 && complaint.empty(); }
+};
+
+class SunsetDemo {
+ public:
+  struct Options {
+    double speed = 1;  // robot seconds in a second
+    std::uint64_t seed = 1;
+    std::optional<std::uint32_t> domain{};  // nothing: one that is free
+    PlannerFactory planner = [] { return std::make_unique<BayesPlanner>(); };
+    // Called for each event of the manager, on its thread, with its time since the start of the
+    // demo.
+    std::function<void(const Event&, const RuleSet&, Time start)> on_event;
+  };
+
+  // Starts the seven processes and the manager and waits until the robot is well. Sets
+  // ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY of this process, so call it before there are threads that
+  // read the environment. Errors: a program is missing, or the robot does not come up.
+  static Expected<std::unique_ptr<SunsetDemo>> start(Options options,
+                                                     const std::atomic<bool>& stop);
+  // Ends every process and removes the state folder, unless keep_state() was called.
+  ~SunsetDemo();
+
+  // Breaks the robot, waits until it is well again or kPatience is over, and then removes what is
+  // left of the faults. An error: a fault could not be injected, the robot cannot be made well
+  // between plays, or `stop` was set.
+  Expected<PlayOutcome> play(const Play& play);
+
+  // What the browser can break: the faults of the scenarios, and processes that are killed or
+  // stopped ("kill:camera").
+  Expected<void> inject(const std::string& fault);
+  // Removes what was injected. Does not wait until the robot is well.
+  Expected<void> clear_faults() { return experiment_->clear(); }
+
+  const std::filesystem::path& keep_state();
+  const RuleSet& rules() const { return rules_; }
+  // The file that they are of.
+  static const char* rule_text();
+  std::uint32_t domain() const { return domain_.domain(); }
+  web::Hub& hub() { return hub_; }
+  const web::Metrics& metrics() const { return metrics_; }
+  // Gives the manager an order. From any thread.
+  void submit(Order order) { runtime_->submit(std::move(order)); }
+
+ private:
+  static constexpr Duration kPatience = std::chrono::seconds(90);
+
+  SunsetDemo(Options options, const std::atomic<bool>& stop, ros2::DomainLock domain,
+             RuleSet rules);
+  Expected<void> open();
+  void on_events(std::span<const Event> events);
+  Expected<void> inject(const Play& play);
+  // Waits until the robot is well and no failure is open for a while. Gives whether that came to
+  // be.
+  bool wait_until_well(Duration patience);
+  Expected<void> clear();
+
+  Options options_;
+  const std::atomic<bool>& stop_;
+  ros2::DomainLock domain_;
+  const RuleSet rules_;
+  std::filesystem::path state_;
+  bool keeps_state_ = false;
+
+  // The bag player and the evaluator: processes that nobody manages.
+  RuleSet extras_rules_;
+  Inbox extras_inbox_;
+  std::unique_ptr<owners::Supervisor> extras_;
+
+  std::unique_ptr<LiveRobot> robot_;
+  std::unique_ptr<sunset::Experiment> experiment_;
+  std::unique_ptr<Manager> manager_;
+  web::Hub hub_{[this] { robot_->interrupt(); }};
+  web::Metrics metrics_;
+  std::unique_ptr<web::WatchedManager> watched_;
+  std::unique_ptr<Runtime> runtime_;
+  Time start_;
+
+  std::mutex mutex_;  // guards what follows
+  std::optional<Episode> episode_;
+  Time last_event_;
+
+  std::atomic<bool> is_ending_ = false;
+  std::thread thread_;  // runs the runtime
+};
+
+}  // namespace culprit::lab

@@ -1,0 +1,18 @@
+// The subcommands of culprit-lab. Each adds itself to the command line, and gives its exit code
+// when it was chosen (terminal/command.h).
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "terminal/command.h"
+
+namespace culprit::lab {
+
+void add_demo(CLI::App& app, int& exit_code);
+void add_study(CLI::App& app, const std::string& version, int& exit_code);
+void add_torture(CLI::App& app, int& exit_code);
+void add_play_again(CLI::App& app, int& exit_code);
+
+}  // namespace culprit::lab

@@ -1,0 +1,297 @@
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <unistd.h>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "base/environment.h"
+#include "base/text_file.h"
+#include "demo/demo_setup.h"
+#include "demo/sunset_demo.h"
+#include "laboratory/commands.h"
+#include "laboratory/suave_demo_command.h"
+#include "live/robot_names.h"
+#include "terminal/console.h"
+#include "terminal/planner_options.h"
+#include "terminal/web_service.h"
+#include "web/fault_routes.h"
+#include "web/live_routes.h"
+#include "web/name_routes.h"
+#include "web/order_routes.h"
+#include "web/rule_routes.h"
+#include "web/single_run_route.h"
+#include "web/status_routes.h"
+#include "web/study_runner.h"
+#include "web/what_if_route.h"
+
+namespace culprit::lab {
+namespace {
+
+struct DemoOptions {
+  bool is_extended = false;
+  std::string robot = "sunset";
+  std::string scenario;
+  std::uint64_t seed = 1;
+  double speed = 1;
+  std::string json;
+  PlannerOptions planner;
+  std::optional<std::uint32_t> domain;
+  bool stay = false;
+  bool ends = false;
+  WebOptions web;
+};
+
+Expected<std::vector<Play>> plays_for(const DemoOptions& options) {
+  if (options.scenario.empty()) return default_plays();
+  if (options.scenario == "random") {
+    const auto all = sunset::scenarios();
+    std::mt19937_64 random(options.seed);
+    // Not std::uniform_int_distribution: its results differ between standard libraries.
+    auto play = find_play(all[random() % all.size()].label());
+    if (!play) return Error{play.error()};
+    return std::vector<Play>{*play};
+  }
+  auto play = find_play(options.scenario);
+  if (!play) return Error{play.error()};
+  return std::vector<Play>{*play};
+}
+
+std::string joined(const std::vector<std::string>& items) {
+  std::string out;
+  for (const std::string& item : items) out += (out.empty() ? "" : ", ") + item;
+  return out.empty() ? "none" : out;
+}
+
+nlohmann::json to_json(const std::vector<PlayOutcome>& outcomes) {
+  nlohmann::json document{{"scenarios", nlohmann::json::array()}};
+  std::size_t resolved = 0;
+  std::size_t unresolved = 0;
+  for (const PlayOutcome& o : outcomes) {
+    nlohmann::json entry{{"name", o.name},
+                         {"faults", o.faults},
+                         {"failures", o.failures},
+                         {"strategies", o.strategies},
+                         {"strategies_executed", o.strategies.size()},
+                         {"strategies_succeeded", o.strategies_succeeded},
+                         {"unnecessary_redeployments", o.unnecessary_redeployments},
+                         {"reaction_time_s", o.reaction_times},
+                         {"downtime_s", o.downtime},
+                         {"mean_iou", nullptr},
+                         {"resolved", o.is_resolved()}};
+    if (o.mean_iou) entry["mean_iou"] = *o.mean_iou;
+    document["scenarios"].push_back(std::move(entry));
+    resolved += o.reaction_times.size();
+    unresolved += o.unresolved;
+  }
+  document["resolved"] = resolved;
+  document["unresolved"] = unresolved;
+  return document;
+}
+
+void print_outcome(const PlayOutcome& o) {
+  std::string reactions;
+  for (const double t : o.reaction_times)
+    reactions += fmt::format("{}{:.2f}", reactions.empty() ? "" : ", ", t);
+  say(stdout, "\n  faults                     {}\n", joined(o.faults));
+  say(stdout, "  failures                   {}\n", joined(o.failures));
+  say(stdout, "  strategies executed        {} ({} resolved a failure)\n", o.strategies.size(),
+      o.strategies_succeeded);
+  say(stdout, "  unnecessary redeployments  {}\n", o.unnecessary_redeployments);
+  say(stdout, "  reaction times             {} s\n", reactions.empty() ? "-" : reactions);
+  say(stdout, "  downtime                   {:.2f} s\n", o.downtime);
+  if (o.mean_iou) say(stdout, "  mean IoU                   {:.2f}\n", *o.mean_iou);
+  if (!o.is_resolved()) say(stdout, "  NOT RESOLVED               {}\n", o.complaint);
+}
+
+void print_summary(const std::vector<PlayOutcome>& outcomes) {
+  say(stdout, "\n{:<42} {:>8} {:>10} {:>9} {:>9} {:>8} {:>5}\n", "scenario", "failures",
+      "strategies", "redeploys", "reaction", "downtime", "IoU");
+  for (const PlayOutcome& o : outcomes) {
+    const double mean = o.reaction_times.empty() ? 0
+                                                 : std::accumulate(o.reaction_times.begin(),
+                                                                   o.reaction_times.end(), 0.0) /
+                                                       static_cast<double>(o.reaction_times.size());
+    say(stdout, "{:<42} {:>8} {:>10} {:>9} {:>7.2f} s {:>6.2f} s {:>5}  {}\n", o.name,
+        o.failures.size(), o.strategies.size(), o.unnecessary_redeployments, mean, o.downtime,
+        o.mean_iou ? fmt::format("{:.2f}", *o.mean_iou) : "-",
+        o.is_resolved() ? "healed" : "NOT HEALED");
+  }
+  say(stdout,
+      "redeploys: those that were not necessary. reaction: mean, from detection to resolution.\n");
+}
+
+web::Faults faults_of(SunsetDemo& demo) {
+  web::Faults faults;
+  for (const sunset::Fault& fault : sunset::faults())
+    faults.all.push_back({std::string(fault.name), std::string(sunset::name_of(fault.member))});
+  for (const sunset::Member member : sunset::kManagedMembers) {
+    const std::string name(sunset::name_of(member));
+    for (const char* what : {"kill:", "stop:"}) faults.all.push_back({what + name, name});
+  }
+  faults.inject = [&demo](const std::string& name) { return demo.inject(name); };
+  faults.clear = [&demo] { return demo.clear_faults(); };
+  return faults;
+}
+
+std::vector<web::Route> web_routes(SunsetDemo& demo, web::OrderDesk& orders, web::RuleDesk& desk,
+                                   web::StudyRunner& studies, RobotNames& names,
+                                   PlannerFactory planner) {
+  std::vector<web::Route> routes = web::live_routes(demo.hub());
+  for (web::Route& route : web::order_routes(orders)) routes.push_back(std::move(route));
+  for (web::Route& route : web::status_routes(demo.hub(), demo.metrics()))
+    routes.push_back(std::move(route));
+  for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
+  for (web::Route& route :
+       web::name_routes([&names](const LiveInterest& interest) { return names.look(interest); }))
+    routes.push_back(std::move(route));
+  routes.push_back(web::what_if_route(std::move(planner)));
+  for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
+  routes.push_back(web::single_run_route());
+  for (web::Route& route : web::fault_routes(faults_of(demo))) routes.push_back(std::move(route));
+  return routes;
+}
+
+int demo_sunset(const DemoOptions& options) {
+  const auto plays = plays_for(options);
+  if (!plays) {
+    say(stderr, "culprit: {}\n", plays.error());
+    return kUsage;
+  }
+  StopSignals signals;
+  const Colour colour = colour_of(STDOUT_FILENO);
+  say(stdout, "Starting SUNSET: camera, depth, image_enhancement, sensor_fusion, segmentation\n");
+  SunsetDemo::Options setup;
+  setup.speed = options.speed;
+  setup.seed = options.seed;
+  setup.domain = options.domain;
+  setup.planner = options.planner.factory();
+  setup.on_event = [colour](const Event& event, const RuleSet& rules, Time start) {
+    const std::string text = line(event, rules, start, colour);
+    if (!text.empty()) say(stdout, "{}\n", text);
+  };
+  auto demo = SunsetDemo::start(std::move(setup), signals.stopped());
+  if (!demo) {
+    say(stderr, "culprit: {}\n", demo.error());
+    return kFailed;
+  }
+  say_domain("SUNSET", (*demo)->domain());
+  web::RuleDesk desk("sunset.rules", SunsetDemo::rule_text());
+  web::OrderDesk orders(web::keeps_nothing("a demonstration forgets all when it ends"));
+  RobotNames names;
+  web::StudyRunner studies(default_state_folder() / "studies");
+  orders.open((*demo)->rules(), [&](Order order) { (*demo)->submit(std::move(order)); });
+  const auto server = serve(
+      options.web, web_routes(**demo, orders, desk, studies, names, options.planner.factory()),
+      &(*demo)->hub());
+  if (!server) {
+    say(stderr, "culprit: {}\n", server.error());
+    return kUsage;
+  }
+  if (options.stay) {
+    say(stdout, "Break it in the browser, and see what becomes of it; Ctrl-C ends it.\n");
+    signals.wait_until_stopped();
+    return kOk;
+  }
+  std::vector<PlayOutcome> outcomes;
+  for (std::size_t i = 0; i < plays->size(); ++i) {
+    const Play& play = (*plays)[i];
+    say(stdout, "\nScenario {} of {}: {}\nInjecting {}\n", i + 1, plays->size(), play.name,
+        joined(play.fault_names()));
+    auto outcome = (*demo)->play(play);
+    if (!outcome) {
+      say(stderr, "culprit: {}\n", outcome.error());
+      return kFailed;
+    }
+    print_outcome(*outcome);
+    outcomes.push_back(std::move(*outcome));
+  }
+  print_summary(outcomes);
+  const bool all_healed = std::all_of(outcomes.begin(), outcomes.end(),
+                                      [](const PlayOutcome& o) { return o.is_resolved(); });
+  if (!all_healed)
+    say(stdout, "The logs of the nodes are in {}\n", ((*demo)->keep_state() / "log").string());
+  if (!options.json.empty()) {
+    const auto written = write_text(options.json, to_json(outcomes).dump(2) + "\n");
+    if (!written) {
+      say(stderr, "culprit: {}\n", written.error());
+      return kFailed;
+    }
+  }
+  const bool is_watched = isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0;
+  if (is_watched && !options.ends) {
+    say(stdout, "\nThe robot flies on: break it in the browser ({}). Ctrl-C ends it.\n",
+        (*server)->address());
+    signals.wait_until_stopped();
+  }
+  return all_healed ? kOk : kFailed;
+}
+
+int demo(const DemoOptions& options) {
+  if (options.robot == "sunset" && options.is_extended) {
+    say(stderr, "culprit: --extended is for --robot suave\n");
+    return kUsage;
+  }
+  if (options.robot == "sunset") return demo_sunset(options);
+  if (!options.scenario.empty() || options.stay) {
+    say(stderr,
+        "culprit: --scenario and --stay are for --robot sunset; SUAVE has its missions, the "
+        "standard one and --extended\n");
+    return kUsage;
+  }
+  SuaveDemo::Options setup;
+  setup.is_extended = options.is_extended;
+  setup.speed = options.speed;
+  setup.seed = options.seed;
+  setup.domain = options.domain;
+  setup.planner = options.planner.factory();
+  return demo_suave(std::move(setup), options.json);
+}
+
+}  // namespace
+
+void add_demo(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DemoOptions>();
+  CLI::App* command = app.add_subcommand(
+      "demo",
+      "Let culprit heal a live robot: SUNSET, a drone's segmentation pipeline of real processes.\n"
+      "Plays three scenarios, each with an ERROR, a WARNING and a NON_CRITICAL fault at once.\n"
+      "Then it goes on until Ctrl-C if a person watches.\n"
+      "With --robot suave: an underwater robot that must find a pipeline in murky water, and loses "
+      "a thruster.");
+  command->add_option("--robot", options->robot, "Which robot")
+      ->check(CLI::IsMember({"sunset", "suave"}))
+      ->capture_default_str();
+  command->add_option(
+      "--scenario", options->scenario,
+      "One scenario instead: 001 to 018, a name such as image_shift+gpu_failure, 'random', or what "
+      "happens to "
+      "processes: kill:camera, stop:depth, crash:segmentation, kill:camera+segmentation");
+  command->add_flag(
+      "--extended", options->is_extended,
+      "With --robot suave: the battery runs low as well, and what dies is started anew");
+  command->add_option("--seed", options->seed, "Of the flight or dive, and of 'random'")
+      ->capture_default_str();
+  command->add_option("--speed", options->speed, "How much faster than real time the robot lives")
+      ->check(CLI::Range(0.1, 20.0))
+      ->capture_default_str();
+  command->add_option("--json", options->json,
+                      "Also write the outcome to this file, as one JSON object");
+  command
+      ->add_option("--domain", options->domain,
+                   "The DDS domain (default: the first from 1 on that nobody on this machine uses)")
+      ->check(CLI::Range(0, 101));
+  command->add_flag("--end", options->ends,
+                    "End after the scenarios also where a person watches, at a terminal");
+  command
+      ->add_flag("--stay", options->stay,
+                 "Play no scenario: go on until Ctrl-C, and break the robot in the browser")
+      ->excludes("--scenario")
+      ->excludes("--end");
+  options->planner.add_to(*command);
+  options->web.add_to(*command);
+  command->callback([options, &exit_code] { exit_code = demo(*options); });
+}
+
+}  // namespace culprit::lab

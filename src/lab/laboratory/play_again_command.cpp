@@ -1,0 +1,74 @@
+// culprit-lab play-again: one run of a campaign, for the page's timeline (web/single_run_route.h).
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "base/text_file.h"
+#include "laboratory/commands.h"
+#include "study/single_run.h"
+#include "terminal/console.h"
+#include "web/event_json.h"
+
+namespace culprit::lab {
+namespace {
+
+using web::Json;
+
+Json to_json(const study::TimelineEntry& incident) {
+  return {{"t", std::round(incident.time_s * 1000) / 1000},
+          {"kind", study::name(incident.kind)},
+          {"component", incident.component},
+          {"text", incident.text}};
+}
+
+// As the live stream has them. What nobody has words for is left out, as there.
+Json to_json(const study::SingleRun& run) {
+  std::vector<Json> events;
+  for (const study::TimelineEntry& incident : run.incidents) events.push_back(to_json(incident));
+  for (const Event& event : run.events) {
+    Json json = web::to_json(event, run.rules, Time{});
+    if (!json["text"].get_ref<const std::string&>().empty()) events.push_back(std::move(json));
+  }
+  std::stable_sort(events.begin(), events.end(), [](const Json& a, const Json& b) {
+    return a["t"].get<double>() < b["t"].get<double>();
+  });
+  return {{"scenario", run.scenario},
+          {"is_told", run.is_told},
+          {"end", run.end_s},
+          {"events", std::move(events)}};
+}
+
+bool is_natural(const Json& request, const char* member) {
+  return request.contains(member) && request[member].is_number_unsigned();
+}
+
+int play_again(const std::string& path) {
+  const auto text = read_text(path);
+  if (!text) return fail(text.error(), kUsage);
+  const Json request = Json::parse(*text, nullptr, false);
+  const bool is_whole = request.is_object() && request.contains("study") &&
+                        request["study"].is_string() && request.contains("campaign") &&
+                        is_natural(request, "row") && is_natural(request, "run");
+  if (!is_whole) return fail("'" + path + "' is no request for a run", kUsage);
+  const auto run =
+      study::play_again(request["study"].get<std::string>(), request["campaign"],
+                        {request["row"].get<std::uint32_t>(), request["run"].get<std::uint32_t>()});
+  if (!run) return fail(run.error());
+  say_text(stdout, to_json(*run).dump() + "\n");
+  return kOk;
+}
+
+}  // namespace
+
+void add_play_again(CLI::App& app, int& exit_code) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "play-again", "Play one run of a campaign again, and write what happened as JSON");
+  command
+      ->add_option("REQUEST", *path,
+                   "A JSON file: {study, campaign, row, run}, as they stand in a campaign's result")
+      ->required();
+  command->callback([path, &exit_code] { exit_code = play_again(*path); });
+}
+
+}  // namespace culprit::lab

@@ -1,0 +1,113 @@
+#include "web/single_run_route.h"
+
+#include <fstream>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "study/json.h"
+#include "study/rca/campaign_json.h"
+#include "study/shards/suave_record.h"
+#include "study/sunset/study.h"
+
+namespace culprit::lab {
+namespace {
+
+using web::Json;
+
+web::Answer ask(const Json& body) { return web::single_run_route().answer(body); }
+
+Json example() {
+  std::ifstream file("src/web/openapi.json");
+  const auto document = Json::parse(file);
+  return document["paths"]["/api/studies/run"]["post"]["requestBody"]["content"]["application/json"]
+                 ["example"];
+}
+
+std::set<std::string> kinds(const Json& events) {
+  std::set<std::string> kinds;
+  for (const Json& event : events) kinds.insert(event["kind"].get<std::string>());
+  return kinds;
+}
+
+bool is_in_order(const Json& events) {
+  return std::is_sorted(events.begin(), events.end(), [](const Json& a, const Json& b) {
+    return a["t"].get<double>() < b["t"].get<double>();
+  });
+}
+
+// The very run that the campaign measured: the same failures at the same times.
+TEST(SingleRunRoute, PlaysTheExampleOfTheOpenApiDocumentAsTheCampaignDid) {
+  const Json body = example();
+  const web::Answer answer = ask(body);
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  const auto campaign = study::campaign_from_json<study::Campaign>(body["campaign"]);
+  const auto study = study::SunsetStudy::make(campaign->rows, campaign->seed);
+  const study::RunId id{0, 3};
+  const study::SunsetRun played = study->play(id);
+  EXPECT_EQ(answer.body["scenario"], played.scenario.name());
+
+  const Json& events = answer.body["events"];
+  EXPECT_TRUE(is_in_order(events));
+  EXPECT_THAT(kinds(events), testing::IsSupersetOf({"fault", "detected", "decided", "resolved"}));
+  std::vector<double> resolved_s;
+  for (const Json& event : events) {
+    if (event["kind"] == "resolved") resolved_s.push_back(event["reaction_s"].get<double>());
+    EXPECT_LE(event["t"].get<double>(), answer.body["end"].get<double>());
+  }
+  EXPECT_EQ(resolved_s, study->run(id).reactions_s);
+}
+
+TEST(SingleRunRoute, PlaysOtherStudiesToo) {
+  study::rca::RcaCampaign rca;
+  rca.settings = {{20, 2, 0, false}};
+  rca.planners = {"naive", "bayes"};
+  rca.episodes = 3;
+  const web::Answer episode =
+      ask({{"study", "rca"}, {"campaign", study::rca::to_json(rca)}, {"row", 1u}, {"run", 2u}});
+  ASSERT_EQ(episode.status, 200) << episode.body;
+  EXPECT_THAT(kinds(episode.body["events"]), testing::IsSupersetOf({"fault", "decided"}));
+  EXPECT_TRUE(is_in_order(episode.body["events"]));
+
+  study::SuaveCampaign suave;
+  suave.plan = *suave::model::find_mission_plan("stress");
+  suave.generation = *suave::model::find_generation("era");
+  suave.managers = {"bt", study::kCulprit};
+  suave.runs = 1;
+  Json body{{"study", "suave"}, {"campaign", study::to_json(suave)}, {"row", 0u}, {"run", 0u}};
+  const web::Answer other = ask(body);
+  ASSERT_EQ(other.status, 200) << other.body;
+  EXPECT_EQ(other.body["is_told"], false);
+  EXPECT_THAT(kinds(other.body["events"]), testing::ElementsAre("fault", "note"));
+  body["row"] = 1u;
+  const web::Answer ours = ask(body);
+  EXPECT_EQ(ours.body["is_told"], true);
+  EXPECT_THAT(kinds(ours.body["events"]),
+              testing::IsSupersetOf({"fault", "note", "detected", "decided", "resolved"}));
+  EXPECT_TRUE(is_in_order(ours.body["events"]));
+}
+
+TEST(SingleRunRoute, SaysWhatIsWrongWithACampaignOrARun) {
+  for (const Json& wrong :
+       {Json(), Json(1), Json::array(), Json::object(), Json{{"study", "sunset"}}})
+    EXPECT_EQ(ask(wrong).status, 400) << wrong;
+  const auto refusal = [](const char* member, const Json& value) {
+    Json body = example();
+    body[member] = value;
+    return ask(body);
+  };
+  EXPECT_EQ(refusal("run", -1).status, 400);
+  EXPECT_EQ(refusal("row", "0").status, 400);
+  EXPECT_EQ(refusal("run", 18u).status, 422);
+  EXPECT_EQ(refusal("row", 1u).status, 422);
+  EXPECT_EQ(refusal("study", "rm").status, 422);
+  EXPECT_EQ(refusal("study", "rca").status, 422);
+  EXPECT_EQ(refusal("campaign", nullptr).status, 422);
+  Json body = example();
+  body["campaign"]["rows"][0]["planner"] = "nobody";
+  EXPECT_THAT(ask(body).body["error"].get<std::string>(), testing::HasSubstr("nobody"));
+}
+
+}  // namespace
+}  // namespace culprit::lab

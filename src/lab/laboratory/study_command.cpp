@@ -1,0 +1,297 @@
+// culprit study: campaigns over an exemplar.
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "laboratory/commands.h"
+#include "laboratory/study_output.h"
+#include "laboratory/study_rca_command.h"
+#include "laboratory/study_runs.h"
+#include "laboratory/study_suave_command.h"
+#include "study/shards/merge.h"
+#include "study/sunset/study.h"
+
+namespace culprit::lab {
+namespace {
+
+struct StudyOptions {
+  bool ablation = false;
+  bool robustness = false;
+  bool learning = false;
+  std::vector<std::string> planners = {"paper"};
+  std::vector<std::string> objectives = {"balanced"};
+  std::string profile = "paper";
+  std::vector<std::string> detectors = {"own"};
+  std::uint32_t runs = 162;
+  std::uint32_t repetitions = 20;
+  std::uint64_t seed = 1;
+  unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
+  ShardOptions shard;
+  std::optional<std::uint32_t> explained_run;
+  std::string switches = "DCS";
+  std::string version;
+  StudyOutput output;
+
+  bool has_everything() const { return !ablation && !robustness && !learning; }
+  bool has_ablation() const { return ablation || has_everything(); }
+  bool has_robustness() const { return robustness || has_everything(); }
+  bool has_learning() const { return learning || has_everything(); }
+};
+
+// "D-S"
+Expected<PaperSwitches> parse_switches(const std::string& text) {
+  const auto is = [&](std::size_t place, char letter) {
+    return text.size() == 3 && (text[place] == letter || text[place] == '-');
+  };
+  if (!is(0, 'D') || !is(1, 'C') || !is(2, 'S'))
+    return Error{"'" + text + "' is no configuration: write DCS with a - for what is off, as D-S"};
+  return PaperSwitches{text[0] == 'D', text[1] == 'C', text[2] == 'S'};
+}
+
+// As the study calls them: bayes once for each objective.
+std::vector<std::string> planners_of(const StudyOptions& options) {
+  std::vector<std::string> planners;
+  for (const std::string& planner : options.planners) {
+    if (planner != "bayes") {
+      planners.push_back(planner);
+      continue;
+    }
+    for (const std::string& objective : options.objectives)
+      planners.push_back(objective == "balanced" ? planner : planner + ":" + objective);
+  }
+  return planners;
+}
+
+// The profile once for each kind of detectors, as the study calls it.
+std::vector<std::string> profiles_of(const StudyOptions& options) {
+  std::vector<std::string> profiles;
+  for (const std::string& detectors : options.detectors)
+    profiles.push_back(detectors == "own" ? options.profile : options.profile + ":" + detectors);
+  return profiles;
+}
+
+// The rows of the paper's tables, in the paper's order.
+void add_rows(const StudyOptions& options, const std::string& profile,
+              std::vector<study::Configuration>& rows) {
+  using study::Probabilities;
+  for (const std::string& planner : planners_of(options)) {
+    for (const bool d : {false, true}) {
+      for (const bool c : {false, true}) {
+        for (const bool s : {false, true}) {
+          const bool is_full = d && c && s;
+          if (!study::has_switches(planner) && !is_full) continue;
+          if (options.has_ablation() || (options.has_robustness() && is_full))
+            rows.push_back({{d, c, s}, planner, profile, Probabilities::kIdeal});
+        }
+      }
+    }
+    if (options.has_robustness())
+      rows.push_back({{}, planner, profile, Probabilities::kMisspecified});
+  }
+}
+
+std::vector<study::Configuration> rows_of(const StudyOptions& options) {
+  std::vector<study::Configuration> rows;
+  for (const std::string& profile : profiles_of(options)) add_rows(options, profile, rows);
+  return rows;
+}
+
+std::string command_of(const StudyOptions& options) {
+  std::string command = "culprit study sunset";
+  if (options.ablation) command += " --ablation";
+  if (options.robustness) command += " --robustness";
+  if (options.learning) command += fmt::format(" --learning --repetitions {}", options.repetitions);
+  for (const std::string& planner : options.planners) command += " --planner " + planner;
+  if (options.objectives != StudyOptions().objectives)
+    command += fmt::format(" --objective {}", fmt::join(options.objectives, ","));
+  if (options.detectors != StudyOptions().detectors)
+    command += fmt::format(" --detectors {}", fmt::join(options.detectors, ","));
+  return command + fmt::format(" --profile {} --runs {} --seed {}", options.profile, options.runs,
+                               options.seed);
+}
+
+// Who learns: the first of the planners that can, or else the paper's.
+std::string learner_of(const StudyOptions& options) {
+  const std::vector<std::string> planners = planners_of(options);
+  const auto found = std::find_if(planners.begin(), planners.end(), study::can_learn);
+  return found == planners.end() ? "paper" : *found;
+}
+
+// `progress` has what comes before it behind it.
+Expected<std::vector<study::LearningCurve>> learn(const StudyOptions& options, Progress& progress,
+                                                  std::uint64_t before) {
+  auto study = study::SunsetStudy::make({{{},
+                                          learner_of(options),
+                                          profiles_of(options).front(),
+                                          study::Probabilities::kMisspecified}},
+                                        options.seed);
+  if (!study) return Error{study.error()};
+  return study->learn(options.runs, options.repetitions,
+                      [&](std::uint64_t done) { progress.show(before + done); });
+}
+
+// Of the paper's full configuration, or of the first row if it has no such.
+std::uint32_t told_row(const study::Campaign& campaign) {
+  const auto row = std::find_if(campaign.rows.begin(), campaign.rows.end(),
+                                [](const auto& each) { return each.switches == PaperSwitches{}; });
+  return row == campaign.rows.end() ? 0 : static_cast<std::uint32_t>(row - campaign.rows.begin());
+}
+
+// Each scenario once, for the report.
+std::vector<study::Timeline> timelines(const study::SunsetStudy& study,
+                                       const study::Campaign& campaign,
+                                       const StudyOptions& options) {
+  std::vector<study::Timeline> told;
+  if (options.output.html.empty()) return told;
+  const auto scenarios = static_cast<std::uint32_t>(sunset::scenarios().size());
+  for (std::uint32_t run = 0; run < std::min(campaign.runs, scenarios); ++run)
+    told.push_back(study.explain({told_row(campaign), run}));
+  return told;
+}
+
+int run_campaign(const study::SunsetStudy& study, const study::Campaign& campaign,
+                 const StudyOptions& options) {
+  const std::uint64_t learned =
+      options.has_learning() ? std::uint64_t{options.runs} * options.repetitions : 0;
+  Progress progress(0, campaign.size() + learned);
+  auto result =
+      run_whole(campaign, options.jobs, progress, [&](study::RunId id) { return study.run(id); });
+  if (!result) return kFailed;
+  study::Findings findings{std::move(*result), {}, timelines(study, campaign, options)};
+  if (options.has_learning()) {
+    auto curves = learn(options, progress, campaign.size());
+    if (!curves) return fail(curves.error(), kUsage);
+    findings.learning = std::move(*curves);
+  }
+  progress.end();
+  const auto written = write(findings, options.output);
+  return written ? kOk : fail(written.error(), kFailed);
+}
+
+int explain(const StudyOptions& options) {
+  const auto switches = parse_switches(options.switches);
+  if (!switches) return fail(switches.error(), kUsage);
+  const study::Configuration wanted{*switches, planners_of(options).front(),
+                                    profiles_of(options).front(), study::Probabilities::kIdeal};
+  // The same row as in the campaign, so that it is the same run.
+  std::vector<study::Configuration> rows = rows_of(options);
+  const auto row = std::find(rows.begin(), rows.end(), wanted);
+  if (row == rows.end()) return fail("the campaign has no such configuration", kUsage);
+  const auto index = static_cast<std::uint32_t>(row - rows.begin());
+  const auto study = study::SunsetStudy::make(std::move(rows), options.seed);
+  if (!study) return fail(study.error(), kUsage);
+  fmt::print("{}", timeline_text(study->explain({index, *options.explained_run})));
+  return kOk;
+}
+
+int study_sunset(const StudyOptions& options) {
+  if (options.explained_run) return explain(options);
+  if (options.shard.is_sharded() && options.learning)
+    return fail("learning goes from run to run and cannot be spread over shards", kUsage);
+  study::Campaign campaign{rows_of(options), options.runs, options.seed, options.version,
+                           command_of(options)};
+  const auto study = study::SunsetStudy::make(campaign.rows, campaign.seed);
+  if (!study) return fail(study.error(), kUsage);
+  if (!options.shard.is_sharded()) return run_campaign(*study, campaign, options);
+  return fill_shard(campaign, options.shard, options.jobs,
+                    [&](study::RunId id) { return study->run(id); });
+}
+
+int merge(const std::vector<std::string>& files, const StudyOutput& output) {
+  auto merged = study::merge_files(files);
+  if (!merged) return fail(merged.error(), kFailed);
+  auto* sunset = std::get_if<study::CampaignResult>(&*merged);
+  const auto written = sunset != nullptr
+                           ? write(study::Findings{std::move(*sunset), {}, {}}, output)
+                           : write(std::get<study::SuaveResult>(*merged), output);
+  return written ? kOk : fail(written.error(), kFailed);
+}
+
+void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
+  auto options = std::make_shared<StudyOptions>();
+  options->version = version;
+  CLI::App* command = study.add_subcommand(
+      "sunset", "The paper's evaluation on SUNSET, in virtual time; without a choice, all of it");
+  command->add_flag("--ablation", options->ablation, "Eight configurations of D, C and S");
+  command->add_flag("--robustness", options->robustness,
+                    "Success probabilities that are 20 % off, beside ideal ones");
+  command->add_flag(
+      "--learning", options->learning,
+      "What is learned of each strategy, by the first planner that can (paper, bayes)");
+  command
+      ->add_option(
+          "--planner", options->planners,
+          "paper (Algorithm 1 as meant), reference (the authors' public code with its "
+          "slips), bayes (culprit's own); bt, metacontrol, rosa (others': one failure and one "
+          "strategy at a time), rebet, ac-ros, vogel, ghahremani (others': each failure for "
+          "itself); "
+          "oracle (knows each fault at once, and what ends it: a bound); "
+          "several, one after the other")
+      ->capture_default_str();
+  command
+      ->add_option("--objective", options->objectives,
+                   "What bayes spares most; several, one after the other")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
+      ->capture_default_str();
+  command
+      ->add_option("--profile", options->profile,
+                   "Which SUNSET: paper, head, october (versions of the exemplar) or live (ours)")
+      ->capture_default_str();
+  command
+      ->add_option("--detectors", options->detectors,
+                   "How outages are seen: own (the profile's: SUNSET's monitoring as in the paper; "
+                   "of live, age), age (three messages missed), phi (a silence out of its "
+                   "rhythm) or known (the fault at once: a bound); several, one after the other")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"own", "age", "phi", "known"}))
+      ->capture_default_str();
+  command->add_option("--runs", options->runs, "Of each configuration")
+      ->check(CLI::Range(1U, 1'000'000'000U))
+      ->capture_default_str();
+  command->add_option("--repetitions", options->repetitions, "Of the series that is learned from")
+      ->check(CLI::Range(1U, 1'000'000U))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of all that is left to chance")
+      ->capture_default_str();
+  command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
+      ->check(CLI::Range(1U, 1024U));
+  options->shard.add_to(*command);
+  command->add_option("--run", options->explained_run,
+                      "With --explain: one run, from 0, and what happened in it");
+  command->add_flag("--explain")->needs("--run");
+  command->add_option("--switches", options->switches, "With --run: of this configuration")
+      ->capture_default_str();
+  options->output.add_to(*command);
+  command->callback([options, &exit_code] { exit_code = study_sunset(*options); });
+}
+
+void add_merge(CLI::App& study, int& exit_code) {
+  struct MergeOptions {
+    std::vector<std::string> files;
+    StudyOutput output;
+  };
+  auto options = std::make_shared<MergeOptions>();
+  CLI::App* command = study.add_subcommand(
+      "merge", "Put the shards of a campaign together, of whichever study they are");
+  command->add_option("FILES", options->files, "All shard files")->required();
+  options->output.add_to(*command);
+  command->callback([options, &exit_code] { exit_code = merge(options->files, options->output); });
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, const std::string& version, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "study", "Campaigns over an exemplar: metrics, statistics and tables beside the paper's");
+  command->require_subcommand(1);
+  add_sunset(*command, version, exit_code);
+  add_study_suave(*command, version, exit_code);
+  add_study_rca(*command, version, exit_code);
+  add_merge(*command, exit_code);
+}
+
+}  // namespace culprit::lab

@@ -1,0 +1,202 @@
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "laboratory/commands.h"
+
+namespace culprit::lab {
+namespace {
+
+using testing::HasSubstr;
+
+class StudyCommand : public testing::Test {
+ protected:
+  StudyCommand() { std::filesystem::create_directories(folder_); }
+  ~StudyCommand() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  static std::string text(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  static void write(const std::string& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+  }
+
+  int run(std::vector<std::string> arguments) {
+    CLI::App app;
+    int exit_code = -1;
+    add_study(app, "test", exit_code);
+    arguments.insert(arguments.begin(), "study");
+    std::reverse(arguments.begin(), arguments.end());
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout();
+    app.parse(arguments);
+    said = testing::internal::GetCapturedStdout();
+    complaint = testing::internal::GetCapturedStderr();
+    return exit_code;
+  }
+
+  int run_small(std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"sunset", "--ablation", "--runs", "4"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+
+  // The same small campaign in two shards, at path("1") and path("2").
+  void make_shards() {
+    ASSERT_EQ(run_small({"--shard", "1/2", "--shard-file", path("1")}), kOk) << complaint;
+    ASSERT_EQ(run_small({"--shard", "2/2", "--shard-file", path("2")}), kOk) << complaint;
+  }
+
+  std::string said;
+  std::string complaint;
+
+ private:
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
+                                  testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+TEST_F(StudyCommand, GivesTheRowsOfAllThreeTables) {
+  ASSERT_EQ(run({"sunset", "--runs", "4", "--repetitions", "1", "--json"}), kOk) << complaint;
+  const auto document = nlohmann::json::parse(said);
+  EXPECT_EQ(document["rows"].size(), 9);  // eight of the ablation, and the misspecified one
+  const auto& row = document["rows"][7];
+  EXPECT_TRUE(row["dependencies"] && row["criticality"] && row["impact"]);
+  EXPECT_EQ(row["planner"], "paper");
+  EXPECT_EQ(row["runs"], 4);
+  EXPECT_GT(row["downtime_s"]["mean"], 3);
+  EXPECT_GT(row["honest"]["recovery_s"]["mean"], 3);
+  ASSERT_EQ(document["learning"].size(), 10);  // strategies of F1 to F5
+  const auto& learned = document["learning"][0];
+  EXPECT_EQ(learned["strategy"], "rgb_restart");
+  for (const char* key : {"believed", "truth", "error", "executed", "counted"})
+    EXPECT_TRUE(learned[key].is_number()) << key;
+}
+
+TEST_F(StudyCommand, SeesOutagesByTheDetectorsThatAreChosen) {
+  ASSERT_EQ(run({"sunset", "--ablation", "--runs", "2", "--planner", "bayes", "--planner", "oracle",
+                 "--detectors", "own,phi", "--json"}),
+            kOk)
+      << complaint;
+  const auto rows = nlohmann::json::parse(said)["rows"];
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0]["profile"], "paper");
+  EXPECT_EQ(rows[2]["profile"], "paper:phi");
+  EXPECT_EQ(rows[3]["planner"], "oracle");
+  EXPECT_LT(rows[2]["honest"]["downtime_s"]["mean"], rows[0]["honest"]["downtime_s"]["mean"]);
+}
+
+TEST_F(StudyCommand, GivesTheSameBytesWithAnyNumberOfJobs) {
+  ASSERT_EQ(run_small({"--jobs", "1", "--json"}), kOk);
+  const std::string one = said;
+  ASSERT_EQ(run_small({"--jobs", "5", "--json"}), kOk);
+  EXPECT_EQ(said, one);
+  ASSERT_EQ(run_small({"--jobs", "5", "--json", "--seed", "2"}), kOk);
+  EXPECT_NE(nlohmann::json::parse(said)["rows"], nlohmann::json::parse(one)["rows"]);
+}
+
+TEST_F(StudyCommand, ShardsMergeToTheSameBytes) {
+  ASSERT_EQ(run_small({"--json"}), kOk);
+  const std::string whole = said;
+  make_shards();
+  ASSERT_EQ(run({"merge", path("2"), path("1"), "--json"}), kOk) << complaint;
+  EXPECT_EQ(said, whole);
+}
+
+TEST_F(StudyCommand, ShardsOfSuaveMergeToTheSameBytes) {
+  const std::vector<std::string> campaign = {"suave", "--stress",   "--runs",
+                                             "3",     "--managers", "random,rosa,culprit"};
+  const auto run_with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), campaign.begin(), campaign.end());
+    return run(more);
+  };
+  ASSERT_EQ(run_with({"--json", "--html", path("whole.html")}), kOk) << complaint;
+  const std::string whole = said;
+  for (const std::string number : {"1", "2"})
+    ASSERT_EQ(run_with({"--shard", number + "/2", "--shard-file", path(number)}), kOk) << complaint;
+  const std::string second = text(path("2"));
+  write(path("2"), second.substr(0, second.size() / 2));
+  EXPECT_EQ(run({"merge", path("1"), path("2")}), kFailed);
+  ASSERT_EQ(run_with({"--shard", "2/2", "--shard-file", path("2")}), kOk);
+  EXPECT_THAT(complaint, HasSubstr("runs are there already"));
+
+  ASSERT_EQ(run({"merge", path("2"), path("1"), "--json", "--html", path("merged.html")}), kOk)
+      << complaint;
+  EXPECT_EQ(said, whole);
+  EXPECT_EQ(text(path("merged.html")), text(path("whole.html")));
+  EXPECT_EQ(run({"merge", path("2"), path("1"), "--format", "csv"}), kFailed);
+  EXPECT_THAT(complaint, HasSubstr("neither plots nor CSV"));
+}
+
+TEST_F(StudyCommand, SaysWhichManagersOfSuaveThereAre) {
+  EXPECT_EQ(run({"suave", "--managers", "me"}), kUsage);
+  EXPECT_THAT(complaint, HasSubstr("there are none, random, bt, metacontrol, rosa, culprit"));
+  EXPECT_EQ(run({"suave", "--managers", "bt,culprit,bt"}), kUsage);
+  EXPECT_THAT(complaint, HasSubstr("manager 'bt' is there twice"));
+}
+
+TEST_F(StudyCommand, GoesOnWhereItWasInterrupted) {
+  make_shards();
+  const std::string whole = text(path("1"));
+  write(path("1"), whole.substr(0, whole.size() / 2));
+  EXPECT_EQ(run({"merge", path("1"), path("2")}), kFailed);
+  ASSERT_EQ(run_small({"--shard", "1/2", "--shard-file", path("1")}), kOk);
+  EXPECT_THAT(complaint, HasSubstr("runs are there already"));
+  EXPECT_EQ(text(path("1")), whole);
+}
+
+TEST_F(StudyCommand, MergesNothingByHalves) {
+  make_shards();
+  EXPECT_EQ(run({"merge", path("1")}), kFailed);
+  EXPECT_EQ(run({"merge", path("1"), path("1"), path("2")}), kFailed);
+  EXPECT_EQ(run({"merge", path("1"), path("none")}), kFailed);
+
+  ASSERT_EQ(run_small({"--seed", "2", "--shard", "2/2", "--shard-file", path("other")}), kOk);
+  EXPECT_EQ(run({"merge", path("1"), path("other")}), kFailed);
+  EXPECT_EQ(said, "");
+
+  std::string damaged = text(path("2"));
+  damaged[damaged.size() / 2] ^= 1;
+  write(path("2"), damaged);
+  write(path("out"), "old");
+  EXPECT_EQ(run({"merge", path("1"), path("2"), "--output", path("out")}), kFailed);
+  EXPECT_THAT(complaint, HasSubstr(path("2")));
+  EXPECT_EQ(text(path("out")), "old");
+}
+
+TEST_F(StudyCommand, WritesAReportAndPlots) {
+  ASSERT_EQ(run_small({"--html", path("report.html"), "--svg", path("plots")}), kOk) << complaint;
+  const std::string page = text(path("report.html"));
+  EXPECT_THAT(page, HasSubstr("culprit study sunset --ablation"));
+  EXPECT_THAT(page, HasSubstr("is held responsible for"));
+  EXPECT_THAT(text(path("plots/downtime_s.svg")), HasSubstr("<svg"));
+  EXPECT_EQ(run_small({"--html", path("no/report.html")}), kFailed);
+}
+
+TEST_F(StudyCommand, SaysWhatCanBeChosen) {
+  EXPECT_EQ(run({"sunset", "--profile", "september"}), kUsage);
+  EXPECT_THAT(complaint, HasSubstr("there are paper, head, october, live"));
+  EXPECT_EQ(run({"sunset", "--planner", "magic"}), kUsage);
+  EXPECT_THAT(complaint, HasSubstr("there are paper, reference"));
+  EXPECT_EQ(run({"sunset", "--planner", "reference", "--profile", "live"}), kUsage);
+  EXPECT_EQ(run({"sunset", "--shard", "3/2", "--shard-file", path("x")}), kUsage);
+  EXPECT_EQ(run({"sunset", "--shard", "1/2"}), kUsage);
+  EXPECT_EQ(run({"sunset", "--learning", "--shard-file", path("x")}), kUsage);
+  EXPECT_EQ(run({"sunset", "--run", "1", "--explain", "--switches", "XYZ"}), kUsage);
+}
+
+TEST_F(StudyCommand, TellsWhatHappenedInARun) {
+  ASSERT_EQ(run({"sunset", "--run", "37", "--explain"}), kOk) << complaint;
+  EXPECT_THAT(said, HasSubstr("run 37 of D C S: image_degradation+sync_issue"));
+  EXPECT_THAT(said, HasSubstr("fault: sync_issue"));
+  EXPECT_THAT(said, HasSubstr("fusion is held responsible for SensorFusionDead"));
+  EXPECT_THAT(said, HasSubstr("SensorFusionDead resolved by fusion_restart"));
+}
+
+}  // namespace
+}  // namespace culprit::lab

@@ -1,0 +1,289 @@
+// culprit study rca: a benchmark of root-cause analysis on random robots.
+#include "laboratory/study_rca_command.h"
+
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "base/text_file.h"
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/progress.h"
+#include "language/text_file.h"
+#include "study/managers/style_planner.h"
+#include "laboratory/commands.h"
+#include "study/rca/learning_report.h"
+#include "study/rca/regret.h"
+#include "study/rca/repair_process.h"
+#include "study/rca/report.h"
+#include "study/rca/scenario_json.h"
+#include "study/tables/render.h"
+#include "terminal/console.h"
+#include "terminal/progress.h"
+
+namespace culprit::lab {
+namespace {
+
+using study::rca::RcaCampaign;
+using study::rca::RcaRow;
+using study::rca::RepairProcess;
+using study::rca::Times;
+
+struct RcaOptions {
+  std::vector<std::size_t> components = {200};
+  std::vector<std::size_t> faults = {3};
+  std::vector<double> noise = {0};
+  bool cyclic = false;
+  std::vector<std::string> planners;  // none: all
+  std::string objective = "balanced";
+  std::uint32_t episodes = 100;
+  std::uint64_t seed = 1;
+  unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
+  bool timing = false;
+  std::string format = "text";
+  std::string output;    // empty: the standard output
+  std::string scenario;  // a file; empty: random robots
+  std::optional<std::uint32_t> explained;
+  std::optional<std::uint32_t> learned;  // faults; nothing: no learning is measured
+  double forgetting = 1;
+  bool drift = false;
+  bool regret = false;
+  std::uint32_t systems = 1000;
+  bool untold = false;
+  std::string html;  // a report on learning; empty: none
+  std::string version;
+  std::string scenario_output;  // empty: the episodes are played
+
+  Times times() const { return timing ? Times::kShown : Times::kLeftOut; }
+};
+
+// Of one file, or of every combination of what was asked for.
+Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
+  RcaCampaign campaign;
+  if (!options.scenario.empty()) {
+    const auto text = read_text(options.scenario);
+    if (!text) return Error{text.error()};
+    auto scenario = study::rca::scenario_from_json(*text);
+    if (!scenario) return Error{options.scenario + ": " + scenario.error()};
+    campaign.settings = {study::rca::setting_of(*scenario)};
+    campaign.scenario = std::move(*scenario);
+  }
+  for (const std::size_t components : options.components) {
+    if (campaign.scenario) break;
+    for (const std::size_t faults : options.faults) {
+      if (faults > components)
+        return Error{fmt::format("{} faults do not fit on {} components: each has its own", faults,
+                                 components)};
+      for (const double noise : options.noise)
+        campaign.settings.push_back({components, faults, noise, options.cyclic});
+    }
+  }
+  auto all = study::rca::planner_names();
+  for (const std::string& planner : options.planners) {
+    if (std::find(all.begin(), all.end(), planner) == all.end())
+      return Error{
+          fmt::format("there is no planner '{}'; there are {}", planner, fmt::join(all, ", "))};
+  }
+  const bool has_optimum = study::rca::has_optimum(campaign);
+  const auto& asked = options.planners;
+  if (!has_optimum && std::find(asked.begin(), asked.end(), "optimum") != asked.end())
+    return Error{fmt::format(
+        "the optimum is only worked out for robots of at most {} components with at most {} faults "
+        "and {} subscriptions; see --components and --faults",
+        RepairProcess::kMostComponents, RepairProcess::kMostFaults,
+        RepairProcess::kMostSubscriptions)};
+  if (!has_optimum) std::erase(all, "optimum");
+  std::erase_if(all, [](const std::string& name) { return study::find_style(name).has_value(); });
+  campaign.planners = asked.empty() ? all : asked;
+  campaign.objective = *parse_objective(options.objective);
+  campaign.episodes = options.episodes;
+  campaign.seed = options.seed;
+  campaign.version = options.version;
+  return campaign;
+}
+
+std::string in_format(const RcaOptions& options, const study::Table& table) {
+  if (options.format == "markdown") return study::markdown(table);
+  return options.format == "latex" ? study::latex(table) : study::text(table);
+}
+
+std::string in_format(const RcaOptions& options, const RcaCampaign& campaign,
+                      const std::vector<RcaRow>& rows) {
+  if (options.format == "json") return study::rca::rca_json(campaign, rows, options.times());
+  if (options.format == "csv") return study::rca::rca_csv(rows, options.times());
+  return in_format(options, study::rca::rca_table(campaign, rows, options.times()));
+}
+
+int study_regret(const RcaOptions& options) {
+  if (options.format == "csv")
+    return fail("--regret has no CSV; there are text, markdown, latex and json", kUsage);
+  const study::rca::RegretCampaign campaign{options.systems, options.seed, !options.untold};
+  const StopSignals signals;
+  std::optional<Progress> progress;
+  const auto regrets = study::rca::measure_regret(campaign, options.jobs,
+                                                  [&](std::uint64_t done, std::uint64_t total) {
+                                                    if (!progress) progress.emplace(0, total);
+                                                    progress->show(done);
+                                                    return !signals.stopped();
+                                                  });
+  progress.reset();
+  if (!regrets) return fail("interrupted; nothing is written", kFailed);
+  const auto written = write_text(
+      options.output, options.format == "json"
+                          ? study::rca::regret_json(campaign, *regrets)
+                          : in_format(options, study::rca::regret_table(campaign, *regrets)));
+  return written ? kOk : fail(written.error(), kFailed);
+}
+
+int study_learning(const RcaOptions& options) {
+  study::rca::LearningCampaign campaign;
+  campaign.setting = {options.components.front(), options.faults.front(), options.noise.front(),
+                      options.cyclic};
+  campaign.objective = *parse_objective(options.objective);
+  campaign.faults = *options.learned;
+  campaign.forgetting = options.forgetting;
+  campaign.has_drift = options.drift;
+  campaign.seed = options.seed;
+  const StopSignals signals;
+  const auto result = study::rca::learn(campaign, [&] { return signals.stopped().load(); });
+  if (!result) return fail("interrupted; nothing is written", kFailed);
+  const auto written = write_text(
+      options.output, options.format == "json" ? study::rca::learning_json(campaign, *result)
+                                               : study::rca::learning_text(campaign, *result));
+  if (!written) return fail(written.error(), kFailed);
+  if (options.html.empty()) return kOk;
+  const std::string command = fmt::format(
+      "culprit study rca --learn {} --components {} --faults {} --noise {:g}{} --objective {} "
+      "--forgetting {:g}{} --seed {}",
+      campaign.faults, campaign.setting.components, campaign.setting.faults, campaign.setting.noise,
+      options.cyclic ? " --cyclic" : "", options.objective, campaign.forgetting,
+      options.drift ? " --drift" : "", campaign.seed);
+  const auto page = write_text(
+      options.html, study::rca::learning_html(campaign, *result, command, options.version));
+  return page ? kOk : fail(page.error(), kFailed);
+}
+
+int study_rca(const RcaOptions& options) {
+  if (options.learned) return study_learning(options);
+  if (options.regret) return study_regret(options);
+  const auto campaign = campaign_of(options);
+  if (!campaign) return fail(campaign.error(), kUsage);
+  if (!options.scenario_output.empty()) {
+    const auto first = study::rca::scenario_of(*campaign, campaign->settings.front(), 0);
+    const auto written = write_text(options.scenario_output, study::rca::to_json(first));
+    return written ? kOk : fail(written.error(), kFailed);
+  }
+  if (options.explained) {
+    for (const std::string& planner : campaign->planners) {
+      const auto scenario =
+          study::rca::scenario_of(*campaign, campaign->settings.front(), *options.explained);
+      auto made = study::rca::make_planner(planner, campaign->objective, scenario);
+      fmt::print("{}\n{}\n", planner, study::rca::tell(scenario, std::move(*made)));
+    }
+    return kOk;
+  }
+  const StopSignals signals;
+  std::optional<Progress> progress;
+  const auto rows = study::rca::run_campaign(*campaign, options.jobs,
+                                             [&](std::uint64_t done, std::uint64_t total) {
+                                               if (!progress) progress.emplace(0, total);
+                                               progress->show(done);
+                                               return !signals.stopped();
+                                             });
+  progress.reset();
+  if (!rows) return fail("interrupted; nothing is written", kFailed);
+  const auto written = write_text(options.output, in_format(options, *campaign, *rows));
+  return written ? kOk : fail(written.error(), kFailed);
+}
+
+}  // namespace
+
+void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) {
+  auto options = std::make_shared<RcaOptions>();
+  options->version = version;
+  CLI::App* command = study.add_subcommand(
+      "rca", "A benchmark of root-cause analysis: random robots with several faults at once");
+  command->add_option("--components", options->components, "Sizes of the robots")
+      ->delimiter(',')
+      ->check(CLI::Range(std::size_t{2}, std::size_t{10'000}))
+      ->capture_default_str();
+  command->add_option("--faults", options->faults, "How many come at once")
+      ->delimiter(',')
+      ->check(CLI::Range(std::size_t{1}, std::size_t{10}))
+      ->capture_default_str();
+  command
+      ->add_option("--noise", options->noise,
+                   "The probability that a detector's reading is wrong, either way")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 0.4))
+      ->capture_default_str();
+  command->add_flag("--cyclic", options->cyclic, "With feedback topics, so that there are circles");
+  command
+      ->add_option("--planner", options->planners,
+                   fmt::format("Only these of {}; without a choice, all but those of others "
+                               "(rebet to ghahremani)",
+                               fmt::join(study::rca::planner_names(), ", ")))
+      ->delimiter(',');
+  auto* scenario = command->add_option("--scenario", options->scenario,
+                                       "Play this scenario (docs/study-rca.md), with other luck in "
+                                       "each episode, instead of random ones");
+  for (const std::string random : {"--components", "--faults", "--noise", "--cyclic"})
+    scenario->excludes(random);
+  command->add_option("--write-scenario", options->scenario_output,
+                      "Write the first episode's scenario there, and play nothing");
+  command->add_option("--explain", options->explained,
+                      "Tell what happened in this episode, from 0, with each planner");
+  auto* learn =
+      command
+          ->add_option(
+              "--learn", options->learned,
+              "Let bayes learn from so many faults on one robot, and measure on as many or "
+              "more how true that is")
+          ->check(CLI::Range(1U, 1'000'000U))
+          ->excludes(scenario);
+  command->add_option("--forgetting", options->forgetting, "As of culprit run")
+      ->check(CLI::Range(0.5, 1.0))
+      ->capture_default_str()
+      ->needs(learn);
+  command
+      ->add_flag("--drift", options->drift,
+                 "What helps changes for the last quarter of what is learned from")
+      ->needs(learn);
+  auto* regret = command->add_flag("--regret", options->regret,
+                                   "How far bayes is from the optimum, for each objective, on "
+                                   "random robots of up to four components");
+  regret->excludes(scenario)->excludes(learn);
+  command->add_option("--systems", options->systems, "So many robots")
+      ->check(CLI::Range(1U, 1'000'000U))
+      ->capture_default_str()
+      ->needs(regret);
+  command
+      ->add_flag("--untold", options->untold,
+                 "Robots that differ from what the rules say, as those of the benchmark do")
+      ->needs(regret);
+  command->add_option("--html", options->html, "Also a page with calibration plots")->needs(learn);
+  command->add_option("--objective", options->objective, "What the bayes planner spares most")
+      ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
+      ->capture_default_str();
+  command->add_option("--episodes", options->episodes, "Of each setting and planner")
+      ->check(CLI::Range(1U, 1'000'000U))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of all that is left to chance")
+      ->capture_default_str();
+  command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
+      ->check(CLI::Range(1U, 1024U));
+  command->add_flag("--timing", options->timing,
+                    "Also how long a plan takes on this machine: never the same twice");
+  command->add_option("--format", options->format, "text, markdown, latex, csv or json")
+      ->check(CLI::IsMember({"text", "markdown", "latex", "csv", "json"}))
+      ->capture_default_str();
+  command->add_flag_callback(
+      "--json", [options] { options->format = "json"; }, "The same as --format json");
+  command->add_option("-o,--output", options->output, "Write there (default: the terminal)");
+  command->callback([options, &exit_code] { exit_code = study_rca(*options); });
+}
+
+}  // namespace culprit::lab

@@ -1,0 +1,96 @@
+// Working off a campaign's runs, all of them or a shard, with a progress line, until it is done or
+// interrupted: what the studies of culprit study have in common.
+//
+// C is a campaign (study/shards/shard_kind.h); `play` makes a run of it from a RunId, on several
+// threads.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+
+#include "laboratory/commands.h"
+#include "study/ordered_work.h"
+#include "study/shards/shard_writer.h"
+#include "terminal/console.h"
+#include "terminal/progress.h"
+
+namespace culprit::lab {
+
+struct ShardOptions {
+  std::string shard = "1/1";
+  std::string file;
+
+  bool is_sharded() const { return shard != "1/1" || !file.empty(); }
+  // --shard, --shard-file
+  void add_to(CLI::App& command);
+};
+
+// The runs from `done` to `total`, in order; `take` gets each and says whether it was kept.
+template <class Play, class Take>
+void work_off(std::uint64_t done, std::uint64_t total, unsigned jobs, const StopSignals& signals,
+              Progress& progress, Play play, Take take) {
+  study::work_in_order(done, total, jobs, play, [&](std::uint64_t i, auto run) {
+    progress.show(i + 1);
+    return take(std::move(run)) && !signals.stopped();
+  });
+}
+
+// The whole campaign; nothing if it was interrupted, which is said. It is what `progress` begins
+// with.
+template <class C, class Play>
+std::optional<typename study::ShardKind<C>::Result> run_whole(const C& campaign, unsigned jobs,
+                                                              Progress& progress, Play play) {
+  const StopSignals signals;
+  typename study::ShardKind<C>::Fold fold(campaign);
+  work_off(
+      0, campaign.size(), jobs, signals, progress,
+      [&](std::uint64_t i) { return play(campaign[i]); },
+      [&](typename study::ShardKind<C>::Run run) {
+        fold.add(std::move(run));
+        return true;
+      });
+  if (fold.is_complete()) return std::move(fold).result();
+  progress.end();
+  fail("interrupted; with --shard-file the same command could go on", kFailed);
+  return std::nullopt;
+}
+
+// A shard, into its file. Gives an exit code.
+template <class C, class Play>
+int fill_shard(const C& campaign, const ShardOptions& options, unsigned jobs, Play play) {
+  using Run = typename study::ShardKind<C>::Run;
+  const auto shard = study::parse_shard(options.shard);
+  if (!shard) return fail(shard.error(), kUsage);
+  if (options.file.empty())
+    return fail("--shard needs --shard-file, where its runs are kept for `culprit study merge`",
+                kUsage);
+  const StopSignals signals;
+  auto writer = study::ShardWriter<C>::open(options.file, {campaign, *shard});
+  if (!writer) return fail(writer.error(), kFailed);
+  if (writer->done() > 0)
+    fmt::print(stderr, "culprit: {} of {} runs are there already\n", writer->done(),
+               writer->size());
+  std::string trouble;
+  Progress progress(writer->done(), writer->size());
+  work_off(
+      writer->done(), writer->size(), jobs, signals, progress,
+      [&](std::uint64_t i) { return play(campaign[study::campaign_index(*shard, i)]); },
+      [&](const Run& run) {
+        const auto appended = writer->append(run);
+        if (!appended) trouble = appended.error();
+        return appended.has_value();
+      });
+  progress.end();
+  if (!trouble.empty()) return fail(trouble, kFailed);
+  if (!writer->is_complete())
+    return fail(fmt::format("interrupted after {} of {} runs; the same command goes on from there",
+                            writer->done(), writer->size()),
+                kFailed);
+  fmt::print(stderr, "culprit: {} has its {} runs\n", options.file, writer->size());
+  return kOk;
+}
+
+}  // namespace culprit::lab

@@ -1,0 +1,85 @@
+#include "live/health.h"
+
+#include <optional>
+
+#include <fmt/core.h>
+
+#include "knowledge/describe.h"
+
+namespace culprit {
+namespace {
+
+constexpr std::uint8_t kWell = 0;
+constexpr std::uint8_t kWarn = 1;
+constexpr std::uint8_t kError = 2;
+
+ros2::Health of_rule(RuleId id, const Knowledge& knowledge) {
+  const Rule& rule = knowledge.rules[id];
+  const RuleState& state = knowledge.states[id];
+  ros2::Health health{"culprit: " + rule.name, kWell, "quiet", {}};
+  health.values.emplace_back("criticality", std::string(to_string(rule.policies.criticality)));
+  switch (state.phase) {
+    case RulePhase::kQuiet:
+      return health;
+    case RulePhase::kFailing:
+      health.level = kWarn;
+      health.message = "the failure is there";
+      break;
+    case RulePhase::kAttempting:
+      health.level = kWarn;
+      health.message = "under repair";
+      health.values.emplace_back("strategy", knowledge.rules[state.attempt->strategy].name);
+      break;
+    case RulePhase::kExhausted:
+      health.level = kError;
+      health.message = "nothing helped; a person must look";
+      break;
+  }
+  health.values.emplace_back("attempts", std::to_string(state.attempts));
+  return health;
+}
+
+// Nothing if nobody needs it, or nobody knows yet.
+std::optional<ros2::Health> of_component(ComponentId id, const Knowledge& knowledge) {
+  const Component& component = knowledge.rules[id];
+  const ComponentState& state = knowledge.components[id];
+  if (!component.is_required || (!state.alive && !state.is_missed)) return std::nullopt;
+  ros2::Health health{"culprit: component " + component.name, kWell, "it is there", {}};
+  if (state.alive == true) return health;
+  health.level = kError;
+  health.message = state.is_missed ? "it is REQUIRED and was never seen; a person must look"
+                                   : "it is REQUIRED and is not there";
+  return health;
+}
+
+}  // namespace
+
+std::vector<ros2::Health> health(const Knowledge& knowledge) {
+  std::vector<ros2::Health> all{{"culprit", kWell, "all rules are quiet", {}}};
+  int failing = 0;
+  int exhausted = 0;
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
+    all.push_back(of_rule(RuleId(r), knowledge));
+    failing += all.back().level == kWarn ? 1 : 0;
+    exhausted += all.back().level == kError ? 1 : 0;
+  }
+  if (failing + exhausted > 0) {
+    all[0].level = exhausted > 0 ? kError : kWarn;
+    all[0].message = fmt::format("{} failing, {} exhausted", failing, exhausted);
+  }
+  all[0].values = {{"rules", std::to_string(knowledge.rules.rules.size())},
+                   {"failing", std::to_string(failing)},
+                   {"exhausted", std::to_string(exhausted)}};
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
+    auto status = of_component(ComponentId(c), knowledge);
+    if (!status) continue;
+    if (status->level == kError) {
+      all[0].level = kError;
+      all[0].message += "; " + knowledge.rules.components[c].name + " is missing";
+    }
+    all.push_back(std::move(*status));
+  }
+  return all;
+}
+
+}  // namespace culprit

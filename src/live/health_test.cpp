@@ -1,0 +1,63 @@
+#include "live/health.h"
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+
+namespace culprit {
+namespace {
+
+RuleSet two_rules() {
+  return *check(Source("test.rules",
+                       "COMPONENT c NODE /c\n"
+                       "RULE A\nPOLICIES ERROR\nTRIGGER age(/t) > 1s\nSTRATEGY s 50 10\nADAPTATION "
+                       "c restart 5\n"
+                       "RULE B\nPOLICIES WARNING\nTRIGGER age(/t) > 2s\nSTRATEGY s 50 "
+                       "10\nADAPTATION c restart 5\n"))
+              .rules;
+}
+
+TEST(HealthReport, IsOkWhileAllIsQuiet) {
+  const RuleSet rules = two_rules();
+  const Knowledge knowledge(rules);
+  const auto all = health(knowledge);
+  ASSERT_EQ(all.size(), 3u);
+  for (const ros2::Health& status : all) EXPECT_EQ(status.level, 0) << status.name;
+}
+
+TEST(HealthReport, WarnsOfAFailureUnderRepairAndErrsWhenNothingIsLeftToTry) {
+  const RuleSet rules = two_rules();
+  Knowledge knowledge(rules);
+  knowledge.states.enter(RuleId(0), RulePhase::kFailing);
+  EXPECT_EQ(health(knowledge)[0].level, 1);
+  EXPECT_EQ(health(knowledge)[1].level, 1);
+  EXPECT_EQ(health(knowledge)[2].level, 0);
+
+  knowledge.states.enter(RuleId(0), RulePhase::kExhausted);
+  const auto all = health(knowledge);
+  EXPECT_EQ(all[0].level, 2);
+  EXPECT_EQ(all[0].message, "0 failing, 1 exhausted");
+  EXPECT_EQ(all[1].name, "culprit: A");
+  EXPECT_EQ(all[1].level, 2);
+}
+
+TEST(HealthReport, ErrsWhenARequiredComponentIsNotThere) {
+  const RuleSet rules = *check(Source("test.rules", "COMPONENT a REQUIRED\nCOMPONENT b\n")).rules;
+  Knowledge knowledge(rules);
+  EXPECT_EQ(health(knowledge).size(), 1u) << "it may still be discovered";
+  for (const ComponentId id : {ComponentId(0), ComponentId(1)})
+    knowledge.components[id].is_missed = true;
+  auto all = health(knowledge);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].level, 2);
+  EXPECT_EQ(all[1].name, "culprit: component a");
+  EXPECT_EQ(all[1].level, 2);
+  knowledge.components[ComponentId(0)].is_missed = false;
+  knowledge.components[ComponentId(0)].alive = true;
+  all = health(knowledge);
+  EXPECT_EQ(all[0].level, 0);
+  EXPECT_EQ(all[1].level, 0);
+}
+
+}  // namespace
+}  // namespace culprit

@@ -1,0 +1,39 @@
+// To which of several culprits on one machine something belongs: a robot, or a node.
+//
+// A claim is a name that the kernel gives to one process at a time (ros2/named_lock.h). Such names
+// are open to all who are on the machine, so that having one proves nothing: it counts if the
+// kernel says that its process belongs to our own user, or to root. Root's culprit goes first. Who
+// else squats on the name is told of, and not given way to.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "ros2/named_lock.h"
+
+namespace culprit {
+
+class HostClaim {
+ public:
+  // `name`: what is claimed, the same for all culprits.
+  explicit HostClaim(std::string name) : name_(std::move(name)) {}
+
+  // Looks anew. Gives whether it is ours: nobody who counts has it.
+  bool look();
+  // Who has it instead, "process 123"; empty while it is ours.
+  const std::string& holder() const { return holder_; }
+  // A process that has no right to the name and keeps it from us; empty: there is none.
+  const std::string& stranger() const { return stranger_; }
+
+ private:
+  std::string name_for(std::uint32_t user) const;
+
+  std::string name_;
+  std::optional<ros2::NamedLock> lock_;
+  std::optional<ros2::NamedLock::Holder> known_;  // who was found to have our user's name
+  std::string holder_;
+  std::string stranger_;
+};
+
+}  // namespace culprit

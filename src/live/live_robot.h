@@ -1,0 +1,54 @@
+// A live robot as one Robot: its nodes over DDS, its processes through the operating system.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "link/link.h"
+#include "owners/supervisor.h"
+#include "robot/inbox.h"
+#include "robot/robot.h"
+
+namespace culprit {
+
+class LiveRobot : public Robot {
+ public:
+  struct Options {
+    ros2::Link::Options link;
+    owners::Supervisor::Options supervisor;
+  };
+
+  // `rules` must outlive the robot. Errors: the DDS domain cannot be joined.
+  static Expected<std::unique_ptr<LiveRobot>> open(const RuleSet& rules, Options options);
+
+  Time now() const override { return live_now(); }
+  void observe(Time until, std::vector<Observation>& observations) override;
+  void execute(const Command& command) override;
+
+  void interrupt() override { inbox_.interrupt(); }
+
+  // Since when it is not sure that what the robot says is heard, or that nobody else manages it;
+  // nothing: it is.
+  std::optional<Time> deaf_since() const { return deaf_since_; }
+
+  // Something about culprit itself that a person should know. From any thread.
+  void report(std::string trouble) { inbox_.put(LinkTrouble{std::move(trouble)}); }
+
+  ros2::Link& link() { return *link_; }
+  owners::Supervisor& supervisor() { return *supervisor_; }
+
+ private:
+  explicit LiveRobot(const RuleSet& rules) : rules_(rules), binding_(rules) {}
+
+  void listen(Time until, std::vector<Observation>& observations);
+  void witness(std::size_t before, std::vector<Observation>& observations);
+
+  const RuleSet& rules_;
+  Inbox inbox_;
+  ComponentBinding binding_;
+  std::unique_ptr<owners::Supervisor> supervisor_;
+  std::unique_ptr<ros2::Link> link_;
+  std::optional<Time> deaf_since_;
+};
+
+}  // namespace culprit

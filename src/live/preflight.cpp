@@ -1,0 +1,129 @@
+#include "live/preflight.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "language/live_checks.h"
+#include "language/live_findings.h"
+#include "live/robot_survey.h"
+#include "robot/inbox.h"
+
+namespace culprit {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kLook = 3s;
+
+// Looks again and again. False if `end` came first, or it is to stop.
+template <class Enough>
+bool look_until(Enough is_enough, Time end, const std::stop_token& stop) {
+  while (!is_enough()) {
+    if (stop.stop_requested() || live_now() >= end) return false;
+    std::this_thread::sleep_for(50ms);
+  }
+  return true;
+}
+
+std::string report(const Source& source, const RuleSet& rules, const LiveInventory& robot,
+                   std::uint32_t domain) {
+  const auto found = findings(rules, robot);
+  const auto missing = missing_on(robot, source);
+  std::string text = fmt::format("culprit: of what {} names, domain {} has{}\n", source.name(),
+                                 domain, found.empty() ? " nothing" : "");
+  for (const std::string& line : found) text += "  " + line + "\n";
+  if (missing.empty()) return text;
+  text += "culprit: and has not\n";
+  for (const Diagnostic& each : missing) text += render(each, source);
+  return text;
+}
+
+class Look {
+ public:
+  // `source` must outlive it.
+  static Expected<Look> open(const Source& source,
+                             const std::vector<std::filesystem::path>& message_path) {
+    const auto participant = ros2::options_from_environment();
+    if (!participant) return Error{participant.error()};
+    // Keys for what the rules need do not open all that a look takes.
+    if (participant->security)
+      return Error{"the domain is secured; it is not looked up what of the rules the robot has"};
+    auto survey = open_survey(message_path);
+    if (!survey)
+      return Error{"it cannot be looked up what of the rules the robot has: " + survey.error()};
+    return Look(source, participant->domain, std::move(*survey));
+  }
+
+  Sighting sighting(const std::stop_token& stop) {
+    const LiveInventory robot = look_for({&*checked_.rules}, *survey_, kLook, stop);
+    if (!robot.has_robot()) return {false, "culprit: " + nobody_on(domain_) + "\n"};
+    return {true, report(source_, *checked_.rules, robot, domain_)};
+  }
+  bool waits_for_robot(const std::stop_token& stop) {
+    return look_until([&] { return survey_->inventory().has_robot(); }, kNever, stop);
+  }
+
+ private:
+  Look(const Source& source, std::uint32_t domain, std::unique_ptr<ros2::Survey> survey)
+      : source_(source), domain_(domain), survey_(std::move(survey)), checked_(check(source)) {}
+
+  const Source& source_;
+  std::uint32_t domain_;
+  std::unique_ptr<ros2::Survey> survey_;
+  Checked checked_;
+};
+
+}  // namespace
+
+std::string nobody_on(std::uint32_t domain) {
+  return fmt::format("no nodes were seen on domain {}; is ROS_DOMAIN_ID the robot's?", domain);
+}
+
+LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& survey,
+                       Duration wait, const std::stop_token& stop) {
+  LiveInterest interest;
+  for (const RuleSet* each : rules) {
+    LiveInterest more = interest_of(*each);
+    interest.nodes.merge(more.nodes);
+    for (auto& [topic, fields] : more.fields_of_topics)
+      interest.fields_of_topics[topic].merge(fields);
+  }
+  survey.ask_for(std::move(interest));
+  const auto all_found = [&] {
+    const LiveInventory robot = survey.inventory();
+    return std::all_of(rules.begin(), rules.end(),
+                       [&](const RuleSet* each) { return is_all_found(*each, robot); });
+  };
+  look_until(all_found, later(live_now(), wait), stop);
+  return survey.inventory();
+}
+
+Expected<Sighting> sight(const Source& source,
+                         const std::vector<std::filesystem::path>& message_path) {
+  auto look = Look::open(source, message_path);
+  if (!look) return Error{look.error()};
+  return look->sighting({});
+}
+
+Preflight::Preflight(std::string rules_name, std::string rules_text,
+                     std::vector<std::filesystem::path> message_path,
+                     std::function<void(const std::string&)> say)
+    : source_(std::move(rules_name), std::move(rules_text)),
+      message_path_(std::move(message_path)),
+      say_(std::move(say)),
+      thread_([this](const std::stop_token& stop) { look(stop); }) {}
+
+void Preflight::look(const std::stop_token& stop) const {
+  auto look = Look::open(source_, message_path_);
+  if (!look) return say_("culprit: " + look.error() + "\n");
+  Sighting seen = look->sighting(stop);
+  if (!seen.has_robot && !stop.stop_requested()) {
+    say_(seen.report + "culprit: it is waited for\n");
+    if (!look->waits_for_robot(stop)) return;
+    seen = look->sighting(stop);
+  }
+  if (!stop.stop_requested()) say_(seen.report);
+}
+
+}  // namespace culprit

@@ -1,0 +1,55 @@
+// What a robot has of what the rules name, and what it has not: said by `check --robot`, and by
+// `run` and `plan --robot` before anything else.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/time.h"
+#include "language/source.h"
+#include "link/survey.h"
+
+namespace culprit {
+
+// "no nodes were seen on domain 7; is ROS_DOMAIN_ID the robot's?"
+std::string nobody_on(std::uint32_t domain);
+
+// Looks until all that these rules name is there, or `wait` is over, or it is to stop.
+LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& survey,
+                       Duration wait, const std::stop_token& stop = {});
+
+struct Sighting {
+  bool has_robot = false;
+  std::string report;  // whole lines
+};
+
+// Looks at the robot of the environment, for 3 s at most. Errors: the domain cannot be joined, or
+// is secured.
+Expected<Sighting> sight(const Source& source,
+                         const std::vector<std::filesystem::path>& message_path);
+
+// Looks at the robot of the environment on a thread of its own, and says what it found: once all is
+// there, or 3 s are over. Where nobody is there it says that, and looks until somebody is.
+class Preflight {
+ public:
+  // Of the file `rules_name`, with the text `rules_text`, which has no errors. `say` is called on
+  // the thread, with whole lines.
+  Preflight(std::string rules_name, std::string rules_text,
+            std::vector<std::filesystem::path> message_path,
+            std::function<void(const std::string&)> say);
+
+ private:
+  void look(const std::stop_token& stop) const;
+
+  const Source source_;
+  const std::vector<std::filesystem::path> message_path_;
+  const std::function<void(const std::string&)> say_;
+  std::jthread thread_;  // ends looking with the object
+};
+
+}  // namespace culprit

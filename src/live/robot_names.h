@@ -1,0 +1,26 @@
+// What the live robot has, for forms: looked at only once somebody asks.
+#pragma once
+
+#include <mutex>
+
+#include "live/robot_survey.h"
+
+namespace culprit {
+
+class RobotNames {
+ public:
+  explicit RobotNames(std::vector<std::filesystem::path> message_path = {})
+      : message_path_(std::move(message_path)) {}
+
+  // web::Look. The first call finds little, for discovery takes a moment. Errors: the domain cannot
+  // be joined. From any thread.
+  Expected<LiveInventory> look(const LiveInterest& interest);
+
+ private:
+  const std::vector<std::filesystem::path> message_path_;
+  std::mutex mutex_;                      // guards what follows
+  std::unique_ptr<ros2::Survey> survey_;  // null: nobody has asked yet
+  LiveInterest interest_;                 // as it was told last
+};
+
+}  // namespace culprit

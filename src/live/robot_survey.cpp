@@ -1,0 +1,18 @@
+#include "live/robot_survey.h"
+
+#include "base/environment.h"
+
+namespace culprit {
+
+Expected<std::unique_ptr<ros2::Survey>> open_survey(
+    std::vector<std::filesystem::path> message_path) {
+  auto participant = ros2::options_from_environment();
+  if (!participant) return Error{participant.error()};
+  ros2::Survey::Options survey;
+  survey.participant = std::move(*participant);
+  survey.message_path =
+      ros2::message_directories(std::move(message_path), environment("AMENT_PREFIX_PATH"));
+  return ros2::Survey::open(std::move(survey));
+}
+
+}  // namespace culprit

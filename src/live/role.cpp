@@ -1,0 +1,111 @@
+#include "live/role.h"
+
+#include <random>
+
+#include "base/live_clock.h"
+#include "manager/manager.h"
+
+namespace culprit {
+namespace {
+
+std::int64_t random_id() {
+  std::random_device random;
+  return std::int64_t{random()} << 31 ^ random();
+}
+
+std::string advising(const std::string& where) {
+  return "another culprit manages this robot" + where + "; this one only says what it would do";
+}
+
+}  // namespace
+
+std::set<ComponentId> adapted_components(const RuleSet& rules) {
+  std::set<ComponentId> all;
+  for (const Strategy& strategy : rules.strategies)
+    all.insert(strategy.components.begin(), strategy.components.end());
+  return all;
+}
+
+RoleOfCulprit::RoleOfCulprit(const RuleSet& rules, std::uint32_t domain, std::string key)
+    : domain_(domain),
+      lease_{rules.robot, wall_now(), random_id(), {}, std::move(key)},
+      claim_(name_of_claim("robot-" + rules.robot)) {
+  if (claim_.look()) return;
+  role_ = Role::kAdvise;
+  reason_ = advising(" (" + claim_.holder() + ")");
+}
+
+Expected<std::optional<journal::StandingOrders>> RoleOfCulprit::told_orders(
+    const ros2::Link& link) const {
+  using Told = std::optional<journal::StandingOrders>;
+  const auto text = link.told_orders();
+  if (!text && !had_elder_) return Told();
+  const auto orders = text ? journal::orders_from_text(*text, journal::clocks_now(live_now()))
+                           : Expected<journal::StandingOrders>(Error{"it was not heard"});
+  if (!orders)
+    return Error{"what people had ordered of the culprit that managed this robot is not known (" +
+                 orders.error() + ")"};
+  return Told(*orders);
+}
+
+std::string RoleOfCulprit::name_of_claim(const std::string& what) const {
+  return "manages-" + std::to_string(domain_) + "-" + what;
+}
+
+bool RoleOfCulprit::has_changed(const ros2::Link& link, Time now, Time joined) {
+  const auto elder = link.elder();
+  const bool is_ours = claim_.look();
+  const Role role = elder || !is_ours ? Role::kAdvise : Role::kManage;
+  if (role == role_) return false;
+  if (role == Role::kManage) {
+    if (now < later(joined, Manager::kDiscovery)) return false;
+    reason_ = "the other culprit is gone; this one manages the robot from now on";
+    // More than any that it may be back with.
+    lease_.term = std::max(lease_.term, link.highest_term()) + 1;
+  } else {
+    had_elder_ = elder.has_value();
+    reason_ = advising(elder ? ", on " + *elder : " (" + claim_.holder() + ")");
+  }
+  role_ = role;
+  return true;
+}
+
+std::map<std::string, std::string> RoleOfCulprit::managed_elsewhere(
+    const std::set<std::string>& nodes, const ros2::Link& link) {
+  std::erase_if(node_claims_, [&](const auto& each) { return !nodes.contains(each.first); });
+  std::map<std::string, std::string> elsewhere;
+  for (const std::string& node : nodes) {
+    HostClaim& claim = node_claims_.try_emplace(node, name_of_claim("node-" + node)).first->second;
+    if (!claim.look()) {
+      elsewhere[node] = claim.holder();
+    } else if (const auto host = link.elder_at(node)) {
+      elsewhere[node] = "on " + *host;
+    }
+  }
+  return elsewhere;
+}
+
+std::vector<std::string> RoleOfCulprit::warnings(const ros2::Link& link) {
+  std::vector<std::string> lines;
+  const auto warn = [&](const std::string& line) {
+    constexpr std::size_t kMost = 100;  // strangers choose what they are called
+    if (warned_.size() < kMost && warned_.insert(line).second) lines.push_back(line);
+  };
+  for (const std::string& host : link.lease_strangers())
+    warn("a culprit on " + host +
+         " says that it manages this robot or a node of it, and does not " +
+         (lease_.key.empty()
+              ? "prove it: give both the same --lease-key, or end one of them; this one goes on"
+              : "know the key of --lease-key; this one goes on"));
+  const auto squatter = [&](const HostClaim& claim, const std::string& what) {
+    if (!claim.stranger().empty())
+      warn(claim.stranger() +
+           " keeps the name by which culprits on this machine tell who manages " + what +
+           ", and is nobody who may; end it; this one goes on");
+  };
+  squatter(claim_, "this robot");
+  for (const auto& [node, claim] : node_claims_) squatter(claim, node);
+  return lines;
+}
+
+}  // namespace culprit

@@ -1,0 +1,67 @@
+// Whether this culprit manages the robot, or only says what it would do because another one does;
+// and of which components another one is in charge that manages a robot of another name.
+//
+// Two managers would undo each other's work. On one machine a claim that the kernel keeps decides
+// (host_claim.h), among machines the lease (ros2/manager_lease.h); both are looked at again while
+// culprit runs. Who manages a component is decided by the name of its node.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/time.h"
+#include "journal/standing_orders.h"
+#include "language/rule_set.h"
+#include "link/link.h"
+#include "live/host_claim.h"
+
+namespace culprit {
+
+enum class Role : std::uint8_t { kManage, kAdvise };
+
+// The components that strategies adapt.
+std::set<ComponentId> adapted_components(const RuleSet& rules);
+
+class RoleOfCulprit {
+ public:
+  // `key` is what culprits on other machines prove themselves by; empty: they cannot.
+  RoleOfCulprit(const RuleSet& rules, std::uint32_t domain, std::string key);
+
+  Role role() const { return role_; }
+  // To be announced over DDS: the same until the role is another one.
+  const ros2::LeaseClaim& lease() const { return lease_; }
+
+  // Looks anew. Gives whether the role is another one now, which takes a new beginning. `joined`:
+  // when `link` joined the domain; an elder manager may take a while to be discovered.
+  bool has_changed(const ros2::Link& link, Time now, Time joined);
+  // For the user: why it has this role. Empty: it manages from the start.
+  const std::string& reason() const { return reason_; }
+
+  // What people have ordered of the robot, as told by the latest other culprit that managed it;
+  // nothing: there was none. Error: there was one, and it could not be told what.
+  Expected<std::optional<journal::StandingOrders>> told_orders(const ros2::Link& link) const;
+
+  // Which of these nodes another culprit manages, and who that is. Looks anew; nodes that are no
+  // longer among them are given up.
+  std::map<std::string, std::string> managed_elsewhere(const std::set<std::string>& nodes,
+                                                       const ros2::Link& link);
+
+  // What a person should know of strangers: each line once.
+  std::vector<std::string> warnings(const ros2::Link& link);
+
+ private:
+  std::string name_of_claim(const std::string& what) const;
+
+  std::uint32_t domain_;
+  ros2::LeaseClaim lease_;
+  HostClaim claim_;
+  std::map<std::string, HostClaim> node_claims_;
+  Role role_ = Role::kManage;
+  bool had_elder_ = false;  // this role is, or the last one was, because of one on another machine
+  std::string reason_;
+  std::set<std::string> warned_;
+};
+
+}  // namespace culprit

@@ -1,0 +1,100 @@
+#include "live/rule_trust.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <grp.h>
+#include <pwd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <vector>
+
+#include <fmt/core.h>
+
+namespace culprit {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whether nobody but `owner` is in the group.
+bool is_private_group(gid_t group, uid_t owner) {
+  const passwd* user = getpwuid(owner);
+  if (user == nullptr || user->pw_gid != group) return false;
+  const std::string name = user->pw_name;
+  const struct group* entry = getgrgid(group);
+  if (entry == nullptr || entry->gr_name != name) return false;
+  for (char** member = entry->gr_mem; *member != nullptr; ++member) {
+    if (*member != name) return false;
+  }
+  return true;
+}
+
+// What is wrong with it, and the remedy; empty if nothing is.
+std::string weakness(const fs::path& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0)
+    return fmt::format("{} cannot be looked at: {}", path.string(), std::strerror(errno));
+  const bool is_ours = status.st_uid == geteuid() || status.st_uid == 0;
+  if (!is_ours)
+    return fmt::format("{0} belongs to user {1}; chown it to the user that runs culprit",
+                       path.string(), status.st_uid);
+  if (S_ISDIR(status.st_mode) && (status.st_mode & S_ISVTX) != 0) return "";
+  const bool is_for_all = (status.st_mode & S_IWOTH) != 0;
+  const bool is_for_group =
+      (status.st_mode & S_IWGRP) != 0 && !is_private_group(status.st_gid, status.st_uid);
+  if (!is_for_all && !is_for_group) return "";
+  return fmt::format("{0} is writable by others; chmod go-w {0}", path.string());
+}
+
+// Likewise of what it is in.
+std::string weakness_up_from(fs::path path) {
+  std::string why = weakness(path);
+  while (why.empty() && path != path.parent_path()) {
+    path = path.parent_path();
+    why = weakness(path);
+  }
+  return why;
+}
+
+// A link could be replaced as well as what it leads to.
+std::string weakness_of_all(const fs::path& path) {
+  std::error_code error;
+  const fs::path file = fs::canonical(path, error);
+  if (error) return fmt::format("cannot find {}: {}", path.string(), error.message());
+  std::string why = weakness_up_from(file);
+  return why.empty() ? weakness_up_from(fs::absolute(path)) : why;
+}
+
+}  // namespace
+
+Expected<void> trust_rules(const std::string& path) {
+  if (const std::string why = weakness_of_all(path); !why.empty())
+    return Error{fmt::format(
+        "{} says what is done to the robot, and somebody else could change it: {}", path, why)};
+  return {};
+}
+
+Expected<void> trust_state(const fs::path& folder, const fs::path& journal) {
+  std::error_code error;
+  std::vector<fs::path> all = {folder, folder / "log", journal};
+  // What is kept beside the journal begins with its name: the lock, the last writes.
+  fs::path beside = journal.parent_path();
+  if (beside.empty()) beside = ".";
+  for (fs::directory_iterator i(beside, error); !error && i != fs::directory_iterator();
+       i.increment(error)) {
+    if (i->path().filename().native().starts_with(journal.filename().native()))
+      all.push_back(i->path());
+  }
+  for (fs::path each : all) {
+    // What is not there yet is made where it will be.
+    each = fs::absolute(each);
+    while (!fs::exists(each, error) && each != each.parent_path()) each = each.parent_path();
+    if (const std::string why = weakness_of_all(each); !why.empty())
+      return Error{
+          fmt::format("culprit does what it finds in {}, and somebody else could change it: {}",
+                      folder.string(), why)};
+  }
+  return {};
+}
+
+}  // namespace culprit

@@ -1,0 +1,148 @@
+#include "live/run_journal.h"
+
+#include <fmt/core.h>
+
+#include "journal/requests.h"
+
+namespace culprit {
+namespace {
+
+using journal::Recovery;
+
+void tell(const Recovery& recovery, const RuleSet& rules, std::vector<std::string>& findings) {
+  for (const std::string& each : recovery.given_up)
+    findings.push_back("the last run left something in the middle: " + each);
+  for (const Interrupted& each : recovery.interrupted) {
+    const Strategy& strategy = rules[each.strategy];
+    const std::string what = strategy.name + " for " + rules[strategy.rule].name;
+    if (recovery.is_other_robot()) {
+      findings.push_back("the last run ended in the middle of " + what + "; " +
+                         (recovery.was_other_boot ? "the machine was started anew since"
+                                                  : "that was in another DDS domain") +
+                         ", so nothing of it is left to do");
+    } else {
+      findings.push_back("the last run ended in the middle of " + what +
+                         " (last: " + rules[each.requests.back().command.component].name + ": " +
+                         to_string(each.requests.back().command) +
+                         "); it is finished, and its outcome proves nothing");
+    }
+  }
+  if (recovery.had_run && !recovery.was_stopped && recovery.interrupted.empty() &&
+      recovery.given_up.empty())
+    findings.emplace_back(
+        "the last run ended without being asked to; nothing was left in the middle");
+}
+
+// Nobody knows whether a person wants it to wait.
+void pause(RunBeginning& beginning, const std::string& why) {
+  beginning.orders.pause = journal::StandingOrders::Said{"culprit", why};
+  beginning.findings.push_back(
+      why + "; so it is paused until a person resumes it: start it with --web and press Resume");
+}
+
+// What the rows of a culprit say that had no file for it.
+journal::StandingOrders orders_of(const Recovery& recovery, const RuleSet& rules) {
+  journal::StandingOrders orders;
+  const journal::StandingOrders::Said said{"the last run", "it was ordered so when it ended"};
+  if (recovery.is_paused) orders.pause = said;
+  if (recovery.is_dry_run) orders.dry_run = said;
+  orders.silences = journal::silences_of(recovery.past, rules);
+  return orders;
+}
+
+enum class Rows : std::uint8_t { kNone, kRead, kUnreadable };
+
+void find_orders(const std::filesystem::path& path, Rows rows, const Recovery& recovery,
+                 const RuleSet& rules, Time now, RunBeginning& beginning) {
+  const auto file = journal::orders_beside(path);
+  const auto found = journal::read_orders(file, journal::clocks_now(now));
+  if (!found) return pause(beginning, found.error());
+  if (*found) {
+    beginning.orders = **found;
+    beginning.are_orders_kept = true;
+    if (const auto& pause = beginning.orders.pause)
+      beginning.findings.push_back("it was paused by " + pause->author +
+                                   (pause->reason.empty() ? "" : ": " + pause->reason) +
+                                   "; it stays so until a person resumes it");
+    return;
+  }
+  const std::string missing = "'" + file.string() + "' is missing, where orders are kept";
+  if (rows == Rows::kUnreadable) return pause(beginning, missing);
+  if (rows == Rows::kNone || !recovery.had_run) return;
+  if (recovery.orders_kept) return pause(beginning, missing);
+  beginning.orders = orders_of(recovery, rules);
+}
+
+std::optional<Recovery> take_over(const journal::Reader& reader, const RuleSet& rules,
+                                  const journal::Moment& now, RunBeginning& beginning) {
+  const auto learned = reader.learned();
+  const auto recovery = journal::recover(reader, rules, now);
+  if (learned) beginning.learned = *learned;
+  if (!learned || !recovery) {
+    beginning.findings.push_back("the journal cannot be read whole: " +
+                                 (learned ? recovery.error() : learned.error()));
+    return std::nullopt;
+  }
+  tell(*recovery, rules, beginning.findings);
+  beginning.past = recovery->past;
+  beginning.known_robot = recovery->known_robot;
+  std::erase_if(beginning.past, journal::is_about_silence);
+  if (!learned->beliefs.empty())
+    beginning.findings.push_back(
+        fmt::format("what was learned of {} strategies is known", learned->beliefs.size()));
+  if (recovery->is_other_robot()) return *recovery;
+  for (const Interrupted& each : recovery->interrupted)
+    beginning.interrupted.push_back(journal::to_json(each, rules));
+  return *recovery;
+}
+
+bool is_locked(const std::filesystem::path& journal) {
+  const auto lock = journal::FileLock::take(journal.string() + "-lock");
+  return lock && !*lock;
+}
+
+}  // namespace
+
+RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rules,
+                           const journal::Moment& now) {
+  RunBeginning beginning;
+  std::error_code error;
+  const bool was_there = std::filesystem::exists(path, error);
+  std::filesystem::path rows = path;  // where those of the last run are
+  const auto open = [&](journal::Writer::Options options) {
+    beginning.writer.reset();
+    auto writer = journal::Writer::open(path, options);
+    if (!writer) return writer.error();
+    if (!writer->remark().empty()) beginning.findings.push_back(writer->remark());
+    if (!writer->aside().empty()) rows = writer->aside();
+    beginning.writer = std::move(*writer);
+    return std::string();
+  };
+  if (const std::string why = open({}); !why.empty()) {
+    beginning.findings.push_back(why);
+    beginning.findings.emplace_back(
+        "the robot is managed all the same; what happens is kept and written as soon as that is "
+        "possible");
+    beginning.is_of_another = is_locked(path);
+  }
+  std::optional<Recovery> recovery;
+  if (const auto reader = journal::Reader::open(rows)) {
+    recovery = take_over(*reader, rules, now, beginning);
+    // A row that cannot be read now can never be dropped either.
+    if (!recovery && beginning.writer && rows == path) (void)open({.is_damaged = true});
+  }
+  // Of a file that was set aside, what was learned is known better.
+  if (const auto learned = beginning.writer ? beginning.writer->learned() : Error{}; learned)
+    beginning.learned = *learned;
+  const Rows found = !was_there ? Rows::kNone : recovery ? Rows::kRead : Rows::kUnreadable;
+  find_orders(path, found, recovery.value_or(Recovery()), rules, now.robot, beginning);
+  return beginning;
+}
+
+RunBeginning begin_without_journal(const std::filesystem::path& path, Time now) {
+  RunBeginning beginning;
+  find_orders(path, Rows::kNone, {}, {}, now, beginning);
+  return beginning;
+}
+
+}  // namespace culprit

@@ -1,0 +1,33 @@
+// The journal of a live run: what the last run left behind, and the recording of this one.
+#pragma once
+
+#include "journal/recorder.h"
+#include "journal/recovery.h"
+#include "journal/session.h"
+#include "journal/standing_orders.h"
+
+namespace culprit {
+
+// What is known when a run begins.
+struct RunBeginning {
+  std::optional<journal::Writer> writer;  // nothing: it cannot be written now
+  journal::Learned learned;
+  journal::Json interrupted = journal::Json::array();
+  Past past;  // without silences
+  KnownRobot known_robot;
+  journal::StandingOrders orders;
+  bool are_orders_kept = false;       // they stand in their file just so
+  bool is_of_another = false;         // another culprit writes the journal, and the orders
+  std::vector<std::string> findings;  // for the user, one line each
+};
+
+// Opens the journal, or reads it if it cannot be written, and finds out what the last run left
+// behind. Nothing that is wrong with a journal keeps culprit from watching the robot; but if it
+// cannot be told whether a person has paused it, it is paused.
+RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rules,
+                           const journal::Moment& now);
+
+// What people have ordered according to the file beside the journal, if it is not to be written.
+RunBeginning begin_without_journal(const std::filesystem::path& path, Time now);
+
+}  // namespace culprit

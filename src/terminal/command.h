@@ -1,0 +1,16 @@
+// How a command ends.
+#pragma once
+
+#include <string>
+
+namespace culprit {
+
+// Exit codes: all is well; what was asked for did not succeed; it was asked for wrongly.
+constexpr int kOk = 0;
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+// Says on stderr why it cannot be done. Gives `exit_code`.
+int fail(const std::string& why, int exit_code = kFailed);
+
+}  // namespace culprit

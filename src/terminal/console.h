@@ -1,0 +1,74 @@
+// What culprit prints while it works, and how it is asked to stop.
+#pragma once
+
+#include <atomic>
+#include <cstdio>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "knowledge/event.h"
+#include "language/diagnostic.h"
+
+namespace culprit {
+
+// Colour where a person reads, plain text where a program does.
+Colour colour_of(int descriptor);
+
+// One event as a line with its time since `start`: "   3.214  detected   RGBDead (ERROR)". Empty
+// for events that are not worth one.
+std::string line(const Event& event, const RuleSet& rules, Time start, Colour colour);
+
+// Prints at once. A reader who is gone, or a full disk, keeps nobody from managing a robot: what
+// cannot be said is left out.
+void say_text(std::FILE* stream, const std::string& text);
+template <class... Args>
+void say(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {
+  say_text(stream, fmt::format(format, std::forward<Args>(args)...));
+}
+
+// What SIGHUP means: that the terminal is gone, which ends the program, or that it is to read its
+// files anew.
+enum class Hangup : std::uint8_t { kEnds, kReloads };
+
+// Waits for SIGINT and SIGTERM on a thread of its own and then calls `stop`, once. Blocks these
+// signals in this thread and in all that it creates from now on: make one first of all. From then
+// on SIGPIPE is ignored: who reads the output may go, and the program goes on.
+class StopSignals {
+ public:
+  explicit StopSignals(Hangup hangup = Hangup::kEnds);
+  ~StopSignals();
+  StopSignals(const StopSignals&) = delete;
+
+  // What to do when a signal comes; called on another thread. Called at once if one came already.
+  void on_stop(std::function<void()> stop);
+  // What to do on SIGHUP, if that means to reload; called on another thread. A SIGHUP because the
+  // terminal is gone still stops.
+  void on_reload(std::function<void()> reload);
+  // Ends the program the hard way if it has not ended so long after the first signal to stop.
+  void end_within(Duration patience) { patience_ = patience; }
+  const std::atomic<bool>& stopped() const { return stopped_; }
+  // For commands that have nothing else to wait for.
+  void wait_until_stopped() const { stopped_.wait(false); }
+
+ private:
+  void wait();
+  void stop();
+
+  int next_signal();
+
+  const Hangup hangup_;
+  std::atomic<Duration> patience_ = Duration::max();
+  const bool has_terminal_;
+  std::atomic<bool> stopped_ = false;
+  std::mutex mutex_;
+  std::function<void()> stop_;
+  std::function<void()> reload_;
+  std::thread thread_;
+};
+
+}  // namespace culprit

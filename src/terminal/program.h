@@ -1,0 +1,16 @@
+// What is the same for every program of the project that has subcommands.
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace culprit {
+
+// Parses the command line and runs the command that it names. `add_commands` adds the commands to
+// `app`, each of which puts its exit code into the integer. Gives the program's exit code. A report
+// that a full disk cut short does not count as written.
+int run_program(CLI::App& app, const std::function<void(int& exit_code)>& add_commands, int argc,
+                char** argv);
+
+}  // namespace culprit

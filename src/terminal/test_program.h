@@ -1,0 +1,71 @@
+// For tests of the programs as users run them: a world of their own, and programs in it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/units.h"
+#include "ros2/domain_lock.h"
+
+namespace culprit {
+
+// A DDS domain on loopback and a folder for state, both gone with it. Sets the environment that
+// programs started meanwhile obey.
+class TestWorld {
+ public:
+  TestWorld();
+  ~TestWorld();
+
+  const std::filesystem::path& folder() const { return folder_; }
+  std::string write(const std::string& name, const std::string& text) const;
+
+ private:
+  ros2::DomainLock domain_;
+  std::filesystem::path folder_;
+};
+
+// The process that culprit said last `component` to be; 0 if it did not.
+int pid_in(const std::string& output, const std::string& component);
+
+// A program of the project that runs, or has run. What is left of it is killed with the object.
+class TestProgram {
+ public:
+  // Only failures need it.
+  static constexpr Duration kPatience = std::chrono::seconds(30);
+
+  TestProgram(const TestWorld& world, std::vector<std::string> arguments);
+  ~TestProgram();
+  TestProgram(const TestProgram&) = delete;
+  TestProgram& operator=(const TestProgram&) = delete;
+
+  int pid() const { return pid_; }
+  void signal(int number) const;
+  // Waits for its end. Gives the exit code; minus the signal that ended it; nothing if it does not
+  // end.
+  std::optional<int> wait(Duration patience = kPatience);
+
+  // All that it has printed so far.
+  std::string output() const;
+  // Waits until it has printed `text`. False if it does not.
+  bool prints(const std::string& text, Duration patience = kPatience) const;
+
+ private:
+  std::filesystem::path log_;
+  int pid_ = 0;
+  std::optional<int> exit_;
+};
+
+// What a process holds.
+struct Holdings {
+  std::size_t descriptors = 0;
+  std::size_t kilobytes = 0;  // resident
+};
+Holdings holdings_of(int pid);
+
+// Of what is in `folder`, the names that begin so.
+std::set<std::string> names_in(const std::filesystem::path& folder, const std::string& beginning);
+
+}  // namespace culprit

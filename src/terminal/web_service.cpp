@@ -1,0 +1,81 @@
+#include "terminal/web_service.h"
+
+#include <fmt/core.h>
+
+#include "terminal/console.h"
+
+namespace culprit {
+
+void WebOptions::add_to(CLI::App& command) {
+  const std::string kGroup = "Web app";
+  command
+      .add_option("--port", port,
+                  fmt::format("Where the web app is served; 0: any that is free (default: {}, or "
+                              "another if that is taken)",
+                              kUsualPort))
+      ->check(CLI::Range(0, 65535))
+      ->group(kGroup);
+  command
+      .add_option("--address", address,
+                  "The address of this machine at which it is served; one that others can reach "
+                  "needs --token-file")
+      ->capture_default_str()
+      ->group(kGroup);
+  command
+      .add_option("--token-file", token_file,
+                  "A file that only you can read, with the token that requests have to carry "
+                  "(default: a new token each time)")
+      ->group(kGroup);
+  command
+      .add_option("--allow-host", allowed_hosts,
+                  "A name by which browsers may call this machine, beside its addresses")
+      ->group(kGroup);
+}
+
+namespace {
+
+Expected<web::Access> access_for(const WebOptions& options) {
+  web::Access access;
+  access.is_local = web::is_loopback(options.address);
+  access.allowed_hosts = options.allowed_hosts;
+  if (options.token_file.empty()) {
+    if (!access.is_local)
+      return Error{
+          fmt::format("others can reach {}, so that a token is needed that you have chosen: "
+                      "write one to a file that only you can read, and add --token-file",
+                      options.address)};
+    access.token = web::make_token();
+    return access;
+  }
+  auto token = web::read_secret(options.token_file);
+  if (!token) return Error{token.error()};
+  access.token = std::move(*token);
+  return access;
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
+                                             std::vector<web::Route> routes, web::Hub* hub) {
+  auto access = access_for(options);
+  if (!access) return Error{access.error()};
+  web::Server::Options server{options.address, options.port.value_or(WebOptions::kUsualPort),
+                              std::move(*access)};
+  auto started = web::Server::start(server, routes, hub);
+  if (!started && !options.port) {
+    server.port = 0;
+    started = web::Server::start(server, std::move(routes), hub);
+  }
+  if (!started) return started;
+  if (server.access.is_local) {
+    say(stdout, "See it in a browser: {}\n", (*started)->address());
+  } else {
+    say(stdout,
+        "See it in a browser: http://{}:{}/#token=... (the token of {}). Others can reach "
+        "this address, and what they send is not encrypted.\n",
+        options.address, (*started)->port(), options.token_file);
+  }
+  return started;
+}
+
+}  // namespace culprit

@@ -1,0 +1,31 @@
+// Serving the web app from a command: its switches, and where it can be seen.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "web/server.h"
+
+namespace culprit {
+
+struct WebOptions {
+  static constexpr int kUsualPort = 8642;
+
+  std::string address = "127.0.0.1";
+  std::optional<int> port;  // nothing: the usual one, or another if that is taken
+  std::string token_file;
+  std::vector<std::string> allowed_hosts;
+
+  // The options must live as long as `command`.
+  void add_to(CLI::App& command);
+};
+
+// Serves until the server is destroyed, and says on the standard output where. `hub` may be null.
+// Errors: the address is not local and there is no token file; or it cannot be listened at.
+Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
+                                             std::vector<web::Route> routes, web::Hub* hub);
+
+}  // namespace culprit

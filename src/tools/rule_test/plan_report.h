@@ -1,0 +1,28 @@
+// A plan with its reasons, for people and for programs (docs/plan.md).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "plan/decision.h"
+
+namespace culprit {
+
+struct PlanReport {
+  // Finds the decisions, and what would flip them. What the governor withholds is not chosen;
+  // `held_back` says why nothing is begun at all now. `knowledge` must outlive the report.
+  PlanReport(const Planner& planner, std::vector<RuleId> failures, const Knowledge& plan_knowledge,
+             const std::optional<std::string>& held_back);
+
+  const Knowledge& knowledge;
+  std::vector<plan::Decision> decisions;
+  std::optional<Time> now;  // nothing: how long a failure has been there means nothing
+};
+
+std::string plan_as_text(const PlanReport& report);
+nlohmann::ordered_json plan_as_json(const PlanReport& report);
+
+}  // namespace culprit

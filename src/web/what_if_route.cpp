@@ -1,0 +1,40 @@
+#include "web/what_if_route.h"
+
+#include "language/checker.h"
+#include "rule_test/plan_report.h"
+#include "rule_test/state.h"
+
+namespace culprit::web {
+namespace {
+
+std::string rendered(const std::vector<Diagnostic>& diagnostics, const Source& source) {
+  std::string text;
+  for (const Diagnostic& d : diagnostics) {
+    if (d.severity == Severity::kError) text += render(d, source);
+  }
+  return text;
+}
+
+Answer what_if(const Json& body, const PlannerFactory& planner) {
+  const auto rule_text = text_of(body, "rules");
+  const auto state_text = text_of(body, "state");
+  if (!rule_text || !state_text) return refuse(400, "send the texts 'rules' and 'state'");
+  const Source rule_source("rules", *rule_text);
+  const Checked checked = check(rule_source);
+  if (!checked.rules) return refuse(422, rendered(checked.diagnostics, rule_source));
+  const Source state_source("state", *state_text);
+  std::vector<Diagnostic> diagnostics;
+  const rule_test::State state = rule_test::read_state(state_source, *checked.rules, diagnostics);
+  if (!diagnostics.empty()) return refuse(422, rendered(diagnostics, state_source));
+  const rule_test::Watched watched = rule_test::watch(state, *checked.rules);
+  return {200, plan_as_json({*planner(), watched.failures, *watched.knowledge, watched.held_back})};
+}
+
+}  // namespace
+
+Route what_if_route(PlannerFactory planner) {
+  return {Method::kPost, "/api/what-if",
+          [planner = std::move(planner)](const Json& body) { return what_if(body, planner); }};
+}
+
+}  // namespace culprit::web
