@@ -71,7 +71,7 @@ void redeploy(benchmark::State& state) {
   }
   for (auto _ : state) {
     for (const sunset::Fault& fault : sunset::faults()) {
-      const cli::Play play{std::string(fault.name), {&fault}, {}};
+      const lab::Play play{std::string(fault.name), {&fault}, {}};
       if (play.redeployments_needed() == 0) continue;
       if (const auto outcome = (*demo)->play(play); !outcome || !outcome->is_resolved())
         state.SkipWithError("not healed");

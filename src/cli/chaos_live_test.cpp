@@ -100,7 +100,7 @@ class OutcomesCount {
 // Counts the robot's processes all the time: no node may ever be there twice.
 class Census {
  public:
-  explicit Census(const LiveSunset& robot)
+  explicit Census(const lab::LiveSunset& robot)
       : counting_([this, &robot](const std::stop_token& stop) {
           for (; !stop.stop_requested(); std::this_thread::sleep_for(20ms)) count(robot);
         }) {}
@@ -115,7 +115,7 @@ class Census {
   int counts() const { return counts_; }
 
  private:
-  void count(const LiveSunset& robot) {
+  void count(const lab::LiveSunset& robot) {
     ++counts_;
     for (const sunset::Member member : sunset::kMembers) {
       const std::vector<int> pids = robot.processes(member);
@@ -158,7 +158,7 @@ struct Chaos : testing::Test {
         culprit.output().find("decided") != std::string::npos ? repairing(random) : any(random)));
   }
   // For whoever looks into it: the processes that there are, the journal and the nodes' logs.
-  void keep_evidence(const LiveSunset& robot) const {
+  void keep_evidence(const lab::LiveSunset& robot) const {
     for (const sunset::Member member : sunset::kMembers) {
       for (const int pid : robot.processes(member))
         std::cout << name_of(member) << ": process " << pid << ", "
@@ -209,7 +209,7 @@ TEST_F(Chaos, CulpritMayBeKilledAtAnyInstant) {
   const int kills = setting("CULPRIT_CHAOS_KILLS", 4);
   const std::set<std::string> memory_before = names_in("/dev/shm", "");
   const std::set<std::string> temporary_before = names_in(fs::temp_directory_path(), "culprit");
-  LiveSunset robot(world);
+  lab::LiveSunset robot(world);
   ASSERT_TRUE(robot.is_well_within(30s)) << robot.complaint();
   const int witness = robot.processes(sunset::Member::kWorld).at(0);
   const Holdings witness_before = holdings_of(witness);
@@ -282,7 +282,7 @@ TEST_F(Chaos, CulpritMayBeKilledAtAnyInstant) {
 // A node that is inactive when it starts, was activated by a culprit that is gone, and died before
 // the next one came.
 TEST_F(Chaos, WhatDiedWhileNobodyWatchedComesBackAsItWas) {
-  LiveSunset robot(world);
+  lab::LiveSunset robot(world);
   ASSERT_TRUE(robot.is_well_within(30s)) << robot.complaint();
   {
     TestProgram culprit = run();

@@ -28,7 +28,7 @@ TEST(Network, ACutCableIsNoReasonToActAndABadOneNoneToFail) {
   if (!network) GTEST_SKIP() << network.error();
   const TestWorld world;
   setenv("ROS_LOCALHOST_ONLY", "0", 1);
-  std::optional<LiveSunset> robot;
+  std::optional<lab::LiveSunset> robot;
   {
     const TestNetwork::Visit visit(**network, TestNetwork::kRobot);
     robot.emplace(world);

@@ -63,7 +63,7 @@ TEST_F(NeverSeen, ANodeThatComesLateIsNotStartedASecondTime) {
 }
 
 TEST_F(NeverSeen, WhatDiedWithCulpritIsKnownToHaveDied) {
-  const LiveSunset robot(world);
+  const lab::LiveSunset robot(world);
   {
     TestProgram first = run("rules/sunset.rules");
     for (const char* name : {"camera", "depth", "image_enhancement", "fusion", "segmentation"})

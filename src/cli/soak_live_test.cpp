@@ -27,7 +27,7 @@ TEST(Soak, NothingLeaksWhileTheRobotIsBrokenAndHealed) {
   const auto length = std::chrono::seconds(setting("CULPRIT_SOAK_SECONDS", 20));
   std::mt19937 random(static_cast<std::mt19937::result_type>(setting("CULPRIT_SOAK_SEED", 1)));
   const TestWorld world;
-  LiveSunset robot(world);
+  lab::LiveSunset robot(world);
   // So much is never broken in so short a time but here.
   TestProgram culprit(world, {"culprit", "run", "rules/sunset.rules", "--journal",
                               (world.folder() / "sunset.journal").string(), "--settle", "2",
