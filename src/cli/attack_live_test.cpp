@@ -17,15 +17,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/paths.h"
+#include "base/environment.h"
 #include "cli/test_network.h"
-#include "cli/test_program.h"
 #include "exemplars/sunset/node_process.h"
 #include "robot/inbox.h"
 #include "ros2/options.h"
 #include "ros2/participant.h"
 #include "ros2/test_datagram.h"
 #include "ros2/test_forger.h"
+#include "terminal/test_program.h"
 
 namespace culprit::cli {
 namespace {

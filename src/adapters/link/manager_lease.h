@@ -29,7 +29,7 @@
 #include <utility>
 #include <vector>
 
-#include "robot/time.h"
+#include "base/time.h"
 #include "ros2/participant.h"
 
 namespace culprit::ros2 {
