@@ -1,18 +1,24 @@
 # The two commands of this project are `make demo` and `make test`. Each installs what is missing first.
-.PHONY: build demo test bench format clean dependencies
+.PHONY: build demo test bench format clean
 
-# The programs; `make test` builds the tests.
-build: dependencies
-	cmake --preset release
-	cmake --build --preset release --target culprit sunset-node
+# The programs that the README runs; `make test` builds the tests.
+build:
+	@scripts/install-dependencies --studies
+	cmake --preset release -DCULPRIT_TESTS=OFF
+	cmake --build --preset release --target culprit culprit-lab sunset-node suave-node
 
-demo: build
-	build/release/bin/culprit demo --end
+demo:
+	@scripts/install-dependencies
+	cmake --preset demo
+	cmake --build --preset demo
+	build/demo/bin/culprit demo --end
 
-test: dependencies
+test:
+	@scripts/install-dependencies --tests
 	scripts/test
 
-bench: build
+bench:
+	@scripts/install-dependencies --tests
 	cmake --preset release -DCULPRIT_BENCH=ON
 	cmake --build --preset release --target culprit-bench
 	build/release/bin/culprit-bench
@@ -22,6 +28,3 @@ format:
 
 clean:
 	rm -rf build
-
-dependencies:
-	@scripts/install-dependencies

@@ -10,7 +10,6 @@
 
 namespace culprit::lab {
 
-void add_demo(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, const std::string& version, int& exit_code);
 void add_torture(CLI::App& app, int& exit_code);
 void add_play_again(CLI::App& app, int& exit_code);

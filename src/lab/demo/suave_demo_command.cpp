@@ -1,4 +1,4 @@
-#include "laboratory/suave_demo_command.h"
+#include "demo/suave_demo_command.h"
 
 #include <algorithm>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 
 #include "base/text_file.h"
 #include "demo/demo_setup.h"
-#include "laboratory/commands.h"
+#include "terminal/command.h"
 #include "terminal/console.h"
 
 namespace culprit::lab {

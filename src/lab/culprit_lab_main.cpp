@@ -1,4 +1,7 @@
+#include "demo/demo_command.h"
+#ifdef CULPRIT_STUDIES
 #include "laboratory/commands.h"
+#endif
 #include "terminal/program.h"
 
 int main(int argc, char** argv) {
@@ -13,9 +16,11 @@ int main(int argc, char** argv) {
       app,
       [&](int& exit_code) {
         lab::add_demo(app, exit_code);
+#ifdef CULPRIT_STUDIES
         lab::add_study(app, CULPRIT_VERSION, exit_code);
         lab::add_torture(app, exit_code);
         lab::add_play_again(app, exit_code);
+#endif
       },
       argc, argv);
 }

@@ -1,3 +1,5 @@
+#include "demo/demo_command.h"
+
 #include <algorithm>
 #include <numeric>
 #include <random>
@@ -9,10 +11,10 @@
 #include "base/environment.h"
 #include "base/text_file.h"
 #include "demo/demo_setup.h"
+#include "demo/suave_demo_command.h"
 #include "demo/sunset_demo.h"
-#include "laboratory/commands.h"
-#include "laboratory/suave_demo_command.h"
 #include "live/robot_names.h"
+#include "terminal/command.h"
 #include "terminal/console.h"
 #include "terminal/planner_options.h"
 #include "terminal/web_service.h"
