@@ -38,9 +38,6 @@ if(CULPRIT_TESTS)
   target_link_libraries(culprit_test_main PRIVATE GTest::gtest GTest::gmock rapidcheck culprit_test_options)
 endif()
 
-# Where CMAKE_UNITY_BUILD is set, a folder's files are compiled several at a time, but for these: their files are variants of one thing and call their parts by the same names.
-set(culprit_folders_of_variants study exemplars)
-
 # culprit_library(<floor>/<folder> [USES <folder>...] [PACKAGES <target>...]
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL]
 #                 [TEST_LABELS <label>...])
@@ -73,9 +70,8 @@ function(culprit_library path)
 
   if(sources)
     add_library(${folder} STATIC ${sources})
-    if(folder IN_LIST culprit_folders_of_variants)
-      set_target_properties(${folder} PROPERTIES UNITY_BUILD OFF)
-    endif()
+    culprit_compile_together(${dir} ${sources})
+    set_target_properties(${folder} PROPERTIES UNITY_BUILD_MODE GROUP)
     set(scope PUBLIC)
   else()
     add_library(${folder} INTERFACE)
@@ -108,6 +104,21 @@ function(culprit_library path)
     culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${with} PACKAGES ${ARG_TEST_PACKAGES}
                  SERIAL LABELS live)
   endif()
+endfunction()
+
+# Where CMAKE_UNITY_BUILD is set, the files of one folder are compiled several at a time; those of its subfolders apart,
+# for they are often variants of one thing and call their parts by the same names.
+function(culprit_compile_together dir)
+  foreach(file ${ARGN})
+    get_filename_component(group ${file} DIRECTORY)
+    file(RELATIVE_PATH group ${dir} ${group})
+    string(MAKE_C_IDENTIFIER "part_${group}" group)
+    set_property(GLOBAL APPEND PROPERTY culprit_files_${dir}_${group} ${file})
+    get_property(files GLOBAL PROPERTY culprit_files_${dir}_${group})
+    list(LENGTH files count)
+    math(EXPR batch "${count} / 10")
+    set_source_files_properties(${file} PROPERTIES UNITY_GROUP ${group}_${batch})
+  endforeach()
 endfunction()
 
 # An arrow goes down, or stays on its floor; the laboratory is used by nobody, and uses all but cli.

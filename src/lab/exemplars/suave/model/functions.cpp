@@ -6,16 +6,15 @@
 namespace culprit::suave::model {
 namespace {
 
-using std::chrono::milliseconds;
-using std::chrono::seconds;
+using namespace std::chrono_literals;
 
 // A node's start until it is in the graph; what a lifecycle or parameter callback takes.
 simulation::NodeTraits function_node() {
   simulation::NodeTraits traits;
-  traits.start = {milliseconds(300), milliseconds(400)};
+  traits.start = {300ms, 400ms};
   traits.starts_as = Lifecycle::kInactive;
-  traits.end = {milliseconds(10), milliseconds(40)};
-  traits.service = {std::chrono::microseconds(500), milliseconds(1)};
+  traits.end = {10ms, 40ms};
+  traits.service = {500us, 1ms};
   return traits;
 }
 
@@ -30,7 +29,7 @@ SearchNode::SearchNode(simulation::World& world, const Generation& generation, H
 
 void SearchNode::on_start() {
   spiral_ = {};
-  every(from_seconds(random().uniform()), seconds(1), [this] { tick(); });
+  every(from_seconds(random().uniform()), 1s, [this] { tick(); });
 }
 
 void SearchNode::on_activate() {
@@ -62,8 +61,8 @@ void FollowNode::on_start() {
   has_path_ = false;
   path_.clear();
   goal_.reset();
-  constexpr Duration kPeriod = seconds(2);
-  every(from_seconds(culprit::seconds(kPeriod) * random().uniform()), kPeriod, [this] { poll(); });
+  constexpr Duration kPeriod = 2s;
+  every(from_seconds(seconds(kPeriod) * random().uniform()), kPeriod, [this] { poll(); });
 }
 
 void FollowNode::on_activate() {
@@ -124,7 +123,7 @@ MotionNode::MotionNode(simulation::World& world, const Generation& generation, H
 
 void MotionNode::on_activate() {
   ++activations_;
-  world().after(seconds(10), [this, activation = activations_] { recover(1, activation); });
+  world().after(10s, [this, activation = activations_] { recover(1, activation); });
 }
 
 void MotionNode::on_deactivate() {
@@ -137,8 +136,7 @@ void MotionNode::recover(int thruster, int activation) {
   helm_.recover(thruster);
   world().diagnose("", std::string(diagnostics::kThrusterKey) + std::to_string(thruster),
                    std::string(diagnostics::kRecovered));
-  world().after(milliseconds(250),
-                [this, thruster, activation] { recover(thruster + 1, activation); });
+  world().after(250ms, [this, thruster, activation] { recover(thruster + 1, activation); });
 }
 
 // ---- recharge
@@ -147,7 +145,7 @@ RechargeNode::RechargeNode(simulation::World& world, const Generation& generatio
     : Node(world, nodes::kRecharge, function_node()), generation_(generation), helm_(helm) {}
 
 void RechargeNode::on_start() {
-  every(from_seconds(culprit::seconds(generation_.recharge_poll) * random().uniform()),
+  every(from_seconds(seconds(generation_.recharge_poll) * random().uniform()),
         generation_.recharge_poll, [this] { tick(); });
 }
 

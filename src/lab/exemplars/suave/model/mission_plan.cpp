@@ -8,16 +8,15 @@
 namespace culprit::suave::model {
 namespace {
 
-using std::chrono::milliseconds;
-using std::chrono::seconds;
+using namespace std::chrono_literals;
 
 Generation era() {
   Generation g;
   g.name = "era";
   g.summary = "versions 1.3 and 1.4, on which the published figures were measured";
   g.pipeline_height = 0.75;
-  g.detection_poll = seconds(1);
-  g.recharge_poll = seconds(5);
+  g.detection_poll = 1s;
+  g.recharge_poll = 5s;
   return g;
 }
 
@@ -25,8 +24,8 @@ Generation newest() {
   Generation g;
   g.name = "new";
   g.summary = "version 1.5";
-  g.detection_poll = milliseconds(100);
-  g.recharge_poll = milliseconds(500);
+  g.detection_poll = 100ms;
+  g.recharge_poll = 500ms;
   g.tells_undetected = true;
   g.keeps_spiral = false;
   g.loses_point = false;
@@ -38,7 +37,7 @@ MissionPlan standard() {
   MissionPlan plan;
   plan.name = "standard";
   plan.summary = "the water gets murky, and a thruster fails";
-  plan.thruster_events = {{1, true, seconds(35)}};
+  plan.thruster_events = {{1, true, 35s}};
   return plan;
 }
 
@@ -59,11 +58,11 @@ MissionPlan stress() {
   plan.summary =
       "two thrusters, a dead search, a hung mode manager, a dead inspection, a battery "
       "that must not run empty";
-  plan.thruster_events.push_back({3, true, seconds(66)});
+  plan.thruster_events.push_back({3, true, 66s});
   plan.stops_when_empty = true;
-  plan.faults = {{Time{seconds(20)}, nodes::kSearch, simulation::Killed{}},
-                 {Time{seconds(34)}, nodes::kModeManager, simulation::Hung{}},
-                 {Time{seconds(120)}, nodes::kFollow, simulation::Killed{}}};
+  plan.faults = {{Time{20s}, nodes::kSearch, simulation::Killed{}},
+                 {Time{34s}, nodes::kModeManager, simulation::Hung{}},
+                 {Time{120s}, nodes::kFollow, simulation::Killed{}}};
   return plan;
 }
 
