@@ -6,7 +6,10 @@
 
 add_library(culprit_options INTERFACE)
 target_compile_options(culprit_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-                                                 -Wold-style-cast -Wcast-qual -Werror)
+                                                 -Wold-style-cast -Wcast-qual)
+if(CULPRIT_WERROR)
+  target_compile_options(culprit_options INTERFACE -Werror)
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # g++ 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651), and at -O1 takes what an empty
   # optional would hold for a value that is read.
@@ -51,7 +54,7 @@ endif()
 function(culprit_library path)
   cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES" ${ARGN})
   get_filename_component(folder ${path} NAME)
-  set(dir ${CMAKE_SOURCE_DIR}/src/${path})
+  set(dir ${PROJECT_SOURCE_DIR}/src/${path})
   culprit_check_floors(${path} ${ARG_USES})
   set_property(GLOBAL PROPERTY culprit_path_of_${folder} ${path})
   set(headers ${CMAKE_BINARY_DIR}/include/${folder})
@@ -77,8 +80,14 @@ function(culprit_library path)
     add_library(${folder} INTERFACE)
     set(scope INTERFACE)
   endif()
-  target_include_directories(${folder} ${scope} ${headers})
-  target_link_libraries(${folder} ${scope} ${ARG_USES} ${ARG_PACKAGES} culprit_options)
+  target_include_directories(${folder} ${scope} $<BUILD_INTERFACE:${headers}> $<INSTALL_INTERFACE:include/culprit>)
+  target_link_libraries(${folder} ${scope} ${ARG_USES} ${ARG_PACKAGES})
+  if(sources)
+    target_link_libraries(${folder} PRIVATE $<BUILD_INTERFACE:culprit_options>)
+  endif()
+  if(path MATCHES "^(base$|core/)")
+    culprit_install_library(${folder} ${dir})
+  endif()
 
   if(NOT CULPRIT_TESTS)
     return()
@@ -141,6 +150,14 @@ function(culprit_check_floors path)
   endforeach()
 endfunction()
 
+# base and core are for others, too: find_package(culprit), culprit::core (examples/).
+function(culprit_install_library folder dir)
+  target_compile_features(${folder} PUBLIC cxx_std_20)
+  install(TARGETS ${folder} EXPORT culprit ARCHIVE DESTINATION lib/culprit COMPONENT core)
+  install(DIRECTORY ${dir}/ DESTINATION include/culprit/${folder} COMPONENT core
+          FILES_MATCHING PATTERN "*.h" PATTERN "test_*.h" EXCLUDE PATTERN "golden" EXCLUDE)
+endfunction()
+
 # culprit_embed(<folder> <header> <file>...): makes <folder>/<header> of <header>.in in that folder, with the text of rules/some-name.rules in
 # place of @SOME_NAME_RULES@ (of report.css in place of @REPORT_CSS@), so that a program needs no file beside it.
 function(culprit_embed folder header)
@@ -148,11 +165,11 @@ function(culprit_embed folder header)
     get_filename_component(name ${file} NAME)
     string(MAKE_C_IDENTIFIER ${name} name)
     string(TOUPPER ${name} name)
-    file(READ ${CMAKE_SOURCE_DIR}/${file} ${name})
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${file})
+    file(READ ${PROJECT_SOURCE_DIR}/${file} ${name})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${file})
   endforeach()
   get_property(path GLOBAL PROPERTY culprit_path_of_${folder})
-  configure_file(${CMAKE_SOURCE_DIR}/src/${path}/${header}.in ${CMAKE_BINARY_DIR}/include/${folder}-generated/${folder}/${header} @ONLY)
+  configure_file(${PROJECT_SOURCE_DIR}/src/${path}/${header}.in ${CMAKE_BINARY_DIR}/include/${folder}-generated/${folder}/${header} @ONLY)
   target_include_directories(${folder} PRIVATE ${CMAKE_BINARY_DIR}/include/${folder}-generated)
 endfunction()
 
@@ -191,6 +208,6 @@ function(culprit_test name)
   if(ARG_CASES)
     list(APPEND properties ENVIRONMENT "RC_PARAMS=max_success=${ARG_CASES}")
   endif()
-  gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60
+  gtest_discover_tests(${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
                        PROPERTIES ${properties})
 endfunction()

@@ -5,11 +5,11 @@
 find_program(CULPRIT_NPM npm)
 find_program(CULPRIT_NODE node)
 
-set(CULPRIT_UI_MODULES ${CMAKE_SOURCE_DIR}/build/ui)
+set(CULPRIT_UI_MODULES ${PROJECT_SOURCE_DIR}/build/ui)
 
 # culprit_web_app(<target>): adds web::app() to it (web/app.h).
 function(culprit_web_app target)
-  set(ui ${CMAKE_SOURCE_DIR}/ui)
+  set(ui ${PROJECT_SOURCE_DIR}/ui)
   set(generated ${CMAKE_BINARY_DIR}/ui/app.cpp)
   if(NOT CULPRIT_NPM OR NOT CULPRIT_NODE)
     message(WARNING "npm is not installed: culprit is built without its web app")
