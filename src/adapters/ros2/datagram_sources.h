@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-#include "robot/time.h"
+#include "base/time.h"
 #include "ros2/guid.h"
 
 namespace culprit::ros2 {

@@ -9,12 +9,8 @@
 #include <fmt/ranges.h>
 
 #include "base/text_file.h"
-#include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/progress.h"
-#include "language/text_file.h"
-#include "study/managers/style_planner.h"
 #include "laboratory/commands.h"
+#include "study/managers/style_planner.h"
 #include "study/rca/learning_report.h"
 #include "study/rca/regret.h"
 #include "study/rca/repair_process.h"
