@@ -24,7 +24,7 @@
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 
-#include "robot/inbox.h"
+#include "base/live_clock.h"
 #include "ros2/datagram_filter.h"
 #include "ros2/datagram_sources.h"
 

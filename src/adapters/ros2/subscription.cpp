@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "robot/inbox.h"
+#include "base/live_clock.h"
 
 namespace culprit::ros2 {
 
