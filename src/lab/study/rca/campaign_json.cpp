@@ -27,11 +27,11 @@ RcaSetting setting(const Json& json, std::string& complaint) {
   JsonFields fields(json);
   RcaSetting setting;
   setting.components = fields.natural("components", kMostComponents);
-  if (setting.components < 2) fields.fail("components", "is less than 2");
+  if (setting.components < 2) fields.complain("components", "is less than 2");
   setting.faults = fields.natural("faults", std::min(kMostFaults, setting.components));
   setting.noise = fields.number("noise");
   if (setting.noise < 0 || setting.noise > kMostNoise)
-    fields.fail("noise", "is not between 0 and 0.4");
+    fields.complain("noise", "is not between 0 and 0.4");
   setting.is_cyclic = fields.truth("cyclic");
   complaint = fields.complaint();
   return setting;
@@ -41,7 +41,7 @@ std::vector<RcaSetting> settings(JsonFields& campaign) {
   std::vector<RcaSetting> settings;
   const Json& all = campaign.array("settings");
   if (all.empty() || all.size() > kMostSettings)
-    campaign.fail("settings", "has no entry, or too many");
+    campaign.complain("settings", "has no entry, or too many");
   for (const Json& each : all) {
     std::string inside;
     settings.push_back(setting(each, inside));
@@ -56,11 +56,11 @@ std::vector<std::string> planners(JsonFields& campaign) {
   const auto known = planner_names();
   const Json& all = campaign.array("planners");
   if (all.empty() || all.size() > known.size())
-    campaign.fail("planners", "has no entry, or too many");
+    campaign.complain("planners", "has no entry, or too many");
   for (const Json& each : all) {
     const std::string name = each.is_string() ? each.get<std::string>() : "";
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      campaign.fail("planners", "has '" + name + "', which there is not");
+      campaign.complain("planners", "has '" + name + "', which there is not");
       break;
     }
     planners.push_back(name);
@@ -104,12 +104,12 @@ Expected<RcaCampaign> campaign_from_json(const Json& json) {
   if (objective) campaign.objective = *objective;
   if (!objective) fields.complain_inside("objective", objective.error());
   campaign.episodes = static_cast<std::uint32_t>(fields.natural("episodes", kMostEpisodes));
-  if (campaign.episodes == 0) fields.fail("episodes", "is 0");
+  if (campaign.episodes == 0) fields.complain("episodes", "is 0");
   campaign.seed = fields.natural("seed", UINT64_MAX);
   campaign.version = fields.text("version");
   const auto& asked = campaign.planners;
   if (std::find(asked.begin(), asked.end(), "optimum") != asked.end() && !has_optimum(campaign))
-    fields.fail("planners", "has the optimum, which is not known of such robots");
+    fields.complain("planners", "has the optimum, which is not known of such robots");
   if (const std::string complaint = fields.complaint(); !complaint.empty()) return Error{complaint};
   return campaign;
 }

@@ -85,7 +85,7 @@ class Reader {
     each(fields, "components", kMostComponents, [&](JsonFields& f) { component(f); });
     each(fields, "topics", kMostTopics, [&](JsonFields& f) { topic(f); });
     each(fields, "faults", kMostFaults, [&](JsonFields& f) { fault(f); });
-    if (scenario_.components.empty()) fields.fail("components", "is empty");
+    if (scenario_.components.empty()) fields.complain("components", "is empty");
     if (!fields.complaint().empty()) return Error{fields.complaint()};
     // The names become names of rules.
     const Checked checked = check(Source("scenario.rules", rules_text(scenario_)));
@@ -99,7 +99,7 @@ class Reader {
   template <class Read>
   void each(JsonFields& fields, const std::string& name, std::size_t most, Read read) {
     const Json& all = fields.array(name);
-    if (all.size() > most) return fields.fail(name, "has more than " + std::to_string(most));
+    if (all.size() > most) return fields.complain(name, "has more than " + std::to_string(most));
     for (std::size_t i = 0; i < all.size(); ++i) {
       JsonFields inside(all[i]);
       read(inside);
@@ -111,7 +111,7 @@ class Reader {
   static double number(JsonFields& fields, std::string_view name, double least, double most) {
     const double value = fields.number(name);
     if (value < least || value > most)
-      fields.fail(name, fmt::format("is not between {:g} and {:g}", least, most));
+      fields.complain(name, fmt::format("is not between {:g} and {:g}", least, most));
     return value;
   }
 
@@ -121,14 +121,15 @@ class Reader {
     const std::string name = fields.text(field);
     const auto found = std::find_if(all.begin(), all.end(),
                                     [&](const auto& each) { return name == name_of(each); });
-    if (found == all.end()) fields.fail(field, "'" + name + "' is none of those that there are");
+    if (found == all.end())
+      fields.complain(field, "'" + name + "' is none of those that there are");
     return found == all.end() ? all.front() : *found;
   }
 
   std::size_t index_of(JsonFields& fields, const std::string& name) {
     const auto found = places_.find(name);
     if (found != places_.end()) return found->second;
-    fields.fail("component", "'" + name + "' is not among the components");
+    fields.complain("component", "'" + name + "' is not among the components");
     return 0;
   }
 
@@ -140,9 +141,9 @@ class Reader {
                          std::all_of(component.name.begin(), component.name.end(), [](char c) {
                            return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
                          });
-    if (!is_name) fields.fail("name", "is not made of a-z, 0-9 and _, or too long");
+    if (!is_name) fields.complain("name", "is not made of a-z, 0-9 and _, or too long");
     if (!places_.emplace(component.name, scenario_.components.size()).second)
-      fields.fail("name", "'" + component.name + "' is there twice");
+      fields.complain("name", "'" + component.name + "' is there twice");
     component.criticality = choice(fields, "criticality", kLevels, level_name);
     JsonFields detector(fields.object("detector"));
     component.detector.latency_s = number(detector, "latency_s", 0, kMostSeconds);
@@ -151,7 +152,7 @@ class Reader {
     fields.complain_inside("detector", detector.complaint());
     each(fields, "treatments", kRepairs,
          [&](JsonFields& f) { component.treatments.push_back(treatment(f, component)); });
-    if (component.treatments.empty()) fields.fail("treatments", "is empty");
+    if (component.treatments.empty()) fields.complain("treatments", "is empty");
     scenario_.components.push_back(std::move(component));
   }
 
@@ -161,11 +162,11 @@ class Reader {
     const bool is_there =
         std::any_of(component.treatments.begin(), component.treatments.end(),
                     [&](const Treatment& other) { return other.repair == t.repair; });
-    if (is_there) fields.fail("repair", "is there twice");
+    if (is_there) fields.complain("repair", "is there twice");
     t.success = number(fields, "success", 1, 100);
     t.confidence = number(fields, "confidence", 1, 100);
     t.impact = static_cast<int>(fields.natural("impact", 1000));
-    if (t.impact < 1) fields.fail("impact", "is less than 1");
+    if (t.impact < 1) fields.complain("impact", "is less than 1");
     t.takes_s = number(fields, "takes_s", 0.01, 60);
     JsonFields helps(fields.object("helps"));
     for (std::size_t k = 0; k < kFaultKinds; ++k)
@@ -178,11 +179,11 @@ class Reader {
     RcaTopic topic;
     topic.name = fields.text("name");
     if (topic.name.empty() || topic.name.front() != '/' || topic.name.size() > 255)
-      fields.fail("name", "is no absolute name, or too long");
+      fields.complain("name", "is no absolute name, or too long");
     std::set<std::size_t> seen;
     for (const Json& name : fields.array("publishers")) {
       const std::size_t place = index_of(fields, name.is_string() ? name.get<std::string>() : "");
-      if (!seen.insert(place).second) fields.fail("publishers", "has one twice");
+      if (!seen.insert(place).second) fields.complain("publishers", "has one twice");
       topic.publishers.push_back(place);
     }
     seen.clear();
@@ -192,13 +193,13 @@ class Reader {
       s.passes = number(f, "passes", 0, 1);
       s.delay_s = number(f, "delay_s", 0, kMostSeconds);
       s.is_redundant = f.truth("redundant");
-      if (!seen.insert(s.component).second) f.fail("component", "subscribes twice");
+      if (!seen.insert(s.component).second) f.complain("component", "subscribes twice");
       topic.subscribers.push_back(s);
     });
     ends_ += topic.publishers.size() + topic.subscribers.size();
     ways_ += topic.publishers.size() * topic.subscribers.size();
     if (ends_ > kMostEnds || ways_ > kMostWays)
-      fields.fail("subscribers", "are more than are read in all");
+      fields.complain("subscribers", "are more than are read in all");
     scenario_.topics.push_back(std::move(topic));
   }
 
@@ -213,7 +214,7 @@ class Reader {
     const bool is_there =
         std::any_of(scenario_.faults.begin(), scenario_.faults.end(),
                     [&](const InjectedFault& other) { return other.component == fault.component; });
-    if (is_there) fields.fail("component", "has a fault already");
+    if (is_there) fields.complain("component", "has a fault already");
     scenario_.faults.push_back(fault);
   }
 

@@ -20,31 +20,31 @@ JsonFields::JsonFields(const Json& json) : json_(json.is_object() ? json : kNoOb
 const Json& JsonFields::at(std::string_view name) {
   const auto field = json_.find(std::string(name));
   if (field == json_.end()) {
-    fail(name, "is missing");
+    complain(name, "is missing");
     return kNull;
   }
   ++read_;
   return *field;
 }
 
-void JsonFields::fail(std::string_view name, std::string_view what) {
+void JsonFields::complain(std::string_view name, std::string_view what) {
   if (complaint_.empty()) complaint_.append(name).append(" ").append(what);
 }
 
 void JsonFields::complain_inside(std::string_view name, const std::string& complaint) {
-  if (!complaint.empty()) fail(name, "is wrong: " + complaint);
+  if (!complaint.empty()) complain(name, "is wrong: " + complaint);
 }
 
 bool JsonFields::truth(std::string_view name) {
   const Json& value = at(name);
-  if (!value.is_boolean()) fail(name, "is neither true nor false");
+  if (!value.is_boolean()) complain(name, "is neither true nor false");
   return value.is_boolean() && value.get<bool>();
 }
 
 double JsonFields::number(std::string_view name) {
   const Json& value = at(name);
   if (value.is_number() && std::isfinite(value.get<double>())) return value.get<double>();
-  fail(name, "is no finite number");
+  complain(name, "is no finite number");
   return 0;
 }
 
@@ -52,7 +52,7 @@ std::vector<double> JsonFields::numbers(std::string_view name) {
   std::vector<double> numbers;
   for (const Json& value : array(name)) {
     if (!value.is_number() || !std::isfinite(value.get<double>())) {
-      fail(name, "holds something that is no finite number");
+      complain(name, "holds something that is no finite number");
       return {};
     }
     numbers.push_back(value.get<double>());
@@ -63,7 +63,7 @@ std::vector<double> JsonFields::numbers(std::string_view name) {
 std::string JsonFields::text(std::string_view name) {
   const Json& value = at(name);
   if (value.is_string()) return value.get<std::string>();
-  fail(name, "is no text");
+  complain(name, "is no text");
   return "";
 }
 
@@ -71,7 +71,7 @@ std::uint64_t JsonFields::natural(std::string_view name, std::uint64_t most) {
   const Json& value = at(name);
   if (value.is_number_unsigned() && value.get<std::uint64_t>() <= most)
     return value.get<std::uint64_t>();
-  fail(name, "is no whole number from 0 to " + std::to_string(most));
+  complain(name, "is no whole number from 0 to " + std::to_string(most));
   return 0;
 }
 
@@ -83,7 +83,7 @@ std::int32_t JsonFields::integer(std::string_view name, std::int32_t least) {
                             : value.is_number_integer();
   const std::int64_t number = is_small ? value.get<std::int64_t>() : std::int64_t{kMost} + 1;
   if (number >= least && number <= kMost) return static_cast<std::int32_t>(number);
-  fail(name, "is no whole number of at least " + std::to_string(least));
+  complain(name, "is no whole number of at least " + std::to_string(least));
   return 0;
 }
 
@@ -97,14 +97,14 @@ bool JsonFields::is_null(std::string_view name) {
 const Json& JsonFields::object(std::string_view name) {
   const Json& value = at(name);
   if (value.is_object()) return value;
-  fail(name, "is no JSON object");
+  complain(name, "is no JSON object");
   return kNoObject;
 }
 
 const Json& JsonFields::array(std::string_view name) {
   const Json& value = at(name);
   if (value.is_array()) return value;
-  fail(name, "is no JSON array");
+  complain(name, "is no JSON array");
   return kNoArray;
 }
 

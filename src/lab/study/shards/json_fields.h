@@ -35,7 +35,7 @@ class JsonFields {
   const nlohmann::ordered_json& object(std::string_view name);
   const nlohmann::ordered_json& array(std::string_view name);
 
-  void fail(std::string_view name, std::string_view what);
+  void complain(std::string_view name, std::string_view what);
   // Takes over the complaint of what was inside `name`.
   void complain_inside(std::string_view name, const std::string& complaint);
 

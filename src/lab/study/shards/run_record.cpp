@@ -32,7 +32,7 @@ RootCauses root_causes(const Json& json, std::string& complaint) {
   causes.top_right = fields.integer("top", 0);
   causes.exact_right = fields.integer("exact", 0);
   if (causes.top_right > causes.asked || causes.exact_right > causes.asked)
-    fields.fail("asked", "is less than what was right");
+    fields.complain("asked", "is less than what was right");
   complaint = fields.complaint();
   return causes;
 }
@@ -148,7 +148,7 @@ Expected<Campaign> campaign_from_json(const Json& json) {
   campaign.command = fields.text("command");
   campaign.seed = fields.natural("seed", std::numeric_limits<std::uint64_t>::max());
   campaign.runs = static_cast<std::uint32_t>(fields.natural("runs", kMostShardedRuns));
-  if (campaign.runs == 0) fields.fail("runs", "is 0");
+  if (campaign.runs == 0) fields.complain("runs", "is 0");
   campaign.version = fields.text("version");
   std::string inside;
   campaign.rows = rows(fields.array("rows"), inside);

@@ -42,7 +42,7 @@ Reactions reactions(JsonFields& run, std::string_view name) {
 std::vector<std::string> managers(JsonFields& campaign) {
   std::vector<std::string> managers;
   for (const Json& each : campaign.array("managers")) {
-    if (!each.is_string()) campaign.fail("managers", "holds something that is no text");
+    if (!each.is_string()) campaign.complain("managers", "holds something that is no text");
     if (each.is_string()) managers.push_back(each.get<std::string>());
   }
   if (const Expected<void> known = check_managers(managers); !known)
@@ -124,7 +124,7 @@ Expected<SuaveCampaign> campaign_from_json(const Json& json) {
   if (!generation) fields.complain_inside("generation", generation.error());
   campaign.managers = managers(fields);
   campaign.runs = static_cast<std::uint32_t>(fields.natural("runs", kMostShardedRuns));
-  if (campaign.runs == 0) fields.fail("runs", "is 0");
+  if (campaign.runs == 0) fields.complain("runs", "is 0");
   campaign.seed = fields.natural("seed", std::numeric_limits<std::uint64_t>::max());
   take_settings(fields, campaign);
   campaign.version = fields.text("version");

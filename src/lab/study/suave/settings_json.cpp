@@ -49,7 +49,7 @@ Range range(JsonFields& fields, std::string_view name) {
   }
   const std::vector<double> ends = fields.numbers(name);
   if (ends.size() == 2) return {ends[0], ends[1]};
-  fields.fail(name, "is no pair of numbers");
+  fields.complain(name, "is no pair of numbers");
   return {};
 }
 
@@ -60,7 +60,7 @@ ThrusterSetting thruster_event(const Json& json, JsonFields& settings) {
   const std::string what = fields.text("event");
   event.fails = what == "fails";
   if (what != "fails" && what != "recovers")
-    fields.fail("event", "is neither \"fails\" nor \"recovers\"");
+    fields.complain("event", "is neither \"fails\" nor \"recovers\"");
   event.at_s = range(fields, "at_s");
   settings.complain_inside("thruster_events", fields.complaint());
   return event;
@@ -113,7 +113,7 @@ Expected<VehicleTraits> vehicle_from_json(const Json& json) {
   VehicleTraits vehicle;
   for (const Trait& trait : kTraits) {
     vehicle.*trait.value = fields.number(trait.name);
-    if (vehicle.*trait.value < 0) fields.fail(trait.name, "is negative");
+    if (vehicle.*trait.value < 0) fields.complain(trait.name, "is negative");
   }
   const std::string complaint = fields.complaint();
   if (!complaint.empty()) return Error{complaint};
