@@ -88,14 +88,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.listener = [&](const GraphChange& change) { books.enter(change); };
   options.limits = kLimits;
   Graph graph(options);
-  ManagerLease lease({"robot", 1'000'000, 1});
+  ManagerLease lease({.robot = "robot", .since = 1'000'000, .id = 1, .key = "key"},
+                     guid_of(1, 0).prefix());
+  Time now(std::chrono::hours(1));
   while (size >= 4) {
     const std::uint8_t kind = data[0], participant = data[1], entity = data[2];
     const std::size_t length = std::min<std::size_t>(data[3], size - 4);
     const ByteView bytes(data + 4, length);
     const std::string text(bytes.begin(), bytes.end());
     const Guid guid = guid_of(participant, entity);
-    switch (kind % 7) {
+    now += std::chrono::milliseconds(kind);
+    switch (kind % 8) {
       case 0:
         graph.apply(ParticipantInfo{.guid = guid_of(participant, 0), .host = text});
         break;
@@ -115,14 +118,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         apply_info(graph, participant, bytes);
         break;
       case 6:
-        lease.apply(EndpointInfo{
-            .guid = guid, .topic = ManagerLease::kTopic, .type = "", .user_data = text});
+        lease.apply(
+            EndpointInfo{
+                .guid = guid, .topic = ManagerLease::kTopic, .type = "", .user_data = text},
+            now);
+        break;
+      case 7:
+        lease.hear(guid.prefix(), text, now);
         break;
     }
     data += 4 + length;
     size -= 4 + length;
   }
   books.compare(graph);
-  (void)lease.elder();
+  (void)lease.elder(now);
+  (void)lease.strangers();
   return 0;
 }
