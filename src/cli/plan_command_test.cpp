@@ -137,7 +137,8 @@ TEST_F(Plan, ChoosesNothingWhileTheInterlockIsClosed) {
   EXPECT_THAT(out, Not(HasSubstr("would redeploy")));
   EXPECT_THAT(out, Not(HasSubstr("  chosen\n")));
   ASSERT_EQ(plan_for(killed, rules, "json"), kOk) << err;
-  for (const auto& failure : nlohmann::json::parse(out)["failures"]) {
+  const auto answer = nlohmann::json::parse(out);
+  for (const auto& failure : answer["failures"]) {
     EXPECT_TRUE(failure["chosen"].is_null());
     if (failure["rule"] != "RGBDead") continue;
     EXPECT_EQ(failure["text"], "RGBDead.rgb_redeploy is held back: INTERLOCK docked is unknown");
