@@ -52,6 +52,16 @@ TEST_F(Commands, VersionAndHelp) {
   EXPECT_NE(nonsense.wait(), 0);
 }
 
+TEST_F(Commands, SayWhatToInstallWhereTheLaboratoryIsMissing) {
+  const auto alone = world.folder() / "culprit";
+  std::filesystem::copy_file(own_folder() / "culprit", alone);
+  for (const char* command : {"demo", "study", "torture"}) {
+    TestProgram missing(world, {"env", "PATH=/usr/bin:/bin", alone, command});
+    EXPECT_EQ(missing.wait(), 1);
+    EXPECT_THAT(missing.output(), HasSubstr("install it, or build it: cmake --build"));
+  }
+}
+
 TEST_F(Commands, SayThatTheirOutputIsNotWhole) {
   const std::string program = own_folder() / "culprit";
   TestProgram few(world, {"sh", "-c", program + " explain R001 > /dev/full"});

@@ -51,16 +51,19 @@ Answer play(const Json& request) {
   const std::string out = folder.file("answer");
   if (const auto written = write_text(wish, request.dump()); !written)
     return refuse(503, written.error());
-  const auto pid =
-      owners::spawn({{"nice", "-n", "19", laboratory->string(), "play-again", wish}, {}, out});
+  owners::Program player{{"nice", "-n", "19", laboratory->string(), "play-again", wish}, {}, out};
+  player.lifetime = owners::Lifetime::kStarter;
+  const auto pid = owners::spawn(player);
   if (!pid) return refuse(503, pid.error());
   int status = 0;
   waitpid(*pid, &status, 0);
   const auto text = read_text(out);
   if (!text) return refuse(503, text.error());
-  const bool is_played = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  Json body = is_played ? Json::parse(*text, nullptr, false) : Json();
-  return is_played && body.is_object() ? Answer{200, std::move(body)} : refuse(422, *text);
+  if (!WIFEXITED(status)) return refuse(503, "culprit-lab was killed while it played the run");
+  if (WEXITSTATUS(status) != 0) return refuse(422, *text);
+  Json body = Json::parse(*text, nullptr, false);
+  if (!body.is_object()) return refuse(503, "culprit-lab gave no run: " + *text);
+  return {200, std::move(body)};
 }
 
 Answer answer(const Json& body, std::mutex& playing) {

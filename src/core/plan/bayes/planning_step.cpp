@@ -16,8 +16,7 @@ namespace culprit::plan {
 namespace {
 
 // What costs more than it is worth has to be done all the same, once nothing else comes first: it
-// is worth a little, by its index: by how likely it
-// resolves the failure for what it costs.
+// is worth a little, by its index: by how likely it resolves the failure for what it costs.
 std::int64_t worth(double value, double cost, double index) {
   constexpr double kLittle = 1e-4;
   return parts(std::max(value - cost, kLittle * std::min(index, 1.0))) + 1;

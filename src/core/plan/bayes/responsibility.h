@@ -24,9 +24,8 @@
 //   a_i                 how likely what is wrong at i would still be there after all that was tried
 //                       there (plan/bayes/remedies.h): who was adapted in vain is less likely the
 //                       cause
-//   delay_i             how much later than the first of the circle it was detected (before it came
-//   back,
-//                       if it comes and goes), in cycles
+//   delay_i             how much later than the first of the circle it was detected (before it
+//                       came back, if it comes and goes), in cycles
 //   kappa(i -> k)       how well it explains the others
 //   pi, kappa0          kCoincidence and Coupling::kUsual
 //
