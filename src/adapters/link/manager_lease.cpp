@@ -112,7 +112,12 @@ void ManagerLease::apply(const DiscoveryEvent& event, Time now) {
     const GuidPrefix prefix = endpoint->guid.prefix();
     other.is_proven =
         !own_.key.empty() && are_same(value("proof"), proof_of(kClaim, claim, prefix, own_.key));
-    if (!other.is_proven && strangers().size() >= kMostStrangers) return;
+    if (!other.is_proven) {
+      // Whoever borrows the name of a proven writer does not take its proof away.
+      const auto known = others_.find(endpoint->guid);
+      const bool is_borrowed = known != others_.end() && known->second.is_proven;
+      if (is_borrowed || strangers().size() >= kMostStrangers) return;
+    }
     if (other.is_proven) {
       lives_.try_emplace(prefix, Life{now});
       has_friends_ = true;

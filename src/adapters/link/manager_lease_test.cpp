@@ -104,6 +104,14 @@ TEST(ManagerLease, IsNotLostToAStranger) {
   EXPECT_EQ(lease.strangers([](const GuidPrefix& p) { return p.bytes[0] != 2; }).size(), 1u);
 }
 
+TEST(ManagerLease, IsNotTakenFromTheElderByWhoBorrowsItsName) {
+  ManagerLease lease = lease_of(100);
+  lease.apply(claim(1, {"drone", 99, 1}), kNow);
+  lease.apply(claim(1, {"drone", 300, 9, {}, "another key"}), kNow);
+  EXPECT_EQ(lease.elder(kNow), writer(1).prefix());
+  EXPECT_THAT(lease.strangers(), IsEmpty());
+}
+
 TEST(ManagerLease, WithoutAKeyEverybodyIsAStranger) {
   ManagerLease lease({"drone", 100, 5, {}, ""}, writer(200).prefix());
   lease.apply(claim(1, {"drone", 1, 1}), kNow);
