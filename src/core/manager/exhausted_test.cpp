@@ -105,6 +105,21 @@ TEST(Exhausted, WhatWaitsForAPersonHoldsUpNoLesserFailure) {
   EXPECT_TRUE(robot.was_asked("c1: set angle to 1")) << transcript(robot);
 }
 
+// A circle of three, one of which dies and does not come up again.
+TEST(Exhausted, LeavesTheCircleOfWhatIsDeadToThePersonToo) {
+  TestRobot robot(rule(0) + rule(1) + rule(2));
+  robot.add("c0", {"c2"}, "/c0").dies_at_start = true;
+  robot.add("c1", {"c0"}, "/c1");
+  robot.add("c2", {"c1"}, "/c2");
+  robot.discover();
+  robot.run_for(2s);
+  robot.kill("c0");
+  robot.run_for(240s);
+  EXPECT_EQ(robot.count("Silent0 is exhausted"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("c1:")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("c2:")) << transcript(robot);
+}
+
 // The robot stops at once when nobody can help the camera any more.
 TEST_P(ExhaustedCause, MakesTheRobotStopSafely) {
   TestRobot robot(rule(0) +

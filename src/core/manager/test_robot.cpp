@@ -72,11 +72,18 @@ ComponentId TestRobot::id(const std::string& name) const {
   return {};
 }
 
+// All that it needs works, however far upstream; there may be circles.
 bool TestRobot::works(const std::string& name) const {
-  const Component& c = components_.at(name);
-  return c.process == ProcessState::kRunning && c.state == Lifecycle::kActive && c.fault.empty() &&
-         std::all_of(c.needs.begin(), c.needs.end(),
-                     [&](const std::string& n) { return works(n); });
+  std::vector<std::string> needed{name};
+  for (std::size_t next = 0; next < needed.size(); ++next) {
+    const Component& c = components_.at(needed[next]);
+    if (c.process != ProcessState::kRunning || c.state != Lifecycle::kActive || !c.fault.empty())
+      return false;
+    for (const std::string& n : c.needs) {
+      if (std::find(needed.begin(), needed.end(), n) == needed.end()) needed.push_back(n);
+    }
+  }
+  return true;
 }
 
 void TestRobot::signal(const std::string& name, Value value) {

@@ -257,6 +257,41 @@ TEST(BayesPlanner, RepairsNothingThatAnExhaustedFailureExplains) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart D.restart") << "it no longer explains them";
 }
 
+// Who was first in a circle is known if a process of it is dead.
+TEST(BayesPlanner, RepairsNothingInACircleThatADeadMemberExplains) {
+  Scene scene(failure_of("a", "A") + failure_of("b", "B") +
+              "STRATEGY other 5 10\nADAPTATION b change_communication in /other 2\n" +
+              failure_of("c", "C"));
+  scene.link("a", "b").link("b", "c").link("c", "a").exhaust("A").fail("B").fail("C");
+  scene.process("a", ProcessState::kGone);
+  EXPECT_EQ(scene.plan(kFewRedeployments), "B.other") << "it may lead round the dead one";
+  EXPECT_EQ(scene.candidate("C.restart").excluded, Condition::kDependency);
+  EXPECT_EQ(scene.candidate("C.restart").because, scene.rule("A"));
+  scene.tried("B.other");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "");
+  scene.process("c", ProcessState::kGone);
+  EXPECT_EQ(scene.plan(kFewRedeployments), "C.redeploy") << "it is dead itself";
+  scene.process("c", ProcessState::kRunning);
+  scene.process("a", ProcessState::kRunning);
+  EXPECT_NE(scene.plan(kFewRedeployments), "") << "nobody knows who was first: they take turns";
+}
+
+// It has a cause of its own, and so has what is dead: nobody disturbs the other.
+TEST(BayesPlanner, LetsALesserRootUpstreamOfTheDeadActAtOnce) {
+  for (const bool is_replaced : {false, true}) {
+    Scene scene(failure_of("a", "Root", "NON_CRITICAL") + failure_of("b", "Dead", "WARNING"));
+    scene.link("a", "b").fail("Root");
+    if (is_replaced) {
+      scene.attempt("Dead.redeploy");
+    } else {
+      scene.fail("Dead");
+    }
+    scene.process("b", ProcessState::kGone);
+    EXPECT_EQ(scene.plan(kFewRedeployments),
+              is_replaced ? "Root.restart" : "Dead.redeploy Root.restart");
+  }
+}
+
 TEST(BayesPlanner, StopsSafelyThoughAnExhaustedFailureExplainsIt) {
   Scene scene(failure_of("a", "A") + failure_of("b", "B") +
               "STRATEGY safe 99 10 LASTRESORT\nADAPTATION b set_parameter speed 0 1\n");

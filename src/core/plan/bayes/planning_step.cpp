@@ -100,9 +100,13 @@ bool PlanningStep::is_left_to_person(RuleId rule) const {
   return knowledge_.states.awaits_person(rule) || waits_for_person(failures_.index_of(rule));
 }
 
-// The likeliest cause outside its circle, if the failure more likely has one than not.
+// The likeliest cause outside its circle, if the failure more likely has one than not; or else who
+// is dead in its circle.
 std::optional<RuleId> PlanningStep::cause_of(std::size_t failure) const {
-  if (responsibility_.against_others(failure) >= 0.5) return std::nullopt;
+  if (responsibility_.against_others(failure) >= 0.5) {
+    const auto dead = responsibility_.dead_in_circle(failure);
+    return dead ? std::optional(failures_[*dead]) : std::nullopt;
+  }
   std::int64_t most = 0;
   RuleId cause;
   responsibility_.for_each_share(failure, [&](std::size_t j, double share) {

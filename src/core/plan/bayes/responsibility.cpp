@@ -34,7 +34,18 @@ double Responsibility::share(std::size_t j, std::size_t i) const {
 }
 
 bool Responsibility::is_explained_by(std::size_t i, std::size_t j) const {
-  return has(failures_.causes(i), j) && root_probability(own(i), kappa(j, i)) < 0.5;
+  return has(failures_.causes(i), j) && is_enough(j, i);
+}
+
+bool Responsibility::is_enough(std::size_t j, std::size_t i) const {
+  return root_probability(own(i), kappa(j, i)) < 0.5;
+}
+
+std::optional<std::size_t> Responsibility::dead_in_circle(std::size_t i) const {
+  for (const std::size_t j : failures_.circles()[failures_.circle_of(i)]) {
+    if (j != i && is_seen_down(failures_[j], knowledge_) && is_enough(j, i)) return j;
+  }
+  return std::nullopt;
 }
 
 double Responsibility::kappa(std::size_t j, std::size_t i) const {

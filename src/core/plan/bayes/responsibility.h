@@ -33,6 +33,7 @@
 // Systems, 1988, section 4.3.2); the rest is ours.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "plan/bayes/failures.h"
@@ -58,6 +59,10 @@ class Responsibility {
   double kappa(std::size_t j, std::size_t i) const;
   // Is j alone enough for i to have no cause of its own, more likely than not?
   bool is_explained_by(std::size_t i, std::size_t j) const;
+  // The failure of i's circle that has a dead process, if it is alone enough for i. The operating
+  // system told who was first there, so nobody need find out by taking turns. None if a process of
+  // i's own is dead.
+  std::optional<std::size_t> dead_in_circle(std::size_t i) const;
   // Of the part 1 - R_i that others explain, what falls to failure j: in proportion to
   // kappa(j -> i) R_j.
   double share(std::size_t j, std::size_t i) const;
@@ -68,6 +73,7 @@ class Responsibility {
   }
 
  private:
+  bool is_enough(std::size_t j, std::size_t i) const;
   double explained(std::size_t i) const;
   double own(std::size_t i) const;
   void divide(const std::vector<std::size_t>& circle);

@@ -1,6 +1,7 @@
 #include "plan/bayes/surroundings.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "plan/bayes/seen_down.h"
 #include "plan/bayes/suspicion.h"
@@ -81,23 +82,36 @@ Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach, const
   const auto mark = [&](Marks& marks, const std::vector<ComponentId>& components, RuleId rule) {
     for (const ComponentId c : components) marks.mark(reach.place_of(c), rule);
   };
-  const auto mark_below = [&](std::vector<Marks>& marks, RuleId rule) {
+  const auto mark_below = [&](std::vector<Marks>& marks, const std::vector<ComponentId>& components,
+                              RuleId rule) {
     for (std::size_t below = 0; below < level_of(rule); ++below)
-      mark(marks[below], knowledge.rules[rule].components, rule);
+      mark(marks[below], components, rule);
+  };
+  // While a process is dead, nothing that is done upstream disturbs who replaces it.
+  const auto mark_living_below = [&](std::vector<Marks>& marks, RuleId rule) {
+    std::vector<ComponentId> living;
+    const auto& touched = knowledge.rules[rule].components;
+    std::copy_if(touched.begin(), touched.end(), std::back_inserter(living),
+                 [&](ComponentId c) { return !is_seen_down(c, knowledge); });
+    mark_below(marks, living, rule);
   };
   for (const RuleId rule : knowledge.states.active()) {
     const auto& attempt = knowledge.states[rule].attempt;
     if (!attempt || attempt->stage == Attempt::Stage::kSuspended) continue;
     const auto& adapted = knowledge.rules[attempt->strategy].components;
     const bool has_effect = attempt->stage == Attempt::Stage::kWaiting;
-    mark_below(has_effect ? judged_ : urgent_, rule);
+    if (has_effect) {
+      mark_below(judged_, knowledge.rules[rule].components, rule);
+    } else {
+      mark_living_below(urgent_, rule);
+    }
     for (std::size_t level = 0; level < kLevels; ++level) {
       if (!has_effect || level <= level_of(rule)) mark(holding_[level], adapted, rule);
     }
   }
-  for (const RuleId rule : failures) mark_below(planned_, rule);
+  for (const RuleId rule : failures) mark_living_below(planned_, rule);
   for (const RuleId rule : suspicious) {
-    mark_below(pending_, rule);
+    mark_below(pending_, knowledge.rules[rule].components, rule);
     mark(suspects_, knowledge.rules[rule].components, rule);
     for (const ComponentId c : knowledge.rules[rule].components) {
       Duration& patience = patience_[reach.place_of(c)];

@@ -78,8 +78,10 @@ class Surroundings {
   // By level: reserved by attempts, and holding back what depends on it. Not by one that is less
   // critical and only waits for its verdict: it gives way.
   std::vector<Marks> holding_;
-  std::vector<Marks> urgent_;       // by level: of more critical failures that are worked on
-  std::vector<Marks> planned_;      // by level: of `failures` that are more critical
+  // By level: the living components of more critical failures that are worked on; the same of
+  // `failures`.
+  std::vector<Marks> urgent_;
+  std::vector<Marks> planned_;
   std::vector<Marks> judged_;       // by level: of those whose strategy waits for its verdict
   std::vector<Marks> pending_;      // by level: of suspicious rules that are more critical
   Marks suspects_;                  // of suspicious rules
