@@ -1,10 +1,6 @@
 #include "demo/sunset_demo.h"
 
 #include <chrono>
-#include <stdlib.h>
-#include <system_error>
-
-#include <fmt/core.h>
 
 #include "demo/demo_setup.h"
 #include "demo/embedded_rules.h"
@@ -14,87 +10,44 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kExtras = R"(
-COMPONENT world     LAUNCH "sunset-node world"
-COMPONENT evaluator LAUNCH "sunset-node evaluator"
-)";
-
 }  // namespace
 
 Expected<std::unique_ptr<SunsetDemo>> SunsetDemo::start(Options options,
                                                         const std::atomic<bool>& stop) {
-  auto domain = make_own_domain(options.domain);
-  if (!domain) return Error{domain.error()};
-  std::unique_ptr<SunsetDemo> demo(new SunsetDemo(std::move(options), stop, std::move(*domain),
-                                                  embedded_rules("sunset.rules", kSunsetRules)));
+  std::unique_ptr<SunsetDemo> demo(new SunsetDemo(std::move(options), stop));
   if (auto opened = demo->open(); !opened) return Error{opened.error()};
   return demo;
 }
 
-SunsetDemo::SunsetDemo(Options options, const std::atomic<bool>& stop, ros2::DomainLock domain,
-                       RuleSet rules)
+SunsetDemo::SunsetDemo(Options options, const std::atomic<bool>& stop)
     : options_(std::move(options)),
       stop_(stop),
-      domain_(std::move(domain)),
-      rules_(std::move(rules)),
-      extras_rules_(embedded_rules("extras.rules", kExtras)),
+      rules_(embedded_rules("sunset.rules", kSunsetRules)),
       start_(live_now()) {}
 
 SunsetDemo::~SunsetDemo() {
   is_ending_ = true;
-  if (robot_) robot_->interrupt();
+  if (world_) world_->robot().interrupt();
   if (thread_.joinable()) thread_.join();
-  experiment_.reset();
-  if (robot_) robot_->supervisor().stop_all();
-  if (extras_) extras_->stop_all();
-  robot_.reset();
-  extras_.reset();
-  std::error_code error;
-  if (!keeps_state_ && !state_.empty()) std::filesystem::remove_all(state_, error);
 }
 
 const char* SunsetDemo::rule_text() { return kSunsetRules; }
 
-const std::filesystem::path& SunsetDemo::keep_state() {
-  keeps_state_ = true;
-  return state_;
-}
-
 Expected<void> SunsetDemo::open() {
-  auto state = make_state_folder();
-  if (!state) return Error{state.error()};
-  state_ = *state;
-  setenv("SUNSET_SPEED", fmt::format("{}", options_.speed).c_str(), 1);
-  setenv("SUNSET_SEED", std::to_string(options_.seed).c_str(), 1);
-  setenv("SUNSET_STATE", state_.c_str(), 1);
-  const auto participant = ros2::options_from_environment();
-  if (!participant) return Error{participant.error()};
-
-  const owners::Supervisor::Options processes = demo_processes(state_);
-  LiveRobot::Options robot;
-  robot.link.participant = *participant;
-  robot.supervisor = processes;
-  auto opened = LiveRobot::open(rules_, std::move(robot));
-  if (!opened) return Error{opened.error()};
-  robot_ = std::move(*opened);
-  extras_ = std::make_unique<owners::Supervisor>(extras_rules_, processes, extras_inbox_);
-  start_all(*extras_, extras_rules_);
-  start_all(robot_->supervisor(), rules_);
-
-  auto experiment = sunset::Experiment::start({options_.speed, state_, *participant});
-  if (!experiment) return Error{experiment.error()};
-  experiment_ = std::move(*experiment);
+  auto world = SunsetWorld::start({options_.speed, options_.seed, options_.domain}, rules_);
+  if (!world) return Error{world.error()};
+  world_ = std::move(*world);
   Manager::Options manager;
   manager.start = live_now();
-  manager.settling = 20s;  // the nodes are only just being started
+  manager.settling = SunsetWorld::kStarting;
   manager_ = std::make_unique<Manager>(rules_, options_.planner(), manager);
   watched_ = std::make_unique<web::WatchedManager>(*manager_, hub_, metrics_, start_);
-  runtime_ = std::make_unique<Runtime>(*watched_, *robot_);
+  runtime_ = std::make_unique<Runtime>(*watched_, world_->robot());
   runtime_->on_events = [this](std::span<const Event> events) { on_events(events); };
   thread_ = std::thread([this] { runtime_->run(is_ending_); });
-  if (wait_until_well(60s)) return {};
+  if (wait_until_well(SunsetWorld::kPatience)) return {};
   if (stop_) return Error{"interrupted"};
-  return Error{"the robot does not come up: " + experiment_->measure().complaint +
+  return Error{"the robot does not come up: " + world_->experiment().measure().complaint +
                "; its logs are in " + (keep_state() / "log").string()};
 }
 
@@ -111,7 +64,7 @@ bool SunsetDemo::wait_until_well(Duration patience) {
   constexpr Duration kCalm = 500ms;
   for (const Time end = live_now() + patience; live_now() < end && !stop_;) {
     std::this_thread::sleep_for(50ms);
-    const bool is_well = experiment_->measure().complaint.empty();
+    const bool is_well = world_->experiment().measure().complaint.empty();
     const std::lock_guard lock(mutex_);
     const bool is_quiet = !episode_ || (episode_->open() == 0 && !episode_->failures().empty());
     if (episode_ && episode_->is_exhausted()) return false;
@@ -122,11 +75,11 @@ bool SunsetDemo::wait_until_well(Duration patience) {
 
 Expected<void> SunsetDemo::inject(const Play& play) {
   for (const sunset::Fault* fault : play.faults) {
-    if (auto injected = experiment_->inject(*fault); !injected)
+    if (auto injected = world_->experiment().inject(*fault); !injected)
       return Error{std::string(fault->name) + ": " + injected.error()};
   }
   for (const auto& [fault, member] : play.process_faults) {
-    if (auto injected = experiment_->inject(fault, member); !injected) {
+    if (auto injected = world_->experiment().inject(fault, member); !injected) {
       return Error{std::string(sunset::name_of(member)) + ": " + injected.error()};
     }
   }
@@ -134,7 +87,8 @@ Expected<void> SunsetDemo::inject(const Play& play) {
 }
 
 Expected<void> SunsetDemo::inject(const std::string& fault) {
-  if (const sunset::Fault* known = sunset::find_fault(fault)) return experiment_->inject(*known);
+  if (const sunset::Fault* known = sunset::find_fault(fault))
+    return world_->experiment().inject(*known);
   const auto play = find_play(fault);
   return play ? inject(*play) : Error{play.error()};
 }
@@ -144,12 +98,12 @@ Expected<PlayOutcome> SunsetDemo::play(const Play& play) {
     const std::lock_guard lock(mutex_);
     episode_.emplace(rules_);
   }
-  experiment_->restart_measuring();
+  world_->experiment().restart_measuring();
   if (auto injected = inject(play); !injected) return Error{"cannot inject " + injected.error()};
   const bool is_well = wait_until_well(kPatience);
   if (stop_) return Error{"interrupted"};
 
-  const sunset::Measurements measured = experiment_->measure();
+  const sunset::Measurements measured = world_->experiment().measure();
   PlayOutcome outcome;
   outcome.name = play.name;
   outcome.faults = play.fault_names();
@@ -179,11 +133,11 @@ Expected<void> SunsetDemo::clear() {
     const std::lock_guard lock(mutex_);
     episode_.reset();
   }
-  if (auto cleared = experiment_->clear(); !cleared) return cleared;
+  if (auto cleared = world_->experiment().clear(); !cleared) return cleared;
   if (wait_until_well(kPatience)) return {};
   if (stop_) return Error{"interrupted"};
   return Error{"the robot is not well after its faults were cleared: " +
-               experiment_->measure().complaint};
+               world_->experiment().measure().complaint};
 }
 
 }  // namespace culprit::lab

@@ -1,5 +1,4 @@
-// A live SUNSET with culprit managing it, in a world of its own: its own DDS domain on loopback,
-// its own state folder, and nothing left behind.
+// A live SUNSET in a world of its own, with culprit managing it.
 #pragma once
 
 #include <atomic>
@@ -14,12 +13,10 @@
 
 #include "demo/episode.h"
 #include "demo/play.h"
-#include "exemplars/sunset/experiment.h"
-#include "live/live_robot.h"
+#include "demo/sunset_world.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
 #include "plan/bayes/bayes_planner.h"
-#include "ros2/domain_lock.h"
 #include "web/watched_manager.h"
 
 namespace culprit::lab {
@@ -69,13 +66,13 @@ class SunsetDemo {
   // stopped ("kill:camera").
   Expected<void> inject(const std::string& fault);
   // Removes what was injected. Does not wait until the robot is well.
-  Expected<void> clear_faults() { return experiment_->clear(); }
+  Expected<void> clear_faults() { return world_->experiment().clear(); }
 
-  const std::filesystem::path& keep_state();
+  const std::filesystem::path& keep_state() { return world_->keep_state(); }
   const RuleSet& rules() const { return rules_; }
   // The file that they are of.
   static const char* rule_text();
-  std::uint32_t domain() const { return domain_.domain(); }
+  std::uint32_t domain() const { return world_->domain(); }
   web::Hub& hub() { return hub_; }
   const web::Metrics& metrics() const { return metrics_; }
   // Gives the manager an order. From any thread.
@@ -84,8 +81,7 @@ class SunsetDemo {
  private:
   static constexpr Duration kPatience = std::chrono::seconds(90);
 
-  SunsetDemo(Options options, const std::atomic<bool>& stop, ros2::DomainLock domain,
-             RuleSet rules);
+  SunsetDemo(Options options, const std::atomic<bool>& stop);
   Expected<void> open();
   void on_events(std::span<const Event> events);
   Expected<void> inject(const Play& play);
@@ -96,20 +92,10 @@ class SunsetDemo {
 
   Options options_;
   const std::atomic<bool>& stop_;
-  ros2::DomainLock domain_;
   const RuleSet rules_;
-  std::filesystem::path state_;
-  bool keeps_state_ = false;
-
-  // The bag player and the evaluator: processes that nobody manages.
-  RuleSet extras_rules_;
-  Inbox extras_inbox_;
-  std::unique_ptr<owners::Supervisor> extras_;
-
-  std::unique_ptr<LiveRobot> robot_;
-  std::unique_ptr<sunset::Experiment> experiment_;
+  std::unique_ptr<SunsetWorld> world_;
   std::unique_ptr<Manager> manager_;
-  web::Hub hub_{[this] { robot_->interrupt(); }};
+  web::Hub hub_{[this] { world_->robot().interrupt(); }};
   web::Metrics metrics_;
   std::unique_ptr<web::WatchedManager> watched_;
   std::unique_ptr<Runtime> runtime_;

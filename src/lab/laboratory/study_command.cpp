@@ -6,12 +6,16 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "base/text_file.h"
 #include "laboratory/commands.h"
+#include "laboratory/live_campaign.h"
+#include "laboratory/live_run.h"
 #include "laboratory/study_output.h"
 #include "laboratory/study_rca_command.h"
 #include "laboratory/study_runs.h"
 #include "laboratory/study_suave_command.h"
 #include "study/shards/merge.h"
+#include "study/shards/run_record.h"
 #include "study/sunset/study.h"
 
 namespace culprit::lab {
@@ -28,17 +32,24 @@ struct StudyOptions {
   std::uint32_t runs = 162;
   std::uint32_t repetitions = 20;
   std::uint64_t seed = 1;
-  unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
+  std::optional<unsigned> jobs_asked;
   ShardOptions shard;
-  std::optional<std::uint32_t> explained_run;
+  bool live = false;
+  std::optional<std::uint32_t> single_run;
   std::string switches = "DCS";
+  bool misspecified = false;
   std::string version;
   StudyOutput output;
 
   bool has_everything() const { return !ablation && !robustness && !learning; }
   bool has_ablation() const { return ablation || has_everything(); }
   bool has_robustness() const { return robustness || has_everything(); }
-  bool has_learning() const { return learning || has_everything(); }
+  bool has_learning() const { return learning || (has_everything() && !live); }
+  // A live robot keeps nearly a processor busy.
+  unsigned jobs() const {
+    const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+    return jobs_asked.value_or(live ? std::max(1U, processors / 2) : processors);
+  }
 };
 
 // "D-S"
@@ -93,14 +104,21 @@ void add_rows(const StudyOptions& options, const std::string& profile,
   }
 }
 
+// Live, each row is also played on the model of that robot.
 std::vector<study::Configuration> rows_of(const StudyOptions& options) {
   std::vector<study::Configuration> rows;
+  if (options.live) {
+    add_rows(options, std::string(study::kModelOfLiveRobot), rows);
+    add_rows(options, std::string(study::kLiveRobot), rows);
+    return rows;
+  }
   for (const std::string& profile : profiles_of(options)) add_rows(options, profile, rows);
   return rows;
 }
 
 std::string command_of(const StudyOptions& options) {
   std::string command = "culprit study sunset";
+  if (options.live) command += " --live";
   if (options.ablation) command += " --ablation";
   if (options.robustness) command += " --robustness";
   if (options.learning) command += fmt::format(" --learning --repetitions {}", options.repetitions);
@@ -109,8 +127,8 @@ std::string command_of(const StudyOptions& options) {
     command += fmt::format(" --objective {}", fmt::join(options.objectives, ","));
   if (options.detectors != StudyOptions().detectors)
     command += fmt::format(" --detectors {}", fmt::join(options.detectors, ","));
-  return command + fmt::format(" --profile {} --runs {} --seed {}", options.profile, options.runs,
-                               options.seed);
+  if (!options.live) command += fmt::format(" --profile {}", options.profile);
+  return command + fmt::format(" --runs {} --seed {}", options.runs, options.seed);
 }
 
 // Who learns: the first of the planners that can, or else the paper's.
@@ -152,13 +170,13 @@ std::vector<study::Timeline> timelines(const study::SunsetStudy& study,
   return told;
 }
 
+template <class Play>
 int run_campaign(const study::SunsetStudy& study, const study::Campaign& campaign,
-                 const StudyOptions& options) {
+                 const StudyOptions& options, const StopSignals& signals, Play play) {
   const std::uint64_t learned =
       options.has_learning() ? std::uint64_t{options.runs} * options.repetitions : 0;
   Progress progress(0, campaign.size() + learned);
-  auto result =
-      run_whole(campaign, options.jobs, progress, [&](study::RunId id) { return study.run(id); });
+  auto result = run_whole(campaign, options.jobs(), signals, progress, play);
   if (!result) return kFailed;
   study::Findings findings{std::move(*result), {}, timelines(study, campaign, options)};
   if (options.has_learning()) {
@@ -171,33 +189,67 @@ int run_campaign(const study::SunsetStudy& study, const study::Campaign& campaig
   return written ? kOk : fail(written.error(), kFailed);
 }
 
-int explain(const StudyOptions& options) {
+// Which row a single run is of.
+Expected<study::Configuration> row_of(const StudyOptions& options, const std::string& profile) {
   const auto switches = parse_switches(options.switches);
-  if (!switches) return fail(switches.error(), kUsage);
-  const study::Configuration wanted{*switches, planners_of(options).front(),
-                                    profiles_of(options).front(), study::Probabilities::kIdeal};
+  if (!switches) return Error{switches.error()};
+  return study::Configuration{
+      *switches, planners_of(options).front(), profile,
+      options.misspecified ? study::Probabilities::kMisspecified : study::Probabilities::kIdeal};
+}
+
+// One run on the live robot, as a JSON object: what the campaign starts a process for.
+int play_one_live(const StudyOptions& options) {
+  auto row = row_of(options, std::string(study::kLiveRobot));
+  if (!row) return fail(row.error(), kUsage);
+  const auto study = study::SunsetStudy::make({std::move(*row)}, options.seed);
+  if (!study) return fail(study.error(), kUsage);
+  const StopSignals signals;
+  const auto metrics = play_live(*study, {0, *options.single_run}, signals.stopped());
+  if (!metrics) return fail(metrics.error(), kFailed);
+  const auto json = study::to_json(*metrics);
+  if (!json) return fail(json.error(), kFailed);
+  const auto written = write_text(options.output.output, json->dump(2) + "\n");
+  return written ? kOk : fail(written.error(), kFailed);
+}
+
+int explain(const StudyOptions& options) {
+  const auto wanted = row_of(options, profiles_of(options).front());
+  if (!wanted) return fail(wanted.error(), kUsage);
   // The same row as in the campaign, so that it is the same run.
   std::vector<study::Configuration> rows = rows_of(options);
-  const auto row = std::find(rows.begin(), rows.end(), wanted);
+  const auto row = std::find(rows.begin(), rows.end(), *wanted);
   if (row == rows.end()) return fail("the campaign has no such configuration", kUsage);
   const auto index = static_cast<std::uint32_t>(row - rows.begin());
   const auto study = study::SunsetStudy::make(std::move(rows), options.seed);
   if (!study) return fail(study.error(), kUsage);
-  fmt::print("{}", timeline_text(study->explain({index, *options.explained_run})));
+  fmt::print("{}", timeline_text(study->explain({index, *options.single_run})));
   return kOk;
 }
 
 int study_sunset(const StudyOptions& options) {
-  if (options.explained_run) return explain(options);
+  if (options.single_run) return options.live ? play_one_live(options) : explain(options);
+  if (options.live && options.learning)
+    return fail("--learning goes through hundreds of runs: it is for the model", kUsage);
   if (options.shard.is_sharded() && options.learning)
     return fail("learning goes from run to run and cannot be spread over shards", kUsage);
   study::Campaign campaign{rows_of(options), options.runs, options.seed, options.version,
                            command_of(options)};
   const auto study = study::SunsetStudy::make(campaign.rows, campaign.seed);
   if (!study) return fail(study.error(), kUsage);
-  if (!options.shard.is_sharded()) return run_campaign(*study, campaign, options);
-  return fill_shard(campaign, options.shard, options.jobs,
-                    [&](study::RunId id) { return study->run(id); });
+  const StopSignals signals;
+  const auto work_off = [&](const auto& play) {
+    if (!options.shard.is_sharded()) return run_campaign(*study, campaign, options, signals, play);
+    return fill_shard(campaign, options.shard, options.jobs(), signals, play);
+  };
+  if (!options.live) return work_off([&](study::RunId id) { return study->run(id); });
+  const auto live = LiveCampaign::open();
+  if (!live) return fail(live.error(), kFailed);
+  return work_off([&](study::RunId id) -> Expected<study::RunMetrics> {
+    const study::Configuration& row = campaign.rows[id.row];
+    if (row.profile != study::kLiveRobot) return study->run(id);
+    return live->play(row, id.run, study->seed_of(id), signals.stopped());
+  });
 }
 
 int merge(const std::vector<std::string>& files, const StudyOutput& output) {
@@ -237,10 +289,15 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
       ->delimiter(',')
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
       ->capture_default_str();
+  auto* live = command->add_flag(
+      "--live", options->live,
+      "On the live robot (its processes, started for each run), with its model beside it: half a "
+      "minute a run");
   command
       ->add_option("--profile", options->profile,
                    "Which SUNSET: paper, head, october (versions of the exemplar) or live (ours)")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes(live);
   command
       ->add_option("--detectors", options->detectors,
                    "How outages are seen: own (the profile's: SUNSET's monitoring as in the paper; "
@@ -248,7 +305,8 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
                    "rhythm) or known (the fault at once: a bound); several, one after the other")
       ->delimiter(',')
       ->check(CLI::IsMember({"own", "age", "phi", "known"}))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes(live);
   command->add_option("--runs", options->runs, "Of each configuration")
       ->check(CLI::Range(1U, 1'000'000'000U))
       ->capture_default_str();
@@ -257,14 +315,23 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of all that is left to chance")
       ->capture_default_str();
-  command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
+  command
+      ->add_option("--jobs", options->jobs_asked,
+                   "Threads; the results do not depend on it. With --live, robots at once, each in "
+                   "a ROS domain of its own (default: one for two processors)")
       ->check(CLI::Range(1U, 1024U));
   options->shard.add_to(*command);
-  command->add_option("--run", options->explained_run,
-                      "With --explain: one run, from 0, and what happened in it");
-  command->add_flag("--explain")->needs("--run");
+  auto* run = command->add_option(
+      "--run", options->single_run,
+      "With --explain: one run, from 0, and what happened in it. With --live: one run, its metrics "
+      "as JSON");
+  command->add_flag("--explain")->needs(run)->excludes(live);
   command->add_option("--switches", options->switches, "With --run: of this configuration")
       ->capture_default_str();
+  command
+      ->add_flag("--misspecified", options->misspecified,
+                 "With --run: of the configuration whose success probabilities are 20 % off")
+      ->needs(run);
   options->output.add_to(*command);
   command->callback([options, &exit_code] { exit_code = study_sunset(*options); });
 }

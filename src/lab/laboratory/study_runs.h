@@ -2,7 +2,7 @@
 // interrupted: what the studies of culprit study have in common.
 //
 // C is a campaign (study/shards/shard_kind.h); `play` makes a run of it from a RunId, on several
-// threads.
+// threads, or an error, which ends the work. `signals` say when to stop.
 #pragma once
 
 #include <optional>
@@ -33,41 +33,51 @@ template <class Play, class Take>
 void work_off(std::uint64_t done, std::uint64_t total, unsigned jobs, const StopSignals& signals,
               Progress& progress, Play play, Take take) {
   study::work_in_order(done, total, jobs, play, [&](std::uint64_t i, auto run) {
-    progress.show(i + 1);
+    if (run) progress.show(i + 1);
     return take(std::move(run)) && !signals.stopped();
   });
 }
 
-// The whole campaign; nothing if it was interrupted, which is said. It is what `progress` begins
-// with.
+// The whole campaign; nothing if it was interrupted or a run failed, which is said. It is what
+// `progress` begins with.
 template <class C, class Play>
 std::optional<typename study::ShardKind<C>::Result> run_whole(const C& campaign, unsigned jobs,
+                                                              const StopSignals& signals,
                                                               Progress& progress, Play play) {
-  const StopSignals signals;
+  using Run = typename study::ShardKind<C>::Run;
   typename study::ShardKind<C>::Fold fold(campaign);
+  std::string trouble;
   work_off(
       0, campaign.size(), jobs, signals, progress,
-      [&](std::uint64_t i) { return play(campaign[i]); },
-      [&](typename study::ShardKind<C>::Run run) {
-        fold.add(std::move(run));
-        return true;
+      [&](std::uint64_t i) { return Expected<Run>(play(campaign[i])); },
+      [&](Expected<Run> run) {
+        if (run) {
+          fold.add(std::move(*run));
+        } else {
+          trouble = run.error();
+        }
+        return run.has_value();
       });
   if (fold.is_complete()) return std::move(fold).result();
   progress.end();
+  if (!trouble.empty() && !signals.stopped()) {
+    fail(trouble + "; nothing is written", kFailed);
+    return std::nullopt;
+  }
   fail("interrupted; with --shard-file the same command could go on", kFailed);
   return std::nullopt;
 }
 
 // A shard, into its file. Gives an exit code.
 template <class C, class Play>
-int fill_shard(const C& campaign, const ShardOptions& options, unsigned jobs, Play play) {
+int fill_shard(const C& campaign, const ShardOptions& options, unsigned jobs,
+               const StopSignals& signals, Play play) {
   using Run = typename study::ShardKind<C>::Run;
   const auto shard = study::parse_shard(options.shard);
   if (!shard) return fail(shard.error(), kUsage);
   if (options.file.empty())
     return fail("--shard needs --shard-file, where its runs are kept for `culprit study merge`",
                 kUsage);
-  const StopSignals signals;
   auto writer = study::ShardWriter<C>::open(options.file, {campaign, *shard});
   if (!writer) return fail(writer.error(), kFailed);
   if (writer->done() > 0)
@@ -77,14 +87,16 @@ int fill_shard(const C& campaign, const ShardOptions& options, unsigned jobs, Pl
   Progress progress(writer->done(), writer->size());
   work_off(
       writer->done(), writer->size(), jobs, signals, progress,
-      [&](std::uint64_t i) { return play(campaign[study::campaign_index(*shard, i)]); },
-      [&](const Run& run) {
-        const auto appended = writer->append(run);
+      [&](std::uint64_t i) {
+        return Expected<Run>(play(campaign[study::campaign_index(*shard, i)]));
+      },
+      [&](const Expected<Run>& run) {
+        const auto appended = run ? writer->append(*run) : Expected<void>(Error{run.error()});
         if (!appended) trouble = appended.error();
         return appended.has_value();
       });
   progress.end();
-  if (!trouble.empty()) return fail(trouble, kFailed);
+  if (!trouble.empty() && !signals.stopped()) return fail(trouble, kFailed);
   if (!writer->is_complete())
     return fail(fmt::format("interrupted after {} of {} runs; the same command goes on from there",
                             writer->done(), writer->size()),

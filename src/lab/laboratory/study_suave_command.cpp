@@ -202,9 +202,11 @@ int study_suave(const SuaveOptions& options) {
   if (!options.fit.empty()) return fit(*campaign, options);
   if (!options.validate.empty()) return validate(*campaign, options);
   const auto play = [&](study::RunId id) { return study::play(*campaign, id); };
-  if (options.shard.is_sharded()) return fill_shard(*campaign, options.shard, options.jobs, play);
+  const StopSignals signals;
+  if (options.shard.is_sharded())
+    return fill_shard(*campaign, options.shard, options.jobs, signals, play);
   Progress progress(0, campaign->size());
-  const auto result = run_whole(*campaign, options.jobs, progress, play);
+  const auto result = run_whole(*campaign, options.jobs, signals, progress, play);
   progress.end();
   if (!result) return kFailed;
   const auto written = write(*result, options.output);

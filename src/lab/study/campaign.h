@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plan/paper_planner.h"
@@ -17,6 +18,11 @@ enum class Probabilities : std::uint8_t {
   kIdeal,        // the true rates
   kMisspecified  // off by 20 % (the paper's robustness analysis)
 };
+
+// The profile of rows that were played on the live robot: real processes, in place of a model.
+inline constexpr std::string_view kLiveRobot = "robot";
+// The profile of the model that stands beside them.
+inline constexpr std::string_view kModelOfLiveRobot = "live";
 
 struct Configuration {
   PaperSwitches switches;

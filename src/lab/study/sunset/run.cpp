@@ -21,13 +21,20 @@ bool can_be_repaired_at(const Fault& fault, std::string_view node) {
           node == sunset::node_of(Member::kSensorFusion).full());
 }
 
-SunsetRun::Choice judge(StrategyId id, const RuleSet& rules, sunset::model::SunsetModel& model,
-                        const sunset::Scenario& scenario) {
-  const Strategy& strategy = rules[id];
+std::vector<const Fault*> present_in(sunset::model::SunsetModel& model,
+                                     const sunset::Scenario& scenario) {
   std::vector<const Fault*> present;
   for (const Fault* fault : scenario.faults) {
     if (model.has(*fault)) present.push_back(fault);
   }
+  return present;
+}
+
+}  // namespace
+
+SunsetRun::Choice judge(StrategyId id, const RuleSet& rules,
+                        std::span<const Fault* const> present) {
+  const Strategy& strategy = rules[id];
   const auto is_faulty = [&](ComponentId component) {
     return std::any_of(present.begin(), present.end(), [&](const Fault* fault) {
       return can_be_repaired_at(*fault, rules[component].node);
@@ -40,8 +47,6 @@ SunsetRun::Choice judge(StrategyId id, const RuleSet& rules, sunset::model::Suns
   return {id, std::all_of(strategy.components.begin(), strategy.components.end(), is_faulty),
           std::any_of(present.begin(), present.end(), is_ended)};
 }
-
-}  // namespace
 
 SunsetRun play(sunset::model::SunsetModel& model, const RuleSet& rules, ManagingSystem& manager,
                const sunset::Scenario& scenario) {
@@ -59,7 +64,7 @@ SunsetRun play(sunset::model::SunsetModel& model, const RuleSet& rules, Managing
     for (const Event& event : events) {
       run.events.push_back(event);
       if (const auto* chosen = std::get_if<StrategyChosen>(&event.what))
-        run.choices.push_back(judge(chosen->strategy, rules, model, scenario));
+        run.choices.push_back(judge(chosen->strategy, rules, present_in(model, scenario)));
     }
   };
   const std::atomic<bool> never = false;

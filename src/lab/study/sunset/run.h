@@ -1,6 +1,7 @@
 // One run of the SUNSET study: the model is broken by a scenario, and managed.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "exemplars/sunset/model/sunset_model.h"
@@ -30,6 +31,10 @@ struct SunsetRun {
   Duration recovery{};         // from the first fault until the robot was well for good
   bool is_recovered = false;   // otherwise `recovery` lasts until the end
 };
+
+// How good it is to choose `strategy` while these faults are there.
+SunsetRun::Choice judge(StrategyId strategy, const RuleSet& rules,
+                        std::span<const sunset::Fault* const> present);
 
 // Lets `manager`, which works by `rules`, manage `model` from the profile's start of managing to
 // the end of the run.

@@ -132,7 +132,11 @@ Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::ui
                    "oracle"};
     const auto named = parse_profile(row.profile);
     if (!named) return Error{named.error()};
-    const auto profile = sunset::model::find_profile(named->first);
+    const bool is_live = row.profile == kLiveRobot;
+    if (is_live && row.planner == "oracle")
+      return Error{"the oracle knows what only a model can tell: it plays no live robot"};
+    const auto profile =
+        sunset::model::find_profile(is_live ? std::string(kModelOfLiveRobot) : named->first);
     if (!profile) return Error{profile.error()};
     if (row.planner == "reference" &&
         (!(*profile)->has_blackboard || named->second != Detectors::kOwn))
@@ -159,21 +163,21 @@ Manager::Options SunsetStudy::manager_options(const sunset::model::Profile& prof
   return options;
 }
 
-std::unique_ptr<ManagingSystem> SunsetStudy::manager(const Setting& setting,
-                                                     std::uint64_t seed) const {
+std::unique_ptr<ManagingSystem> SunsetStudy::manager(RunId id,
+                                                     const Manager::Options& options) const {
+  const Setting& setting = settings_[id.row];
   if (setting.configuration.planner == "reference") {
-    ReferenceOptions options;
-    options.switches = setting.configuration.switches;
-    options.start = options.graph_frozen_at = Time{setting.profile->manager_start};
-    options.initial = sunset_blackboard();
+    ReferenceOptions reference;
+    reference.switches = setting.configuration.switches;
+    reference.start = reference.graph_frozen_at = options.start;
+    reference.initial = sunset_blackboard();
     // The rules are made for it.
-    return std::move(*ReferenceManager::make(*setting.rules, std::move(options)));
+    return std::move(*ReferenceManager::make(*setting.rules, std::move(reference)));
   }
-  const Manager::Options options = manager_options(*setting.profile);
   auto manager =
       std::make_unique<Manager>(*setting.rules, planner_of(setting.configuration), options);
   if (const Pace* pace = find_pace(setting.configuration.planner))
-    return std::make_unique<PacedManager>(std::move(manager), *pace, options.start, seed);
+    return std::make_unique<PacedManager>(std::move(manager), *pace, options.start, seed_of(id));
   return manager;
 }
 
@@ -189,19 +193,24 @@ std::unique_ptr<const Planner> SunsetStudy::planner_of(const Configuration& conf
   return std::make_unique<PaperPlanner>(configuration.switches);
 }
 
-SunsetRun SunsetStudy::play(RunId id) const {
-  const Setting& setting = settings_[id.row];
+const sunset::Scenario& SunsetStudy::scenario_of(RunId id) {
   static const std::vector<sunset::Scenario> kScenarios = sunset::scenarios();
-  const std::uint64_t seed = seed_of(id);
-  sunset::model::SunsetModel model(*setting.profile, seed);
-  const auto managing = manager(setting, seed);
-  return study::play(model, *setting.rules, *managing, kScenarios[id.run % kScenarios.size()]);
+  return kScenarios[id.run % kScenarios.size()];
 }
 
-RunMetrics SunsetStudy::run(RunId id) const {
+SunsetRun SunsetStudy::play(RunId id) const {
+  const Setting& setting = settings_[id.row];
+  sunset::model::SunsetModel model(*setting.profile, seed_of(id));
+  const auto managing = manager(id, manager_options(*setting.profile));
+  return study::play(model, *setting.rules, *managing, scenario_of(id));
+}
+
+RunMetrics SunsetStudy::run(RunId id) const { return measured(id, play(id)); }
+
+RunMetrics SunsetStudy::measured(RunId id, const SunsetRun& run) const {
   const Setting& setting = settings_[id.row];
   const PaperSwitches& on = setting.configuration.switches;
-  return measure(play(id), *setting.rules, on.dependencies && !on.criticality && !on.impact);
+  return measure(run, *setting.rules, on.dependencies && !on.criticality && !on.impact);
 }
 
 SingleRun SunsetStudy::single_run(RunId id) const {

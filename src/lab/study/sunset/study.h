@@ -25,15 +25,24 @@ namespace culprit::study {
 class SunsetStudy {
  public:
   // Errors: a planner or profile that does not exist, or a planner that cannot watch a profile (the
-  // reference needs a blackboard). A profile may name its detectors (detectors.h).
+  // reference needs a blackboard), or play the live robot (the oracle knows what only a model can
+  // tell). A profile may name its detectors (detectors.h).
   static Expected<SunsetStudy> make(std::vector<Configuration> rows, std::uint64_t seed);
 
-  // From several threads if you like.
+  // From several threads if you like. @pre the row is not of profile kLiveRobot
   RunMetrics run(RunId id) const;
 
   // The same run, with all that happened in it. By the rules of its row.
   SunsetRun play(RunId id) const;
   const RuleSet& rules(std::uint32_t row) const { return *settings_[row].rules; }
+
+  // What a run is made of, for who plays it elsewhere than on the model.
+  const sunset::model::Profile& profile(std::uint32_t row) const { return *settings_[row].profile; }
+  static const sunset::Scenario& scenario_of(RunId id);
+  std::uint64_t seed_of(RunId id) const;
+  std::unique_ptr<ManagingSystem> manager(RunId id, const Manager::Options& options) const;
+  // What such a run yields.
+  RunMetrics measured(RunId id, const SunsetRun& run) const;
 
   // The same run, to look at moment by moment; and told in sentences.
   SingleRun single_run(RunId id) const;
@@ -57,11 +66,9 @@ class SunsetStudy {
   SunsetStudy(std::vector<Setting> settings, std::uint64_t seed)
       : settings_(std::move(settings)), seed_(seed) {}
 
-  std::uint64_t seed_of(RunId id) const;
   static Manager::Options manager_options(const sunset::model::Profile& profile);
   // Of all but "reference".
   static std::unique_ptr<const Planner> planner_of(const Configuration& configuration);
-  std::unique_ptr<ManagingSystem> manager(const Setting& setting, std::uint64_t seed) const;
 
   std::vector<Setting> settings_;
   std::uint64_t seed_;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/core.h>
@@ -101,6 +102,19 @@ std::vector<Cell> robustness_row(const std::string& name, const Row& row) {
   return cells;
 }
 
+// What is compared between the live robot and its model.
+constexpr std::array kComparedLive = {
+    Metric::kRatio,          Metric::kReaction,           Metric::kUnnecessaryRedeployments,
+    Metric::kHonestDowntime, Metric::kStrategiesPerFault, Metric::kRecovery};
+
+// The same configuration on the model; null if that was not played, or if `row` is no live one.
+const Row* model_of(const Row& row, const CampaignResult& result) {
+  if (row.configuration.profile != kLiveRobot) return nullptr;
+  Configuration model = row.configuration;
+  model.profile = kModelOfLiveRobot;
+  return result.find(model);
+}
+
 // Their standard deviations are the population's.
 Moments published_moments(const published::MeanSd& value) {
   const double n = published::kRuns;
@@ -181,6 +195,37 @@ Table effects_table(const Ablation& ablation) {
   return table;
 }
 
+Table live_table(const CampaignResult& result) {
+  const ConfigurationColumns configuration(result.rows);
+  Table table{"live", "The live robot beside its model", configuration.columns(), {}, {}};
+  for (const Metric metric : kComparedLive) {
+    const MetricTraits& metric_traits = traits(metric);
+    for (const char* title : {"live", "model"})
+      table.columns.push_back({std::string(metric_traits.title), title,
+                               std::string(metric_traits.latex), "", Align::kRight});
+  }
+  int means = 0;
+  int alike = 0;
+  for (const Row& row : result.rows) {
+    const Row* model = model_of(row, result);
+    if (model == nullptr) continue;
+    table.rows.push_back(configuration.cells(row.configuration));
+    for (const Metric metric : kComparedLive) {
+      const auto test = welch_test(row[metric].moments(), (*model)[metric].moments());
+      const bool differs = test ? test->p < 0.05 : row[metric].mean() != (*model)[metric].mean();
+      ++means;
+      alike += differs ? 0 : 1;
+      table.rows.back().push_back({mean_sd(row[metric]) + (differs ? " ✗" : " ✓")});
+      table.rows.back().push_back({mean_sd((*model)[metric])});
+    }
+  }
+  table.notes.push_back(
+      fmt::format("✗ the means differ significantly (Welch's t at 95 %, each for itself): {} of {} "
+                  "do not. Few runs show few differences.",
+                  alike, means));
+  return table;
+}
+
 Table robustness_table(const Row& ideal, const Row& misspecified) {
   Table table{id_of("robustness", ideal.configuration.planner, ideal.configuration.profile),
               "Probabilities off by 20 %: " +
@@ -210,6 +255,9 @@ std::vector<Table> tables(const Findings& findings) {
     tables.push_back(comparison_table(ablation));
     tables.push_back(effects_table(ablation));
   }
+  if (std::any_of(result.rows.begin(), result.rows.end(),
+                  [&](const Row& row) { return model_of(row, result) != nullptr; }))
+    tables.push_back(live_table(result));
   for (const Row& row : result.rows) {
     if (row.configuration.probabilities != Probabilities::kMisspecified) continue;
     Configuration ideal = row.configuration;

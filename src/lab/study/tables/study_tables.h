@@ -25,6 +25,10 @@ Table comparison_table(const Ablation& ablation);
 // Each effect beside the paper's (tab:ablation-study-eval).
 Table effects_table(const Ablation& ablation);
 
+// Each row that was played on the live robot, beside the same on its model, and Welch's test of the
+// differences. @pre there is such a pair
+Table live_table(const CampaignResult& result);
+
 // Ideal beside misspecified probabilities, ours and the paper's (tab:robustness test), and Welch's
 // test of the difference. @pre both are of one planner and profile
 Table robustness_table(const Row& ideal, const Row& misspecified);

@@ -1,0 +1,41 @@
+// The runs of a campaign on the live robot: each in a process of its own, several at once.
+//
+// A process for each run, because a world of SUNSET takes the environment of its process, and so
+// that a run which dies or hangs takes no other with it. What it started ends with it, and it ends
+// with us, however we end. A run that fails is told and played again; the third failure ends the
+// campaign.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+
+#include "base/expected.h"
+#include "study/campaign.h"
+#include "study/run_metrics.h"
+
+namespace culprit::lab {
+
+class LiveCampaign {
+ public:
+  static constexpr int kAttempts = 3;
+
+  // Errors: no folder can be made for what the runs write.
+  static Expected<LiveCampaign> open();
+  // Removes the folder.
+  ~LiveCampaign();
+  LiveCampaign(LiveCampaign&& other) noexcept;
+
+  // From several threads. `seed` is of this run (SunsetStudy::seed_of). An error tells why it
+  // failed the last time, or that `stop` was set.
+  Expected<study::RunMetrics> play(const study::Configuration& configuration, std::uint32_t run,
+                                   std::uint64_t seed, const std::atomic<bool>& stop) const;
+
+ private:
+  explicit LiveCampaign(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  Expected<study::RunMetrics> attempt(const study::Configuration& configuration, std::uint32_t run,
+                                      std::uint64_t seed, const std::atomic<bool>& stop) const;
+
+  std::filesystem::path folder_;  // empty: moved from
+};
+
+}  // namespace culprit::lab
