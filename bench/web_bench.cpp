@@ -11,8 +11,8 @@
 #include "language/checker.h"
 #include "live.h"
 #include "plan/paper_planner.h"
+#include "web/hub_observer.h"
 #include "web/server.h"
-#include "web/watched_manager.h"
 
 namespace culprit::bench {
 namespace {
@@ -62,8 +62,9 @@ class Pages {
 class Watched {
  public:
   explicit Watched(const RuleSet& rules)
-      : manager_(rules, std::make_unique<PaperPlanner>(), {}),
-        watched_(manager_, hub_, metrics_, Time{}) {}
+      : manager_(rules, std::make_unique<PaperPlanner>(), {}), observer_(hub_, metrics_) {
+    observer_.begins(manager_, {}, Time{});
+  }
 
   web::Hub& hub() { return hub_; }
 
@@ -72,7 +73,8 @@ class Watched {
     now_ += std::chrono::milliseconds(1);
     observation_[0] = {now_, SampleArrived{TopicId(next_++ % kComponents)}};
     const auto begin = Clock::now();
-    benchmark::DoNotOptimize(watched_.step(now_, observation_));
+    const std::vector<Command> commands = manager_.step(now_, observation_);
+    observer_.stepped({now_, Clock::now() - begin, observation_, commands, manager_.events()});
     return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
   }
 
@@ -80,7 +82,7 @@ class Watched {
   Manager manager_;
   web::Hub hub_;
   web::Metrics metrics_;
-  web::WatchedManager watched_;
+  web::HubObserver observer_;
   Time now_{};
   std::vector<Observation> observation_{1};
   std::size_t next_ = 0;

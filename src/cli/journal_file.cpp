@@ -15,10 +15,6 @@ namespace culprit::cli {
 
 namespace fs = std::filesystem;
 
-fs::path default_journal(const fs::path& state_folder, const std::string& robot) {
-  return state_folder / ((robot.empty() ? "robot" : robot) + ".journal");
-}
-
 void JournalOption::add_to(CLI::App& command) {
   command.add_option("--journal", path,
                      "The journal file (default: the only one in ~/.local/state/culprit)");

@@ -11,10 +11,6 @@
 
 namespace culprit::cli {
 
-// Where `culprit run` keeps the journal of a robot unless told otherwise.
-std::filesystem::path default_journal(const std::filesystem::path& state_folder,
-                                      const std::string& robot);
-
 // The option --journal FILE. Without it the only journal of the default folder is meant.
 struct JournalOption {
   std::string path;

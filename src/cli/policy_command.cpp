@@ -10,9 +10,9 @@
 #include "base/environment.h"
 #include "base/text_file.h"
 #include "cli/commands.h"
-#include "cli/rule_file.h"
 #include "cli/unit_settings.h"
 #include "link/policy.h"
+#include "live/rule_file.h"
 #include "ros2/options.h"
 
 namespace culprit::cli {

@@ -9,7 +9,7 @@
 #include "base/environment.h"
 #include "cli/commands.h"
 #include "cli/journal_file.h"
-#include "cli/rule_file.h"
+#include "cli/load_rules.h"
 #include "manager/manager.h"
 #include "terminal/console.h"
 

@@ -1,7 +1,7 @@
 #include "cli/run_options.h"
 
 #include "base/environment.h"
-#include "cli/journal_file.h"
+#include "live/run_journal.h"
 
 namespace culprit::cli {
 
@@ -14,15 +14,30 @@ std::filesystem::path RunOptions::journal_path(const RuleSet& rule_set) const {
                          : std::filesystem::path(journal);
 }
 
-Expected<LiveRobot::Options> RunOptions::robot() const {
-  auto participant = ros2::options_from_environment();
+Expected<LiveSession::Options> RunOptions::session(const RuleSet& rule_set) const {
+  const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
-  LiveRobot::Options out;
-  out.link.participant = *participant;
-  out.link.message_path = ros2::message_directories(message_path, environment("AMENT_PREFIX_PATH"));
-  out.link.parameters = {
+  const auto limits = governor.options();
+  if (!limits) return Error{limits.error()};
+  LiveSession::Options out;
+  out.version = version;
+  out.rules_file = rules;
+  out.robot.link.participant = *participant;
+  out.robot.link.message_path =
+      ros2::message_directories(message_path, environment("AMENT_PREFIX_PATH"));
+  out.robot.link.parameters = {
       {"rules", Value(rules)}, {"planner", Value(planner.name)}, {"dry_run", Value(dry_run)}};
-  out.supervisor = {state_path() / "log", {own_folder()}};
+  out.robot.supervisor = {state_path() / "log", {own_folder()}};
+  out.planner = planner.factory();
+  out.governor = *limits;
+  out.planner_record = planner.to_json();
+  out.governor_record = governor.to_json();
+  out.forgetting = forgetting;
+  out.settling = from_seconds(settle_seconds);
+  out.launches = launch;
+  out.message_path = message_path;
+  out.journal = journal_path(rule_set);
+  if (no_journal) out.no_journal = "of --no-journal";
   return out;
 }
 

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "cli/governor_options.h"
-#include "live/live_robot.h"
-#include "manager/manager.h"
+#include "live/live_session.h"
 #include "terminal/planner_options.h"
 #include "terminal/web_service.h"
 
@@ -36,8 +35,8 @@ struct RunOptions {
 
   std::filesystem::path state_path() const;
   std::filesystem::path journal_path(const RuleSet& rules) const;
-  // Errors: the environment names no DDS domain.
-  Expected<LiveRobot::Options> robot() const;
+  // Errors: the environment names no DDS domain, or the governor's options are wrong.
+  Expected<LiveSession::Options> session(const RuleSet& rules) const;
 };
 
 }  // namespace culprit::cli

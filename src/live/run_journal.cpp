@@ -103,6 +103,11 @@ bool is_locked(const std::filesystem::path& journal) {
 
 }  // namespace
 
+std::filesystem::path default_journal(const std::filesystem::path& state_folder,
+                                      const std::string& robot) {
+  return state_folder / ((robot.empty() ? "robot" : robot) + ".journal");
+}
+
 RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rules,
                            const journal::Moment& now) {
   RunBeginning beginning;

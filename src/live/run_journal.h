@@ -8,6 +8,10 @@
 
 namespace culprit {
 
+// Where the journal of a robot is unless it is said otherwise.
+std::filesystem::path default_journal(const std::filesystem::path& state_folder,
+                                      const std::string& robot);
+
 // What is known when a run begins.
 struct RunBeginning {
   std::optional<journal::Writer> writer;  // nothing: it cannot be written now

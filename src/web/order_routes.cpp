@@ -128,7 +128,7 @@ Answer OrderDesk::take(const Json& body) {
   if (!order) return refuse(400, order.error());
   const std::uint64_t number = ++last_;
   if (standing_of(*order) != Standing::kNot) {
-    const Keep keep_it = keeping_(*order, rules);
+    const KeepOrder keep_it = keeping_(*order, rules);
     lock.unlock();
     return keep(keep_it, body, number);
   }
@@ -139,7 +139,7 @@ Answer OrderDesk::take(const Json& body) {
 
 // Without the lock, for a disk may take its time, and nothing may delay a pause. So the rules may
 // have been replaced before the order is given: it is read anew.
-Answer OrderDesk::keep(const Keep& keep, const Json& body, std::uint64_t number) {
+Answer OrderDesk::keep(const KeepOrder& keep, const Json& body, std::uint64_t number) {
   const Kept kept = keep([&] {
     const std::lock_guard lock(mutex_);
     auto order = read_order(body, rules_ == nullptr ? no_rules() : *rules_, number);
@@ -152,15 +152,6 @@ Answer OrderDesk::keep(const Keep& keep, const Json& body, std::uint64_t number)
           {{"number", number},
            {"kept", kept.is_kept},
            {"text", kept.is_kept ? "kept" : "in force, not kept: " + kept.why_not}}};
-}
-
-OrderDesk::Keeping keeps_nothing(std::string why) {
-  return [why = std::move(why)](const Order&, const RuleSet&) -> OrderDesk::Keep {
-    return [why](const std::function<void()>& submit) -> Kept {
-      submit();
-      return {false, true, why};
-    };
-  };
 }
 
 std::vector<Route> order_routes(OrderDesk& desk) {

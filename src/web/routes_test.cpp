@@ -85,7 +85,8 @@ struct Routes : testing::Test {
   Metrics metrics;
   RuleDesk desk{path};
   const RuleSet rules = *check(Source("test", kRules)).rules;
-  OrderDesk order_desk{keeps_nothing("this is a test")};
+  OrderKeeper keeper{"this is a test"};
+  OrderDesk order_desk{keeper.keeping()};
   bool is_file_wrong = false;
   std::string reloaded_by;
   std::optional<Studies::Campaign> started;
@@ -220,7 +221,7 @@ TEST_F(Routes, SayWhetherAnOrderIsKept) {
   EXPECT_EQ(answer.status, 202);
   EXPECT_EQ(answer.body["kept"], false);
   EXPECT_EQ(answer.body["text"], "in force, not kept: this is a test");
-  OrderDesk strict([](const Order&, const RuleSet&) -> OrderDesk::Keep {
+  OrderDesk strict([](const Order&, const RuleSet&) -> KeepOrder {
     return [](const std::function<void()>&) -> Kept { return {false, false, "the disk is full"}; };
   });
   strict.open(rules, [this](Order order) { orders.push_back(std::move(order)); });

@@ -8,8 +8,9 @@ void Runtime::run(const std::atomic<bool>& stop, Time end) {
   std::vector<Observation> observations;
   while (!stop && robot_.now() < end) {
     observations.clear();
-    const Time due = std::max(stepped_, manager_.next_deadline());
-    robot_.observe(std::min(end, manager_.next_deadline()), observations);
+    const Time next = next_deadline();
+    const Time due = std::max(stepped_, next);
+    robot_.observe(std::min(end, next), observations);
     const Time now = robot_.now();
     if (now > later(due, kLate) && stepped_ != kLongAgo)
       observations.insert(observations.begin(), {now, Overslept{now - due}});
@@ -21,9 +22,14 @@ void Runtime::run(const std::atomic<bool>& stop, Time end) {
 void Runtime::step(std::vector<Observation>& observations) {
   const Time now = stepped_ = robot_.now();
   const std::vector<Command> commands = manager_.step(now, observations);
-  if (on_step) on_step({now, observations, commands, manager_.events()});
+  if (on_step) on_step({now, robot_.now() - now, observations, commands, manager_.events()});
   for (const Command& command : commands) robot_.execute(command);
   if (!manager_.events().empty() && on_events) on_events(manager_.events());
+}
+
+Time Runtime::next_deadline() const {
+  const Time own = manager_.next_deadline();
+  return next_look ? std::min(own, next_look()) : own;
 }
 
 void Runtime::submit(Order order) {

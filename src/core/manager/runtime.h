@@ -28,11 +28,16 @@ class Runtime {
   // observations.
   struct Step {
     Time now;
+    Duration took;  // by the robot's clock
     std::vector<Observation>& observations;
     std::span<const Command> commands;
     std::span<const Event> events;
   };
   std::function<void(const Step&)> on_step;
+
+  // When a step is wanted though the manager has no reason for one; nothing: never. Called on the
+  // thread of run().
+  std::function<Time()> next_look;
 
   // Called after every step in which something happened, on the thread of run(). It must not block.
   std::function<void(std::span<const Event>)> on_events;
@@ -49,6 +54,7 @@ class Runtime {
   void submit(Order order);
 
  private:
+  Time next_deadline() const;
   void take_orders(std::vector<Observation>& observations);
 
   ManagingSystem& manager_;

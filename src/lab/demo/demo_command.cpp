@@ -19,6 +19,7 @@
 #include "terminal/planner_options.h"
 #include "terminal/web_service.h"
 #include "web/fault_routes.h"
+#include "web/hub_observer.h"
 #include "web/live_routes.h"
 #include "web/name_routes.h"
 #include "web/order_routes.h"
@@ -137,13 +138,13 @@ web::Faults faults_of(SunsetDemo& demo) {
   return faults;
 }
 
-std::vector<web::Route> web_routes(SunsetDemo& demo, web::OrderDesk& orders, web::RuleDesk& desk,
+std::vector<web::Route> web_routes(SunsetDemo& demo, web::Hub& hub, const web::Metrics& metrics,
+                                   web::OrderDesk& orders, web::RuleDesk& desk,
                                    web::StudyRunner& studies, RobotNames& names,
                                    PlannerFactory planner) {
-  std::vector<web::Route> routes = web::live_routes(demo.hub());
+  std::vector<web::Route> routes = web::live_routes(hub);
   for (web::Route& route : web::order_routes(orders)) routes.push_back(std::move(route));
-  for (web::Route& route : web::status_routes(demo.hub(), demo.metrics()))
-    routes.push_back(std::move(route));
+  for (web::Route& route : web::status_routes(hub, metrics)) routes.push_back(std::move(route));
   for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
   for (web::Route& route :
        web::name_routes([&names](const LiveInterest& interest) { return names.look(interest); }))
@@ -164,6 +165,10 @@ int demo_sunset(const DemoOptions& options) {
   StopSignals signals;
   const Colour colour = colour_of(STDOUT_FILENO);
   say(stdout, "Starting SUNSET: camera, depth, image_enhancement, sensor_fusion, segmentation\n");
+  SunsetDemo* running = nullptr;
+  web::Hub hub([&] { running->interrupt(); });
+  web::Metrics metrics;
+  web::HubObserver observer(hub, metrics);
   SunsetDemo::Options setup;
   setup.speed = options.speed;
   setup.seed = options.seed;
@@ -173,20 +178,23 @@ int demo_sunset(const DemoOptions& options) {
     const std::string text = line(event, rules, start, colour);
     if (!text.empty()) say(stdout, "{}\n", text);
   };
+  setup.observer = &observer;
   auto demo = SunsetDemo::start(std::move(setup), signals.stopped());
   if (!demo) {
     say(stderr, "culprit: {}\n", demo.error());
     return kFailed;
   }
+  running = demo->get();
   say_domain("SUNSET", (*demo)->domain());
   web::RuleDesk desk("sunset.rules", SunsetDemo::rule_text());
-  web::OrderDesk orders(web::keeps_nothing("a demonstration forgets all when it ends"));
+  web::OrderDesk orders((*demo)->keeper().keeping());
   RobotNames names;
   web::StudyRunner studies(default_state_folder() / "studies");
   orders.open((*demo)->rules(), [&](Order order) { (*demo)->submit(std::move(order)); });
   const auto server = serve(
-      options.web, web_routes(**demo, orders, desk, studies, names, options.planner.factory()),
-      &(*demo)->hub());
+      options.web,
+      web_routes(**demo, hub, metrics, orders, desk, studies, names, options.planner.factory()),
+      &hub);
   if (!server) {
     say(stderr, "culprit: {}\n", server.error());
     return kUsage;

@@ -12,6 +12,23 @@ RuleSet embedded_rules(const char* name, const char* text) {
   return *check(Source(name, text)).rules;
 }
 
+LoadedRules embedded_file(const char* name, const char* text) {
+  return {embedded_rules(name, text), text, ""};
+}
+
+LiveSession::Options demo_session(const char* rules_file, LiveRobot::Options robot,
+                                  PlannerFactory planner, const std::filesystem::path& state) {
+  LiveSession::Options options;
+  options.rules_file = rules_file;
+  options.robot = std::move(robot);
+  options.planner = std::move(planner);
+  options.settling = std::chrono::seconds(20);  // the nodes are only just being started
+  options.has_preflight = false;
+  options.journal = state / "journal";
+  options.no_journal = kForgets;
+  return options;
+}
+
 Expected<std::filesystem::path> make_state_folder() {
   std::string path = (std::filesystem::temp_directory_path() / "culprit-demo-XXXXXX").string();
   if (mkdtemp(path.data()) == nullptr)

@@ -26,10 +26,15 @@ std::string processes_with(const std::filesystem::path& modes) {
   return text + fmt::format("COMPONENT mode_manager LAUNCH \"culprit modes {}\"\n", modes.string());
 }
 
+const char* rule_text(bool is_extended) { return is_extended ? kSuaveExtendedRules : kSuaveRules; }
+
+const char* rule_file(bool is_extended) {
+  return is_extended ? "suave-extended.rules" : "suave.rules";
+}
+
 // What the rules can start are the exemplar's nodes; here these are our own.
 RuleSet rules_of(bool is_extended, const std::filesystem::path& modes) {
-  RuleSet rules = is_extended ? embedded_rules("suave-extended.rules", kSuaveExtendedRules)
-                              : embedded_rules("suave.rules", kSuaveRules);
+  RuleSet rules = embedded_rules(rule_file(is_extended), rule_text(is_extended));
   for (Component& component : rules.components) {
     if (component.launch.empty()) continue;
     const std::string function = component.name.substr(0, component.name.find("_node"));
@@ -60,17 +65,16 @@ SuaveDemo::SuaveDemo(Options options, const std::atomic<bool>& stop, ros2::Domai
       domain_(std::move(domain)),
       state_(std::move(state)),
       rules_(rules_of(options_.is_extended, state_ / kModesFile)),
-      start_(live_now()),
+      keeper_(kForgets),
       episode_(rules_) {}
 
 SuaveDemo::~SuaveDemo() {
-  is_ending_ = true;
-  if (robot_) robot_->interrupt();
-  if (runtime_.joinable()) runtime_.join();
+  if (session_) session_->leave();
+  if (thread_.joinable()) thread_.join();
   observer_.reset();
   if (supervisor_) supervisor_->stop_all();
-  if (robot_) robot_->supervisor().stop_all();  // what was started anew
-  robot_.reset();
+  if (session_) session_->supervisor().stop_all();  // what was started anew
+  session_.reset();
   supervisor_.reset();
   std::error_code error;
   if (!keeps_state_) std::filesystem::remove_all(state_, error);
@@ -87,28 +91,27 @@ Expected<void> SuaveDemo::open() {
   setenv("SUAVE_SEED", std::to_string(options_.seed).c_str(), 1);
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
+  LiveRobot::Options robot;
+  robot.link.participant = *participant;
+  robot.supervisor = demo_processes(state_);
+  how_ = demo_session(rule_file(options_.is_extended), std::move(robot), options_.planner, state_);
 
   // Who watches is there before the mission can begin.
   auto observer = suave::MissionObserver::start(options_.speed, *participant);
   if (!observer) return Error{observer.error()};
   observer_ = std::move(*observer);
-  LiveRobot::Options robot;
-  robot.link.participant = *participant;
-  robot.supervisor = demo_processes(state_);
-  auto opened = LiveRobot::open(rules_, std::move(robot));
+  auto opened = LiveSession::open({.options = how_,
+                                   .records = false,
+                                   .lease = {},
+                                   .orders = keeper_,
+                                   .listener = *this,
+                                   .start = live_now()},
+                                  {rules_, rule_text(options_.is_extended), ""});
   if (!opened) return Error{opened.error()};
-  robot_ = std::move(*opened);
+  session_ = std::move(*opened);
   if (auto started = start_processes(); !started) return started;
-
-  Manager::Options manager;
-  manager.start = live_now();
-  manager.settling = 20s;  // the nodes are only just being started
-  manager_ = std::make_unique<Manager>(rules_, options_.planner(), manager);
-  runtime_ = std::thread([this] {
-    Runtime runtime(*manager_, *robot_);
-    runtime.on_events = [this](std::span<const Event> events) { on_events(events); };
-    runtime.run(is_ending_);
-  });
+  session_->begin(stop_);
+  thread_ = std::thread([this] { session_->run(kNever); });
   return {};
 }
 
@@ -122,12 +125,10 @@ Expected<void> SuaveDemo::start_processes() {
   return {};
 }
 
-void SuaveDemo::on_events(std::span<const Event> events) {
+void SuaveDemo::on_event(const Event& event, const RuleSet& rules, Time start) {
   const std::lock_guard lock(mutex_);
-  for (const Event& event : events) {
-    episode_.add(event);
-    if (options_.on_event) options_.on_event(event, rules_, start_);
-  }
+  episode_.add(event);
+  if (options_.on_event) options_.on_event(event, rules, start);
 }
 
 Expected<MissionOutcome> SuaveDemo::fly() {

@@ -18,9 +18,7 @@
 
 #include "demo/episode.h"
 #include "exemplars/suave/mission_observer.h"
-#include "live/live_robot.h"
-#include "manager/manager.h"
-#include "manager/runtime.h"
+#include "live/live_session.h"
 #include "plan/paper_planner.h"
 #include "ros2/domain_lock.h"
 
@@ -34,7 +32,7 @@ struct MissionOutcome {
   std::size_t unresolved = 0;
 };
 
-class SuaveDemo {
+class SuaveDemo : private Listener {
  public:
   struct Options {
     bool is_extended = false;
@@ -50,7 +48,7 @@ class SuaveDemo {
   // before there are threads that read it. Errors: a program is missing.
   static Expected<std::unique_ptr<SuaveDemo>> start(Options options, const std::atomic<bool>& stop);
   // Ends every process and removes the state folder, unless keep_state() was called.
-  ~SuaveDemo();
+  ~SuaveDemo() override;
 
   // Waits until the mission is over. An error: it does not begin, does not end, or `stop` was set.
   Expected<MissionOutcome> fly();
@@ -63,28 +61,27 @@ class SuaveDemo {
             std::filesystem::path state);
   Expected<void> open();
   Expected<void> start_processes();
-  void on_events(std::span<const Event> events);
+  void on_event(const Event& event, const RuleSet& rules, Time start) override;
 
   Options options_;
   const std::atomic<bool>& stop_;
   ros2::DomainLock domain_;
   const std::filesystem::path state_;
   bool keeps_state_ = false;
-  const RuleSet rules_;
+  const RuleSet rules_;  // as they are managed by
 
   RuleSet processes_;  // as components of their own: what is managed are their nodes
   Inbox processes_inbox_;
   std::unique_ptr<owners::Supervisor> supervisor_;
-  std::unique_ptr<LiveRobot> robot_;
   std::unique_ptr<suave::MissionObserver> observer_;
-  std::unique_ptr<Manager> manager_;
-  Time start_;
+  OrderKeeper keeper_;
+  LiveSession::Options how_;
+  std::unique_ptr<LiveSession> session_;  // null: the robot was not joined
 
   std::mutex mutex_;  // guards what follows
   Episode episode_;
 
-  std::atomic<bool> is_ending_ = false;
-  std::thread runtime_;
+  std::thread thread_;  // runs the session
 };
 
 }  // namespace culprit::lab

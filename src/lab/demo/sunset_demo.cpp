@@ -20,44 +20,48 @@ Expected<std::unique_ptr<SunsetDemo>> SunsetDemo::start(Options options,
 }
 
 SunsetDemo::SunsetDemo(Options options, const std::atomic<bool>& stop)
-    : options_(std::move(options)),
-      stop_(stop),
-      rules_(embedded_rules("sunset.rules", kSunsetRules)),
-      start_(live_now()) {}
+    : options_(std::move(options)), stop_(stop), keeper_(kForgets) {}
 
 SunsetDemo::~SunsetDemo() {
-  is_ending_ = true;
-  if (world_) world_->robot().interrupt();
+  if (session_) session_->leave();
   if (thread_.joinable()) thread_.join();
+  if (world_) world_->end();
 }
 
 const char* SunsetDemo::rule_text() { return kSunsetRules; }
 
 Expected<void> SunsetDemo::open() {
-  auto world = SunsetWorld::start({options_.speed, options_.seed, options_.domain}, rules_);
+  auto world = SunsetWorld::make({options_.speed, options_.seed, options_.domain});
   if (!world) return Error{world.error()};
   world_ = std::move(*world);
-  Manager::Options manager;
-  manager.start = live_now();
-  manager.settling = SunsetWorld::kStarting;
-  manager_ = std::make_unique<Manager>(rules_, options_.planner(), manager);
-  watched_ = std::make_unique<web::WatchedManager>(*manager_, hub_, metrics_, start_);
-  runtime_ = std::make_unique<Runtime>(*watched_, world_->robot());
-  runtime_->on_events = [this](std::span<const Event> events) { on_events(events); };
-  thread_ = std::thread([this] { runtime_->run(is_ending_); });
+  auto robot = world_->robot();
+  if (!robot) return Error{robot.error()};
+  how_ = demo_session("sunset.rules", std::move(*robot), options_.planner, world_->state());
+  how_.settling = SunsetWorld::kStarting;
+  auto opened = LiveSession::open({.options = how_,
+                                   .records = false,
+                                   .lease = {},
+                                   .orders = keeper_,
+                                   .listener = *this,
+                                   .observer = options_.observer,
+                                   .start = live_now()},
+                                  embedded_file("sunset.rules", kSunsetRules));
+  if (!opened) return Error{opened.error()};
+  session_ = std::move(*opened);
+  if (auto begun = world_->begin(session_->supervisor(), rules()); !begun) return begun;
+  session_->begin(stop_);
+  thread_ = std::thread([this] { session_->run(kNever); });
   if (wait_until_well(SunsetWorld::kPatience)) return {};
   if (stop_) return Error{"interrupted"};
   return Error{"the robot does not come up: " + world_->experiment().measure().complaint +
                "; its logs are in " + (keep_state() / "log").string()};
 }
 
-void SunsetDemo::on_events(std::span<const Event> events) {
+void SunsetDemo::on_event(const Event& event, const RuleSet& rules, Time start) {
   const std::lock_guard lock(mutex_);
-  for (const Event& event : events) {
-    last_event_ = event.at;
-    if (episode_) episode_->add(event);
-    if (options_.on_event) options_.on_event(event, rules_, start_);
-  }
+  last_event_ = event.at;
+  if (episode_) episode_->add(event);
+  if (options_.on_event) options_.on_event(event, rules, start);
 }
 
 bool SunsetDemo::wait_until_well(Duration patience) {
@@ -96,7 +100,7 @@ Expected<void> SunsetDemo::inject(const std::string& fault) {
 Expected<PlayOutcome> SunsetDemo::play(const Play& play) {
   {
     const std::lock_guard lock(mutex_);
-    episode_.emplace(rules_);
+    episode_.emplace(rules());
   }
   world_->experiment().restart_measuring();
   if (auto injected = inject(play); !injected) return Error{"cannot inject " + injected.error()};

@@ -14,10 +14,8 @@
 #include "demo/episode.h"
 #include "demo/play.h"
 #include "demo/sunset_world.h"
-#include "manager/manager.h"
-#include "manager/runtime.h"
+#include "live/live_session.h"
 #include "plan/bayes/bayes_planner.h"
-#include "web/watched_manager.h"
 
 namespace culprit::lab {
 
@@ -37,7 +35,7 @@ struct PlayOutcome {
   bool is_resolved() const { return unresolved == 0 && complaint.empty(); }
 };
 
-class SunsetDemo {
+class SunsetDemo : private Listener {
  public:
   struct Options {
     double speed = 1;  // robot seconds in a second
@@ -46,7 +44,9 @@ class SunsetDemo {
     PlannerFactory planner = [] { return std::make_unique<BayesPlanner>(); };
     // Called for each event of the manager, on its thread, with its time since the start of the
     // demo.
-    std::function<void(const Event&, const RuleSet&, Time start)> on_event;
+    std::function<void(const Event&, const RuleSet&, Time start)> on_event{};
+    // Looks on, and outlives the demo; null: nobody does.
+    Observer* observer = nullptr;
   };
 
   // Starts the seven processes and the manager and waits until the robot is well. Sets
@@ -55,7 +55,7 @@ class SunsetDemo {
   static Expected<std::unique_ptr<SunsetDemo>> start(Options options,
                                                      const std::atomic<bool>& stop);
   // Ends every process and removes the state folder, unless keep_state() was called.
-  ~SunsetDemo();
+  ~SunsetDemo() override;
 
   // Breaks the robot, waits until it is well again or kPatience is over, and then removes what is
   // left of the faults. An error: a fault could not be injected, the robot cannot be made well
@@ -69,21 +69,22 @@ class SunsetDemo {
   Expected<void> clear_faults() { return world_->experiment().clear(); }
 
   const std::filesystem::path& keep_state() { return world_->keep_state(); }
-  const RuleSet& rules() const { return rules_; }
+  const RuleSet& rules() const { return session_->rules(); }
   // The file that they are of.
   static const char* rule_text();
   std::uint32_t domain() const { return world_->domain(); }
-  web::Hub& hub() { return hub_; }
-  const web::Metrics& metrics() const { return metrics_; }
-  // Gives the manager an order. From any thread.
-  void submit(Order order) { runtime_->submit(std::move(order)); }
+  // Keeps nothing, and says so.
+  OrderKeeper& keeper() { return keeper_; }
+  // Gives the manager an order, or has it look round. From any thread.
+  void submit(Order order) { session_->submit(std::move(order)); }
+  void interrupt() { session_->interrupt(); }
 
  private:
   static constexpr Duration kPatience = std::chrono::seconds(90);
 
   SunsetDemo(Options options, const std::atomic<bool>& stop);
   Expected<void> open();
-  void on_events(std::span<const Event> events);
+  void on_event(const Event& event, const RuleSet& rules, Time start) override;
   Expected<void> inject(const Play& play);
   // Waits until the robot is well and no failure is open for a while. Gives whether that came to
   // be.
@@ -92,21 +93,16 @@ class SunsetDemo {
 
   Options options_;
   const std::atomic<bool>& stop_;
-  const RuleSet rules_;
   std::unique_ptr<SunsetWorld> world_;
-  std::unique_ptr<Manager> manager_;
-  web::Hub hub_{[this] { world_->robot().interrupt(); }};
-  web::Metrics metrics_;
-  std::unique_ptr<web::WatchedManager> watched_;
-  std::unique_ptr<Runtime> runtime_;
-  Time start_;
+  OrderKeeper keeper_;
+  LiveSession::Options how_;
+  std::unique_ptr<LiveSession> session_;  // null: the robot was not joined
 
   std::mutex mutex_;  // guards what follows
   std::optional<Episode> episode_;
-  Time last_event_;
+  Time last_event_ = kLongAgo;
 
-  std::atomic<bool> is_ending_ = false;
-  std::thread thread_;  // runs the runtime
+  std::thread thread_;  // runs the session
 };
 
 }  // namespace culprit::lab

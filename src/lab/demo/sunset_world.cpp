@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 #include <system_error>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -17,26 +18,28 @@ COMPONENT evaluator LAUNCH "sunset-node evaluator"
 
 }  // namespace
 
-Expected<std::unique_ptr<SunsetWorld>> SunsetWorld::start(const Options& options,
-                                                          const RuleSet& rules) {
+Expected<std::unique_ptr<SunsetWorld>> SunsetWorld::make(const Options& options) {
   auto domain = make_own_domain(options.domain);
   if (!domain) return Error{domain.error()};
-  std::unique_ptr<SunsetWorld> world(new SunsetWorld(std::move(*domain)));
-  if (auto opened = world->open(options, rules); !opened) return Error{opened.error()};
-  return world;
+  auto state = make_state_folder();
+  if (!state) return Error{state.error()};
+  setenv("SUNSET_SPEED", fmt::format("{}", options.speed).c_str(), 1);
+  setenv("SUNSET_SEED", std::to_string(options.seed).c_str(), 1);
+  setenv("SUNSET_STATE", state->c_str(), 1);
+  return std::unique_ptr<SunsetWorld>(
+      new SunsetWorld(std::move(*domain), options.speed, std::move(*state)));
 }
 
-SunsetWorld::SunsetWorld(ros2::DomainLock domain)
-    : domain_(std::move(domain)), extras_rules_(embedded_rules("extras.rules", kExtras)) {}
+SunsetWorld::SunsetWorld(ros2::DomainLock domain, double speed, std::filesystem::path state)
+    : domain_(std::move(domain)),
+      speed_(speed),
+      state_(std::move(state)),
+      extras_rules_(embedded_rules("extras.rules", kExtras)) {}
 
 SunsetWorld::~SunsetWorld() {
-  experiment_.reset();
-  if (robot_) robot_->supervisor().stop_all();
-  if (extras_) extras_->stop_all();
-  robot_.reset();
-  extras_.reset();
+  end();
   std::error_code error;
-  if (!keeps_state_ && !state_.empty()) std::filesystem::remove_all(state_, error);
+  if (!keeps_state_) std::filesystem::remove_all(state_, error);
 }
 
 const std::filesystem::path& SunsetWorld::keep_state() {
@@ -44,31 +47,33 @@ const std::filesystem::path& SunsetWorld::keep_state() {
   return state_;
 }
 
-Expected<void> SunsetWorld::open(const Options& options, const RuleSet& rules) {
-  auto state = make_state_folder();
-  if (!state) return Error{state.error()};
-  state_ = *state;
-  setenv("SUNSET_SPEED", fmt::format("{}", options.speed).c_str(), 1);
-  setenv("SUNSET_SEED", std::to_string(options.seed).c_str(), 1);
-  setenv("SUNSET_STATE", state_.c_str(), 1);
+Expected<LiveRobot::Options> SunsetWorld::robot() const {
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
+  LiveRobot::Options options;
+  options.link.participant = *participant;
+  options.supervisor = demo_processes(state_);
+  return options;
+}
 
-  const owners::Supervisor::Options processes = demo_processes(state_);
-  LiveRobot::Options robot;
-  robot.link.participant = *participant;
-  robot.supervisor = processes;
-  auto opened = LiveRobot::open(rules, std::move(robot));
-  if (!opened) return Error{opened.error()};
-  robot_ = std::move(*opened);
-  extras_ = std::make_unique<owners::Supervisor>(extras_rules_, processes, extras_inbox_);
+Expected<void> SunsetWorld::begin(owners::Supervisor& robot, const RuleSet& rules) {
+  const auto participant = ros2::options_from_environment();
+  if (!participant) return Error{participant.error()};
+  extras_ =
+      std::make_unique<owners::Supervisor>(extras_rules_, demo_processes(state_), extras_inbox_);
   start_all(*extras_, extras_rules_);
-  start_all(robot_->supervisor(), rules);
-
-  auto experiment = sunset::Experiment::start({options.speed, state_, *participant});
+  robot_ = &robot;
+  start_all(robot, rules);
+  auto experiment = sunset::Experiment::start({speed_, state_, *participant});
   if (!experiment) return Error{experiment.error()};
   experiment_ = std::move(*experiment);
   return {};
+}
+
+void SunsetWorld::end() {
+  experiment_.reset();
+  if (robot_ != nullptr) std::exchange(robot_, nullptr)->stop_all();
+  if (extras_) extras_->stop_all();
 }
 
 }  // namespace culprit::lab

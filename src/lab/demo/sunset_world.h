@@ -27,26 +27,32 @@ class SunsetWorld {
     std::optional<std::uint32_t> domain{};  // nothing: one that is free
   };
 
-  // Starts the seven processes; `rules` must outlive the world. Sets ROS_DOMAIN_ID,
-  // ROS_LOCALHOST_ONLY and what the nodes read of this process, so there is one world in a process,
-  // and it comes before there are threads that read the environment. Errors: there is no domain
-  // left, or no folder can be made.
-  static Expected<std::unique_ptr<SunsetWorld>> start(const Options& options, const RuleSet& rules);
-  // Ends every process and removes the state folder, unless keep_state() was called. Whoever drives
-  // the robot has ended before.
+  // Makes its domain and its folder. Sets ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY and what the nodes read
+  // of this process, so there is one world in a process, and it comes before there are threads that
+  // read the environment. Errors: there is no domain left, or no folder can be made.
+  static Expected<std::unique_ptr<SunsetWorld>> make(const Options& options);
+  // Starts the seven processes. Those of the robot are the components of `rules` and belong to
+  // `robot`, which must live until end(). Errors: the domain cannot be joined.
+  Expected<void> begin(owners::Supervisor& robot, const RuleSet& rules);
+  // Ends every process. Whoever drives the robot has ended before.
+  void end();
+  // Likewise, and removes the state folder, unless keep_state() was called.
   ~SunsetWorld();
 
-  LiveRobot& robot() { return *robot_; }
+  // How the robot is joined. Errors: the environment is wrong.
+  Expected<LiveRobot::Options> robot() const;
+  // @pre begin() succeeded
   sunset::Experiment& experiment() { return *experiment_; }
   std::uint32_t domain() const { return domain_.domain(); }
+  const std::filesystem::path& state() const { return state_; }
   const std::filesystem::path& keep_state();
 
  private:
-  explicit SunsetWorld(ros2::DomainLock domain);
-  Expected<void> open(const Options& options, const RuleSet& rules);
+  SunsetWorld(ros2::DomainLock domain, double speed, std::filesystem::path state);
 
   ros2::DomainLock domain_;
-  std::filesystem::path state_;
+  const double speed_;
+  const std::filesystem::path state_;
   bool keeps_state_ = false;
 
   // The bag player and the evaluator: processes that nobody manages.
@@ -54,7 +60,7 @@ class SunsetWorld {
   Inbox extras_inbox_;
   std::unique_ptr<owners::Supervisor> extras_;
 
-  std::unique_ptr<LiveRobot> robot_;
+  owners::Supervisor* robot_ = nullptr;  // null: nothing was started
   std::unique_ptr<sunset::Experiment> experiment_;
 };
 

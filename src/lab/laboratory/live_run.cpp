@@ -23,7 +23,10 @@ class LiveRun {
  public:
   LiveRun(const study::SunsetStudy& study, study::RunId id, const std::atomic<bool>& stop)
       : study_(study), id_(id), stop_(stop), rules_(study.rules(id.row)), episode_(rules_) {}
-  ~LiveRun() { end_managing(); }
+  ~LiveRun() {
+    end_managing();
+    if (world_) world_->end();
+  }
 
   Expected<study::RunMetrics> play() {
     if (auto begun = begin(); !begun) return Error{begun.error()};
@@ -54,6 +57,7 @@ class LiveRun {
   const std::atomic<bool>& stop_;
   const RuleSet& rules_;
   std::unique_ptr<SunsetWorld> world_;
+  std::unique_ptr<LiveRobot> robot_;
   std::unique_ptr<ManagingSystem> manager_;
   std::unique_ptr<Runtime> runtime_;
   Time last_unwell_ = kLongAgo;
@@ -72,14 +76,20 @@ class LiveRun {
 Expected<void> LiveRun::begin() {
   SunsetWorld::Options options;
   options.seed = study_.seed_of(id_);
-  auto world = SunsetWorld::start(options, rules_);
+  auto world = SunsetWorld::make(options);
   if (!world) return Error{world.error()};
   world_ = std::move(*world);
+  auto how = world_->robot();
+  if (!how) return Error{how.error()};
+  auto robot = LiveRobot::open(rules_, std::move(*how));
+  if (!robot) return Error{robot.error()};
+  robot_ = std::move(*robot);
+  if (auto begun = world_->begin(robot_->supervisor(), rules_); !begun) return begun;
   Manager::Options manager;
   manager.start = live_now();
   manager.settling = SunsetWorld::kStarting;
   manager_ = study_.manager(id_, manager);
-  runtime_ = std::make_unique<Runtime>(*manager_, world_->robot());
+  runtime_ = std::make_unique<Runtime>(*manager_, *robot_);
   runtime_->on_events = [this](std::span<const Event> events) { on_events(events); };
   thread_ = std::thread([this] { runtime_->run(is_ending_); });
   for (const Time end = live_now() + SunsetWorld::kPatience; live_now() < end && !stop_;) {
@@ -147,7 +157,7 @@ void LiveRun::measure() {
 
 void LiveRun::end_managing() {
   is_ending_ = true;
-  if (world_) world_->robot().interrupt();
+  if (robot_) robot_->interrupt();
   if (thread_.joinable()) thread_.join();
 }
 

@@ -1,13 +1,11 @@
-#include "cli/rule_file.h"
-
-#include <unistd.h>
+#include "live/rule_file.h"
 
 #include <fmt/core.h>
 
 #include "language/improvise.h"
-#include "terminal/console.h"
+#include "live/rule_trust.h"
 
-namespace culprit::cli {
+namespace culprit {
 
 Expected<LoadedRules> read_rules(const std::string& path, Strictness strictness, Colour colour) {
   const auto source = Source::read(path);
@@ -33,14 +31,11 @@ Expected<LoadedRules> improvised(LoadedRules loaded, const std::string& path) {
   return LoadedRules{std::move(*checked.rules), loaded.text + more, std::move(loaded.remarks)};
 }
 
-std::unique_ptr<const RuleSet> load_rules(const std::string& path, Strictness strictness) {
-  auto loaded = read_rules(path, strictness, colour_of(STDERR_FILENO));
-  if (!loaded) {
-    fmt::print(stderr, "culprit: {}\n", loaded.error());
-    return nullptr;
-  }
-  fmt::print(stderr, "{}", loaded->remarks);
-  return std::make_unique<const RuleSet>(std::move(loaded->rules));
+Expected<LoadedRules> trusted_rules(const std::string& path, bool improvises, Colour colour) {
+  auto loaded = read_rules(path, Strictness::kLenient, colour);
+  if (!loaded) return loaded;
+  if (const auto trusted = trust_rules(path); !trusted) return Error{trusted.error()};
+  return improvises ? improvised(std::move(*loaded), path) : std::move(loaded);
 }
 
-}  // namespace culprit::cli
+}  // namespace culprit

@@ -1,4 +1,4 @@
-#include "web/watched_manager.h"
+#include "web/hub_observer.h"
 
 #include <gtest/gtest.h>
 
@@ -18,15 +18,23 @@ RULE CameraGone
       ADAPTATION camera restart 3
 )";
 
-TEST(WatchedManager, ShowsWhoElseHasTheNameOfANodeWithItsComponent) {
+TEST(HubObserver, ShowsWhoElseHasTheNameOfANodeWithItsComponent) {
   const RuleSet rules = *check(Source("test", kRules)).rules;
   Manager manager(rules, std::make_unique<BayesPlanner>(), {});
   Hub hub;
   Metrics metrics;
-  WatchedManager watched(manager, hub, metrics, Time());
-  watched.remarks = [] { return WatchedManager::Remarks{{"/camera", "kill 12 or 13"}}; };
+  HubObserver observer(hub, metrics);
+  observer.begins(
+      manager,
+      [] {
+        return Observer::Remarks{{"/camera", "kill 12 or 13"}};
+      },
+      Time());
   const Hub::Reader reader(hub);
-  watched.step(Time(Duration(1)), {});
+  std::vector<Observation> nothing;
+  const Time now(Duration(1));
+  const auto commands = manager.step(now, nothing);
+  observer.stepped({now, {}, nothing, commands, manager.events()});
   const Json state = Json::parse(*hub.latest(Kind::kState));
   EXPECT_EQ(state["components"][0]["remark"], "kill 12 or 13");
   EXPECT_FALSE(state["components"][1].contains("remark"));

@@ -1,5 +1,4 @@
-// A manager whose work browsers can follow: does what it does, and tells a hub. What it does is
-// counted, too.
+// Tells browsers, through a hub, what a manager does; and counts it.
 //
 // Events are told as they happen. The graph and the present state are told when they have changed,
 // but not more often than kPeriod, and only while somebody reads: a robot that nobody looks at pays
@@ -7,43 +6,40 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <string>
 
-#include "manager/manager.h"
+#include "live/observer.h"
 #include "web/event_json.h"
 #include "web/hub.h"
 #include "web/metrics.h"
 
 namespace culprit::web {
 
-class WatchedManager : public ManagingSystem {
+class HubObserver : public Observer {
  public:
   static constexpr Duration kPeriod = std::chrono::milliseconds(200);
   // After an event the state is told sooner, at most so often.
   static constexpr Duration kSoon = std::chrono::milliseconds(33);
 
-  // All must outlive this. Events count their time from `start`.
-  WatchedManager(Manager& manager, Hub& hub, Metrics& metrics, Time start);
+  // Both must outlive this.
+  HubObserver(Hub& hub, Metrics& metrics) : hub_(hub), metrics_(metrics) {}
 
-  std::vector<Command> step(Time now, std::span<const Observation> observations) override;
-  Time next_deadline() const override;
-  std::span<const Event> events() const override { return manager_.events(); }
-
-  // What people should know of nodes beyond what the manager knows, by full name: it is shown with
-  // their components. May be empty.
-  using Remarks = std::map<std::string, std::string>;
-  std::function<Remarks()> remarks;
+  // Remarks are shown with the components of their nodes.
+  void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) override;
+  void stepped(const Runtime::Step& step) override;
+  Time next_look() const override { return hub_.has_readers() ? next_tell_ : kNever; }
+  void announced(Time at, const std::string& kind, const std::string& text) override;
 
  private:
-  void tell_events();
+  void tell_events(std::span<const Event> events);
   void tell_state(Time now);
   void add_remarks(Json& state) const;
 
-  Manager& manager_;
   Hub& hub_;
   Metrics& metrics_;
-  const Time start_;
+  const Manager* manager_ = nullptr;  // null: none has begun
+  std::function<Remarks()> remarks_;
+  Time start_{};
   Time told_ = kLongAgo;       // when the state was told last
   Time next_tell_ = kLongAgo;  // when it may be told again
   bool is_graph_new_ = true;

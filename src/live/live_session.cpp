@@ -1,20 +1,16 @@
-#include "cli/live_session.h"
+#include "live/live_session.h"
 
 #include <algorithm>
-#include <unistd.h>
 
 #include <fmt/core.h>
 
-#include "cli/journal_file.h"
 #include "journal/requests.h"
 #include "knowledge/describe.h"
 #include "live/health.h"
 #include "live/role.h"
 #include "replay/replay.h"
-#include "terminal/console.h"
-#include "web/event_json.h"
 
-namespace culprit::cli {
+namespace culprit {
 namespace {
 
 bool is_required(const ComponentId* component, const RuleSet& rules) {
@@ -60,7 +56,7 @@ std::vector<Observation> discover(LiveRobot& robot, const std::atomic<bool>& sto
 
 // What is started so was asked for: it counts as seen.
 void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Observation>& seen,
-                    KnownRobot& known) {
+                    KnownRobot& known, Listener& listener) {
   ComponentBinding binding(rules);
   std::vector<bool> is_there(rules.components.size());
   for (const Observation& o : seen) {
@@ -70,7 +66,7 @@ void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Ob
   }
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     if (is_there[c] || rules.components[c].launch.empty()) continue;
-    say(stdout, "starting {}\n", rules.components[c].name);
+    listener.on_remark("starting " + rules.components[c].name + "\n");
     robot.supervisor().start({}, ComponentId(c));
     known.parts.push_back({rules.components[c].name, rules.components[c].node, {}});
   }
@@ -93,19 +89,19 @@ void add(KnownRobot& known, const KnownRobot& more) {
 journal::Session session_of(const LiveSession::Frame& frame, const std::string& rules_text,
                             const RuleSet& rules, int domain, Time start,
                             const RunBeginning& beginning) {
-  const RunOptions& options = frame.options;
+  const LiveSession::Options& options = frame.options;
   journal::Session session;
   session.version = options.version;
   session.robot = rules.robot;
-  session.rules_path = options.rules;
+  session.rules_path = options.rules_file;
   session.rules_text = rules_text;
-  session.planner = options.planner.to_json();
-  session.governor = options.governor.to_json();
+  session.planner = options.planner_record;
+  session.governor = options.governor_record;
   session.advises = frame.advises;
   session.domain = domain;
   session.boot = journal::boot_id();
   session.start = start;
-  session.settling = from_seconds(options.settle_seconds);
+  session.settling = options.settling;
   session.forgetting = options.forgetting;
   session.learned = beginning.learned;
   session.interrupted = beginning.interrupted;
@@ -201,35 +197,33 @@ std::vector<Observation> standing_orders(const Manager& manager, bool advised_at
 }  // namespace
 
 Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, LoadedRules rules) {
-  auto setup = frame.options.robot();
-  if (!setup) return Error{setup.error()};
+  LiveRobot::Options setup = frame.options.robot;
   std::unique_ptr<LiveSession> session(new LiveSession(frame, std::move(rules)));
-  setup->link.claim = frame.lease;
-  setup->link.manages = !frame.advises;
-  setup->link.told_orders = [&keeper = frame.orders] {
+  setup.link.claim = frame.lease;
+  setup.link.manages = !frame.advises;
+  setup.link.told_orders = [&keeper = frame.orders] {
     return journal::to_text(keeper.told(), journal::clocks_now(live_now()));
   };
-  if (setup->link.claim) setup->link.claim->nodes = claimed_nodes(session->rules_);
-  session->domain_ = static_cast<int>(setup->link.participant.domain);
-  setup->supervisor.robot =
-      fmt::format("{}/{}", setup->link.participant.domain, session->rules_.robot);
-  auto robot = LiveRobot::open(session->rules_, std::move(*setup));
+  if (setup.link.claim) setup.link.claim->nodes = claimed_nodes(session->rules_);
+  session->domain_ = static_cast<int>(setup.link.participant.domain);
+  setup.supervisor.robot =
+      fmt::format("{}/{}", setup.link.participant.domain, session->rules_.robot);
+  auto robot = LiveRobot::open(session->rules_, std::move(setup));
   if (!robot) return Error{robot.error()};
   session->robot_ = std::move(*robot);
   return session;
 }
 
 RunBeginning LiveSession::look_back() {
-  const auto path = frame_.options.journal_path(rules_);
+  const std::filesystem::path& path = frame_.options.journal;
   if (frame_.records) return begin_journal(path, rules_, {robot_->now(), wall_now(), domain_});
-  if (frame_.options.no_journal) return begin_without_journal(path, robot_->now());
+  if (!frame_.options.no_journal.empty()) return begin_without_journal(path, robot_->now());
   return {};
 }
 
 // What people have ordered, of the last run and of this process before. Who managed last knows
 // better than our file, unless that is later.
 void LiveSession::hold(RunBeginning& beginning) {
-  const auto path = frame_.options.journal_path(rules_);
   std::string trouble;
   if (const auto& told = frame_.told_orders) {
     const bool is_later = told->revision > beginning.orders.revision;
@@ -243,8 +237,8 @@ void LiveSession::hold(RunBeginning& beginning) {
                                               (pause->reason.empty() ? "" : ": " + pause->reason)) +
                                    "; so it is paused until a person resumes it");
   }
-  if (frame_.options.no_journal) {
-    beginning.orders = frame_.orders.begin_without("of --no-journal", beginning.orders);
+  if (!frame_.options.no_journal.empty()) {
+    beginning.orders = frame_.orders.begin_without(frame_.options.no_journal, beginning.orders);
   } else if (!frame_.records) {
     beginning.orders =
         frame_.orders.begin_advising("another culprit manages this robot, and has to be told");
@@ -252,8 +246,8 @@ void LiveSession::hold(RunBeginning& beginning) {
     beginning.orders =
         frame_.orders.begin_without("another culprit writes the journal", beginning.orders);
   } else {
-    beginning.orders = frame_.orders.begin(journal::orders_beside(path), beginning.orders,
-                                           beginning.are_orders_kept, trouble);
+    beginning.orders = frame_.orders.begin(journal::orders_beside(frame_.options.journal),
+                                           beginning.orders, beginning.are_orders_kept, trouble);
   }
   if (!trouble.empty()) beginning.findings.push_back("orders are not kept: " + trouble);
   for (Event& silence : journal::to_past(beginning.orders, rules_, robot_->now()))
@@ -264,12 +258,13 @@ void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_r
   RunBeginning beginning = look_back();
   add(beginning.known_robot, known_robot);
   hold(beginning);
-  for (const std::string& finding : beginning.findings) say(stdout, "culprit: {}\n", finding);
+  for (const std::string& finding : beginning.findings)
+    frame_.listener.on_remark("culprit: " + finding + "\n");
   std::vector<Observation> seen;
   const bool is_held = beginning.orders.pause || beginning.orders.dry_run;
-  if (frame_.options.launch && !frame_.advises && !is_held) {
+  if (frame_.options.launches && !frame_.advises && !is_held) {
     seen = discover(*robot_, stop);
-    launch_missing(*robot_, rules_, seen, beginning.known_robot);
+    launch_missing(*robot_, rules_, seen, beginning.known_robot, frame_.listener);
   }
   const auto go_on_with = [&](const journal::StandingOrders::Said& said, auto order) {
     seen.push_back({robot_->now(), Order{0, said.author, said.reason, order}});
@@ -292,33 +287,37 @@ void LiveSession::begin(Handover before) {
 
 void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
                          std::string occasion) {
-  preflight_ =
-      std::make_unique<Preflight>(frame_.options.rules, rules_text_, frame_.options.message_path,
-                                  [](const std::string& lines) { say_text(stdout, lines); });
+  if (frame_.options.has_preflight)
+    preflight_ = std::make_unique<Preflight>(
+        frame_.options.rules_file, rules_text_, frame_.options.message_path,
+        [&listener = frame_.listener](const std::string& lines) { listener.on_remark(lines); });
   journal::Session session =
       session_of(frame_, rules_text_, rules_, domain_, robot_->now(), beginning);
   session.occasion = std::move(occasion);
   const Autonomy autonomy = frame_.advises ? Autonomy::kAdvise : Autonomy::kAct;
-  manager_ = replay::manager_for(session, rules_, frame_.options.planner.planner(),
-                                 {autonomy, frame_.governor});
+  manager_ = replay::manager_for(session, rules_, frame_.options.planner(),
+                                 {autonomy, frame_.options.governor});
   adopt_again(*robot_, beginning.past, manager_->knowledge().sightings);
   if (frame_.records) {
     journal::Recorder::Options recorder;
-    recorder.path = frame_.options.journal_path(rules_);
+    recorder.path = frame_.options.journal;
     recorder.wall_clock = wall_now;
     recorder.on_trouble = [this](const std::string& what) { robot_->report(what); };
     recorder_ = std::make_unique<journal::Recorder>(
         std::move(beginning.writer), std::move(recorder), session, manager_->knowledge());
   }
-  watched_ =
-      std::make_unique<web::WatchedManager>(*manager_, frame_.hub, frame_.metrics, frame_.start);
-  watched_->remarks = [this] { return robot_->link().contested(); };
-  runtime_ = std::make_unique<Runtime>(*watched_, *robot_);
-  if (recorder_ != nullptr) {
-    runtime_->on_step = [this](const Runtime::Step& step) {
-      recorder_->stepped(step.now, step.observations, step.commands, step.events);
-    };
+  runtime_ = std::make_unique<Runtime>(*manager_, *robot_);
+  if (Observer* observer = frame_.observer; observer != nullptr) {
+    observer->begins(
+        *manager_, [this] { return robot_->link().contested(); }, frame_.start);
+    runtime_->next_look = [observer] { return observer->next_look(); };
   }
+  // The recorder takes the observations.
+  runtime_->on_step = [this](const Runtime::Step& step) {
+    if (frame_.observer != nullptr) frame_.observer->stepped(step);
+    if (recorder_ != nullptr)
+      recorder_->stepped(step.now, step.observations, step.commands, step.events);
+  };
   runtime_->on_events = [this](std::span<const Event> events) { tell(events); };
   robot_->link().publish(health(manager_->knowledge()));
   // No order was before the beginning.
@@ -329,22 +328,18 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
 }
 
 void LiveSession::tell(std::span<const Event> events) {
-  const Colour colour = colour_of(STDOUT_FILENO);
   for (const Event& event : events) {
-    const std::string text = line(event, rules_, frame_.start, colour);
-    if (text.empty()) continue;
-    say(stdout, "{}\n", text);
-    robot_->link().log(severity_of(event, rules_), describe(event, rules_));
+    frame_.listener.on_event(event, rules_, frame_.start);
+    const std::string text = describe(event, rules_);
+    if (!text.empty()) robot_->link().log(severity_of(event, rules_), text);
   }
   robot_->link().publish(health(manager_->knowledge()));
 }
 
 void LiveSession::announce(const std::string& kind, const std::string& text) {
   const Time now = robot_->now();
-  say(stdout, "{:8.3f}  {:<10}  {}\n", seconds(now - frame_.start), kind, text);
-  frame_.hub.publish(
-      web::Kind::kEvent,
-      web::to_line({{"t", web::time_to_json(now, frame_.start)}, {"kind", kind}, {"text", text}}));
+  frame_.listener.on_announcement(now - frame_.start, kind, text);
+  if (frame_.observer != nullptr) frame_.observer->announced(now, kind, text);
   robot_->link().log(ros2::Severity::kInfo, text);
 }
 
@@ -398,7 +393,7 @@ bool LiveSession::is_adapting() const {
 
 LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string occasion) {
   end();
-  const Time sees = later(robot_->now(), from_seconds(frame_.options.settle_seconds));
+  const Time sees = later(robot_->now(), frame_.options.settling);
   return {learned_by(manager_->knowledge()), known_robot(),
           waiting_verdicts(manager_->knowledge(), next, sees),
           standing_orders(*manager_, frame_.advises, next, robot_->now()), std::move(occasion)};
@@ -406,9 +401,8 @@ LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string oc
 
 void LiveSession::end() {
   if (recorder_ == nullptr) return;
-  if (const auto written = recorder_->end(); !written)
-    say(stderr, "culprit: {}\n", written.error());
+  if (const auto written = recorder_->end(); !written) frame_.listener.on_trouble(written.error());
   recorder_.reset();
 }
 
-}  // namespace culprit::cli
+}  // namespace culprit

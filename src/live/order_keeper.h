@@ -15,10 +15,33 @@
 #include <vector>
 
 #include "journal/standing_orders.h"
+#include "language/rule_set.h"
 #include "robot/standing.h"
-#include "web/order_routes.h"
 
-namespace culprit::cli {
+namespace culprit {
+
+// Whether the next process will know of an order.
+struct Kept {
+  bool is_kept = false;
+  bool is_given = true;  // false: it is not in force, for it could not be kept
+  std::string why_not{};
+};
+// Gives an order that stands to the manager, by calling `submit`, and keeps it for the next
+// process. It may take as long as the disk.
+using KeepOrder = std::function<Kept(const std::function<void()>& submit)>;
+// What does that for an order; does not block.
+using KeepOrders = std::function<KeepOrder(const Order& order, const RuleSet& rules)>;
+
+// Where people give orders: by names of a rule set, for whoever manages with it.
+class OrderTaker {
+ public:
+  virtual ~OrderTaker() = default;
+
+  // `rules` must live until it is closed, or opened with others. `submit` must not block.
+  virtual void open(const RuleSet& rules, std::function<void(Order)> submit) = 0;
+  // Nobody manages for a while.
+  virtual void close() = 0;
+};
 
 // All members may be called from any thread.
 class OrderKeeper {
@@ -38,8 +61,8 @@ class OrderKeeper {
   // Likewise, and this one must not act: a dry run cannot be ended.
   journal::StandingOrders begin_advising(std::string why);
 
-  // For web::OrderDesk.
-  web::OrderDesk::Keeping keeping();
+  // For whoever takes orders from people.
+  KeepOrders keeping();
 
   // What holds now.
   journal::StandingOrders orders() const;
@@ -56,8 +79,8 @@ class OrderKeeper {
   bool is_kept() const;
 
  private:
-  web::Kept take(const journal::NamedOrder& order, Standing standing,
-                 const std::function<void()>& submit);
+  Kept take(const journal::NamedOrder& order, Standing standing,
+            const std::function<void()>& submit);
   Expected<void> write(const journal::StandingOrders& orders);
   void begin_with(const journal::StandingOrders& orders);
   void tell(const journal::StandingOrders& orders);
@@ -82,4 +105,4 @@ class OrderKeeper {
   std::thread later_;
 };
 
-}  // namespace culprit::cli
+}  // namespace culprit

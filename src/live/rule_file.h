@@ -1,12 +1,11 @@
-// A rule file as commands read it.
+// A rule file as it is managed by.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "language/checker.h"
 
-namespace culprit::cli {
+namespace culprit {
 
 struct LoadedRules {
   RuleSet rules;
@@ -22,8 +21,8 @@ Expected<LoadedRules> read_rules(const std::string& path,
 // The same with rules for components that nobody wrote one for (language/improvise.h).
 Expected<LoadedRules> improvised(LoadedRules loaded, const std::string& path);
 
-// Reads and checks a rule file. Prints what is wrong with it to stderr; null if that are errors.
-std::unique_ptr<const RuleSet> load_rules(const std::string& path,
-                                          Strictness strictness = Strictness::kLenient);
+// What culprit manages a robot by: the same of a file that nobody else can change
+// (live/rule_trust.h), improvised on if that is asked for.
+Expected<LoadedRules> trusted_rules(const std::string& path, bool improvises, Colour colour);
 
-}  // namespace culprit::cli
+}  // namespace culprit

@@ -1,6 +1,6 @@
 // The kill switch is never forgotten: whatever becomes of the disk, the journal and the clock
 // between two runs, who was paused is paused.
-#include "cli/order_keeper.h"
+#include "live/order_keeper.h"
 
 #include <csignal>
 #include <fstream>
@@ -17,7 +17,7 @@
 #include "live/run_journal.h"
 #include "robot/inbox.h"
 
-namespace culprit::cli {
+namespace culprit {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,7 +76,7 @@ struct KillSwitch : testing::Test {
           beginning.writer->append(batch, wall, journal::Durability::kPowerFailure);
       ASSERT_TRUE(written) << written.error();
     }
-    web::Kept order(decltype(Order::what) what) {
+    Kept order(decltype(Order::what) what) {
       const auto keep = keeper.keeping()({1, "ada", "why", std::move(what)}, rules_);
       return keep([this] { ++given; });
     }
@@ -126,7 +126,7 @@ TEST_F(KillSwitch, OutlivesTheRunWithDryRunAndSilences) {
 TEST_F(KillSwitch, IsInForceAndSaidNotToBeKeptOnAFullDisk) {
   Run run(path, rules);
   const FullDisk full(16);
-  const web::Kept kept = run.order(Pause{});
+  const Kept kept = run.order(Pause{});
   EXPECT_EQ(run.given, 1) << "at once, whatever the disk does";
   EXPECT_TRUE(kept.is_given);
   EXPECT_FALSE(kept.is_kept);
@@ -204,7 +204,7 @@ TEST_F(KillSwitch, IsToldAtOnceAndWhatFreesOnlyOnceItIsKept) {
 TEST_F(KillSwitch, OfOneThatOnlyAdvisesCannotMakeItAct) {
   Run run(path, rules);
   run.keeper.begin_advising("another culprit manages this robot");
-  const web::Kept kept = run.order(SetDryRun{false});
+  const Kept kept = run.order(SetDryRun{false});
   EXPECT_FALSE(kept.is_given);
   EXPECT_THAT(kept.why_not, HasSubstr("another culprit"));
   EXPECT_EQ(run.given, 0);
@@ -316,4 +316,4 @@ TEST_F(KillSwitch, EndsAsItIsKeptIfTwoPeopleOrderAtOnce) {
 }
 
 }  // namespace
-}  // namespace culprit::cli
+}  // namespace culprit

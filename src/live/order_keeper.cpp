@@ -1,9 +1,9 @@
-#include "cli/order_keeper.h"
+#include "live/order_keeper.h"
 
 #include "journal/sealed_file.h"
 #include "robot/inbox.h"
 
-namespace culprit::cli {
+namespace culprit {
 
 using journal::NamedOrder;
 using journal::StandingOrders;
@@ -95,16 +95,16 @@ void OrderKeeper::write_later() {
   }
 }
 
-web::OrderDesk::Keeping OrderKeeper::keeping() {
-  return [this](const Order& order, const RuleSet& rules) -> web::OrderDesk::Keep {
+KeepOrders OrderKeeper::keeping() {
+  return [this](const Order& order, const RuleSet& rules) -> KeepOrder {
     return [this, named = journal::by_name(order, rules), standing = standing_of(order)](
                const std::function<void()>& submit) { return take(named, standing, submit); };
   };
 }
 
 // Two people may order at once. Under the mutex the last one wins, on the disk and in force.
-web::Kept OrderKeeper::take(const NamedOrder& order, Standing standing,
-                            const std::function<void()>& submit) {
+Kept OrderKeeper::take(const NamedOrder& order, Standing standing,
+                       const std::function<void()>& submit) {
   const bool frees = standing == Standing::kFrees;
   const std::uint64_t freed = freed_;
   if (!frees) submit();
@@ -153,4 +153,4 @@ bool OrderKeeper::is_unwritten() const {
   return file_ && (!in_file_ || !restrain_alike(*in_file_, orders_));
 }
 
-}  // namespace culprit::cli
+}  // namespace culprit

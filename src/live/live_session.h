@@ -9,30 +9,47 @@
 #include <set>
 #include <string>
 
-#include "cli/order_keeper.h"
-#include "cli/rule_file.h"
-#include "cli/run_options.h"
+#include "journal/session.h"
+#include "live/listener.h"
 #include "live/live_robot.h"
+#include "live/observer.h"
+#include "live/order_keeper.h"
 #include "live/preflight.h"
+#include "live/rule_file.h"
 #include "live/run_journal.h"
-#include "manager/runtime.h"
-#include "web/watched_manager.h"
+#include "plan/planner.h"
 
-namespace culprit::cli {
+namespace culprit {
 
 class LiveSession {
  public:
+  struct Options {
+    std::string version;     // of culprit
+    std::string rules_file;  // as people call it
+    LiveRobot::Options robot;
+    PlannerFactory planner;
+    Governor::Options governor;
+    // How both are written down in the journal, for whoever repeats the run.
+    journal::Json planner_record;
+    journal::Json governor_record = journal::Json::object();
+    double forgetting = 1;
+    Duration settling = Manager::kDiscovery;
+    bool launches = false;      // components that are missing
+    bool has_preflight = true;  // says what the robot has of what the rules name
+    std::vector<std::filesystem::path> message_path;
+    std::filesystem::path journal;
+    std::string no_journal;  // why nothing is written down; empty: it is
+  };
   // What is the same for all sessions of a run. All that it refers to must outlive them.
   struct Frame {
-    const RunOptions& options;
-    Governor::Options governor;
+    const Options& options;
     bool advises = false;                   // a dry run, or another culprit manages the robot
     bool records = true;                    // into the journal
     std::optional<ros2::LeaseClaim> lease;  // to be announced; nothing: it would never manage
-    web::Hub& hub;
-    web::Metrics& metrics;
     OrderKeeper& orders;
-    Time start;  // of the run: what people read counts from here
+    Listener& listener;
+    Observer* observer = nullptr;  // null: nobody looks on
+    Time start{};                  // of the run: what people read counts from here
     // What people had ordered of the culprit on another machine that managed before; nothing: none
     // did.
     std::optional<journal::StandingOrders> told_orders{};
@@ -62,8 +79,7 @@ class LiveSession {
   void interrupt() { robot_->interrupt(); }
   void submit(Order order) { runtime_->submit(std::move(order)); }
 
-  // Nothing more is done; the journal is whole. What is to go on with `next`. Errors are told on
-  // stderr.
+  // Nothing more is done; the journal is whole. What is to go on with `next`.
   Handover hand_over(const RuleSet& next, std::string occasion);
   // Likewise, but nothing goes on.
   void end();
@@ -82,6 +98,7 @@ class LiveSession {
   // For a session with the same.
   LoadedRules loaded_rules() const { return {rules_, rules_text_, ""}; }
   const ros2::Link& link() const { return robot_->link(); }
+  owners::Supervisor& supervisor() { return robot_->supervisor(); }
   // The last word to other culprits, of who steps back or ends.
   void say_lease() { robot_->link().say_lease(); }
   Time now() const { return robot_->now(); }
@@ -106,10 +123,9 @@ class LiveSession {
   std::unique_ptr<LiveRobot> robot_;
   std::unique_ptr<Manager> manager_;
   std::unique_ptr<journal::Recorder> recorder_;
-  std::unique_ptr<web::WatchedManager> watched_;
   std::unique_ptr<Runtime> runtime_;
   std::unique_ptr<Preflight> preflight_;
   std::atomic<bool> is_left_ = false;
 };
 
-}  // namespace culprit::cli
+}  // namespace culprit

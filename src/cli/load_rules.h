@@ -1,0 +1,15 @@
+// A rule file as commands read it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "live/rule_file.h"
+
+namespace culprit::cli {
+
+// Reads and checks a rule file. Prints what is wrong with it to stderr; null if that are errors.
+std::unique_ptr<const RuleSet> load_rules(const std::string& path,
+                                          Strictness strictness = Strictness::kLenient);
+
+}  // namespace culprit::cli

@@ -1,0 +1,26 @@
+// Who is told what a running culprit has to say: a terminal, say.
+#pragma once
+
+#include <string>
+
+#include "knowledge/event.h"
+
+namespace culprit {
+
+// Nothing of it has to be listened to.
+class Listener {
+ public:
+  virtual ~Listener() = default;
+
+  // Something happened. `start`: from when people count times.
+  virtual void on_event(const Event& /*event*/, const RuleSet& /*rules*/, Time /*start*/) {}
+  // Something about culprit itself, which no event tells. `after`: since the start.
+  virtual void on_announcement(Duration /*after*/, const std::string& /*kind*/,
+                               const std::string& /*text*/) {}
+  // Whole lines, of what it finds and begins. From any thread.
+  virtual void on_remark(const std::string& /*lines*/) {}
+  // What went wrong at the end, when nothing else can tell it any more.
+  virtual void on_trouble(const std::string& /*text*/) {}
+};
+
+}  // namespace culprit

@@ -1,0 +1,206 @@
+#include "live/live_run.h"
+
+#include <cstdlib>
+
+#include <fmt/core.h>
+
+#include "live/begin_anew.h"
+
+namespace culprit {
+namespace {
+
+// How long nothing is heard before culprit begins anew. A cut cable is no reason: what it says to
+// itself does not leave the computer.
+constexpr Duration kDeafAtMost = std::chrono::seconds(20);
+
+// Who cannot tell whether a person has paused the robot is paused.
+std::optional<journal::StandingOrders> orders_for_successor(const RoleOfCulprit& role,
+                                                            const ros2::Link& link) {
+  if (role.role() != Role::kManage) return std::nullopt;
+  auto told = role.told_orders(link);
+  if (told) return *told;
+  journal::StandingOrders paused;
+  paused.pause = journal::StandingOrders::Said{"culprit", told.error()};
+  return paused;
+}
+
+std::string name_of(const RuleSet& rules) {
+  return rules.robot.empty() ? "the robot" : rules.robot;
+}
+
+}  // namespace
+
+LiveRun::LiveRun(Options options, RoleOfCulprit role, OrderKeeper& keeper, Listener& listener,
+                 Observer* observer)
+    : options_(std::move(options)),
+      role_(std::move(role)),
+      frame_{.options = options_.session,
+             .lease = {},
+             .orders = keeper,
+             .listener = listener,
+             .observer = observer,
+             .start = live_now()} {
+  take_role();
+}
+
+// Whoever only advises neither acts nor writes the journal.
+void LiveRun::take_role() {
+  frame_.advises = options_.dry_run || role_.role() == Role::kAdvise;
+  frame_.records = options_.session.no_journal.empty() && role_.role() == Role::kManage;
+  if (!options_.dry_run) frame_.lease = role_.lease();
+}
+
+void LiveRun::enter(LiveSession* session) {
+  const std::lock_guard lock(mutex_);
+  entered_ = session;
+}
+
+void LiveRun::interrupt() {
+  const std::lock_guard lock(mutex_);
+  if (entered_ != nullptr) entered_->interrupt();
+}
+
+void LiveRun::leave() {
+  const std::lock_guard lock(mutex_);
+  if (entered_ != nullptr) entered_->leave();
+}
+
+Expected<std::size_t> LiveRun::reload(const std::string& author) {
+  const std::string& path = options_.session.rules_file;
+  auto loaded = trusted_rules(path, options_.improvises, Colour::kOff);
+  if (!loaded) return Error{loaded.error()};
+  const std::size_t count = loaded->rules.rules.size();
+  const std::lock_guard lock(mutex_);
+  if (entered_ == nullptr) return Error{"the rules are just being reloaded; ask again"};
+  const std::string& robot = entered_->rules().robot;
+  if (loaded->rules.robot != robot)
+    return Error{fmt::format("{} is now about the robot '{}' instead of '{}'; start culprit anew",
+                             path, loaded->rules.robot, robot)};
+  next_ = Next{std::move(*loaded), author};
+  entered_->leave();
+  return count;
+}
+
+std::optional<LiveRun::Next> LiveRun::take_next() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(next_, std::nullopt);
+}
+
+Expected<void> LiveRun::join(LoadedRules rules) {
+  auto session = LiveSession::open(frame_, std::move(rules));
+  if (!session) return Error{session.error()};
+  session_ = std::move(*session);
+  return {};
+}
+
+void LiveRun::begin(OrderTaker& desk, const std::atomic<bool>& stopped) {
+  session_->begin(stopped);
+  open(desk);
+}
+
+void LiveRun::open(OrderTaker& desk) {
+  enter(session_.get());
+  desk.open(session_->rules(),
+            [&session = *session_](Order order) { session.submit(std::move(order)); });
+}
+
+void LiveRun::close(OrderTaker& desk) {
+  desk.close();
+  enter(nullptr);
+}
+
+// Whoever acts leaves alone what others manage.
+void LiveRun::look_at_neighbours() {
+  std::set<std::string> nodes;
+  if (!frame_.advises) nodes = session_->adapted_nodes();
+  const auto elsewhere = role_.managed_elsewhere(nodes, session_->link());
+  if (!frame_.advises) session_->leave_alone(elsewhere);
+  for (const std::string& warning : role_.warnings(session_->link()))
+    session_->announce("neighbour", warning);
+  // One that was slow, or cut off, and is about to step back.
+  const auto told = role_.told_orders(session_->link());
+  if (frame_.advises || !told || !*told) return;
+  for (Order& order : frame_.orders.heed(**told, session_->rules(), session_->now()))
+    session_->submit(std::move(order));
+}
+
+// Begins anew in another role, with the same rules.
+Expected<void> LiveRun::change_role(OrderTaker& desk, const std::atomic<bool>& stopped) {
+  close(desk);
+  session_->say_lease();
+  LoadedRules rules = session_->loaded_rules();
+  const KnownRobot known = session_->known_robot();
+  frame_.told_orders = orders_for_successor(role_, session_->link());
+  session_->end();
+  session_.reset();
+  take_role();
+  if (auto joined = join(std::move(rules)); !joined) return joined;
+  session_->begin(stopped, known);
+  session_->announce("role", role_.reason());
+  open(desk);
+  return {};
+}
+
+// Goes on with the old ones if the robot cannot be joined anew.
+void LiveRun::change_rules(Next next, OrderTaker& desk) {
+  auto opened = LiveSession::open(frame_, std::move(next.rules));
+  if (!opened)
+    return session_->announce("trouble", "the rules are not reloaded: " + opened.error());
+  close(desk);
+  LiveSession::Handover handover =
+      session_->hand_over((*opened)->rules(), "reloaded by " + next.author);
+  session_ = std::move(*opened);
+  session_->begin(std::move(handover));
+  session_->announce("reloaded",
+                     fmt::format("{}: {} is reloaded, with {} rules", next.author,
+                                 options_.session.rules_file, session_->rules().rules.size()));
+  open(desk);
+}
+
+// Whoever stays deaf is not fed, and begins anew.
+void LiveRun::watch_hearing(OrderTaker& desk) {
+  const auto deaf_since = session_->deaf_since();
+  if (!deaf_since) return systemd_.feed(session_->now());
+  if (session_->now() < later(*deaf_since, kDeafAtMost)) return;
+  session_->announce(
+      "deaf", "the robot was not heard for " + to_string(kDeafAtMost) + "; culprit begins anew");
+  close(desk);
+  session_->end();
+  frame_.listener.on_trouble(begin_anew());
+  std::_Exit(EXIT_FAILURE);
+}
+
+Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) {
+  systemd_.ready("watching " + name_of(session_->rules()));
+  std::optional<Next> next;
+  Time joined = session_->now();
+  while (!stopped) {
+    if (role_.has_changed(session_->link(), session_->now(), joined)) {
+      if (auto changed = change_role(desk, stopped); !changed) return changed;
+      joined = session_->now();
+    }
+    look_at_neighbours();
+    if (frame_.orders.is_kept_again())
+      session_->announce("kept", "what people have ordered was not kept, and is now");
+    watch_hearing(desk);
+    // Without a journal nobody would know what is under way: then the new rules wait for its end.
+    const bool has_to_wait = next && !frame_.records && session_->is_adapting();
+    if (next && !has_to_wait) {
+      change_rules(std::move(*next), desk);
+      next.reset();
+    }
+    constexpr Duration kLook = std::chrono::milliseconds(100);
+    constexpr Duration kLookAtRole = std::chrono::milliseconds(500);
+    const Time until = later(session_->now(), has_to_wait ? kLook : kLookAtRole);
+    session_->run(session_->deaf_since() ? until : std::min(until, systemd_.next_feeding()));
+    if (auto newest = take_next()) next = std::move(newest);
+  }
+  systemd_.stopping();
+  close(desk);
+  session_->say_lease();
+  session_->end();
+  session_.reset();
+  return {};
+}
+
+}  // namespace culprit

@@ -1,0 +1,33 @@
+// Who looks on while a robot is managed: a page in a browser, say.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+
+#include "manager/manager.h"
+#include "manager/runtime.h"
+
+namespace culprit {
+
+// All members are called on the thread that manages, and must not block it. One observer sees the
+// sessions of a run one after the other.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+
+  // What people should know of nodes beyond what the manager knows, by full name.
+  using Remarks = std::map<std::string, std::string>;
+
+  // A manager begins. Both are there until the last step that is told of. People count times from
+  // `start`, which is the same for all sessions of a run.
+  virtual void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) = 0;
+  // It did a step, and its commands are about to go out.
+  virtual void stepped(const Runtime::Step& step) = 0;
+  // When it wants to be told of a step even if nothing happens.
+  virtual Time next_look() const = 0;
+  // Something about culprit itself, which no event tells.
+  virtual void announced(Time at, const std::string& kind, const std::string& text) = 0;
+};
+
+}  // namespace culprit
