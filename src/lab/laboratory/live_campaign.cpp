@@ -80,6 +80,8 @@ std::string last_line(const std::filesystem::path& log) {
   while (all.ends_with('\n')) all.remove_suffix(1);
   const std::size_t begin = all.rfind('\n');
   if (begin != std::string_view::npos) all.remove_prefix(begin + 1);
+  constexpr std::string_view kWho = "culprit: ";
+  if (all.starts_with(kWho)) all.remove_prefix(kWho.size());
   return all.empty() ? "it said nothing" : std::string(all);
 }
 

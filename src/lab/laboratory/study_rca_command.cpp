@@ -33,6 +33,10 @@ struct RcaOptions {
   std::vector<std::size_t> faults = {3};
   std::vector<double> noise = {0};
   bool cyclic = false;
+  bool mixed_levels = false;
+  bool flapping = false;
+  bool unfixable = false;
+  bool ignore = false;
   std::vector<std::string> planners;  // none: all
   std::string objective = "balanced";
   std::uint32_t episodes = 100;
@@ -74,7 +78,9 @@ Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
         return Error{fmt::format("{} faults do not fit on {} components: each has its own", faults,
                                  components)};
       for (const double noise : options.noise)
-        campaign.settings.push_back({components, faults, noise, options.cyclic});
+        campaign.settings.push_back({components, faults, noise, options.cyclic,
+                                     options.mixed_levels, false, options.flapping,
+                                     options.unfixable, options.ignore});
     }
   }
   auto all = study::rca::planner_names();
@@ -217,6 +223,13 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->check(CLI::Range(0.0, 0.4))
       ->capture_default_str();
   command->add_flag("--cyclic", options->cyclic, "With feedback topics, so that there are circles");
+  command->add_flag("--mixed-levels", options->mixed_levels,
+                    "Each rule's criticality is any (default: all are ERROR)");
+  command->add_flag("--flapping", options->flapping, "Every fault comes and goes");
+  command->add_flag("--unfixable", options->unfixable,
+                    "Nothing that the rules have helps against one of the faults");
+  command->add_flag("--ignore", options->ignore,
+                    "The rules IGNORE the infrastructure topics, as a user's would");
   command
       ->add_option("--planner", options->planners,
                    fmt::format("Only these of {}; without a choice, all but those of others "
@@ -226,7 +239,8 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
   auto* scenario = command->add_option("--scenario", options->scenario,
                                        "Play this scenario (docs/study-rca.md), with other luck in "
                                        "each episode, instead of random ones");
-  for (const std::string random : {"--components", "--faults", "--noise", "--cyclic"})
+  for (const std::string random : {"--components", "--faults", "--noise", "--cyclic",
+                                   "--mixed-levels", "--flapping", "--unfixable", "--ignore"})
     scenario->excludes(random);
   command->add_option("--write-scenario", options->scenario_output,
                       "Write the first episode's scenario there, and play nothing");

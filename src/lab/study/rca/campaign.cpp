@@ -67,7 +67,9 @@ bool find_regrets(const RcaCampaign& campaign, unsigned jobs, Count& count,
       0, robots, jobs,
       [&](std::uint64_t i) -> std::optional<Costs> {
         const auto scenario = scenario_of(campaign, setting, static_cast<std::uint32_t>(i));
-        if (setting.noise > 0 || !RepairProcess::is_small(scenario)) return std::nullopt;
+        // Of robots whose detectors err, or whose faults are not any of all, it is not known.
+        const bool is_known = setting.noise <= 0 && !setting.is_flapping && !setting.has_unfixable;
+        if (!is_known || !RepairProcess::is_small(scenario)) return std::nullopt;
         return costs_of(campaign, scenario);
       },
       [&](std::uint64_t, const std::optional<Costs>& costs) {

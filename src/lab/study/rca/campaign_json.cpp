@@ -20,7 +20,11 @@ Json to_json(const RcaSetting& setting) {
   return {{"components", setting.components},
           {"faults", setting.faults},
           {"noise", setting.noise},
-          {"cyclic", setting.is_cyclic}};
+          {"cyclic", setting.is_cyclic},
+          {"mixed_levels", setting.has_mixed_levels},
+          {"flapping", setting.is_flapping},
+          {"unfixable", setting.has_unfixable},
+          {"ignore", setting.ignores_plumbing}};
 }
 
 RcaSetting setting(const Json& json, std::string& complaint) {
@@ -33,6 +37,12 @@ RcaSetting setting(const Json& json, std::string& complaint) {
   if (setting.noise < 0 || setting.noise > kMostNoise)
     fields.complain("noise", "is not between 0 and 0.4");
   setting.is_cyclic = fields.truth("cyclic");
+  // Campaigns that were written before there was a choice have none of these.
+  const auto option = [&](std::string_view name) { return fields.has(name) && fields.truth(name); };
+  setting.has_mixed_levels = option("mixed_levels");
+  setting.is_flapping = option("flapping");
+  setting.has_unfixable = option("unfixable");
+  setting.ignores_plumbing = option("ignore");
   complaint = fields.complaint();
   return setting;
 }

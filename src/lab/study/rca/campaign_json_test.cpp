@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 RcaCampaign campaign() {
   RcaCampaign campaign;
-  campaign.settings = {{5, 1, 0.1, true}, {4, 2, 0, false}};
+  campaign.settings = {{5, 1, 0.1, true, true}, {4, 2, 0, false, false, false, true, true, true}};
   campaign.planners = {"optimum", "bayes"};
   campaign.objective = Objective::kDowntime;
   campaign.episodes = 7;

@@ -71,6 +71,45 @@ TEST(RcaRules, NumberThingsAsTheScenarioDoes) {
   }
 }
 
+TEST(RcaCampaign, IgnoresTheInfrastructureWhereTheRulesSaySo) {
+  RcaSetting setting{20, 2, 0, false};
+  EXPECT_TRUE(rules_of(generate(setting, 1)).ignored_topics.empty());
+  setting.ignores_plumbing = true;
+  EXPECT_EQ(rules_of(generate(setting, 1)).ignored_topics,
+            (std::vector<std::string>{"/tf", "/diagnostics", "/robot_state"}));
+  // With it, nearly every robot has circles of dependencies in which the paper's planner waits.
+  RcaCampaign campaign;
+  campaign.settings = {setting, {20, 2, 0, false}};
+  campaign.planners = {"paper"};
+  campaign.episodes = 10;
+  const auto rows = run_campaign(campaign, 2, nullptr);
+  ASSERT_TRUE(rows);
+  EXPECT_LT(rows->at(0).unresolved.mean(), rows->at(1).unresolved.mean());
+}
+
+// What waits with it is not replaced: its own fault is all that remains, and nobody else is tried.
+TEST(RcaCampaign, LeavesWhatNothingFixesToAPerson) {
+  RcaCampaign campaign;
+  RcaSetting setting{12, 2, 0, false};
+  setting.has_unfixable = true;
+  campaign.settings = {setting};
+  campaign.planners = {"bayes", "naive"};
+  campaign.episodes = 20;
+  const auto rows = run_campaign(campaign, 2, nullptr);
+  ASSERT_TRUE(rows);
+  const RcaRow& bayes = rows->at(0);
+  EXPECT_EQ(bayes.censored, bayes.episodes);
+  EXPECT_GE(bayes.unresolved.mean(), 1);
+  EXPECT_LT(bayes.wrong_component.mean(), rows->at(1).wrong_component.mean() / 4);
+}
+
+TEST(RcaCampaign, HasFaultsThatAllComeAndGo) {
+  RcaSetting setting{12, 3, 0, false};
+  setting.is_flapping = true;
+  for (const InjectedFault& fault : generate(setting, 1).faults)
+    EXPECT_EQ(fault.kind, FaultKind::kFlapping);
+}
+
 // A chain with a fault at its head: whoever looks at the graph repairs the head alone.
 TEST(RcaEpisode, TellsTheCauseFromItsEffects) {
   RcaScenario scenario = generate({4, 1, 0, false}, 1);

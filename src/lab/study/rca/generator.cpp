@@ -37,8 +37,10 @@ std::vector<InjectedFault> faults(const RcaSetting& setting, Random& random) {
     const std::size_t component = below(setting.components);
     if (!faulty.insert(component).second) continue;
     const auto kind = static_cast<FaultKind>(below(kFaultKinds));
-    all.push_back({component, kind, kFirstFault_s + random.uniform(0, kAtOnce_s)});
+    all.push_back({component, setting.is_flapping ? FaultKind::kFlapping : kind,
+                   kFirstFault_s + random.uniform(0, kAtOnce_s)});
   }
+  if (setting.has_unfixable && !all.empty()) all.front().is_unfixable = true;
   return all;
 }
 
@@ -147,7 +149,7 @@ class Generator {
 
   void add_infrastructure() {
     const auto add_topic = [&](const std::string& name, double publish, double read) {
-      RcaTopic topic{name, {}, {}};
+      RcaTopic topic{name, {}, {}, setting_.ignores_plumbing};
       scenario_.topics.push_back(topic);
       const std::size_t place = scenario_.topics.size() - 1;
       for (std::size_t i = 0; i < size(); ++i) {

@@ -23,6 +23,9 @@ struct RcaSetting {
   // What planners are told is true: everything helps as often as the rules say, every subscription
   // passes failures on as often as any other, and none is redundant.
   bool is_as_told = false;
+  bool is_flapping = false;       // every fault comes and goes; else any is of any kind
+  bool has_unfixable = false;     // nothing helps against one of the faults
+  bool ignores_plumbing = false;  // the rules' author knows the infrastructure, and ignores it
 
   bool operator==(const RcaSetting&) const = default;
 };

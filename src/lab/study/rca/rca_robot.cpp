@@ -166,10 +166,13 @@ void RcaRobot::start(const Command& command) {
 // Each attempt has its own luck.
 void RcaRobot::take_effect(std::size_t component, Repair repair) {
   const auto kind = plant_.fault(component);
+  const bool is_unfixable = std::any_of(
+      scenario_.faults.begin(), scenario_.faults.end(),
+      [&](const InjectedFault& f) { return f.component == component && f.is_unfixable; });
   bool has_helped = false;
   for (const Treatment& t : scenario_.components[component].treatments) {
-    has_helped |=
-        kind && t.repair == repair && luck_.chance(t.helps[static_cast<std::size_t>(*kind)]);
+    has_helped |= kind && !is_unfixable && t.repair == repair &&
+                  luck_.chance(t.helps[static_cast<std::size_t>(*kind)]);
   }
   if (has_helped) plant_.repair(component);
   if (on_effect) on_effect(component, repair, has_helped);

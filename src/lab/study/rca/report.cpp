@@ -91,8 +91,15 @@ void add_tests(const std::vector<RcaRow>& rows, Table& table) {
 }  // namespace
 
 Table rca_table(const RcaCampaign& campaign, const std::vector<RcaRow>& rows, Times times) {
+  // All settings of a campaign have the same of these.
+  const RcaSetting& all = campaign.settings.front();
+  std::string robots;
+  if (all.has_mixed_levels) robots += ", mixed levels";
+  if (all.is_flapping) robots += ", flapping faults";
+  if (all.has_unfixable) robots += ", one fault that nothing fixes";
+  if (all.ignores_plumbing) robots += ", infrastructure ignored";
   Table table{"rca",
-              fmt::format("Root causes on random robots: means of {} episodes, seed {}",
+              fmt::format("Root causes on random robots{}: means of {} episodes, seed {}", robots,
                           campaign.episodes, campaign.seed),
               {{"", "planner", "", "", Align::kLeft},
                {"", "components"},

@@ -62,6 +62,9 @@ std::string adaptation(const std::string& component, const Treatment& treatment)
 
 std::string rules_text(const RcaScenario& scenario) {
   std::string text = "ROBOT benchmark\nCYCLE 200ms\n\n";
+  for (const RcaTopic& topic : scenario.topics) {
+    if (topic.is_ignored) text += fmt::format("IGNORE TOPIC {}\n", topic.name);
+  }
   for (const RcaComponent& c : scenario.components) {
     text += fmt::format("COMPONENT {0} NODE /{0} LAUNCH \"run {0}\"\n", c.name);
     text += fmt::format("SIGNAL {0}_ill DIAGNOSTIC {0} KEY ill\n", c.name);

@@ -69,12 +69,14 @@ struct RcaTopic {
   std::string name;
   std::vector<std::size_t> publishers;
   std::vector<Subscription> subscribers;
+  bool is_ignored = false;  // the rules say so (IGNORE TOPIC)
 };
 
 struct InjectedFault {
   std::size_t component = 0;
   FaultKind kind = FaultKind::kSilent;
   double at_s = 0;
+  bool is_unfixable = false;  // nothing that the rules have helps against it
 };
 
 struct RcaScenario {

@@ -64,9 +64,11 @@ Json json_of(const RcaTopic& topic, const RcaScenario& scenario) {
                            {"passes", s.passes},
                            {"delay_s", s.delay_s},
                            {"redundant", s.is_redundant}});
-  return {{"name", topic.name},
-          {"publishers", std::move(publishers)},
-          {"subscribers", std::move(subscribers)}};
+  Json json{{"name", topic.name},
+            {"publishers", std::move(publishers)},
+            {"subscribers", std::move(subscribers)}};
+  if (topic.is_ignored) json["ignored"] = true;
+  return json;
 }
 
 // ---- reading
@@ -200,6 +202,7 @@ class Reader {
     ways_ += topic.publishers.size() * topic.subscribers.size();
     if (ends_ > kMostEnds || ways_ > kMostWays)
       fields.complain("subscribers", "are more than are read in all");
+    topic.is_ignored = fields.has("ignored") && fields.truth("ignored");
     scenario_.topics.push_back(std::move(topic));
   }
 
@@ -211,6 +214,7 @@ class Reader {
     fault.component = index_of(fields, fields.text("component"));
     fault.kind = choice(fields, "kind", kKinds, [](FaultKind kind) { return to_string(kind); });
     fault.at_s = number(fields, "at_s", 0, scenario_.horizon_s);
+    fault.is_unfixable = fields.has("unfixable") && fields.truth("unfixable");
     const bool is_there =
         std::any_of(scenario_.faults.begin(), scenario_.faults.end(),
                     [&](const InjectedFault& other) { return other.component == fault.component; });
@@ -236,10 +240,13 @@ std::string to_json(const RcaScenario& scenario) {
                {"faults", Json::array()}};
   for (const RcaComponent& c : scenario.components) json["components"].push_back(json_of(c));
   for (const RcaTopic& t : scenario.topics) json["topics"].push_back(json_of(t, scenario));
-  for (const InjectedFault& f : scenario.faults)
-    json["faults"].push_back({{"component", scenario.components[f.component].name},
-                              {"kind", to_string(f.kind)},
-                              {"at_s", f.at_s}});
+  for (const InjectedFault& f : scenario.faults) {
+    Json& fault =
+        json["faults"].emplace_back(Json{{"component", scenario.components[f.component].name},
+                                         {"kind", to_string(f.kind)},
+                                         {"at_s", f.at_s}});
+    if (f.is_unfixable) fault["unfixable"] = true;
+  }
   return json.dump(1) + "\n";
 }
 

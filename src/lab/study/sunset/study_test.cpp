@@ -45,6 +45,14 @@ TEST(SunsetClaims, TheDowntimeObjectiveHasTheLowestDowntime) {
             result.rows[0][Metric::kStrategiesPerFault].mean());
 }
 
+TEST(SunsetStudy, HasNoManagerForTheLiveRobotThatNeedsAModel) {
+  for (const char* planner : {"reference", "oracle"})
+    EXPECT_FALSE(SunsetStudy::make({{kFull, planner, std::string(kLiveRobot)}}, 1)) << planner;
+  const auto study = SunsetStudy::make({{kFull, "bayes", std::string(kLiveRobot)}}, 1);
+  ASSERT_TRUE(study) << study.error();
+  EXPECT_EQ(study->profile(0).name, kModelOfLiveRobot);
+}
+
 TEST(SunsetClaims, AnOracleIsABound) {
   for (const char* profile : {"live", "live:phi"}) {
     SCOPED_TRACE(profile);

@@ -37,6 +37,22 @@ A note.
 )");
 }
 
+TEST(Tables, SetTheLiveRobotBesideItsModel) {
+  CampaignResult result = synthetic_result(4);
+  EXPECT_TRUE(std::none_of(result.rows.begin(), result.rows.end(),
+                           [](const Row& row) { return row.configuration.profile == kLiveRobot; }));
+  result.rows.resize(2);
+  result.rows[1].configuration = result.rows[0].configuration;
+  result.rows[0].configuration.profile = kModelOfLiveRobot;
+  result.rows[1].configuration.profile = kLiveRobot;
+  const std::vector<Table> all = tables({result, {}, {}});
+  const auto live =
+      std::find_if(all.begin(), all.end(), [](const Table& table) { return table.id == "live"; });
+  ASSERT_NE(live, all.end());
+  ASSERT_EQ(live->rows.size(), 1u);
+  EXPECT_EQ(live->rows[0].size(), live->columns.size());
+}
+
 TEST(Tables, AreMarkdown) {
   EXPECT_EQ(markdown(sample()), R"(**What 50 % of \<all\> find**
 
