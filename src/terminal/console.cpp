@@ -36,6 +36,7 @@ struct Labels {
   Label operator()(const ComponentFound&) const { return {"found", "\033[32m"}; }
   Label operator()(const NeverSeen&) const { return {"never seen", "\033[33m"}; }
   Label operator()(const LifecycleIntended&) const { return {"lifecycle", ""}; }
+  Label operator()(const CameUp&) const { return {"came up", ""}; }
   Label operator()(const RivalSeen&) const { return {"RIVAL", "\033[1;33m"}; }
   Label operator()(const Trouble&) const { return {"trouble", "\033[33m"}; }
   Label operator()(const OrderAccepted&) const { return {"order", "\033[1;35m"}; }

@@ -110,6 +110,9 @@ struct AsJson {
   Json operator()(const LifecycleIntended& e) const {
     return {{"kind", "lifecycle"}, {"component", rules[e.component].name}};
   }
+  Json operator()(const CameUp& e) const {
+    return {{"kind", "came_up"}, {"component", rules[e.component].name}};
+  }
   Json operator()(const RivalSeen& e) const {
     return {{"kind", "rival"}, {"component", rules[e.component].name}};
   }

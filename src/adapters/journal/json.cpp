@@ -115,6 +115,15 @@ class EventWriter {
             {"component", name(e.component)},
             {"lifecycle", culprit::to_string(e.state)}};
   }
+  Json operator()(const CameUp& e) const {
+    return {{"type", "came_up"},
+            {"component", name(e.component)},
+            {"driver", e.how.driver == ComingUp::Driver::kOther     ? "other"
+                       : e.how.driver == ComingUp::Driver::kCulprit ? "culprit"
+                                                                    : "unknown"},
+            {"joining_ns", e.how.joining.count()},
+            {"rising_ns", e.how.rising.count()}};
+  }
   Json operator()(const RivalSeen& e) const {
     return {{"type", "rival_seen"}, {"component", name(e.component)}};
   }

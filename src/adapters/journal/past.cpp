@@ -91,6 +91,20 @@ std::optional<decltype(Event::what)> about_lifecycle(const Json& body, const Rul
   return LifecycleIntended{*component, *state};
 }
 
+std::optional<decltype(Event::what)> about_coming_up(const Json& body, const RuleSet& rules) {
+  const auto component = find_component(rules, text_of(body, "component"));
+  if (!component) return std::nullopt;
+  const std::string driver = text_of(body, "driver");
+  const auto measured = [&](const char* key) {
+    return Duration(std::max<std::int64_t>(0, integer_of(body, key)));
+  };
+  return CameUp{*component,
+                {driver == "other"     ? ComingUp::Driver::kOther
+                 : driver == "culprit" ? ComingUp::Driver::kCulprit
+                                       : ComingUp::Driver::kUnknown,
+                 measured("joining_ns"), measured("rising_ns")}};
+}
+
 // Of each component only the last event of this kind counts.
 template <class What>
 bool replaces_older(const Event& event, Past& kept) {
@@ -172,6 +186,7 @@ std::optional<Event> past_event(const Json& body, const RuleSet& rules) {
   if (type == "order_accepted") what = about_order(body, rules);
   if (type == "component_found") what = about_process(body, rules);
   if (type == "lifecycle_intended") what = about_lifecycle(body, rules);
+  if (type == "came_up") what = about_coming_up(body, rules);
   if (!what && rule) what = about_rule(type, *rule);
   if (!what && rule) what = about_resolution(type, *rule, strategy);
   if (!what && strategy) what = about_strategy(type, body, *strategy, rules);
@@ -203,7 +218,7 @@ Past still_counting(const Past& past, Time now, const RuleSet& rules) {
       continue;
     }
     if (replaces_older<ComponentFound>(event, kept) ||
-        replaces_older<LifecycleIntended>(event, kept))
+        replaces_older<LifecycleIntended>(event, kept) || replaces_older<CameUp>(event, kept))
       continue;
     const auto rule = searched(event, rules);
     if (rule && i > open[rule->index] && is_said_again(event, kept, rules)) continue;

@@ -52,6 +52,20 @@ TEST(Past, OutcomesAreReadBackAsTheyWereWritten) {
   EXPECT_EQ(std::get<FailureResolved>(again[1].what).strategy, StrategyId(1));
 }
 
+TEST(Past, OfEachComponentHowItCameUpLastIsReadBack) {
+  const RuleSet r = rules();
+  ASSERT_FALSE(r.components.empty());
+  const ComponentId c(0);
+  const ComingUp how{ComingUp::Driver::kOther, 300ms, 2500ms};
+  const Past past = {at(1s, CameUp{c, {ComingUp::Driver::kCulprit, 1s, 1s}}),
+                     at(2s, CameUp{c, how})};
+  const Past kept = still_counting(past, Time(48h), r);
+  ASSERT_EQ(kept.size(), 1u);
+  const Past again = past_from_json(to_json(kept, r), r);
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(std::get<CameUp>(again[0].what).how, how);
+}
+
 // Journals of before outcomes waited.
 TEST(Past, OldRowsAreStillRead) {
   const RuleSet r = rules();

@@ -100,9 +100,12 @@ void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
   if (!attempt_of(run)->obstacle.empty() && !run.is_undoing) return;
   while (run.pursuit || (run.is_undoing ? next_undo(run, now) : next_goal(run, now))) {
     const bool had_changed = run.pursuit->has_changed_anything();
-    if (run.pending == CommandId{} || run.pursuit->next_deadline() <= now) {
+    if (run.pending == CommandId{} || run.pursuit->next_deadline() <= now ||
+        run.pursuit->is_lost(knowledge_)) {
       if (auto request = run.pursuit->advance(knowledge_, now)) {
         run.pending = {++last_command_};
+        if (std::holds_alternative<StopProcess>(*request))
+          knowledge_.components[run.pursuit->component()].culprit_raised = kLongAgo;
         commands.push_back({run.pending, run.pursuit->component(), *request,
                             Pursuit::timeout(*request), purpose_of(run)});
       }
@@ -169,8 +172,10 @@ void Executor::finish_goal(Run& run, Time now) {
     }
   }
   if (pursuit.is_reached()) {
-    const bool switches = type == AdaptationType::kActivate || type == AdaptationType::kDeactivate;
-    if (switches) note_lifecycle(pursuit, now);
+    // Where it was brought last counts; a restart takes it through another state.
+    if (run.goal + 1 == run.goals.size()) note_lifecycle(pursuit, now);
+    const bool launches = type == AdaptationType::kRedeploy || type == AdaptationType::kStart;
+    if (launches) note_coming_up(pursuit, now);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
     note_mode(pursuit, now);
     ++run.goal;
@@ -227,6 +232,22 @@ void Executor::note_lifecycle(const Pursuit& pursuit, Time now) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
   if (lifecycle != nullptr)
     knowledge_.intend_lifecycle(pursuit.component(), lifecycle->target, now);
+}
+
+// How long it took, and who brought it up.
+void Executor::note_coming_up(const Pursuit& pursuit, Time now) {
+  ComponentState& state = knowledge_.components[pursuit.component()];
+  ComingUp how = state.coming_up;
+  if (std::holds_alternative<execute::PresentGoal>(pursuit.goal()) &&
+      pursuit.has_changed_anything()) {
+    how.joining = now - pursuit.changed();
+  } else if (std::holds_alternative<execute::LifecycleGoal>(pursuit.goal())) {
+    const bool is_ours = pursuit.has_changed_anything() && !pursuit.met_driver();
+    how.driver = is_ours ? ComingUp::Driver::kCulprit : ComingUp::Driver::kOther;
+    how.rising = now - state.node_seen;
+    if (is_ours) state.culprit_raised = now;
+  }
+  knowledge_.note_coming_up(pursuit.component(), how, now);
 }
 
 // Which mode was set, and from which: something else may set it back.

@@ -68,6 +68,7 @@ class Executor {
   void note_mode(const execute::Pursuit& pursuit, Time now);
   void note_rival(const Run& run, Time now);
   void note_lifecycle(const execute::Pursuit& pursuit, Time now);
+  void note_coming_up(const execute::Pursuit& pursuit, Time now);
   Attempt* attempt_of(const Run& run);
   void enter(Run& run, Attempt::Stage stage);
 

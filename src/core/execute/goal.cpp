@@ -1,5 +1,6 @@
 #include "execute/goal.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/ros_names.h"
@@ -24,6 +25,42 @@ Value negated(const Value& value) {
   return -std::get<double>(value);
 }
 
+// Where rules say that the component's lifecycle must be: a trigger that is true now if it were
+// inactive and not if it were active, or the other way round. Nothing if none says so.
+std::optional<Lifecycle> demanded(ComponentId component, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  const auto fires = [&](const Rule& rule, std::string_view state) {
+    std::vector<Slot> slots(knowledge.signals.slots().begin(), knowledge.signals.slots().end());
+    for (const InputId id : rule.inputs) {
+      const Input& input = rules[id];
+      if (input.component != component) continue;
+      if (input.kind == Input::Kind::kLifecycle) slots[id.index] = Slot::of(state);
+      if (input.kind == Input::Kind::kAlive) slots[id.index] = Slot::of(true);
+    }
+    const Slot result = evaluate(rule.trigger, slots);
+    return result.known && result.b;
+  };
+  for (const Rule& rule : rules.rules) {
+    const bool reads = std::any_of(rule.inputs.begin(), rule.inputs.end(), [&](InputId id) {
+      return rules[id].kind == Input::Kind::kLifecycle && rules[id].component == component;
+    });
+    if (!reads) continue;
+    const bool if_active = fires(rule, to_string(Lifecycle::kActive));
+    const bool if_inactive = fires(rule, to_string(Lifecycle::kInactive));
+    if (if_active != if_inactive) return if_active ? Lifecycle::kInactive : Lifecycle::kActive;
+  }
+  return std::nullopt;
+}
+
+PresentGoal present(ComponentId component, const Knowledge& knowledge) {
+  PresentGoal goal;
+  const Duration joining = knowledge.components[component].coming_up.joining;
+  if (joining <= Duration::zero()) return goal;
+  goal.patience = std::max<Duration>(goal.patience, 4 * joining);
+  goal.longest = goal.patience;
+  return goal;
+}
+
 // What is no number is no value that could be set and read back.
 bool is_nan(const Value& value) {
   const auto* number = std::get_if<double>(&value);
@@ -33,17 +70,48 @@ bool is_nan(const Value& value) {
 }  // namespace
 
 Duration patience(const Goal& goal) {
-  return std::visit(Overload{[](const ParameterGoal&) -> Duration { return 3s; },
-                             [](const LifecycleGoal& g) -> Duration { return 10s + g.grace; },
-                             [](const ModeGoal&) -> Duration { return 10s; },
-                             [](const ServiceGoal&) -> Duration { return 10s; },
-                             [](const GoneGoal&) -> Duration { return 15s; },
-                             [](const PresentGoal&) -> Duration { return 20s; }},
-                    goal);
+  return std::visit(
+      Overload{[](const ParameterGoal&) -> Duration { return 3s; },
+               [](const LifecycleGoal& g) -> Duration { return g.patience + g.grace; },
+               [](const ModeGoal&) -> Duration { return 10s; },
+               [](const ServiceGoal&) -> Duration { return 10s; },
+               [](const GoneGoal&) -> Duration { return 15s; },
+               [](const PresentGoal& g) -> Duration { return g.patience; }},
+      goal);
+}
+
+// Who does it, in this order: the rule file says so; somebody was seen to; a rule says where it
+// must be, which is for culprit to reach; culprit did it before. Where nothing is known, a driver
+// gets as long as the start took, or the impact, to show itself.
+LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
+                          const Knowledge& knowledge) {
+  constexpr Duration kLongestGrace = 60s;
+  using Driver = ComingUp::Driver;
+  const ComingUp& before = knowledge.components[adaptation.component].coming_up;
+  const Duration impact = duration_of(adaptation.impact, knowledge.rules);
+  LifecycleGoal goal{target};
+  goal.patience = std::max<Duration>({goal.patience, impact, 4 * before.rising});
+  switch (knowledge.rules[adaptation.component].lifecycle) {
+    case LifecycleDriver::kManaged:
+      return goal;
+    case LifecycleDriver::kSelf:
+    case LifecycleDriver::kLauncher:
+      goal.is_left_to_others = true;
+      goal.patience = std::max<Duration>(goal.patience, 30s);
+      return goal;
+    case LifecycleDriver::kUndeclared:
+      break;
+  }
+  if (before.driver == Driver::kOther) {
+    goal.grace = std::min<Duration>(2 * before.rising + impact, kLongestGrace);
+  } else if (before.driver == Driver::kUnknown && !demanded(adaptation.component, knowledge)) {
+    goal.grace = before.joining > Duration::zero() ? before.joining : impact;
+    goal.grace = std::min(goal.grace, kLongestGrace);
+  }
+  return goal;
 }
 
 Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge) {
-  constexpr Duration kGrace = 1s;
   const ComponentState& state = knowledge.components[adaptation.component];
   switch (adaptation.type) {
     case AdaptationType::kSetParameter:
@@ -72,18 +140,20 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       return std::vector<Goal>{LifecycleGoal{Lifecycle::kInactive, {}},
                                LifecycleGoal{Lifecycle::kActive, {}}};
     case AdaptationType::kRedeploy: {
-      std::vector<Goal> goals{GoneGoal{}, PresentGoal{}};
+      std::vector<Goal> goals{GoneGoal{}, present(adaptation.component, knowledge)};
       // A managed node comes back unconfigured unless it brings itself up: it is brought to where
-      // it was.
-      const Lifecycle was = state.intended_lifecycle;
-      if (was == Lifecycle::kActive || was == Lifecycle::kInactive)
-        goals.push_back(LifecycleGoal{was, kGrace});
+      // it was, or to where a rule says that it must be.
+      if (state.intended_lifecycle == Lifecycle::kUnknown) return goals;
+      const Lifecycle target =
+          demanded(adaptation.component, knowledge).value_or(state.intended_lifecycle);
+      if (target == Lifecycle::kActive || target == Lifecycle::kInactive)
+        goals.push_back(bringing_up(adaptation, target, knowledge));
       return goals;
     }
     case AdaptationType::kStart: {
-      std::vector<Goal> goals{PresentGoal{}};
+      std::vector<Goal> goals{present(adaptation.component, knowledge)};
       if (state.intended_lifecycle != Lifecycle::kUnknown)
-        goals.push_back(LifecycleGoal{Lifecycle::kActive, kGrace});
+        goals.push_back(bringing_up(adaptation, Lifecycle::kActive, knowledge));
       return goals;
     }
     case AdaptationType::kStop:

@@ -28,6 +28,8 @@ struct LifecycleGoal {
   Lifecycle target = Lifecycle::kActive;
   // A node that was just started may bring itself up: it gets this long before it is told to.
   Duration grace{};
+  bool is_left_to_others = false;                // it is never told to
+  Duration patience = std::chrono::seconds(10);  // beyond the grace, for each transition
 };
 struct ModeGoal {
   std::string mode;
@@ -45,6 +47,9 @@ struct GoneGoal {
 // do; otherwise one that appears from now on is wanted.
 struct PresentGoal {
   std::optional<int> instead_of{};
+  Duration patience = std::chrono::seconds(20);
+  Duration longest =
+      std::chrono::seconds(60);  // while the process that was started is known to run
 };
 
 using Goal =
@@ -52,6 +57,10 @@ using Goal =
 
 // How long after the request a goal may take.
 Duration patience(const Goal& goal);
+
+// How a node that was just started is brought to `target`: by whom, and how long that may take.
+LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
+                          const Knowledge& knowledge);
 
 // The goals of an adaptation, in order. An error if they cannot be told: the new value of a
 // parameter is unknown now.

@@ -73,7 +73,8 @@ Pursuit::Pursuit(Goal goal, ComponentId component, Time now)
     : goal_(std::move(goal)),
       component_(component),
       begun_(now),
-      deadline_(later(now, patience(goal_))) {}
+      deadline_(later(now, patience(goal_))),
+      held_until_(later(now, grace(goal_))) {}
 
 Duration Pursuit::timeout(const Request& request) {
   if (std::holds_alternative<StopProcess>(request)) return 12s;
@@ -111,7 +112,18 @@ void Pursuit::restart(Time now) {
   if (step_ == Step::kChanging) wake_ = std::max(wake_, later(now, timeout(sent_.back()) + 1s));
 }
 
+bool Pursuit::is_lost(const Knowledge& knowledge) const {
+  const bool is_of_process =
+      std::holds_alternative<GoneGoal>(goal_) || std::holds_alternative<PresentGoal>(goal_);
+  const ComponentState& state = knowledge.components[component_];
+  return !is_of_process && !state.in_graph && state.alive == false;
+}
+
 std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Time now) {
+  if (is_lost(knowledge)) {
+    const std::string& how = knowledge.components[component_].process_remark;
+    return give_up("it is not there any more" + (how.empty() ? "" : ": " + how));
+  }
   // An adapter that never answers must not hold a component for ever.
   if (wake_ <= now && (step_ == Step::kLooking || step_ == Step::kChanging)) {
     answered({{}, Outcome::kTimedOut, {}, ""}, now);
@@ -147,7 +159,7 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   if (did_not_come(*seen_)) {
     // Before the change: nobody there to change, unless it is still coming up. After it: the answer
     // may just be late.
-    if (now >= deadline_ || (!has_changed_anything() && now >= later(begun_, grace(goal_))))
+    if (now >= deadline_ || (!has_changed_anything() && now >= held_until_))
       return give_up(why(*seen_));
     return look_again(now);
   }
@@ -199,11 +211,26 @@ std::optional<Pursuit::Request> Pursuit::pursue(const LifecycleGoal& goal, Time 
   if (present == goal.target) return reach();
   if (present == Lifecycle::kFinalized) return give_up("it is finalized");
   if (present == Lifecycle::kUnknown || present == Lifecycle::kTransition) return look_again(now);
-  if (!has_changed_anything() && now < later(begun_, goal.grace)) return look_again(now);
+  const bool is_refused = answer_ && answer_->outcome == Outcome::kRefused;
+  const bool has_moved = last_ != Lifecycle::kUnknown && present != last_;
+  if (has_moved && has_changed_anything() && present == Lifecycle::kUnconfigured)
+    return give_up("it fell back to unconfigured when asked to " +
+                   to_string(Command{{}, {}, sent_.back(), {}}));
+  // What was not asked for, or was refused and is so all the same, somebody else did: two who take
+  // one node through its lifecycle make one another fail. It is left to him for a while.
+  if (has_moved && (present != asked_for_ || is_refused)) {
+    driver_seen_ = true;
+    held_until_ = later(now, goal.patience / 2);
+  }
+  last_ = present;
+  if (goal.is_left_to_others || now < held_until_) return look_again(now);
   const Transition next = present == Lifecycle::kUnconfigured ? Transition::kConfigure
                           : present == Lifecycle::kInactive   ? Transition::kActivate
                                                               : Transition::kDeactivate;
-  if (!has_sent(next)) return change(ChangeLifecycle{next}, now);
+  if (!has_sent(next)) {
+    asked_for_ = next == Transition::kActivate ? Lifecycle::kActive : Lifecycle::kInactive;
+    return change(ChangeLifecycle{next}, now);
+  }
   if (answer_->outcome == Outcome::kRefused)
     return give_up("it refused to " + to_string(Command{{}, {}, sent_.back(), {}}));
   return look_again(now);
@@ -254,13 +281,16 @@ std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal,
   if (did_not_come(*answer_) || answer_->outcome == Outcome::kRefused)
     return give_up(why(*answer_));
   const auto* pid = std::get_if<Value>(&answer_->value);
-  const bool has_ended = state.process == ProcessState::kGone && pid != nullptr &&
-                         *pid == Value(std::int64_t{state.pid});
+  const bool is_it = pid != nullptr && *pid == Value(std::int64_t{state.pid});
+  if (is_it && state.process == ProcessState::kRunning)
+    deadline_ = std::max(deadline_, later(changed_, goal.longest));
+  const bool has_ended = state.process == ProcessState::kGone && is_it;
   if (has_ended) return give_up("it ended at once: " + state.process_remark);
   return look_again(now);
 }
 
 std::optional<Pursuit::Request> Pursuit::change(Request request, Time now) {
+  changed_ = now;
   deadline_ = later(now, patience(goal_));
   wake_ = later(now, timeout(request) + 1s);
   step_ = Step::kChanging;
@@ -272,7 +302,8 @@ std::optional<Pursuit::Request> Pursuit::look_again(Time now) {
   if (now >= deadline_) {
     const bool was_accepted = answer_ && answer_->outcome == Outcome::kDone;
     return give_up((was_accepted ? "it accepted and did nothing: not " : "not ") + describe(goal_) +
-                   " after " + to_string(patience(goal_)));
+                   " after " + to_string(now - (sent_.empty() ? begun_ : changed_)) +
+                   (is_left() ? "; who is to bring it up did not (LIFECYCLE)" : ""));
   }
   wake_ = std::min(later(now, kPause), deadline_);
   step_ = Step::kPausing;
@@ -289,6 +320,11 @@ std::optional<Pursuit::Request> Pursuit::give_up(std::string reason) {
   status_ = Status::kGivenUp;
   remark_ = std::move(reason);
   return std::nullopt;
+}
+
+bool Pursuit::is_left() const {
+  const auto* lifecycle = std::get_if<LifecycleGoal>(&goal_);
+  return lifecycle != nullptr && lifecycle->is_left_to_others;
 }
 
 bool Pursuit::has_sent(Transition transition) const {

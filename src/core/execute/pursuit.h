@@ -39,6 +39,12 @@ class Pursuit {
   // Why the goal was given up; or what was odd about reaching it; or empty.
   const std::string& remark() const { return remark_; }
 
+  // Its component is not there any more, so that there is nothing to look at or to change.
+  bool is_lost(const Knowledge& knowledge) const;
+
+  // Somebody else has changed, meanwhile, what it changes.
+  bool met_driver() const { return driver_seen_; }
+
   // It was given up because something else sets back what it sets.
   bool met_rival() const { return met_rival_; }
 
@@ -51,6 +57,8 @@ class Pursuit {
   // When to advance even if nothing was observed.
   Time next_deadline() const;
 
+  // When the last change was asked for; kNever before.
+  Time changed() const { return changed_; }
   const Goal& goal() const { return goal_; }
   ComponentId component() const { return component_; }
 
@@ -71,6 +79,7 @@ class Pursuit {
   std::optional<Request> look_again(Time now);
   std::optional<Request> reach(std::string remark = "");
   std::optional<Request> give_up(std::string reason);
+  bool is_left() const;
   bool has_sent(Transition transition) const;
 
   Goal goal_;
@@ -79,7 +88,8 @@ class Pursuit {
   Step step_ = Step::kLook;
   Time begun_;
   Time deadline_;
-  Time wake_ = kNever;  // of the answer, or of the pause
+  Time changed_ = kNever;  // when the last change was asked for
+  Time wake_ = kNever;     // of the answer, or of the pause
   std::optional<Reply> before_;
   std::optional<Reply> seen_;    // the last look
   std::optional<Reply> answer_;  // to the last change
@@ -87,6 +97,10 @@ class Pursuit {
   std::optional<Value> wanted_;  // ParameterGoal, once the present value is known
   std::string remark_;
   bool met_rival_ = false;
+  Lifecycle last_ = Lifecycle::kUnknown;       // LifecycleGoal: the last primary state seen
+  Lifecycle asked_for_ = Lifecycle::kUnknown;  // where the last transition leads
+  bool driver_seen_ = false;
+  Time held_until_ = kLongAgo;  // nothing is asked for
 };
 
 }  // namespace culprit::execute

@@ -27,17 +27,18 @@ const Interrupted::Request* last_of(const Sent& sent) {
 }
 
 // The process of a component is, or was about to be, replaced.
-std::vector<Goal> goals_of_process(const Sent& sent, AdaptationType type) {
+std::vector<Goal> goals_of_process(const Sent& sent, const Adaptation& adaptation,
+                                   const Knowledge& knowledge) {
   const auto* stop = last_of<StopProcess>(sent);
   const bool is_started = last_of<StartProcess>(sent) != nullptr;
   const int old_pid = stop != nullptr ? std::get<StopProcess>(stop->command.what).pid : 0;
   std::vector<Goal> goals;
   if (!is_started && stop != nullptr) goals.push_back(GoneGoal{old_pid});
-  if (type == AdaptationType::kStop) return goals;
+  if (adaptation.type == AdaptationType::kStop) return goals;
   goals.push_back(PresentGoal{old_pid});
   const auto* was = std::get_if<Lifecycle>(&sent.front()->command.purpose.before);
   if (was != nullptr && (*was == Lifecycle::kActive || *was == Lifecycle::kInactive))
-    goals.push_back(LifecycleGoal{*was, std::chrono::seconds(1)});
+    goals.push_back(bringing_up(adaptation, *was, knowledge));
   return goals;
 }
 
@@ -62,7 +63,7 @@ Resumption resumption_of(const Interrupted& interrupted, const Knowledge& knowle
   const AdaptationType type = adaptations[interrupted.adaptations_done].type;
   const Interrupted::Request& last = *sent.back();
   if (last_of<StopProcess>(sent) != nullptr || last_of<StartProcess>(sent) != nullptr) {
-    resumption.goals = goals_of_process(sent, type);
+    resumption.goals = goals_of_process(sent, adaptations[interrupted.adaptations_done], knowledge);
   } else if (std::holds_alternative<ChangeLifecycle>(last.command.what)) {
     resumption.goals = goals_of_lifecycle(sent, type);
   } else if (const auto* set = std::get_if<SetParameter>(&last.command.what)) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "knowledge/coming_up.h"
 #include "language/rule_set.h"
 #include "robot/observation.h"
 
@@ -19,14 +20,18 @@ struct ComponentState {
   int node_pid = 0;           // the process that the node runs in; 0 = not known
   int namesakes = 0;          // other nodes of its name
   ProcessState process = ProcessState::kRunning;  // meaningful if pid is set
-  int pid = 0;                 // the process that the operating system was asked about
-  std::string process_remark;  // how it ended
-  int missed_probes = 0;
+  int pid = 0;                  // the process that the operating system was asked about
+  std::string process_remark;   // how it ended
+  int missed_probes = 0;        // in a row, since it answered last
+  bool answers_probes = false;  // it did, since its process began
   Lifecycle lifecycle = Lifecycle::kUnknown;
   // Where its lifecycle should be: where it was last while no strategy was at it, or where one
   // brought it on purpose. A process that takes the place of another is brought there; the state
   // that it comes up in is nobody's intention.
   Lifecycle intended_lifecycle = Lifecycle::kUnknown;
+  ComingUp coming_up;              // of the last process that was seen to come up, or as told
+  bool is_rising = false;          // it was seen unconfigured, and is not active yet
+  Time culprit_raised = kLongAgo;  // when culprit took it through its lifecycle last
   bool took_place = false;  // its process took another's place, and its lifecycle was not read yet
 
   // Does it work as a process and as a node? Nothing until something is known of it.

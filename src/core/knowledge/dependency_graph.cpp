@@ -93,6 +93,14 @@ bool DependencyGraph::node_vanished(const std::string& node) {
   return true;
 }
 
+void DependencyGraph::keep_ends(ComponentId component, bool is_kept) {
+  const auto node = nodes_of_components_[component.index];
+  if (!node || nodes_[node->index].keeps_ends == is_kept) return;
+  nodes_[node->index].keeps_ends = is_kept;
+  ++changes_;
+  note_channels_of(*node);
+}
+
 // What a node's presence decides: whether its ends count that are only remembered.
 void DependencyGraph::note_channels_of(NodeId node) {
   for (const ChannelId channel : nodes_[node.index].consumes) condensation_.note(channel.index);
@@ -200,7 +208,8 @@ std::vector<std::string> DependencyGraph::published_topics() const {
 }
 
 bool DependencyGraph::counts(const End& end, const Channel& channel, bool producer) const {
-  if (end.count > 0 || !nodes_[end.node.index].is_present) return true;
+  const Node& node = nodes_[end.node.index];
+  if (end.count > 0 || !node.is_present || node.keeps_ends) return true;
   return producer && channel.live_producers == 0;
 }
 

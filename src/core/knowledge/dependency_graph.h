@@ -58,6 +58,10 @@ class DependencyGraph {
   // The component that this node is, if it is one.
   std::optional<ComponentId> component_of(const std::string& node) const;
 
+  // While it is kept, ends that the component's node had count although it has none now: it is
+  // being brought up, and makes them again later.
+  void keep_ends(ComponentId component, bool is_kept);
+
   // How many nodes publish `topic`, as far as was seen and is not ignored, and whether the
   // component is among them.
   std::size_t publisher_count(const std::string& topic) const;
@@ -107,6 +111,7 @@ class DependencyGraph {
   struct Node {
     std::string name;
     bool is_present = false;
+    bool keeps_ends = false;
     std::optional<ComponentId> component;
     std::vector<ChannelId> consumes;
     std::vector<ChannelId> produces;

@@ -112,6 +112,7 @@ class Describer {
            (is_component ? " Nothing is done about it" : " What rules read of it is unknown");
   }
   std::string operator()(const LifecycleIntended&) const { return ""; }
+  std::string operator()(const CameUp&) const { return ""; }
   std::string operator()(const RivalSeen& e) const {
     return "something else sets the mode of " + rules_[e.component].name +
            " back; it is left alone";

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "knowledge/coming_up.h"
 #include "language/rule_set.h"
 #include "robot/observation.h"
 
@@ -157,6 +158,12 @@ struct LifecycleIntended {
   Lifecycle state = Lifecycle::kUnknown;
 };
 
+// A process of it came up otherwise than the last one (ComponentState::coming_up). Likewise.
+struct CameUp {
+  ComponentId component;
+  ComingUp how;
+};
+
 // Something else sets the mode back that strategies set (rivals.h). It is left alone from now on.
 struct RivalSeen {
   ComponentId component;
@@ -279,8 +286,8 @@ struct Event {
                RoundSpent, RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble,
                OrderAccepted, OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed,
                StrategyAbandoned, OrderCarriedOut, SilenceEnded, StormBegan, StormEnded,
-               LastResortReached, LifecycleIntended, OutcomePending, OutcomeCounted, FailureFlaps,
-               JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen>
+               LastResortReached, LifecycleIntended, CameUp, OutcomePending, OutcomeCounted,
+               FailureFlaps, JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen>
       what;
 };
 

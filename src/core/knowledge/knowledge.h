@@ -68,6 +68,9 @@ struct Knowledge {
   // Sets ComponentState::intended_lifecycle, and tells if it is another.
   void intend_lifecycle(ComponentId component, Lifecycle state, Time at);
 
+  // Sets ComponentState::coming_up, and tells if it is another.
+  void note_coming_up(ComponentId component, const ComingUp& how, Time at);
+
   // What the run that comes next should know. Changes only with the graph's changes and the count
   // of sightings.
   KnownRobot known_robot() const;

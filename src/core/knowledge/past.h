@@ -9,6 +9,7 @@
 //   ComponentFound                                                   which process it last ran in
 //   LifecycleIntended                                                what a new process of it is
 //   brought to
+//   CameUp                                                           how long it is waited for
 //
 // Events of other kinds say nothing here.
 #pragma once

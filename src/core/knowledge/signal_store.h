@@ -61,6 +61,7 @@ class SignalStore {
     std::optional<Time> last;
     Duration interval{};
     Duration silence{};
+    Duration longest{};  // the longest pause that ended by itself
   };
   const Rhythm& rhythm(TopicId id) const { return rhythms_[id.index]; }
   void set_rhythm(TopicId id, Rhythm rhythm) { rhythms_[id.index] = rhythm; }

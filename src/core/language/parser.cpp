@@ -177,7 +177,7 @@ class Parser {
   bool component(Scanner& s) {
     auto name = read_.declared_name(s, "the component's name");
     if (!name) return false;
-    syntax::Component component{std::move(*name), {}, {}, false};
+    syntax::Component component{std::move(*name), {}, {}};
     while (!s.at_end()) {
       const Token clause = s.peek();
       if (clause.text == "NODE" && !component.node) {
@@ -195,11 +195,32 @@ class Parser {
       } else if (clause.text == "REQUIRED" && !component.is_required) {
         s.next();
         component.is_required = true;
+      } else if (clause.text == "LIFECYCLE" &&
+                 component.lifecycle == syntax::LifecycleDriver::kUndeclared) {
+        s.next();
+        if (!lifecycle(s, component)) return false;
       } else {
-        return read_.unexpected_clause(clause, {"NODE", "LAUNCH", "REQUIRED"});
+        return read_.unexpected_clause(clause, {"NODE", "LAUNCH", "REQUIRED", "LIFECYCLE"});
       }
     }
     file_.components.push_back(std::move(component));
+    return true;
+  }
+
+  bool lifecycle(Scanner& s, syntax::Component& component) {
+    using enum syntax::LifecycleDriver;
+    const Token driver = s.next();
+    if (driver.text == "self") {
+      component.lifecycle = kSelf;
+    } else if (driver.text == "managed") {
+      component.lifecycle = kManaged;
+    } else if (driver.text == "launcher") {
+      component.lifecycle = kLauncher;
+    } else {
+      return read_.fail_token(driver, "who takes it through its lifecycle",
+                              "write self (the node does), managed (culprit does) or launcher "
+                              "(whoever starts it does)");
+    }
     return true;
   }
 

@@ -19,6 +19,7 @@ namespace culprit {
 
 using syntax::AdaptationType;
 using syntax::Criticality;
+using syntax::LifecycleDriver;
 
 // A managed ROS 2 node (paper: c in C).
 struct Component {
@@ -27,6 +28,7 @@ struct Component {
   std::vector<std::string> launch;  // argument vector; empty: culprit cannot start it
   bool declared = true;             // by a COMPONENT line
   bool is_required = false;  // a person is told if it is not there, also if no rule is about that
+  LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
 };
 
 struct Topic {

@@ -74,11 +74,20 @@ struct Constant {
   Expression value;
 };
 
+// Who takes a managed node through its lifecycle when it starts.
+enum class LifecycleDriver : std::uint8_t {
+  kUndeclared,
+  kSelf,     // the node itself: culprit waits, and never drives a start
+  kManaged,  // culprit, at once
+  kLauncher  // who starts it, or a lifecycle manager of its own: as kSelf
+};
+
 struct Component {
   Name name;
   std::optional<Name> node;
   std::optional<Name> launch;  // the quoted text, unescaped
   bool is_required = false;
+  LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
 };
 
 struct Dependency {

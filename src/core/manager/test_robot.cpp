@@ -209,6 +209,11 @@ void TestRobot::change_lifecycle(Component& c, const Command& command, Transitio
                      (transition == Transition::kDeactivate && c.state == kActive);
   if (c.refuses || !legal)
     return reply(command, Outcome::kRefused, {}, "the transition is not possible");
+  if (c.fails_to_activate && transition == Transition::kActivate) {
+    c.state = kUnconfigured;
+    observe(LifecycleRead{command.component, c.state});
+    return reply(command, Outcome::kRefused, {}, "");
+  }
   c.state = transition == Transition::kActivate ? kActive : kInactive;
   if (transition == Transition::kActivate && c.fault == "restart") c.fault.clear();
   observe(LifecycleRead{command.component, c.state});
@@ -232,7 +237,20 @@ void TestRobot::start(Component& c, const Command& command) {
     c.answers = true;
     if (c.fault == "restart" || c.fault == "redeploy") c.fault.clear();
     appear(c);
+    if (c.activates_itself_after > Duration::zero())
+      later(c.activates_itself_after, [this, &c, pid = c.pid] { activate_itself(c, pid); });
   });
+}
+
+void TestRobot::activate_itself(Component& c, int pid) {
+  if (c.pid != pid || c.process == ProcessState::kGone) return;
+  if (c.state == Lifecycle::kUnconfigured) {
+    c.state = Lifecycle::kActive;
+    observe(LifecycleRead{id(c.name), c.state});
+  } else {
+    c.process = ProcessState::kGone;
+    observe(ProcessSeen{id(c.name), ProcessState::kGone, pid, "exit code 1"});
+  }
 }
 
 std::size_t TestRobot::count(const std::string& part) const {

@@ -50,6 +50,9 @@ class TestRobot {
     bool dies_at_start = false;
     Duration start_time = 300ms;
     Lifecycle state_at_start = Lifecycle::kActive;
+    // A timer of its own activates it so long after its start. It ends if somebody was there first.
+    Duration activates_itself_after{};
+    bool fails_to_activate = false;  // with an error: it falls back to unconfigured
   };
   Component& operator[](const std::string& name) { return components_.at(name); }
   Component& add(const std::string& name, std::vector<std::string> needs = {},
@@ -119,6 +122,7 @@ class TestRobot {
   void change_lifecycle(Component& component, const Command& command, Transition transition);
   void start(Component& component, const Command& command);
   void appear(const Component& component);
+  void activate_itself(Component& component, int pid);
   void show_ends();  // of what runs
   void later(Duration delay, std::function<void()> action);
 

@@ -25,8 +25,11 @@ namespace culprit {
 
 class Monitor {
  public:
-  // A component that is only known by probing is lost after this many unanswered ones.
+  // A component is lost after this many unanswered ones; one whose process is known only if it is
+  // silent too (is_silent).
   static constexpr int kMissedProbes = 2;
+  // What takes a node through its lifecycle later than that does not belong to its start.
+  static constexpr Duration kStart = std::chrono::seconds(60);
   // What a signal usually is: its last readings, once there are enough.
   static constexpr std::size_t kReadings = 32;
   static constexpr std::size_t kLeastReadings = 4;
@@ -115,12 +118,18 @@ class Monitor {
   Slot rate(InputId id, Time now);
   Slot phi(InputId id, Time now) const;
 
+  // Whether a component that publishes the topic joined the graph since then.
+  bool has_begun_since(Time before, TopicId topic) const;
   void see(TopicId topic, Time at);
   // From when on a topic that has not spoken is silent; kNever while it was not seen.
   Time silent_from(TopicId topic) const;
   void tell_never_seen(Time at);
 
   void forget_process(ComponentId component, Time at);
+  void note_rise(ComponentId component, Lifecycle state, Time at);
+  void note_end_of_start(ComponentId component, Time at);
+  bool does_not_answer(ComponentId component, Time now) const;
+  bool is_silent(ComponentId component, Time now) const;
   void update_alive(ComponentId component, Time at, const std::string& remark);
   void update_alive_inputs(ComponentId component, const Slot& value);
 

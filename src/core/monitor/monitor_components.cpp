@@ -1,4 +1,7 @@
 // The monitor's part about the graph and its components: which are there, and which are alive.
+#include <algorithm>
+#include <utility>
+
 #include "monitor/monitor.h"
 
 namespace culprit {
@@ -6,6 +9,12 @@ namespace culprit {
 namespace {
 
 using Kind = Input::Kind;
+
+// Not ended by somebody (ProcessSeen::remark): it gave up by itself, or was aborted.
+bool has_crashed(const std::string& remark) {
+  return remark == "killed by signal 6" ||
+         (remark.starts_with("exit code ") && remark != "exit code 0");
+}
 
 }  // namespace
 
@@ -54,6 +63,8 @@ void Monitor::remember(const Past& past) {
   for (const Event& event : past) {
     if (const auto* intended = std::get_if<LifecycleIntended>(&event.what))
       knowledge_.components[intended->component].intended_lifecycle = intended->state;
+    if (const auto* came_up = std::get_if<CameUp>(&event.what))
+      knowledge_.components[came_up->component].coming_up = came_up->how;
   }
 }
 
@@ -64,10 +75,43 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
   if (is_primary && !state.took_place && knowledge_.states.reservation(seen.component) == nullptr)
     knowledge_.intend_lifecycle(seen.component, seen.state, at);
   if (seen.state != Lifecycle::kUnknown) state.took_place = false;
+  note_rise(seen.component, seen.state, at);
+  // A managed node makes its ends when it is configured.
+  const bool is_wanted = state.intended_lifecycle == Lifecycle::kActive ||
+                         state.intended_lifecycle == Lifecycle::kInactive;
+  const bool is_up = seen.state == Lifecycle::kActive || seen.state == Lifecycle::kInactive ||
+                     seen.state == Lifecycle::kFinalized;
+  knowledge_.graph.keep_ends(seen.component, is_wanted && !is_up);
   for (const InputId id : component_inputs_[seen.component.index]) {
     if (knowledge_.rules[id].kind != Kind::kLifecycle) continue;
     knowledge_.signals.set(id, is_primary ? Slot::of(to_string(seen.state)) : Slot());
   }
+}
+
+// Somebody brought it up who is not culprit: itself, its launcher, a lifecycle manager.
+void Monitor::note_rise(ComponentId component, Lifecycle now, Time at) {
+  ComponentState& state = knowledge_.components[component];
+  if (now == Lifecycle::kUnconfigured) state.is_rising = true;
+  if (now != Lifecycle::kActive || !std::exchange(state.is_rising, false)) return;
+  const bool is_start = state.in_graph && at <= later(state.node_seen, kStart);
+  if (!is_start || knowledge_.states.reservation(component) != nullptr) return;
+  ComingUp how = state.coming_up;
+  how.driver = ComingUp::Driver::kOther;
+  how.rising = at - state.node_seen;
+  knowledge_.note_coming_up(component, how, at);
+}
+
+// A node that activates itself and was activated before may end because of that. It is left more
+// time the next time: as long as it lived.
+void Monitor::note_end_of_start(ComponentId component, Time at) {
+  const ComponentState& state = knowledge_.components[component];
+  if (!state.in_graph || state.culprit_raised < state.node_seen ||
+      at > later(state.node_seen, kStart))
+    return;
+  ComingUp how = state.coming_up;
+  how.driver = ComingUp::Driver::kOther;
+  how.rising = at - state.node_seen;
+  knowledge_.note_coming_up(component, how, at);
 }
 
 void Monitor::on(Time at, const ProcessSeen& seen) {
@@ -80,6 +124,7 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
   state.pid = seen.pid;
   state.process_remark = seen.remark;
   if (seen.state == ProcessState::kGone) {
+    if (has_crashed(seen.remark)) note_end_of_start(seen.component, at);
     knowledge_.graph.node_vanished(knowledge_.graph.node_name(seen.component));
     forget_process(seen.component, at);
   }
@@ -91,7 +136,10 @@ void Monitor::on(Time at, const Probed& seen) {
   if (is_deaf_ && !seen.answered) return;
   ComponentState& state = knowledge_.components[seen.component];
   state.missed_probes = seen.answered ? 0 : state.missed_probes + 1;
-  update_alive(seen.component, at, "it does not answer");
+  state.answers_probes |= seen.answered;
+  update_alive(seen.component, at,
+               state.known_pid() == 0 ? "it does not answer"
+                                      : "its process runs, but it does not answer and is silent");
 }
 
 void Monitor::on(Time at, const LinkTrouble& seen) { knowledge_.tell(at, Trouble{seen.text}); }
@@ -101,6 +149,8 @@ void Monitor::forget_process(ComponentId component, Time at) {
   ComponentState& state = knowledge_.components[component];
   state.in_graph = false;
   state.node_pid = 0;
+  state.is_rising = false;
+  state.answers_probes = false;
   if (state.lifecycle != Lifecycle::kUnknown) state.took_place = true;
   on(at, LifecycleRead{component, Lifecycle::kUnknown});
   for (std::size_t p = 0; p < knowledge_.rules.parameters.size(); ++p) {
@@ -110,10 +160,36 @@ void Monitor::forget_process(ComponentId component, Time at) {
   }
 }
 
+// Of a node whose process is known to run, only one that answered before can cease to; and while
+// what it publishes comes, or pauses as it did when it was well, it is at work.
+bool Monitor::does_not_answer(ComponentId component, Time now) const {
+  const ComponentState& state = knowledge_.components[component];
+  if (state.missed_probes < kMissedProbes) return false;
+  return state.known_pid() == 0 || (state.answers_probes && is_silent(component, now));
+}
+
+bool Monitor::is_silent(ComponentId component, Time now) const {
+  constexpr Duration kLeast = std::chrono::seconds(1);
+  bool is_heard_of = false;
+  for (std::size_t t = 0; t < knowledge_.rules.topics.size(); ++t) {
+    const SignalStore::Rhythm& rhythm = knowledge_.signals.rhythm(TopicId(t));
+    const std::string& name = knowledge_.rules.topics[t].name;
+    if (!rhythm.last || rhythm.longest <= Duration::zero() ||
+        !knowledge_.graph.publishes(component, name) || knowledge_.graph.publisher_count(name) != 1)
+      continue;
+    const Duration pause = std::max(kLeast, rhythm.longest + rhythm.longest / 2);
+    if (now - heard_since(std::max(*rhythm.last, knowledge_.components[component].node_seen)) <
+        pause)
+      return false;
+    is_heard_of = true;
+  }
+  return is_heard_of;
+}
+
 void Monitor::update_alive(ComponentId component, Time at, const std::string& remark) {
   ComponentState& state = knowledge_.components[component];
-  const bool is_alive = state.in_graph && state.process == ProcessState::kRunning &&
-                        state.missed_probes < kMissedProbes;
+  const bool is_alive =
+      state.in_graph && state.process == ProcessState::kRunning && !does_not_answer(component, at);
   if (!knowledge_.sightings.has(component)) return;        // it may be a name that nobody has
   if (!is_alive && !state.alive && at < settled_) return;  // it may still be discovered
   const bool may_be_unheard = is_deaf_ || at < graced_;

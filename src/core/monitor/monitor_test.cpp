@@ -281,5 +281,75 @@ TEST(Monitor, NobodyIntendedTheStateThatANewProcessComesUpIn) {
   EXPECT_EQ(intended(), Lifecycle::kActive) << "it was seen on its way";
 }
 
+constexpr const char* kHeard = "!alive(c) || age(/t) > 1h";
+
+// Its process is known, it publishes /t every 100 ms until `end`, and answers until then.
+void work_until(Watched& watched, Duration end) {
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, EndpointAppeared{"/c", EndpointKind::kPublisher, "/t"});
+  for (Duration at = 1s; at < end; at += 100ms) watched.observe(at, SampleArrived{TopicId(0), 1});
+  watched.observe(end, Probed{ComponentId(0), true});
+}
+
+TEST(Monitor, ALocalNodeHangsThatNeitherAnswersNorPublishes) {
+  Watched watched(rule(kHeard));
+  const auto is_alive = [&] { return watched.knowledge.components[ComponentId(0)].alive; };
+  work_until(watched, 5s);
+  watched.observe(5400ms, Probed{ComponentId(0), false});
+  watched.observe(5800ms, Probed{ComponentId(0), false});
+  EXPECT_EQ(is_alive(), true) << "it was heard a moment ago";
+  watched.observe(6200ms, Probed{ComponentId(0), false});
+  EXPECT_EQ(is_alive(), false);
+  watched.observe(6300ms, Probed{ComponentId(0), true});
+  EXPECT_EQ(is_alive(), true);
+}
+
+TEST(Monitor, ALocalNodeIsAtWorkThatPublishesOrPausesAsEver) {
+  Watched watched(rule(kHeard));
+  const auto is_alive = [&] { return watched.knowledge.components[ComponentId(0)].alive; };
+  work_until(watched, 5s);
+  for (Duration at = 5s; at < 8s; at += 100ms) {
+    watched.observe(at, SampleArrived{TopicId(0), 1});
+    watched.observe(at, Probed{ComponentId(0), false});
+  }
+  EXPECT_EQ(is_alive(), true) << "it is busy";
+  watched.observe(8s, Probed{ComponentId(0), true});
+  watched.observe(11s, SampleArrived{TopicId(0), 1});  // a pause of 3.1 s, and it was well
+  for (Duration at = 11s; at < 15s; at += 400ms) watched.observe(at, Probed{ComponentId(0), false});
+  EXPECT_EQ(is_alive(), true);
+  watched.observe(16s, Probed{ComponentId(0), false});
+  EXPECT_EQ(is_alive(), false);
+}
+
+TEST(Monitor, WhoNeverAnsweredProvesNothingByNotAnswering) {
+  Watched watched(rule(kHeard));
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, EndpointAppeared{"/c", EndpointKind::kPublisher, "/t"});
+  for (Duration at = 1s; at < 3s; at += 100ms) watched.observe(at, SampleArrived{TopicId(0), 1});
+  for (Duration at = 3s; at < 60s; at += 400ms) watched.observe(at, Probed{ComponentId(0), false});
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, true);
+}
+
+TEST(Monitor, EndsStayWhileANodeIsBroughtUp) {
+  Watched watched(
+      "COMPONENT c NODE /c\nCOMPONENT d NODE /d\nRULE R\nPOLICIES ERROR\n"
+      "TRIGGER !alive(c) || !alive(d)\nSTRATEGY s 50 10\nADAPTATION c activate 1\n");
+  const auto depends = [&] { return !watched.knowledge.graph.upstream(ComponentId(0)).empty(); };
+  const EndpointVanished gone{"/c", EndpointKind::kSubscriber, "/from_d"};
+  watched.observe(1s, NodeAppeared{"/d", 6});
+  watched.observe(1s, EndpointAppeared{"/d", EndpointKind::kPublisher, "/from_d"});
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, EndpointAppeared{"/c", EndpointKind::kSubscriber, "/from_d"});
+  watched.observe(1s, LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  EXPECT_TRUE(depends());
+  watched.observe(2s, gone);
+  watched.observe(2s, NodeVanished{"/c"});
+  watched.observe(3s, NodeAppeared{"/c", 8});
+  watched.observe(3s, LifecycleRead{ComponentId(0), Lifecycle::kUnconfigured});
+  EXPECT_TRUE(depends()) << "it is not configured yet";
+  watched.observe(4s, LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  EXPECT_FALSE(depends()) << "it came up without that end";
+}
+
 }  // namespace
 }  // namespace culprit

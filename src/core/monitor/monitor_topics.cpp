@@ -26,6 +26,8 @@ void Monitor::on(Time at, const SampleArrived& seen) {
     const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
     rhythm.interval = smoothed(rhythm.interval, interval);
     rhythm.silence = usual_silence(rhythm.silence, interval);
+    if (interval > rhythm.longest && !has_begun_since(*rhythm.last, seen.topic))
+      rhythm.longest = interval;
   }
   rhythm.last = topic.last = at;
   knowledge_.signals.set_rhythm(seen.topic, rhythm);
@@ -37,6 +39,17 @@ void Monitor::on(Time at, const SampleArrived& seen) {
         id, input.kind == Kind::kRate ? input.window : usual_latency(rhythm.interval));
     update(id, at);
   }
+}
+
+bool Monitor::has_begun_since(Time before, TopicId topic) const {
+  const std::string& name = knowledge_.rules[topic].name;
+  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
+    const ComponentId component(c);
+    if (knowledge_.components[component].node_seen >= before &&
+        knowledge_.graph.publishes(component, name))
+      return true;
+  }
+  return false;
 }
 
 void Monitor::see(TopicId topic, Time at) {

@@ -87,8 +87,9 @@ class Completion {
     const std::string& statement = words_.front();
     if (statement == "ADAPTATION") return adaptation();
     if (statement == "COMPONENT") {
-      return words_.back() == "NODE" ? names(&live_nodes)
-                                     : keywords({"NODE", "LAUNCH", "REQUIRED"});
+      if (words_.back() == "NODE") return names(&live_nodes);
+      if (words_.back() == "LIFECYCLE") return keywords({"self", "managed", "launcher"});
+      return keywords({"NODE", "LAUNCH", "REQUIRED", "LIFECYCLE"});
     }
     if (statement == "SIGNAL") return signal();
     if (statement == "IGNORE") {

@@ -1,0 +1,165 @@
+// Who takes a node through its lifecycle when a process of it begins, and how long it is waited
+// for.
+#include <gtest/gtest.h>
+
+#include "manager/manager.h"
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+// `clause` of the component; the redeploy takes ten cycles of 200 ms.
+std::string camera(const std::string& clause) {
+  return "COMPONENT camera NODE /camera LAUNCH \"camera\" " + clause +
+         "\nRULE Dead\n  POLICIES ERROR\n  TRIGGER age(/rgb) > 350ms\n"
+         "    STRATEGY redeploy 90 10\n      ADAPTATION camera redeploy 10\n";
+}
+
+// It comes up unconfigured.
+TestRobot robot_of(const std::string& rules, Duration activates_itself_after = {}) {
+  TestRobot robot(rules);
+  auto& added = robot.add("camera", {}, "/rgb");
+  added.state_at_start = Lifecycle::kUnconfigured;
+  added.activates_itself_after = activates_itself_after;
+  robot.discover();
+  robot.run_for(2s);
+  return robot;
+}
+
+TEST(Lifecycles, WhatActivatesItselfByDeclarationIsNeverToldTo) {
+  TestRobot robot = robot_of(camera("LIFECYCLE self"), 6s);
+  robot.kill("camera");
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
+}
+
+TEST(Lifecycles, ADeclaredDriverThatNeverComesIsAFailureThatSaysSo) {
+  TestRobot robot = robot_of(camera("LIFECYCLE launcher"));
+  robot.kill("camera");
+  robot.run_for(40s);
+  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
+  EXPECT_GE(robot.count("who is to bring it up did not (LIFECYCLE)"), 1u) << transcript(robot);
+}
+
+TEST(Lifecycles, AManagedNodeIsNotWaitedFor) {
+  TestRobot robot = robot_of(camera("LIFECYCLE managed"));
+  robot.kill("camera");
+  robot.run_for(1500ms);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+// Nothing is known of it: it is activated after the impact, and its own timer then fails.
+TEST(Lifecycles, ANodeThatActivatesItselfCrashesOnceAtMost) {
+  TestRobot robot = robot_of(camera(""), 4s);
+  robot.kill("camera");
+  robot.run_for(60s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start"), 2u) << transcript(robot);
+  for (int again = 0; again < 2; ++again) {
+    robot.kill("camera");
+    robot.run_for(60s);
+    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  }
+  EXPECT_EQ(robot.count_asked("camera: start"), 4u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: configure"), 1u) << transcript(robot);
+}
+
+TEST(Lifecycles, ANodeThatWasSeenToActivateItselfIsWaitedFor) {
+  TestRobot robot(camera(""));
+  auto& added = robot.add("camera", {}, "/rgb");
+  added.state = added.state_at_start = Lifecycle::kUnconfigured;
+  added.activates_itself_after = 3s;
+  robot.discover();
+  robot.run_for(2900ms);
+  added.state = Lifecycle::kActive;
+  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  robot.run_for(5s);
+  robot.kill("camera");
+  robot.run_for(30s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
+}
+
+TEST(Lifecycles, AnObservedDriverThatDoesNotComeAgainIsReplaced) {
+  TestRobot robot = robot_of(camera(""), 1s);
+  robot.kill("camera");
+  robot.run_for(10s);
+  ASSERT_TRUE(robot.works("camera")) << transcript(robot);
+  robot["camera"].activates_itself_after = {};
+  robot.kill("camera");
+  robot.run_for(15s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("camera: activate")) << transcript(robot);
+  const Time killed = robot.now;
+  robot.kill("camera");
+  while (!robot.works("camera") && robot.now < killed + 10s) robot.run_for(100ms);
+  EXPECT_LT(robot.now - killed, 1500ms) << "that culprit does it is known by now";
+}
+
+TEST(Lifecycles, ARuleThatItMustBeActiveOutweighsThatOthersDeactivatedIt) {
+  TestRobot robot =
+      robot_of(camera("LIFECYCLE managed") +
+               "RULE Idle\n  POLICIES WARNING FOR 30s\n  TRIGGER lifecycle(camera) != \"active\"\n"
+               "    STRATEGY activate 90 10\n      ADAPTATION camera activate 5\n");
+  robot["camera"].state = Lifecycle::kInactive;
+  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("camera: start")) << transcript(robot);
+}
+
+TEST(Lifecycles, WhatARestartReachedIsWhatIsIntended) {
+  TestRobot robot = robot_of(
+      "COMPONENT camera NODE /camera LAUNCH \"camera\" LIFECYCLE managed\nRULE Dead\n"
+      "  POLICIES ERROR\n  TRIGGER age(/rgb) > 350ms\n    STRATEGY restart 90 10\n"
+      "      ADAPTATION camera restart 5\n    STRATEGY redeploy 60 10\n"
+      "      ADAPTATION camera redeploy 10\n");
+  robot["camera"].state = Lifecycle::kInactive;
+  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  robot.run_for(10s);
+  ASSERT_TRUE(robot.works("camera")) << transcript(robot);
+  robot.kill("camera");
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+TEST(Lifecycles, AnErrorInOnActivateEndsTheAttemptAtOnce) {
+  TestRobot robot = robot_of(
+      "COMPONENT camera NODE /camera LAUNCH \"camera\" LIFECYCLE managed\nRULE Dead\n"
+      "  POLICIES ERROR\n  TRIGGER age(/rgb) > 350ms\n    STRATEGY activate 90 10\n"
+      "      ADAPTATION camera activate 5\n");
+  robot["camera"].fails_to_activate = true;
+  robot["camera"].state = Lifecycle::kInactive;
+  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  robot.run_for(1500ms);
+  EXPECT_GE(robot.count("it fell back to unconfigured when asked to activate"), 1u)
+      << transcript(robot);
+  EXPECT_GE(robot.count("camera: inactive again"), 1u) << transcript(robot);
+}
+
+TEST(Lifecycles, AGoalEndsWithItsProcess) {
+  TestRobot robot = robot_of(camera("LIFECYCLE self"));
+  robot.kill("camera");
+  robot.run_for(3s);
+  ASSERT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
+  robot.kill("camera");
+  EXPECT_GE(robot.count("it is not there any more: killed by signal 9"), 1u) << transcript(robot);
+}
+
+TEST(Lifecycles, AStartIsWaitedForWhileItsProcessRuns) {
+  TestRobot robot = robot_of(camera("LIFECYCLE managed"));
+  robot["camera"].start_time = 45s;
+  for (int kills = 1; kills <= 2; ++kills) {
+    robot.kill("camera");
+    robot.run_for(60s);
+    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+    EXPECT_EQ(robot.count_asked("camera: start"), static_cast<std::size_t>(kills))
+        << transcript(robot);
+  }
+}
+
+}  // namespace
+}  // namespace culprit::test
