@@ -1,5 +1,6 @@
 #include "link/component_link.h"
 
+#include "base/tracer.h"
 #include "ros2/lifecycle.h"
 #include "ros2/parameter_store.h"
 #include "ros2/services.h"
@@ -193,12 +194,14 @@ void ComponentLink::read_parameters() {
   }
 }
 
-void ComponentLink::probe() {
+void ComponentLink::probe(int pid) {
   ServiceClient* client = parameter_reader();
   if (client == nullptr) return;
   client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kProbe,
-               [this](const CallResult& result) {
-                 inbox_.put(Probed{component_, result.outcome == CallOutcome::kAnswered});
+               [this, pid](const CallResult& result) {
+                 const bool answered = result.outcome == CallOutcome::kAnswered;
+                 if (answered || pid == 0 || !is_traced(pid))
+                   inbox_.put(Probed{component_, answered});
                });
 }
 

@@ -35,8 +35,9 @@ class ComponentLink {
   // The node was seen to offer a service: readies the client, reads the present state.
   void service_seen(const std::string& service, const std::string& type);
 
-  // A cheap read that proves that the node answers.
-  void probe();
+  // A cheap read that proves that the node answers. `pid` is its process; 0: it is not known. That
+  // a traced one does not answer is not told.
+  void probe(int pid);
 
   // Reads the state of a node that was seen to have a lifecycle, and tells it if it is another than
   // was told last. Events tell of transitions sooner, and they may be lost: nobody repeats them,

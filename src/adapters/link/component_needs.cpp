@@ -11,10 +11,13 @@ void add(const Adaptation& adaptation, ComponentNeeds& needs) {
     case AdaptationType::kChangeCommunication:
       needs.sets_parameters = true;
       return;
+    case AdaptationType::kRedeploy:
+      needs.is_to_answer = true;
+      needs.changes_lifecycle = true;
+      return;
     case AdaptationType::kActivate:
     case AdaptationType::kDeactivate:
     case AdaptationType::kRestart:
-    case AdaptationType::kRedeploy:
     case AdaptationType::kStart:
       needs.changes_lifecycle = true;
       return;
@@ -38,6 +41,8 @@ ComponentNeeds needs_of(ComponentId component, const RuleSet& rules) {
       if (adaptation.component == component) add(adaptation, needs);
     }
   }
+  for (const Input& input : rules.inputs)
+    needs.is_to_answer |= input.kind == Input::Kind::kAlive && input.component == component;
   return needs;
 }
 

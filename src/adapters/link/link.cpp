@@ -400,8 +400,8 @@ void Link::on_joined(const GraphNode& node) {
   const auto component = binding_.bind(node.name);
   if (!component) return;
   make_link(*component, node.name);
-  if (node.pid == 0) {
-    probed_[node.name] = *component;
+  if (node.pid == 0 || needs_of(*component, rules_).is_to_answer) {
+    probed_[node.name] = {*component, node.pid};
   } else {
     probed_.erase(node.name);
   }
@@ -461,7 +461,8 @@ void Link::on_parameter_event(const msg::ParameterEvent& event) {
 }
 
 void Link::probe() {
-  for (const auto& [node, component] : probed_) make_link(component, node)->probe();
+  context_->forget_ended_namesakes();
+  for (const auto& [node, each] : probed_) make_link(each.component, node)->probe(each.pid);
   for (const Input& input : rules_.inputs) {
     if (input.kind != Input::Kind::kLifecycle) continue;
     if (ComponentLink* link = link_of(input.component)) link->check_lifecycle();

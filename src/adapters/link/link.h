@@ -134,8 +134,12 @@ class Link {
   std::map<std::string, std::unique_ptr<TopicWatch>> watches_;  // by topic
   std::unique_ptr<DiagnosticsWatch> diagnostics_watch_;
   std::unique_ptr<Subscription> parameter_events_;
-  std::map<std::string, ComponentId> probed_;  // nodes whose process is not known
-  std::map<std::string, int> pids_;            // of nodes that are there; 0 where it is not known
+  struct ToProbe {
+    ComponentId component;
+    int pid = 0;  // 0: not known
+  };
+  std::map<std::string, ToProbe> probed_;  // by node
+  std::map<std::string, int> pids_;        // of nodes that are there; 0 where it is not known
   std::map<std::string, std::vector<std::string>> systems_;  // by the mode manager's node
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;

@@ -5,8 +5,10 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <mutex>
 #include <sys/socket.h>
+#include <thread>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
@@ -40,8 +42,9 @@ RULE R
 // A link to whatever the test puts on the domain, and what it observes.
 class Linked {
  public:
-  explicit Linked(const TestDomain& domain, const std::filesystem::path& message_path = {})
-      : rules(*check(Source("test.rules", kRules)).rules) {
+  explicit Linked(const TestDomain& domain, const std::filesystem::path& message_path = {},
+                  const char* text = kRules)
+      : rules(*check(Source("test.rules", text)).rules) {
     Link::Options options;
     if (!message_path.empty()) options.message_path = {message_path};
     options.participant = domain.options();
@@ -131,6 +134,23 @@ TEST(Link, SeesNodesWithTheirProcessAndTheirState) {
       [](const LifecycleRead& r) { return r.state == Lifecycle::kUnconfigured; }));
   EXPECT_TRUE(
       linked.wait<ParameterRead>([](const ParameterRead& r) { return r.value == Value(1.5); }));
+}
+
+TEST(Link, AsksLocalNodesTooWhetherTheyAnswer) {
+  const TestDomain domain;
+  Robot robot(domain);
+  Linked linked(domain, {},
+                "COMPONENT robot NODE /robot\nRULE R\nPOLICIES ERROR\nTRIGGER !alive(robot)\n"
+                "STRATEGY s 50 10\nADAPTATION robot restart 5\n");
+  const auto answers = [&](bool answered) {
+    return linked.wait<Probed>([&](const Probed& p) { return p.answered == answered; }).has_value();
+  };
+  EXPECT_TRUE(answers(true));
+  std::promise<void> goes_on;
+  std::thread hung([&] { robot.context.run([&] { goes_on.get_future().wait(); }); });
+  EXPECT_TRUE(answers(false)) << "its callback hangs";
+  goes_on.set_value();
+  hung.join();
 }
 
 TEST(Link, IsANodeThatOthersSee) {

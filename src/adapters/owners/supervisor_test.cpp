@@ -9,6 +9,7 @@
 #include <signal.h>
 #include <sys/file.h>
 #include <sys/prctl.h>
+#include <sys/ptrace.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -22,6 +23,7 @@
 #include "owners/bounded_log.h"
 #include "owners/proc.h"
 #include "owners/spawn.h"
+#include "owners/watched_process.h"
 
 namespace culprit::owners {
 namespace {
@@ -170,6 +172,27 @@ TEST(Supervisor, KillsAStoppedProcessAtOnce) {
   EXPECT_EQ(c.state(ProcessState::kStopped).pid, pid);
   c.stop();
   EXPECT_FALSE(exists(pid));
+}
+
+TEST(WatchedProcess, OneThatADebuggerHoldsIsNotStopped) {
+  const int pid = fork();
+  ASSERT_GE(pid, 0);
+  if (pid == 0) {
+    while (true) pause();
+  }
+  const auto process = WatchedProcess::watch(pid, Relation::kChild);
+  ASSERT_TRUE(process) << process.error();
+  const bool may_trace = ptrace(PTRACE_SEIZE, pid, nullptr, nullptr) == 0;
+  if (may_trace) {
+    ptrace(PTRACE_INTERRUPT, pid, nullptr, nullptr);
+    for (const Time end = live_now() + 20s; state_letter(pid) != 't' && live_now() < end;)
+      std::this_thread::sleep_for(1ms);
+    EXPECT_EQ(state_letter(pid), 't');
+    EXPECT_EQ(process->state(), ProcessState::kRunning);
+  }
+  kill(pid, SIGKILL);
+  waitpid(pid, nullptr, 0);
+  if (!may_trace) GTEST_SKIP() << "no process may be traced here";
 }
 
 TEST(Supervisor, NoticesThatAStoppedProcessGoesOn) {

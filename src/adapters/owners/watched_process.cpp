@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/tracer.h"
 #include "owners/mark.h"
 #include "owners/proc.h"
 
@@ -31,7 +32,8 @@ ProcessState WatchedProcess::state() const {
   if (poll(&ended, 1, 0) > 0) return ProcessState::kGone;
   // 'Z' is a main thread that has ended before the others: the process goes on.
   const char letter = state_letter(pid_).value_or('X');
-  return letter == 'T' || letter == 't' ? ProcessState::kStopped : ProcessState::kRunning;
+  const bool stands = letter == 'T' || letter == 't';
+  return stands && !is_traced(pid_) ? ProcessState::kStopped : ProcessState::kRunning;
 }
 
 void WatchedProcess::signal(int number) const {

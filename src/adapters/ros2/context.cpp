@@ -99,6 +99,10 @@ void Context::forget_process(int pid) {
   tasks_.post([this, pid] { graph_.forget_process(pid); });
 }
 
+void Context::forget_ended_namesakes() {
+  tasks_.post([this] { graph_.forget_ended_namesakes(); });
+}
+
 void Context::watch_servers(const void* owner, std::string service, std::function<void()> on_left) {
   const std::lock_guard lock(mutex_);
   watches_.insert_or_assign(owner, ServerWatch{std::move(service), std::move(on_left)});

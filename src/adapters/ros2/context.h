@@ -53,6 +53,8 @@ class Context {
   // A process of this machine has ended. Its nodes leave the graph now, not when their leases end.
   // From any thread.
   void forget_process(int pid);
+  // The same for each process that has ended and claims a name that others claim too.
+  void forget_ended_namesakes();
 
   // Calls `on_left` on the executor's thread, before the graph's listener hears of it, whenever a
   // server of `service` leaves the graph, until it is told to stop. `on_left` must not call back

@@ -159,6 +159,19 @@ void Graph::forget_process(int pid) {
   for (const GuidPrefix& prefix : gone) remove_participant(prefix);
 }
 
+void Graph::forget_ended_namesakes() {
+  if (!options_.is_running) return;
+  std::set<int> ended;
+  for (const auto& [name, node] : nodes_) {
+    if (node.claimants.size() < 2) continue;
+    for (const GuidPrefix& claimant : node.claimants) {
+      const int pid = peers_.at(claimant).pid;
+      if (pid != 0 && !options_.is_running(pid)) ended.insert(pid);
+    }
+  }
+  for (const int pid : ended) forget_process(pid);
+}
+
 void Graph::remove_endpoint(const Guid& guid) {
   if (find(guid) == nullptr) return;
   hide(guid);

@@ -110,6 +110,8 @@ class Graph {
   void apply(const DiscoveryInfo& info);
   // A process of this machine has ended: whoever it was is gone, though leases may still run.
   void forget_process(int pid);
+  // Likewise all processes that claim a name that others claim too, and have ended by now.
+  void forget_ended_namesakes();
 
   // Null when they are not known (any more).
   const ParticipantInfo* participant(const GuidPrefix& prefix) const;

@@ -65,6 +65,10 @@ class Watched {
     graph_.forget_process(pid);
     return *this;
   }
+  Watched& looks_for_ended_namesakes() {
+    graph_.forget_ended_namesakes();
+    return *this;
+  }
   Watched& has(const EndpointInfo& info) {
     graph_.apply(info);
     return *this;
@@ -272,6 +276,23 @@ TEST(Graph, TwoLivingNodesOfOneNameAreTrouble) {
   watched.leaves(2);
   EXPECT_THAT(watched.told(),
               ElementsAre("-/a", "+/a in 10", "+/a publishes /t", "=/a has 0 namesakes"));
+}
+
+TEST(Graph, ANamesakeIsForgottenWhenItsProcessHasEnded) {
+  std::set<int> running = {10, 20};
+  Graph::Options options;
+  options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };
+  options.is_running = [&](int pid) { return running.contains(pid); };
+  Watched watched(options);
+  watched.joins(1, 10).says(1, {node("/", "a")}).joins(2, 20).says(2, {node("/", "a")}).told();
+  watched.looks_for_ended_namesakes();
+  EXPECT_THAT(watched.told(), IsEmpty()) << "both run";
+  running.erase(10);
+  watched.looks_for_ended_namesakes();
+  EXPECT_THAT(watched.told(), ElementsAre("=/a has 0 namesakes"));
+  running.erase(20);
+  watched.looks_for_ended_namesakes();
+  EXPECT_THAT(watched.told(), IsEmpty()) << "alone, it is told of by who watches its process";
 }
 
 TEST(Graph, AnEndedProcessIsGoneAtOnce) {

@@ -16,6 +16,20 @@ bool has_crashed(const std::string& remark) {
          (remark.starts_with("exit code ") && remark != "exit code 0");
 }
 
+// Of a node whose process runs, and of which nothing else is heard: a busy one misses some.
+constexpr int kMissedAlone = 5;
+
+// It alone publishes a topic that rules watch, with a rhythm that is known.
+bool is_heard_of(ComponentId component, const Knowledge& knowledge) {
+  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
+    const std::string& name = knowledge.rules.topics[t].name;
+    if (knowledge.signals.rhythm(TopicId(t)).longest > Duration::zero() &&
+        knowledge.graph.publishes(component, name) && knowledge.graph.publisher_count(name) == 1)
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void Monitor::on(Time at, const NodeAppeared& seen) {
@@ -165,12 +179,14 @@ void Monitor::forget_process(ComponentId component, Time at) {
 bool Monitor::does_not_answer(ComponentId component, Time now) const {
   const ComponentState& state = knowledge_.components[component];
   if (state.missed_probes < kMissedProbes) return false;
-  return state.known_pid() == 0 || (state.answers_probes && is_silent(component, now));
+  if (state.known_pid() == 0) return true;
+  if (!state.answers_probes) return false;
+  return is_heard_of(component, knowledge_) ? is_silent(component, now)
+                                            : state.missed_probes >= kMissedAlone;
 }
 
 bool Monitor::is_silent(ComponentId component, Time now) const {
   constexpr Duration kLeast = std::chrono::seconds(1);
-  bool is_heard_of = false;
   for (std::size_t t = 0; t < knowledge_.rules.topics.size(); ++t) {
     const SignalStore::Rhythm& rhythm = knowledge_.signals.rhythm(TopicId(t));
     const std::string& name = knowledge_.rules.topics[t].name;
@@ -181,9 +197,8 @@ bool Monitor::is_silent(ComponentId component, Time now) const {
     if (now - heard_since(std::max(*rhythm.last, knowledge_.components[component].node_seen)) <
         pause)
       return false;
-    is_heard_of = true;
   }
-  return is_heard_of;
+  return true;
 }
 
 void Monitor::update_alive(ComponentId component, Time at, const std::string& remark) {

@@ -330,6 +330,17 @@ TEST(Monitor, WhoNeverAnsweredProvesNothingByNotAnswering) {
   EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, true);
 }
 
+TEST(Monitor, ALocalNodeOfWhichNothingElseIsHeardHangsIfItDoesNotAnswerForLong) {
+  Watched watched(rule("!alive(c)"));
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, Probed{ComponentId(0), true});
+  for (Duration at = 2s; at < 3600ms; at += 400ms)
+    watched.observe(at, Probed{ComponentId(0), false});
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, true);
+  watched.observe(3600ms, Probed{ComponentId(0), false});
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, false);
+}
+
 TEST(Monitor, EndsStayWhileANodeIsBroughtUp) {
   Watched watched(
       "COMPONENT c NODE /c\nCOMPONENT d NODE /d\nRULE R\nPOLICIES ERROR\n"

@@ -258,6 +258,7 @@ void ScriptedRobot::incident(const Incident& incident) {
       break;
     case Incident::Kind::kHung:
       component.answers = false;
+      tell(Probed{incident.component, true});  // until now it answered
       probe(incident.component, component.pid);
       break;
     case Incident::Kind::kState:
