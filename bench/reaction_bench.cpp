@@ -111,6 +111,8 @@ std::vector<std::string> run_ungoverned(const std::filesystem::path& rules) {
           "none",
           "--intensity-component",
           "none",
+          "--restarts",
+          "none",
           "--backoff",
           "0",
           "--storm",

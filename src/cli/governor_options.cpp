@@ -42,6 +42,7 @@ GovernorOptions::GovernorOptions() {
   overall = intensity_text(recommended.limits.overall);
   per_kind = intensity_text(recommended.limits.per_kind);
   per_component = intensity_text(recommended.limits.per_component);
+  restarts = intensity_text(recommended.limits.restarts);
   backoff_seconds = seconds(recommended.limits.backoff.first);
   backoff_most_seconds = seconds(recommended.limits.backoff.longest);
   healthy_seconds = seconds(recommended.limits.backoff.healthy);
@@ -65,6 +66,9 @@ void GovernorOptions::add_to(CLI::App& command) {
   intensity("--intensity-kind", per_kind,
             "The same of each kind: reconfigurations, lifecycle changes, restarts of processes");
   intensity("--intensity-component", per_component, "The same at each component");
+  intensity("--restarts", restarts,
+            "A component is restarted at most so often in such a time, whatever its failures; "
+            "beyond, a person must look");
   time("--backoff", backoff_seconds,
        "Seconds between two restarts of a component, doubled with each; 0: no back-off");
   time("--backoff-most", backoff_most_seconds, "At most so many seconds");
@@ -96,7 +100,8 @@ Expected<Governor::Options> GovernorOptions::options() const {
   for (const Wanted& wanted :
        {Wanted{"--intensity", overall, out.limits.overall},
         Wanted{"--intensity-kind", per_kind, out.limits.per_kind},
-        Wanted{"--intensity-component", per_component, out.limits.per_component}}) {
+        Wanted{"--intensity-component", per_component, out.limits.per_component},
+        Wanted{"--restarts", restarts, out.limits.restarts}}) {
     const auto parsed = parse_intensity(wanted.option, wanted.text);
     if (!parsed) return Error{parsed.error()};
     wanted.value = *parsed;
@@ -114,6 +119,7 @@ nlohmann::ordered_json GovernorOptions::to_json() const {
           {"intensity", overall},
           {"intensity_kind", per_kind},
           {"intensity_component", per_component},
+          {"restarts", restarts},
           {"backoff", backoff_seconds},
           {"backoff_most", backoff_most_seconds},
           {"healthy", healthy_seconds},
@@ -135,6 +141,7 @@ GovernorOptions GovernorOptions::from_json(const nlohmann::ordered_json& json) {
   intensity("intensity", options.overall);
   intensity("intensity_kind", options.per_kind);
   intensity("intensity_component", options.per_component);
+  intensity("restarts", options.restarts);
   time("backoff", options.backoff_seconds);
   time("backoff_most", options.backoff_most_seconds);
   time("healthy", options.healthy_seconds);

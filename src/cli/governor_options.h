@@ -16,6 +16,7 @@ struct GovernorOptions {
   std::string overall;  // "20/1min"; "none"
   std::string per_kind;
   std::string per_component;
+  std::string restarts;
   double backoff_seconds = 0;
   double backoff_most_seconds = 0;
   double healthy_seconds = 0;

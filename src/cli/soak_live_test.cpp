@@ -29,10 +29,11 @@ TEST(Soak, NothingLeaksWhileTheRobotIsBrokenAndHealed) {
   const TestWorld world;
   lab::LiveSunset robot(world);
   // So much is never broken in so short a time but here.
-  TestProgram culprit(world, {"culprit", "run", "rules/sunset.rules", "--journal",
-                              (world.folder() / "sunset.journal").string(), "--settle", "2",
-                              "--intensity", "none", "--intensity-kind", "none",
-                              "--intensity-component", "none", "--backoff", "0", "--healthy", "1"});
+  TestProgram culprit(
+      world, {"culprit", "run", "rules/sunset.rules", "--journal",
+              (world.folder() / "sunset.journal").string(), "--settle", "2", "--intensity", "none",
+              "--intensity-kind", "none", "--intensity-component", "none", "--restarts", "none",
+              "--backoff", "0", "--healthy", "1"});
   ASSERT_TRUE(robot.is_well_within(30s)) << robot.complaint();
 
   Holdings early;

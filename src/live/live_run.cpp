@@ -131,7 +131,8 @@ Expected<void> LiveRun::change_role(OrderTaker& desk, const std::atomic<bool>& s
   LoadedRules rules = session_->loaded_rules();
   const KnownRobot known = session_->known_robot();
   frame_.told_orders = orders_for_successor(role_, session_->link());
-  session_->end();
+  session_->end(role_.role() == Role::kManage ? journal::Ending::kStopped
+                                              : journal::Ending::kSteppedBack);
   session_.reset();
   take_role();
   if (auto joined = join(std::move(rules)); !joined) return joined;

@@ -399,9 +399,10 @@ LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string oc
           standing_orders(*manager_, frame_.advises, next, robot_->now()), std::move(occasion)};
 }
 
-void LiveSession::end() {
+void LiveSession::end(journal::Ending ending) {
   if (recorder_ == nullptr) return;
-  if (const auto written = recorder_->end(); !written) frame_.listener.on_trouble(written.error());
+  if (const auto written = recorder_->end(ending); !written)
+    frame_.listener.on_trouble(written.error());
   recorder_.reset();
 }
 

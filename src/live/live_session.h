@@ -81,8 +81,8 @@ class LiveSession {
 
   // Nothing more is done; the journal is whole. What is to go on with `next`.
   Handover hand_over(const RuleSet& next, std::string occasion);
-  // Likewise, but nothing goes on.
-  void end();
+  // Likewise, but nothing goes on; `ending`: why.
+  void end(journal::Ending ending = journal::Ending::kStopped);
   // What was seen of the robot.
   KnownRobot known_robot() const { return manager_->knowledge().known_robot(); }
 

@@ -38,10 +38,10 @@ std::string of_strategy(StrategyId id, const RuleSet& rules, std::string_view ou
 
 // What held an action back (knowledge/event.h).
 std::string_view word_of(Restraint restraint) {
-  constexpr std::string_view kWords[] = {"paused",    "quiet_period", "storm",     "graph_in_doubt",
-                                         "interlock", "overall",      "approval",  "silenced",
-                                         "refused",   "component",    "class",     "backoff",
-                                         "identity",  "evidence",     "never_seen"};
+  constexpr std::string_view kWords[] = {
+      "paused",   "quiet_period", "storm",      "graph_in_doubt", "interlock", "overall",
+      "approval", "silenced",     "refused",    "component",      "class",     "backoff",
+      "identity", "evidence",     "never_seen", "restarts"};
   return kWords[static_cast<std::size_t>(restraint)];
 }
 
@@ -62,7 +62,7 @@ void Metrics::watch(const Manager& manager) {
   }
   for (const std::string_view result : kPlanResults)
     counts_.plans.try_emplace(label("result", result), 0);
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(Restraint::kNeverSeen); ++i)
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(Restraint::kRestarts); ++i)
     counts_.holds.try_emplace(label("restraint", word_of(static_cast<Restraint>(i))), 0);
   for (const char* result : {"accepted", "refused"})
     counts_.orders.try_emplace(label("result", result), 0);

@@ -72,13 +72,13 @@ Recorder::Recorder(std::optional<Writer> writer, Options options, const Session&
 
 Recorder::~Recorder() { finish(); }
 
-Expected<void> Recorder::end() {
+Expected<void> Recorder::end(Ending ending) {
   hand_over(Urgency::kNone);
   {
     const std::lock_guard lock(mutex_);
     Pending& pending = queue_.next();
     pending.wall = options_.wall_clock();
-    pending.is_end = true;
+    pending.end = ending;
   }
   finish();
   if (!last_error_) return {};
@@ -107,7 +107,7 @@ void Recorder::Queue::clear() {
   for (std::size_t i = 0; i < used; ++i) {
     places[i].observations.clear();
     places[i].decided.reset();
-    places[i].is_end = false;
+    places[i].end.reset();
   }
   if (places.size() > kSpare) places.resize(kSpare);
   used = 0;
@@ -251,9 +251,13 @@ void Recorder::run() {
 }
 
 void Recorder::make_rows(const Pending& pending) {
-  if (pending.is_end) {
+  if (pending.end) {
     close_steps();
-    return add(kind::kEnd, pending.wall, {{"text", "culprit was asked to stop"}});
+    if (*pending.end == Ending::kStopped)
+      return add(kind::kEnd, pending.wall, {{"text", "culprit was asked to stop"}});
+    return add(
+        kind::kEnd, pending.wall,
+        {{"text", "culprit stepped back: another one manages the robot"}, {"stepped_back", true}});
   }
   if (steps_.empty()) steps_at_ = pending.wall;
   ByteWriter bytes(steps_);

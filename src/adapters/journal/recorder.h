@@ -35,6 +35,11 @@ namespace culprit::journal {
 std::optional<Digest> digest_of(std::span<const Command> commands, std::span<const Event> events,
                                 const RuleSet& rules, Hasher& hasher);
 
+enum class Ending : std::uint8_t {
+  kStopped,     // culprit was asked to stop
+  kSteppedBack  // another culprit manages the robot: what is under way is no longer this one's
+};
+
 class Recorder {
  public:
   // How long steps that decide nothing wait to be written, by the robot's clock.
@@ -82,9 +87,8 @@ class Recorder {
       hand_over(place, commands, events);
   }
 
-  // culprit was asked to stop: writes what is waiting. An error says what is lost. No step after
-  // it.
-  Expected<void> end();
+  // Writes what is waiting. An error says what is lost. No step after it.
+  Expected<void> end(Ending ending = Ending::kStopped);
 
  private:
   // What few steps have beside observations.
@@ -101,7 +105,7 @@ class Recorder {
     std::int64_t wall = 0;
     std::vector<Observation> observations;
     std::unique_ptr<Decided> decided;
-    bool is_end = false;
+    std::optional<Ending> end{};
   };
   // Places are used again with the memory that their observations had.
   struct Queue {

@@ -16,6 +16,7 @@ class Trail {
 
   void begin_with(const Json& session) {
     if (!session.is_object()) return;
+    latest_ = Time(Duration(integer_of(session, "start")));
     past_ = past_from_json(session.value("past", Json()), rules_);
     is_paused_ = flag_of(session, "paused");
     is_dry_run_ = flag_of(session, "dry_run");
@@ -34,7 +35,9 @@ class Trail {
   void follow(const Entry& entry) {
     const Json body = from_text(entry.body);
     if (!body.is_object()) return;
+    if (entry.kind == kind::kEnd && flag_of(body, "stepped_back")) open_.clear();
     if (entry.kind == kind::kEvent) {
+      latest_ = Time(Duration(integer_of(body, "time")));
       event(body);
       if (auto event = past_event(body, rules_)) past_.push_back(std::move(*event));
     }
@@ -46,10 +49,18 @@ class Trail {
   bool is_dry_run() const { return is_dry_run_; }
   const Past& past() const { return past_; }
 
-  // Those that had begun to change anything.
-  std::vector<Interrupted> open() && {
+  // Those that had begun to change anything. Not after so long that nobody knows who changed what
+  // since: another culprit, or a person.
+  std::vector<Interrupted> open(Time now) && {
     std::erase_if(open_, [](const Interrupted& each) { return each.requests.empty(); });
-    return std::move(open_);
+    if (now - latest_ <= kPastCounts) return std::move(open_);
+    for (const Interrupted& each : open_) {
+      const Strategy& strategy = rules_[each.strategy];
+      given_up_.push_back(strategy.name + " for " + rules_[strategy.rule].name +
+                          ": that was more than " + to_string(kPastCounts) +
+                          " ago, so it is not gone on with");
+    }
+    return {};
   }
 
  private:
@@ -131,6 +142,7 @@ class Trail {
   std::vector<std::string>& given_up_;
   std::vector<Interrupted> open_;
   Past past_;
+  Time latest_{};  // event, or the beginning of the run
   bool is_paused_ = false;
   bool is_dry_run_ = false;
 };
@@ -207,7 +219,7 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Mo
       return std::holds_alternative<OutcomePending>(event.what);
     });
   }
-  recovery.interrupted = std::move(trail).open();
+  recovery.interrupted = std::move(trail).open(now.robot);
   return recovery;
 }
 

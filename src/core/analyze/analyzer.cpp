@@ -394,7 +394,7 @@ void Analyzer::round_is_spent(RuleId id, Time now) {
   std::fill(state.tried.begin(), state.tried.end(), false);
   state.retry_at = later(now, pause_after(state.round));
   if (state.is_at_last_resort) {
-    exhaust(id, now);
+    give_up(id, now);
   } else {
     exhaust_if_spent(id, now);
   }
@@ -408,8 +408,13 @@ void Analyzer::exhaust_if_spent(RuleId id, Time now) {
   const int limit = knowledge_.rules[id].policies.attempts;
   // The last resorts end with their round.
   if (state.is_at_last_resort || (state.attempts < limit && state.round < limit)) return;
+  give_up(id, now);
+}
+
+void Analyzer::give_up(RuleId id, Time now) {
+  const bool had_last_resorts = knowledge_.states[id].is_at_last_resort;
   turn_to_last_resort(id, now);
-  if (!state.is_at_last_resort) exhaust(id, now);
+  if (had_last_resorts || !knowledge_.states[id].is_at_last_resort) exhaust(id, now);
 }
 
 void Analyzer::turn_to_last_resort(RuleId id, Time now) {

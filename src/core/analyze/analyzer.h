@@ -88,6 +88,10 @@ class Analyzer {
   // resorts are left, if it has any.
   void turn_to_last_resort(RuleId id, Time now);
 
+  // Nothing more may be done about the failure by itself: the last resorts are left, and once they
+  // were, a person.
+  void give_up(RuleId id, Time now);
+
   // No untried strategy of the rule is valid: its round is over.
   void round_is_spent(RuleId id, Time now);
 

@@ -85,5 +85,26 @@ TEST_F(NearTriggers, SkipWhatIsTrueAlready) {
   EXPECT_EQ(near(), "Busy entropy 2 1");
 }
 
+// `<=` and `>=` hold on either side of their equality: what holds is not near, but there.
+TEST(NearTriggerOf, AComparisonThatHoldsIsNone) {
+  const RuleSet rules =
+      *check(Source("test.rules",
+                    "COMPONENT c NODE /c\nSIGNAL load DIAGNOSTIC c KEY load\nRULE R\n"
+                    "POLICIES ERROR\nTRIGGER load <= 80 && changed(load)\n"
+                    "STRATEGY s 50 10\nADAPTATION c restart 3\n"))
+           .rules;
+  Knowledge knowledge(rules);
+  const auto count_at = [&](double load) {
+    for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
+      if (rules.inputs[i].kind == Input::Kind::kSignal)
+        knowledge.signals.set(InputId(i), Slot::of(load));
+    }
+    return near_triggers(knowledge, 10).size();
+  };
+  EXPECT_EQ(count_at(81), 1u);
+  EXPECT_EQ(count_at(80), 0u);
+  EXPECT_EQ(count_at(79), 0u);
+}
+
 }  // namespace
 }  // namespace culprit

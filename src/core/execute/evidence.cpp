@@ -29,7 +29,7 @@ std::optional<std::vector<TopicId>> silent_topics(const Rule& rule, const RuleSe
 
 bool is_at_work(const ComponentState& state) {
   return state.known_pid() != 0 && state.process == ProcessState::kRunning && state.in_graph &&
-         state.alive.value_or(false);
+         state.alive == true;
 }
 
 // A topic that nobody else publishes, and that came when it was due.

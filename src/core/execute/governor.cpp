@@ -36,6 +36,7 @@ Governor::Options Governor::Options::recommended() {
   options.limits.overall = {20, 60s};
   options.limits.per_kind = {12, 60s};
   options.limits.per_component = {6, 60s};
+  options.limits.restarts = {20, 1h};
   options.limits.backoff = {1s, 60s, 60s};
   options.limits.quiet_after_launch = 1s;
   options.storm.share = 0.6;
@@ -177,7 +178,8 @@ void Governor::begin_planning() {
 bool Governor::withholds(StrategyId strategy, Time now) {
   const auto held = restraint_on(strategy, now);
   if (!held) return false;
-  knowledge_.withheld[strategy.index] = {held->reason, held->until};
+  knowledge_.withheld[strategy.index] = {held->reason, held->until,
+                                         held->restraint == Restraint::kRestarts};
   tell(strategy, *held, now);
   return true;
 }

@@ -25,6 +25,11 @@ bool restarts(const Adaptation& adaptation) {
          kind_of(adaptation.type) == StrategyKind::kProcess;
 }
 
+// Not a stop, which may be the safe thing to do.
+bool begins_anew(const Adaptation& adaptation) {
+  return restarts(adaptation) && adaptation.type != AdaptationType::kStop;
+}
+
 std::string_view words(StrategyKind kind) {
   switch (kind) {
     case StrategyKind::kConfiguration:
@@ -68,7 +73,8 @@ Limits::Limits(const Knowledge& knowledge, Options options)
       kinds_{IntensityBudget(options.per_kind), IntensityBudget(options.per_kind),
              IntensityBudget(options.per_kind)} {
   for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c)
-    components_.push_back(PerComponent{IntensityBudget(options.per_component)});
+    components_.push_back(
+        PerComponent{IntensityBudget(options.per_component), IntensityBudget(options.restarts)});
 }
 
 std::optional<Limits::Limit> Limits::on_all(Time now) const {
@@ -87,6 +93,13 @@ std::optional<Limits::Limit> Limits::on(StrategyId id, Time now) const {
                               "strategies were begun at " + name, now))
       return limit;
     if (auto limit = quiet(component, now)) return limit;
+  }
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    if (!begins_anew(adaptation)) continue;
+    const std::string& name = knowledge_.rules[adaptation.component].name;
+    if (auto limit = exceeded(components_[adaptation.component.index].begun_anew,
+                              Restraint::kRestarts, "restarts of " + name, now))
+      return limit;
   }
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (!restarts(adaptation)) continue;
@@ -166,6 +179,7 @@ void Limits::spend(StrategyId id, Time now, Time failed) {
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (!restarts(adaptation)) continue;
     PerComponent& state = components_[adaptation.component.index];
+    if (begins_anew(adaptation)) state.begun_anew.spend(now);
     if (was_healthy(adaptation.component, strategy.rule, failed)) state.restarts = 0;
     ++state.restarts;
     state.restarted = now;

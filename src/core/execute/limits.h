@@ -1,5 +1,5 @@
-// How often strategies may be begun: in total, of each kind, at each component; and how long a
-// component that was restarted is left alone.
+// How often strategies may be begun: in total, of each kind, at each component; how often a
+// component may be restarted; and how long it is left alone after that.
 //
 // What is asked for and what is spent are two steps: may_begin() has no effect. Strategies that a
 // person ran by hand are spent like any other.
@@ -40,6 +40,7 @@ class Limits {
     Intensity overall{};
     Intensity per_kind{};
     Intensity per_component{};
+    Intensity restarts{};  // of a component, by whatever strategies; beyond, a person must look
     Backoff backoff{};
     Duration quiet_after_launch{};  // for a component that was started, and what depends on it
   };
@@ -63,6 +64,7 @@ class Limits {
  private:
   struct PerComponent {
     IntensityBudget budget;
+    IntensityBudget begun_anew;
     int restarts = 0;  // since it was proven healthy
     Time restarted = kLongAgo;
     Time well_since = kLongAgo;

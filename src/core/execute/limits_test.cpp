@@ -22,6 +22,9 @@ struct Two {
                     "RULE Down\nPOLICIES ERROR\nTRIGGER !alive(down)\n"
                     "STRATEGY down_again 90 10\nADAPTATION down redeploy 5\n"
                     "STRATEGY down_tuned 90 10\nADAPTATION down set_parameter p 1 5\n"
+                    "STRATEGY down_off 90 10\nADAPTATION down stop 5\n"
+                    "STRATEGY both_again 90 10\nADAPTATION up redeploy 5\n"
+                    "ADAPTATION down redeploy 5\n"
                     "RULE Other\nPOLICIES ERROR\nTRIGGER !alive(other)\n"
                     "STRATEGY other_again 90 10\nADAPTATION other redeploy 5\n"))
            .rules;
@@ -100,6 +103,35 @@ TEST(Limits, BoundWhatIsBegunAtAComponentInItsPeriod) {
             Restraint::kComponentIntensity);
   EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart + 59s));
   EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 60s));
+}
+
+TEST(Limits, BoundTheRestartsOfAComponentWhicheverRulesAsk) {
+  Two two;
+  Limits::Options options;
+  options.restarts = {2, 1h};
+  options.backoff = {1s, 4s, 10s};
+  Limits limits(two.knowledge, options);
+  limits.began(two.strategy("down_again"), kStart);
+  limits.began(two.strategy("down_tuned"), kStart + 1min);
+  limits.began(two.strategy("both_again"), kStart + 10min);
+  const auto refused = limits.on(two.strategy("down_again"), kStart + 59min);
+  ASSERT_EQ(restraint(refused), Restraint::kRestarts) << "proven health in between is no excuse";
+  EXPECT_EQ(refused->reason, "2 restarts of down in 1h, and no more are allowed");
+  EXPECT_FALSE(limits.on(two.strategy("down_tuned"), kStart + 59min)) << "it restarts nothing";
+  EXPECT_FALSE(limits.on(two.strategy("down_off"), kStart + 59min)) << "a stop may be what is safe";
+  EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart + 59min)) << "each has its own";
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 1h));
+}
+
+TEST(Limits, RememberTheRestartsOfEarlierProcesses) {
+  Two two;
+  Limits::Options options;
+  options.restarts = {2, 1h};
+  Limits limits(two.knowledge, options);
+  const StrategyId again = two.strategy("down_again");
+  limits.remember(
+      {{kStart, StrategyChosen{again, {}, {}, false}}, {kStart + 10min, StrategyResumed{again}}});
+  EXPECT_EQ(restraint(limits.on(again, kStart + 20min)), Restraint::kRestarts);
 }
 
 }  // namespace

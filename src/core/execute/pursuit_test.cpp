@@ -141,5 +141,20 @@ TEST(PursuitOfAParameter, RestoresOnlyWhatIsAnother) {
   EXPECT_TRUE(is<SetParameter>(other.advance(one.knowledge, kStart)));
 }
 
+// ---- a parameter whose value is known
+
+TEST(PursuitOfAParameter, DoesNotLookForWhatIsKnown) {
+  One one;
+  Pursuit pursuit(ParameterGoal{"gain", Value(0.7), ParameterGoal::Kind::kSet, Value(0.5)}, one.c,
+                  kStart);
+  EXPECT_TRUE(is<SetParameter>(pursuit.advance(one.knowledge, kStart)));
+}
+
+TEST(PursuitOfAParameter, LooksFirstForWhatIsNot) {
+  One one;
+  Pursuit pursuit(ParameterGoal{"gain", Value(0.7)}, one.c, kStart);
+  EXPECT_TRUE(is<ReadParameter>(pursuit.advance(one.knowledge, kStart)));
+}
+
 }  // namespace
 }  // namespace culprit::execute

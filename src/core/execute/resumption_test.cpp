@@ -40,6 +40,13 @@ struct Left {
   }
 };
 
+TEST(Resumption, BeginsWhenTheRobotHadTheTimeToShowItself) {
+  Left left;
+  Executor executor(left.knowledge);
+  executor.resume(left.tuned(), Time(10s), Time(12s));
+  EXPECT_EQ(executor.next_deadline(), Time(12s));
+}
+
 TEST(Resumption, BringsBackAllThatWasChangedIfTheStrategyDoesNotHelp) {
   Left left;
   const std::vector<Undo> undo = undo_of(left.tuned(), left.rules);

@@ -93,6 +93,16 @@ TEST(DependencyGraph, LeadsThroughNodesThatAreNoComponents) {
   EXPECT_EQ(graph.upstream("seg"), Names{"camera"});
 }
 
+TEST(DependencyGraph, ANodeThatIsThereAppearsOnce) {
+  Graph graph(kThree);
+  EXPECT_TRUE((*graph).node_appeared("/camera"));
+  const auto changes = (*graph).changes();
+  EXPECT_FALSE((*graph).node_appeared("/camera"));
+  EXPECT_EQ((*graph).changes(), changes);
+  EXPECT_TRUE((*graph).node_vanished("/camera"));
+  EXPECT_TRUE((*graph).node_appeared("/camera"));
+}
+
 TEST(DependencyGraph, EndsWithCycles) {
   Graph graph = pipeline();
   graph.link("/seg", "/feedback", "/camera");

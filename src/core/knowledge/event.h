@@ -198,7 +198,8 @@ enum class Restraint : std::uint8_t {
   kBackoff,             // it was restarted a short while ago
   kIdentity,            // nobody knows for sure which process it would hit
   kEvidence,            // the process that it would end runs and publishes
-  kNeverSeen            // it would start what was never seen
+  kNeverSeen,           // it would start what was never seen
+  kRestarts             // it was restarted too often: a person must look
 };
 
 // A strategy was chosen and is not begun. Told again only when the reason is another one.

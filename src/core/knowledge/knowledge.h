@@ -56,8 +56,9 @@ struct Knowledge {
   Couplings couplings;
   // What the governor does not allow now.
   struct Withheld {
-    std::string reason;   // empty: it is allowed
-    Time until = kNever;  // kNever: until somebody does something, or more is known
+    std::string reason;        // empty: it is allowed
+    Time until = kNever;       // kNever: until somebody does something, or more is known
+    bool is_given_up = false;  // was done too often: a person must look
   };
   std::vector<Withheld> withheld;  // by strategy
   PendingOutcomes outcomes;

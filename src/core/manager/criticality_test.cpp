@@ -108,6 +108,35 @@ TEST(Criticality, LetsAnErrorWaitUntilTheAdaptationOfALesserFailureIsDone) {
   EXPECT_EQ(robot.count("camera is held responsible for Dark"), 0u) << transcript(robot);
 }
 
+TEST(Criticality, WhyAFailureWaitsIsSaidAnewWhenTheReasonOrTheFailureIsAnother) {
+  TestRobot robot = camera("redeploy 5");
+  const auto reasons = [&] {
+    std::vector<Condition> all;
+    for (const Event& event : robot.events) {
+      const auto* waits = std::get_if<FailureHeldBack>(&event.what);
+      if (waits != nullptr && robot.rules()[waits->rule].name == "Dark")
+        all.push_back(*waits->candidates.front().excluded);
+    }
+    return all;
+  };
+  robot.signal("blur", Value(1.0));
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(100ms);
+  EXPECT_EQ(reasons(), std::vector{Condition::kAdapting}) << "once";
+  const RuleId dark = robot.rules().rules.front().name == "Dark" ? RuleId(0) : RuleId(1);
+  robot.order({1, "Ann", "", Silence{dark, {}}});
+  robot.run_for(4s);
+  EXPECT_EQ(reasons(), (std::vector{Condition::kAdapting, Condition::kWithheld}))
+      << transcript(robot);
+  robot.signal("brightness", Value(1.0));
+  robot.run_for(4s);
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(1s);
+  EXPECT_EQ(reasons(),
+            (std::vector{Condition::kAdapting, Condition::kWithheld, Condition::kWithheld}))
+      << transcript(robot);
+}
+
 TEST(Criticality, LetsNoErrorWaitForALesserFailureToSettle) {
   TestRobot robot = camera("redeploy 5");
   robot.signal("blur", Value(1.0));

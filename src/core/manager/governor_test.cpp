@@ -50,6 +50,44 @@ TEST(Intensity, IsNeverExceededAndSaidOnceWhenItHoldsBack) {
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
 }
 
+// Each time it was proven well in between: neither attempts nor the budgets of a minute end it.
+TEST(Restarts, AreBoundedHoweverFailuresComeAndGoAndThenAPersonIsTold) {
+  Governor::Options options;
+  options.limits.restarts = {3, 1h};
+  options.limits.backoff = {1s, 4s, 10s};
+  TestRobot robot = one_camera(options);
+  for (int time = 0; time < 6; ++time) {
+    robot["camera"].fault = "redeploy";
+    robot.run_for(60s);
+  }
+  EXPECT_EQ(times_of_choices(robot).size(), 3u) << transcript(robot);
+  EXPECT_EQ(robot.count("is held back: 3 restarts of camera in 1h, and no more are allowed"), 1u);
+  EXPECT_EQ(robot.count("CameraDead is exhausted"), 1u) << transcript(robot);
+  robot["camera"].fault.clear();
+  robot.run_for(1h);
+  robot["camera"].fault = "redeploy";
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("camera")) << "a person mended it, and the hour is over\n"
+                                     << transcript(robot);
+}
+
+TEST(Restarts, WhatRestartsNothingIsTriedBeyondTheirBound) {
+  Governor::Options options;
+  options.limits.restarts = {1, 1h};
+  TestRobot robot = one_camera(options, std::string(kCamera) +
+                                            "    STRATEGY tune 30 10\n"
+                                            "      ADAPTATION camera set_parameter gain 1 2\n"
+                                            "    STRATEGY give_in 50 10 LASTRESORT\n"
+                                            "      ADAPTATION camera stop 2\n");
+  robot["camera"].parameters["gain"] = Value(std::int64_t{0});
+  robot["camera"].fault = "a person";
+  robot.run_for(60s);
+  EXPECT_EQ(robot.count("(redeploy, "), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("(tune, "), 2u) << transcript(robot);
+  EXPECT_EQ(robot.count("(give_in, "), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraDead is exhausted"), 1u) << transcript(robot);
+}
+
 TEST(Backoff, DoublesBetweenRestartsAndBeginsAnewAfterProvenHealth) {
   Governor::Options options;
   options.limits.backoff = {10s, 60s, 30s};

@@ -184,6 +184,25 @@ class SleepyRobot : public Robot {
   bool has_slept_ = false;
 };
 
+class InterruptedRobot : public Robot {
+ public:
+  Time now() const override { return {}; }
+  void observe(Time, std::vector<Observation>&) override {}
+  void execute(const Command&) override {}
+  void interrupt() override { ++interrupts; }
+  int interrupts = 0;
+};
+
+// Else it would wait until something happens to the robot.
+TEST(Runtime, AnOrderInterruptsItsWait) {
+  const Checked checked = check(Source("test.rules", kRules));
+  Manager manager(*checked.rules, std::make_unique<BayesPlanner>(), {});
+  InterruptedRobot robot;
+  Runtime runtime(manager, robot);
+  runtime.submit({1, "ada", "", Pause{}});
+  EXPECT_EQ(robot.interrupts, 1);
+}
+
 TEST(Runtime, TellsTheManagerThatItOverslept) {
   const Checked checked = check(Source("test.rules", kRules));
   Manager manager(*checked.rules, std::make_unique<BayesPlanner>(), {});

@@ -17,6 +17,19 @@ bool same_reasons(const std::vector<Candidate>& a, const std::vector<Candidate>&
                     });
 }
 
+// Of all that was left to try, the governor withholds everything until a person has looked.
+bool is_given_up(const Verdict& verdict, const Knowledge& knowledge) {
+  bool is_any = false;
+  for (const Candidate& candidate : verdict.candidates) {
+    if (candidate.excluded == Condition::kTried || candidate.excluded == Condition::kInvalid)
+      continue;
+    const bool is_withheld = candidate.excluded == Condition::kWithheld;
+    if (!is_withheld || !knowledge.withheld[candidate.strategy.index].is_given_up) return false;
+    is_any = true;
+  }
+  return is_any;
+}
+
 // Samples and readings are many, and reach a plan only through the rules that they trigger.
 bool is_news(const Observation& observation) {
   return !std::holds_alternative<SampleArrived>(observation.what) &&
@@ -106,7 +119,6 @@ void Manager::restart(Time now) {
   monitor_.restart(now);
   analyzer_.restart(now);
   executor_.restart(now);
-  news_ = true;
 }
 
 void Manager::react(std::vector<Command>& commands) {
@@ -208,7 +220,9 @@ void Manager::plan(Time now) {
       analyzer_.round_is_spent(verdict.rule, now);
     } else {
       hold_back(verdict, now);
-      if (plan::waits_for_person(verdict, knowledge_))
+      if (is_given_up(verdict, knowledge_))
+        analyzer_.give_up(verdict.rule, now);
+      else if (plan::waits_for_person(verdict, knowledge_))
         analyzer_.turn_to_last_resort(verdict.rule, now);
     }
   }

@@ -252,6 +252,33 @@ RULE Blurred
   EXPECT_EQ(coupling(robot, 0, 1), (Coupling{1, 0})) << transcript(robot);
 }
 
+// A reading comes every two seconds: the next one tells, and not the next cycle.
+TEST(Couplings, WaitForTheReadingsOfTheEffect) {
+  TestRobot robot(R"(
+COMPONENT lamp   NODE /lamp
+RULE Dark
+  POLICIES WARNING
+  TRIGGER brightness < 0.5
+    STRATEGY light 90 10
+      ADAPTATION lamp set_parameter on 1 2
+RULE Blurred
+  POLICIES NON_CRITICAL
+  TRIGGER blur > 0.5
+    STRATEGY focus 50 10
+      ADAPTATION lamp set_parameter angle 1 2
+)");
+  robot.add("lamp").parameters = {{"on", Value(std::int64_t{0})},
+                                  {"angle", Value(std::int64_t{0})}};
+  robot.discover();
+  for (int tenth = 0; tenth < 120; ++tenth) {
+    robot.signal("brightness", Value(tenth >= 80 && tenth < 83 ? 0.2 : 1.0));
+    if (tenth % 20 == 0) robot.signal("blur", Value(tenth == 80 ? 1.0 : 0.0));
+    robot.run_for(100ms);
+  }
+  EXPECT_EQ(robot.count("Dark resolved by light"), 1u) << transcript(robot);
+  EXPECT_EQ(coupling(robot, 0, 1), (Coupling{1, 0})) << transcript(robot);
+}
+
 TEST(BayesPlanner, LeavesWhatWasRepairedUpstreamTheTimeToSettle) {
   TestRobot robot = pipeline(bayes());
   robot["camera"].fault = "redeploy";

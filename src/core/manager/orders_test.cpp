@@ -241,12 +241,14 @@ TEST(Orders, WhatMakesNoSenseIsRefusedWithItsReason) {
   r.order(order(LiftSilence{kDark}));
   r.order(order(Silence{ComponentId(99), {}}));
   r.order(order(RunStrategy{StrategyId(99)}));
+  r.order(order(Forget{RuleId(r.rules().rules.size())}));
   r.order(order(Pause{}));
   r.order(order(RunStrategy{kLight}));
   EXPECT_EQ(r.count("Ann is refused: it is not paused"), 1u) << transcript(r);
   EXPECT_EQ(r.count("Ann is refused: it is not silenced"), 1u) << transcript(r);
   EXPECT_EQ(r.count("Ann is refused: there is no such component or rule"), 1u) << transcript(r);
   EXPECT_EQ(r.count("Ann is refused: there is no such strategy"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("Ann is refused: there is no such rule"), 1u) << transcript(r);
   EXPECT_EQ(r.count("Ann is refused: it is paused; resume first"), 1u) << transcript(r);
   EXPECT_TRUE(r.asked.empty());
 }

@@ -54,6 +54,25 @@ TEST(RestrainedPlanner, ChoosesNoRedeployThatTheEvidenceSpeaksAgainst) {
   EXPECT_EQ(choice(false), "restart") << "the lidar runs and is heard";
 }
 
+// What may be begun for one failure does not let another one be begun.
+TEST(RestrainedPlanner, AsksOfEachThatIsChosen) {
+  TestRobot robot(kRules, std::make_unique<Onlooker>());
+  robot.add("camera", {}, "/rgb");
+  robot.add("lidar", {}, "/scan");
+  robot.discover();
+  robot.run_for(6s);
+  robot["camera"].fault = "restart";
+  robot["lidar"].fault = "redeploy";
+  robot.run_for(1s);
+  robot.tell(NamesakesSeen{"/camera", 1});
+  const BayesPlanner planner;
+  const auto verdicts =
+      RestrainedPlanner(planner).plan(robot.manager().plannable(), robot.manager().knowledge());
+  ASSERT_EQ(verdicts.size(), 2u);
+  for (const Verdict& verdict : verdicts)
+    EXPECT_EQ(verdict.chosen.has_value(), verdict.rule == RuleId(1)) << "the camera has a namesake";
+}
+
 TEST(RestrainedPlanner, ChoosesNothingWhereNobodyKnowsWhoWouldBeHit) {
   EXPECT_EQ(choice(true), "");
 }

@@ -198,6 +198,26 @@ TEST(Monitor, ReadsDiagnosticsAsTheTypeThatTheRulesNeed) {
   EXPECT_TRUE(evaluate(watched.rules.rules[0].trigger, watched.knowledge.signals.slots()).b);
 }
 
+// Lower than ever lately, and nearer to the threshold.
+TEST(Monitor, FindsAReadingUnusualThatIsANewExtremeOnly) {
+  Watched low(rule("s < 2"));
+  const auto reads = [](Watched& w, std::initializer_list<double> values) {
+    for (const double value : values) w.observe(0ms, SignalRead{SignalId(0), Value(value)});
+    return w.knowledge.signals.is_unusual(InputId(0));
+  };
+  EXPECT_FALSE(reads(low, {10, 5, 8, 9}));
+  EXPECT_FALSE(reads(low, {7})) << "there was less";
+  EXPECT_FALSE(reads(low, {5})) << "nothing new";
+  EXPECT_TRUE(reads(low, {4}));
+  EXPECT_FALSE(reads(low, {1})) << "it is no warning any more";
+  Watched high(rule("s > 20"));
+  EXPECT_FALSE(reads(high, {5, 10, 7, 6}));
+  EXPECT_FALSE(reads(high, {8})) << "there was more";
+  EXPECT_FALSE(reads(high, {10})) << "nothing new";
+  EXPECT_TRUE(reads(high, {11}));
+  EXPECT_FALSE(reads(high, {21})) << "it is no warning any more";
+}
+
 TEST(Monitor, TakesAReadingThatMakesNoSenseForUnknown) {
   Watched watched(rule("number > 1"));
   watched.observe(1s, SignalRead{SignalId(0), Value(std::string("n/a"))});

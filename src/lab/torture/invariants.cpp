@@ -43,7 +43,8 @@ Invariants::Invariants(const RuleSet& rules, const Scenario& scenario)
       kinds_{Budget{scenario.governor.limits.per_kind, {}},
              Budget{scenario.governor.limits.per_kind, {}},
              Budget{scenario.governor.limits.per_kind, {}}},
-      components_(rules.components.size(), Budget{scenario.governor.limits.per_component, {}}) {
+      components_(rules.components.size(), Budget{scenario.governor.limits.per_component, {}}),
+      restarts_(rules.components.size(), Budget{scenario.governor.limits.restarts, {}}) {
   for (std::size_t part = 0; part < scenario.parts.size(); ++part)
     needs_.push_back(all_needs(scenario, part));
 }
@@ -135,6 +136,14 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
       if (std::binary_search(adapted.begin(), adapted.end(), component)) ++busy;
     }
     if (busy > 1) fail(at, where + " is adapted by several strategies at once");
+  }
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    const bool begins_anew = adaptation.type == AdaptationType::kRestart ||
+                             adaptation.type == AdaptationType::kRedeploy ||
+                             adaptation.type == AdaptationType::kStart;
+    if (begins_anew)
+      spend(restarts_[adaptation.component.index],
+            "of restarts of " + rules_[adaptation.component].name, at);
   }
   if (!strategy.is_last_resort && is_downstream_of_an_attempt(manager.knowledge(), strategy, at))
     fail(at, name + " is begun downstream of what is being adapted");

@@ -2,6 +2,7 @@
 //
 // - No budget is ever exceeded: no interval holds more strategies than allowed, in total, of a
 //   kind, at a component. Counted here anew, from the events.
+// - No component is restarted more often than its bound allows, whichever rules ask for it.
 // - No process is started while the component's old one is there.
 // - While paused nothing is asked that changes anything; at a silenced component nothing is begun;
 //   while the robot is known to move nothing is begun.
@@ -100,6 +101,7 @@ class Invariants {
   Budget overall_;
   std::array<Budget, 3> kinds_;
   std::vector<Budget> components_;
+  std::vector<Budget> restarts_;  // by component
   std::vector<Belief> beliefs_;
   std::set<Silenceable> silenced_;
   std::set<StrategyId> ordered_;    // by a person

@@ -70,6 +70,7 @@ Governor::Options draw_governor(Random& random) {
   options.limits.overall = intensity();
   options.limits.per_kind = intensity();
   options.limits.per_component = intensity();
+  if (random.chance(0.5)) options.limits.restarts = {1 + random.below(5), 1h};
   if (random.chance(0.5)) options.limits.backoff = {1s, 10s, 20s};
   if (random.chance(0.3)) options.limits.quiet_after_launch = 2s;
   if (random.chance(0.2)) options.approval = Approval::kEach;

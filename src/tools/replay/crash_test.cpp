@@ -115,6 +115,65 @@ RULE Silent
                                                "gain=1.5"}),
                          [](const auto& story) { return std::string(story.param.name); });
 
+constexpr const char* kSlowCamera = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 2
+)";
+
+// What a run that ended in the middle of a redeploy leaves to one that begins `later`.
+journal::Recovery left_behind(Duration later, std::optional<journal::Ending> ending) {
+  const TestFolder folder;
+  TestRobot robot(kSlowCamera);
+  robot.add("camera", {}, "/rgb");
+  {
+    Life first(folder / "first.journal", robot, kSlowCamera);
+    robot.discover();
+    robot.run_for(6s);
+    robot["camera"].fault = "redeploy";
+    robot["camera"].start_time = 10s;
+    robot.run_for(2s);
+    EXPECT_TRUE(robot.was_asked("camera: start process")) << transcript(robot);
+    if (ending) first.end(*ending);
+    robot.before_commands = nullptr;
+  }
+  const journal::Reader reader = value_of(journal::Reader::open(folder / "first.journal"));
+  journal::Moment now = moment(robot);
+  now.robot += later;
+  return value_of(journal::recover(reader, robot.rules(), now));
+}
+
+bool has_verdict_on_its_strategy(const Past& past) {
+  return std::any_of(past.begin(), past.end(), [](const Event& event) {
+    return std::holds_alternative<OutcomePending>(event.what) ||
+           std::holds_alternative<OutcomeCounted>(event.what) ||
+           std::holds_alternative<StrategyFailed>(event.what);
+  });
+}
+
+TEST(Crash, WhatWasCutShortByItIsGoneOnWith) {
+  EXPECT_EQ(left_behind(1s, {}).interrupted.size(), 1u);
+  EXPECT_EQ(left_behind(1s, journal::Ending::kStopped).interrupted.size(), 1u);
+}
+
+// Another culprit manages the robot since.
+TEST(Crash, WhatWasCutShortBySteppingBackIsOverAndProvesNothing) {
+  const journal::Recovery found = left_behind(1s, journal::Ending::kSteppedBack);
+  EXPECT_TRUE(found.interrupted.empty());
+  EXPECT_TRUE(found.given_up.empty());
+  EXPECT_FALSE(has_verdict_on_its_strategy(found.past));
+}
+
+TEST(Crash, WhatWasCutShortLongAgoIsNotTakenUpAgain) {
+  const journal::Recovery found = left_behind(61min, {});
+  EXPECT_TRUE(found.interrupted.empty());
+  EXPECT_THAT(found.given_up, testing::ElementsAre("redeploy for CameraDead: that was more than 1h "
+                                                   "ago, so it is not gone on with"));
+}
+
 TEST(Crash, WhatTheLastRunLeftIsKnown) {
   const TestFolder folder;
   const char* rules = R"(

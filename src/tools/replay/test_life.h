@@ -79,6 +79,11 @@ class Life {
     steps_left_ = steps;
     sends_ = sends;
   }
+  // Its last word to the journal.
+  void end(journal::Ending ending) {
+    if (const auto written = recorder_->end(ending); !written)
+      throw std::runtime_error(written.error());
+  }
   // The robot's clock runs faster than the recorder's thread: waits until the robot's topics are on
   // record.
   void wait_until_known() const {

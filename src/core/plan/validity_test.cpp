@@ -1,0 +1,32 @@
+// Which strategies make sense now (paper, condition 2)?
+#include "plan/validity.h"
+
+#include <gtest/gtest.h>
+
+#include "plan/bayes/test_scene.h"
+
+namespace culprit::plan {
+namespace {
+
+// What an earlier adaptation brings about is not known yet.
+TEST(Validity, AsksOfEachComponentOnlyWhatItsFirstAdaptationNeeds) {
+  Scene scene(
+      "COMPONENT camera NODE /camera LAUNCH \"camera\"\nCOMPONENT lamp NODE /lamp\n"
+      "RULE Dark\nPOLICIES ERROR\nTRIGGER brightness < 0.5\n"
+      "STRATEGY again 50 10\nADAPTATION camera start 5\nADAPTATION camera set_parameter gain 1 2\n"
+      "STRATEGY tune 50 10\nADAPTATION camera set_parameter gain 1 2\n"
+      "STRATEGY both 50 10\nADAPTATION camera start 5\nADAPTATION lamp set_parameter on 1 2\n");
+  const auto invalid = [&](const char* strategy) {
+    return invalidity(scene.rules()[scene.strategy(strategy)], *scene);
+  };
+  scene.process("camera", ProcessState::kGone);
+  EXPECT_FALSE(invalid("Dark.again")) << invalid("Dark.again")->reason;
+  EXPECT_TRUE(invalid("Dark.tune"));
+  EXPECT_FALSE(invalid("Dark.both"));
+  scene.process("lamp", ProcessState::kGone);
+  ASSERT_TRUE(invalid("Dark.both")) << "another component is another question";
+  EXPECT_EQ(invalid("Dark.both")->component, scene.component("lamp"));
+}
+
+}  // namespace
+}  // namespace culprit::plan
