@@ -133,9 +133,9 @@ class Census {
 
 struct Chaos : testing::Test {
   TestProgram run() {
-    return TestProgram(world,
-                       {"culprit", "run", rules, "--journal", journal_path, "--state-dir",
-                        (world.folder() / "state").string(), "--settle", "2", "--healthy", "1"});
+    return TestProgram(world, {"culprit", "run", rules, "--journal", journal_path, "--state-dir",
+                               (world.folder() / "state").string(), "--settle", "2", "--healthy",
+                               "1", "--restarts", "none"});
   }
   // A run that ends in order. Gives what it held.
   Holdings see_the_whole_robot() {
@@ -185,7 +185,9 @@ struct Chaos : testing::Test {
 // Gives how many runs there were.
 int expect_runs_to_replay(const journal::Reader& journal) {
   Governor::Options governor = Governor::Options::recommended();
-  governor.limits.backoff.healthy = std::chrono::seconds(1);  // as it was run
+  // As it was run.
+  governor.limits.backoff.healthy = std::chrono::seconds(1);
+  governor.limits.restarts = {};
   int runs = 0;
   std::int64_t before = 0;
   while (true) {

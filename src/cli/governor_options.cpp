@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "journal/json.h"
+#include "journal/past.h"
 
 namespace culprit::cli {
 namespace {
@@ -30,6 +31,10 @@ Expected<Intensity> parse_intensity(const std::string& option, const std::string
   if (!is_count || intensity.most < 1 || intensity.most > 1'000'000 || !period ||
       *period <= Duration::zero())
     return error;
+  if (*period > journal::kPastCounts)
+    return Error{option + ": '" + text + "' counts for longer than " +
+                 to_string(journal::kPastCounts) +
+                 ", and a restart of culprit forgets what is older"};
   intensity.period = *period;
   return intensity;
 }
@@ -141,6 +146,7 @@ GovernorOptions GovernorOptions::from_json(const nlohmann::ordered_json& json) {
   intensity("intensity", options.overall);
   intensity("intensity_kind", options.per_kind);
   intensity("intensity_component", options.per_component);
+  options.restarts = "none";  // of a run that knew no such bound
   intensity("restarts", options.restarts);
   time("backoff", options.backoff_seconds);
   time("backoff_most", options.backoff_most_seconds);

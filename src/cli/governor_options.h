@@ -30,7 +30,7 @@ struct GovernorOptions {
   // An error: an intensity that is none.
   Expected<Governor::Options> options() const;
 
-  // For the journal. What is missing there was as recommended.
+  // For the journal. What is missing there was as recommended, but for `restarts`: not bounded.
   nlohmann::ordered_json to_json() const;
   static GovernorOptions from_json(const nlohmann::ordered_json& json);
 };

@@ -57,7 +57,7 @@ class Trail {
     for (const Interrupted& each : open_) {
       const Strategy& strategy = rules_[each.strategy];
       given_up_.push_back(strategy.name + " for " + rules_[strategy.rule].name +
-                          ": that was more than " + to_string(kPastCounts) +
+                          ": that was more than " + culprit::to_string(kPastCounts) +
                           " ago, so it is not gone on with");
     }
     return {};

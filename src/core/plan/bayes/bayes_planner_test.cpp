@@ -38,6 +38,16 @@ TEST(BayesPlanner, ActsOnIndependentFailuresAtOnce) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart D.restart");
 }
 
+TEST(BayesPlanner, AFailureDoesNotGoThroughAComponentThatIsSeenToBeWell) {
+  Scene scene = robot();
+  scene.fail("A").fail("C");
+  scene.plan(kFewRedeployments);
+  EXPECT_EQ(scene.candidate("C.restart").excluded, Condition::kDependency) << "b may be ill";
+  scene->states.state(scene.rule("B")).trigger = Slot::of(false);
+  scene.plan(kFewRedeployments);
+  EXPECT_NE(scene.candidate("C.restart").excluded, Condition::kDependency);
+}
+
 TEST(BayesPlanner, BreaksACircleThatThePaperWaitsInForEver) {
   Scene scene = robot();
   scene.link("c", "a").fail("A").fail("B").fail("C");
