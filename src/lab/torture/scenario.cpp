@@ -70,7 +70,6 @@ Governor::Options draw_governor(Random& random) {
   options.limits.overall = intensity();
   options.limits.per_kind = intensity();
   options.limits.per_component = intensity();
-  if (random.chance(0.5)) options.limits.restarts = {1 + random.below(5), 1h};
   if (random.chance(0.5)) options.limits.backoff = {1s, 10s, 20s};
   if (random.chance(0.3)) options.limits.quiet_after_launch = 2s;
   if (random.chance(0.2)) options.approval = Approval::kEach;
@@ -152,6 +151,7 @@ Scenario draw(std::uint64_t seed) {
   scenario.uses_paper_planner = random.chance(0.4);
   scenario.operator_answers = random.chance(0.8);
   scenario.has_infrastructure = random.chance(0.3);
+  if (random.chance(0.5)) scenario.governor.limits.restarts = {1 + random.below(5), 1h};
   return scenario;
 }
 
