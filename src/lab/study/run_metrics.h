@@ -1,6 +1,6 @@
 // What one run of a study yields.
 //
-// Twice: as the exemplar's own script computes it (facts of its evaluation: what never recovers
+// Twice: as the exemplar's own script computes it (what never recovers
 // counts as no downtime, what is never resolved as no reaction time), and honestly.
 //
 // All numbers are finite; times are seconds of the robot, counts are not negative but where said.

@@ -1,4 +1,4 @@
-// camera: takes /rgb_raw, publishes rgb_camera with the same stamp (facts 1.2).
+// camera: takes /rgb_raw, publishes rgb_camera with the same stamp.
 //
 // For each frame, in this order:
 // - autofocus_needed: the node is held up for kFocusingSec, says autofocus_needed = "True" on its

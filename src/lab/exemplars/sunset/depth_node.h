@@ -1,4 +1,4 @@
-// depth: takes /depth_raw, publishes depth_camera with the same stamp (facts 1.2).
+// depth: takes /depth_raw, publishes depth_camera with the same stamp.
 //
 // - do_drop_depth_camera: frames are dropped silently. No scenario uses it.
 // - depth_degradation g > 0: noise is added to the depth.

@@ -1,7 +1,7 @@
 // How long an output was missing.
 //
 // The exemplar adds up all gaps between two outputs that are longer than two frame periods, each in
-// full (facts 5.3). A robot that never recovers has no downtime then: what is before the first
+// full. A robot that never recovers has no downtime then: what is before the first
 // output and after the last one does not count. So we tell both figures.
 #pragma once
 

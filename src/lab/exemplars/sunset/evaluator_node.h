@@ -1,5 +1,5 @@
 // evaluator: compares each segmentation with the ground truth of its frame and publishes how well
-// they agree (facts 5.2): the mean IoU, and those of vehicles and roads where the frame has any, as
+// they agree: the mean IoU, and those of vehicles and roads where the frame has any, as
 // std_msgs/Float64 on /experiment_setup/{iou,vehicle_iou,road_iou}.
 //
 // It belongs to the experimenter: no rule reads what it says.

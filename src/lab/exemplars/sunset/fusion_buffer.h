@@ -3,7 +3,7 @@
 // It keeps the last few pictures of each input (6 in the paper's profile). After every arrival it
 // takes, of all pairs close enough in time, the closest one that is not the pair that it took just
 // before. In a bag all stamps coincide, so that "the closest" is the oldest pair, or the second
-// oldest if that was taken last. Hence, as in the exemplar (facts 1.2, paper profile):
+// oldest if that was taken last. Hence, as in the exemplar:
 //
 // - each frame is sent twice, at 20 Hz, out of order, 0.4 to 0.5 s after it was taken;
 // - when one input falls silent, the other's arrivals bring out 4 or 5 more pairs: a camera outage

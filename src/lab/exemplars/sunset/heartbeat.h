@@ -1,5 +1,5 @@
 // A node's heartbeat on /diagnostics: one status, its hardware id the name of the node, carrying
-// the key-values that were added since the last one (facts 1.0).
+// the key-values that were added since the last one.
 //
 // The level is always OK: SUNSET's nodes do not notice their faults.
 #pragma once

@@ -1,4 +1,4 @@
-// image_enhancement: takes rgb_camera, publishes rgb_enhanced, brightened (facts 1.2).
+// image_enhancement: takes rgb_camera, publishes rgb_enhanced, brightened.
 //
 // Its parameter image_degradation says which degradation it is to undo, 1.5 unless it is told
 // otherwise. On a healthy picture it does harm. It configures itself but does not activate itself,

@@ -1,4 +1,4 @@
-// What the five managed nodes of SUNSET have in common (facts 1.0): a lifecycle, a heartbeat, fault
+// What the five managed nodes of SUNSET have in common: a lifecycle, a heartbeat, fault
 // parameters that heal by restart or by redeployment, and parameters that outlive the process.
 //
 // - At the start of the process a node takes its parameters' last values, configures and activates

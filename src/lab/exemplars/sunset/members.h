@@ -4,7 +4,7 @@
 //        |---> depth ------------------------------^                                   ^
 //        |-----------------------------------------------------------------------------|
 //
-// Names are the exemplar's (facts 1.1, 1.2, 5.2).
+// Names are the exemplar's.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // The live robot keeps its promises: each fault shows as the failures that scenario.h says, the
-// right adaptations end them, and the wrong ones do not (facts 2.1).
+// right adaptations end them, and the wrong ones do not.
 #include <algorithm>
 #include <chrono>
 #include <csignal>

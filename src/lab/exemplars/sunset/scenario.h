@@ -1,5 +1,5 @@
 // What goes wrong in SUNSET: the ten faults, the 18 combinations of them that the exemplar's
-// evaluation plays, and what happens to processes in our demonstrations (facts 2.1, 2.2, 4).
+// evaluation plays, and what happens to processes in our demonstrations.
 #pragma once
 
 #include <array>

@@ -11,7 +11,6 @@ namespace culprit::sunset {
 namespace {
 
 TEST(Scenarios, AreNumberedAsTheExemplars) {
-  // facts 4
   EXPECT_EQ(find_scenario("001")->name(), "image_degradation+camera_driver_issue");
   EXPECT_EQ(find_scenario("006")->name(), "image_degradation+gpu_failure");
   EXPECT_EQ(find_scenario("010")->name(), "depth_degradation+hardware_disconnect");

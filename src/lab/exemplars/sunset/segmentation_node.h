@@ -1,5 +1,5 @@
 // segmentation: takes sensors_fused, publishes segmentation (a class for each pixel, with the stamp
-// of the input) and says on its heartbeat how unsure it was: "entropy" (facts 1.2; classifier.h).
+// of the input) and says on its heartbeat how unsure it was: "entropy" (classifier.h).
 //
 // - cuda_out_of_memory, gpu_failure: nothing is published, no entropy is told (F3).
 //

@@ -1,5 +1,5 @@
 // sensor_fusion: takes depth_camera and rgb_camera (or what topic_camera_input names), publishes
-// sensors_fused with the stamp of the picture (facts 1.2).
+// sensors_fused with the stamp of the picture.
 //
 // - Which pictures go together: fusion_buffer.h; delta_t_threshold, in seconds, is how far apart
 //   they may be. With modality 1 or 2 (rgb or depth alone) the newest picture goes out at every

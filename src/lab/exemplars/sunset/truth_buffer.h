@@ -1,5 +1,5 @@
 // Which segmentation the evaluator judges by which ground truth: of the last 20 of each, the
-// closest in time, at most 10 ms apart; both are used up (facts 5.2). So the second of the two
+// closest in time, at most 10 ms apart; both are used up. So the second of the two
 // segmentations that the fusion causes for each frame is not judged again.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The world: plays the flight as a rosbag2 player plays the exemplar's bag (facts 1.1).
+// The world: plays the flight as a rosbag2 player plays the exemplar's bag.
 //
 // Publishes /rgb_raw (bgr8), /depth_raw (16UC1) and /gt_segmentation (8UC1) at 10 Hz of robot time,
 // all three with the same stamp: frame i with i / 10 s. The flight has no end, and begins anew with

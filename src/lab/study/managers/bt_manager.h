@@ -1,4 +1,4 @@
-// SUAVE's behaviour tree, which leads the mission and adapts the robot in one (facts 4.3).
+// SUAVE's behaviour tree, which leads the mission and adapts the robot in one.
 //
 // Where its delays come from: the tree is ticked, then sleeps 100 ms, and each action under way
 // sleeps 50 ms within the tick; before a mode is changed it is read. Numbers are read with single

@@ -1,5 +1,5 @@
 // MROS 2, the Metacontrol of SUAVE: an ontology of functions and their designs, reasoned over every
-// 1.5 s (facts 4.4).
+// 1.5 s.
 //
 // Where its delays come from: the period of the reasoner, whose phase is constant within a run; and
 // the inference over the whole ontology, during which nothing is decided. Errors of components take

@@ -1,5 +1,5 @@
-// SUAVE's Random: a mode of chance for the function of the task, at its begin and every 15 s (facts
-// 4.2; version 1.5: 30 s).
+// SUAVE's Random: a mode of chance for the function of the task, at its begin and every 15 s
+// (version 1.5: 30 s).
 #pragma once
 
 #include "study/managers/suave_manager.h"

@@ -1,5 +1,5 @@
 // ROSA: a knowledge base of actions, functions, components and configurations that is planned over
-// on every message, with a behaviour tree that leads the mission (facts 4.5).
+// on every message, with a behaviour tree that leads the mission.
 //
 // Where its delays come from: every access to the knowledge base is a handful of database
 // transactions, and one service call is served at a time. A message is inserted, then the planner

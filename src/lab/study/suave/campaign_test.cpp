@@ -56,7 +56,7 @@ TEST(SuaveBaselines, ReproduceThePublishedExtendedMission) {
 
 TEST(SuaveBaselines, RandomIsBadAtInspecting) {
   const auto rows = play(campaign("standard", {"random"}));
-  EXPECT_LT(rows[0].last_distance_m.mean(), 8);  // measured elsewhere: 3.9 +- 3.2 (facts 1.11)
+  EXPECT_LT(rows[0].last_distance_m.mean(), 8);  // measured elsewhere: 3.9 +- 3.2
   EXPECT_GT(rows[0].visibility.answered_s.mean(), 20);
 }
 
@@ -128,7 +128,7 @@ TEST(PublishedSuave, HasReactionsByName) {
   EXPECT_EQ(published::find_suave("stress", "bt"), nullptr);
 }
 
-// facts 0: what the paper prints of its own tests follows from its table.
+// What the paper prints of its own tests follows from its table.
 TEST(PublishedSuave, YieldsThePapersTests) {
   const auto& ours = *published::find_suave("extended", "culprit");
   const auto& rosa = *published::find_suave("extended", "rosa");

@@ -1,4 +1,4 @@
-// The exemplar's evaluation script (facts 5.3), and honest figures beside it.
+// The exemplar's evaluation script, and honest figures beside it.
 #include <algorithm>
 #include <set>
 

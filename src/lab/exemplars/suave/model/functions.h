@@ -1,4 +1,4 @@
-// The nodes that do something: search, follow, recover, recharge (facts 1.4, 1.5, 1.7, 1.8).
+// The nodes that do something: search, follow, recover, recharge.
 //
 // They configure themselves at their start, and do nothing until somebody activates them.
 #pragma once

@@ -1,4 +1,4 @@
-// The nodes, systems, topics and diagnostics of SUAVE, by their names in the exemplar (facts 1, 2).
+// The nodes, systems, topics and diagnostics of SUAVE, by their names in the exemplar.
 #pragma once
 
 #include <string>

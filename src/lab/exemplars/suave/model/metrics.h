@@ -1,4 +1,4 @@
-// The exemplar's metrics of a mission (mission_metrics; facts 3), by name, and what it leaves out.
+// The exemplar's metrics of a mission (mission_metrics), by name, and what it leaves out.
 //
 // - Visibility: a mismatch opens with a reading of the visibility for which the search does not
 //   have the expected altitude, and closes when the search's altitude becomes the one expected by

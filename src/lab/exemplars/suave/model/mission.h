@@ -1,4 +1,4 @@
-// The mission: first search the pipeline, then inspect it, until the time is over (facts 1.9).
+// The mission: first search the pipeline, then inspect it, until the time is over.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ enum class Leader : std::uint8_t {
   kManager   // a manager that also decides which task it is
 };
 
-// Which modes the systems have (facts 2.1).
+// Which modes the systems have.
 std::vector<simulation::ModeSystem> mode_systems();
 
 class Mission : public simulation::Node, private simulation::Watcher {

@@ -1,5 +1,4 @@
-// Which SUAVE is modelled, and what goes wrong in it: generation and mission (facts, provenance;
-// 1.7 to 1.10).
+// Which SUAVE is modelled, and what goes wrong in it: generation and mission.
 #pragma once
 
 #include <optional>

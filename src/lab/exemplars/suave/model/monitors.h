@@ -1,6 +1,5 @@
-// What the robot says of itself on /diagnostics: the water's visibility, the battery, the thrusters
-// (facts 1.6 to 1.8, 2.2). Each has a timer of one second, with a phase of its own, from the
-// mission's begin on.
+// What the robot says of itself on /diagnostics: the water's visibility, the battery, the
+// thrusters. Each has a timer of one second, with a phase of its own, from the mission's begin on.
 #pragma once
 
 #include "exemplars/suave/model/autopilot.h"

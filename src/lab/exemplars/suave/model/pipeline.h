@@ -1,5 +1,4 @@
-// The pipeline on the seabed: where it lies, from where it is seen, and the path along it (facts
-// 1.2, 1.3).
+// The pipeline on the seabed: where it lies, from where it is seen, and the path along it.
 #pragma once
 
 #include <array>

@@ -7,7 +7,6 @@ namespace culprit::suave::model {
 namespace {
 
 TEST(Pipeline, LiesAsTheExemplars) {
-  // facts 1.2
   EXPECT_DOUBLE_EQ(pipeline().front().x, -15.5);
   EXPECT_DOUBLE_EQ(pipeline().front().y, 0);
   EXPECT_DOUBLE_EQ(pipeline().back().x, -51.56);
@@ -25,10 +24,10 @@ TEST(Pipeline, IsInspectedThereAndBack) {
   double length = 0;
   for (std::size_t i = 1; i < path.size(); ++i)
     length += std::hypot(path[i].x - path[i - 1].x, path[i].y - path[i - 1].y);
-  EXPECT_NEAR(length, 82.2, 0.1);  // facts 1.2
+  EXPECT_NEAR(length, 82.2, 0.1);
 }
 
-// facts 1.3: how wide the camera sees from the altitudes of the search, and what that needs.
+// How wide the camera sees from the altitudes of the search, and what that needs.
 TEST(Detection, SeesAsWideAsItIsHigh) {
   struct Case {
     double height, altitude, above, reach;

@@ -1,4 +1,4 @@
-// The search for the pipeline: a spiral around a centre, a point at a time (facts 1.4).
+// The search for the pipeline: a spiral around a centre, a point at a time.
 //
 //     r_0 = 0,  r_n = r_(n-1) + w / 2 pi * 0.1,  angle 0.1 n,  w = 2 altitude tan(30 deg)
 //

@@ -28,7 +28,7 @@ RC_GTEST_PROP(Spiral, GrowsByARingPerTurnWhereTheVehicleKeepsUp, ()) {
     RC_ASSERT(goal.has_value());
     vehicle = *goal;
   }
-  // facts 1.4: after k steps k w / 62.8, w = 1.1547 altitude
+  // As the exemplar: after k steps k w / 62.8, w = 1.1547 altitude
   RC_ASSERT(std::abs(radius(vehicle) - steps * 1.1547 * altitude / (20 * std::numbers::pi)) < 0.01);
   RC_ASSERT(std::abs(vehicle.z - (kSeabed + altitude)) < 1e-9);
 }

@@ -108,7 +108,7 @@ TEST(Thrusters, AreRecoveredThoughSwitchedOffInTheOldGenerationOnly) {
   }
 }
 
-// facts 1.8: 150 subtractions of 1/200 end just below a quarter, in double precision only.
+// 150 subtractions of 1/200 end just below a quarter, in double precision only.
 TEST(Battery, IsAQuarterInSinglePrecisionASecondLongerThanInDouble) {
   Sea sea;
   Listener battery(sea, "battery_level");

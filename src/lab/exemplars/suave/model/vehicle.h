@@ -1,4 +1,4 @@
-// How the vehicle moves: kinematics that stand for a BlueROV2 under ArduSub (facts 1.1, 1.11).
+// How the vehicle moves: kinematics that stand for a BlueROV2 under ArduSub.
 //
 // It heads for its setpoint with a speed proportional to the distance, up to a cruise speed, and
 // gets there with a lag; its depth likewise. What it and its camera take for its position is off by

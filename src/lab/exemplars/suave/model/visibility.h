@@ -1,5 +1,4 @@
-// How far one sees in the water, and how high above the seabed that lets a vehicle search (facts
-// 1.3, 1.6).
+// How far one sees in the water, and how high above the seabed that lets a vehicle search.
 #pragma once
 
 #include <array>

@@ -22,7 +22,6 @@ TEST(Visibility, ChangesItsBandWhenTheExemplarsDoes) {
     ASSERT_NE(best_mode(second), nullptr) << second;
     if (best_mode(second) != best_mode(second - 1)) changes.push_back(second);
   }
-  // facts 1.6
   EXPECT_THAT(changes, testing::ElementsAre(12, 23, 58, 69, 92, 103, 138, 149));
 }
 

@@ -1,4 +1,4 @@
-// SUNSET's own monitoring, the node abstract_bb_setter (facts 3.1): it turns topics and diagnostics
+// SUNSET's own monitoring, the node abstract_bb_setter: it turns topics and diagnostics
 // into named values and publishes them now and then. A manager that reads them sees an outage only
 // when the frequency of its topic has sunk, long after the last picture.
 //

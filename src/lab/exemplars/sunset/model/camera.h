@@ -1,4 +1,4 @@
-// The modelled camera and depth camera (facts 1.2).
+// The modelled camera and depth camera.
 #pragma once
 
 #include "exemplars/sunset/model/managed_node.h"

@@ -1,5 +1,5 @@
 // How unsure the segmentation is of a picture, as a random process with the statistics of the
-// exemplar's logs (facts 1.3).
+// exemplar's logs.
 #pragma once
 
 #include <vector>
@@ -20,7 +20,7 @@ class Entropy {
 
   explicit Entropy(simulation::Random random) : random_(random) {}
 
-  // The same frame has the same entropy. A small number, not bits (facts 1.2).
+  // The same frame has the same entropy. A small number, not bits.
   double of(const Frame& frame);
 
  private:

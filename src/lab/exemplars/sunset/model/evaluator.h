@@ -1,5 +1,5 @@
-// The experimenter's view of the modelled robot: when segmentations came that could be judged
-// (facts 5.2), and when something was wrong with them.
+// The experimenter's view of the modelled robot: when segmentations came that could be judged,
+// and when something was wrong with them.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace culprit::sunset::model {
 
 class Evaluator : public simulation::Node {
  public:
-  // Two frame periods: longer gaps between outputs are downtime (facts 5.3).
+  // Two frame periods: longer gaps between outputs are downtime.
   static constexpr Duration kTolerated = std::chrono::milliseconds(200);
   // What was well for so long at the end is well.
   static constexpr Duration kCalm = std::chrono::milliseconds(1500);

@@ -1,4 +1,4 @@
-// The modelled image enhancement (facts 1.2): idle until somebody activates it. It undoes a
+// The modelled image enhancement: idle until somebody activates it. It undoes a
 // degraded picture exactly, and washes out a healthy one.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the five managed nodes have in common (facts 1.0), as exemplars/sunset/managed_node.h has it
+// What the five managed nodes have in common, as exemplars/sunset/managed_node.h has it
 // for the live ones: a heartbeat from configuring on, fault parameters that heal by activating or
 // by configuring, and parameters that may outlive the process.
 #pragma once

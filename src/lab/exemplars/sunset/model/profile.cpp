@@ -20,7 +20,7 @@ constexpr Duration wall(double seconds_on_the_wall) {
 }
 
 // Shutting a node down and launching it again, until it accepts a lifecycle call, took 2.4 to 3.4 s
-// on the wall in the one log that shows it (facts 1.0).
+// on the wall in the one log that shows it.
 constexpr simulation::Span kRelaunch{wall(2.4), wall(1.0)};
 
 // A tenth of a robot second passes at most until a shut-down process sees that it is to exit.

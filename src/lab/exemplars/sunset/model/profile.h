@@ -1,5 +1,5 @@
 // Which SUNSET is modelled. The public sources show three, which differ in what an evaluation
-// measures; and there is ours, which runs live (facts, section 0).
+// measures; and there is ours, which runs live.
 //
 // All times are robot time, the bag's. The exemplar plays its bag at a fifth of real time, so that
 // a second on the wall is 0.2 s here.

@@ -1,4 +1,4 @@
-// The modelled segmentation (facts 1.2): a picture in, how unsure it is and a picture out.
+// The modelled segmentation: a picture in, how unsure it is and a picture out.
 #pragma once
 
 #include "exemplars/sunset/model/entropy.h"

@@ -1,4 +1,4 @@
-// The modelled sensor fusion (facts 1.2): pairs pictures of both inputs.
+// The modelled sensor fusion: pairs pictures of both inputs.
 #pragma once
 
 #include "exemplars/sunset/fusion_buffer.h"

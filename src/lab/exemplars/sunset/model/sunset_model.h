@@ -1,7 +1,7 @@
 // SUNSET as a discrete-event model: the managed system of the paper's evaluation, in robot time.
 //
-// The bag plays ten frames a second; five nodes make a segmentation of them; the blackboard watches
-// (facts 1 to 3). Pictures carry no pixels, only what the entropy of the segmentation depends on.
+// The bag plays ten frames a second; five nodes make a segmentation of them; the blackboard watches.
+// Pictures carry no pixels, only what the entropy of the segmentation depends on.
 #pragma once
 
 #include <memory>
