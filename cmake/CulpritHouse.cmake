@@ -41,6 +41,16 @@ if(CULPRIT_TESTS)
   target_link_libraries(culprit_test_main PRIVATE GTest::gtest GTest::gmock rapidcheck culprit_test_options)
 endif()
 
+# Live tests run side by side, each as if on a machine of its own, where the one who builds may make one; else one after the other.
+if(CULPRIT_TESTS)
+  set(culprit_own_machine ${CMAKE_CURRENT_LIST_DIR}/in_own_machine.sh)
+  execute_process(COMMAND ${culprit_own_machine} true RESULT_VARIABLE refused OUTPUT_QUIET ERROR_QUIET)
+  if(refused)
+    set(culprit_own_machine "")
+    message(STATUS "Live tests run one after the other: no right to make namespaces")
+  endif()
+endif()
+
 # culprit_library(<floor>/<folder> [USES <folder>...] [PACKAGES <target>...]
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL]
 #                 [TEST_LABELS <label>...])
@@ -49,8 +59,8 @@ endif()
 # <folder>_testing of what only tests use (test_*.cpp), for others' tests too; and the test program <folder>_test of
 # *_test.cpp.
 # USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
-# *_live_test.cpp make a program of their own, <folder>_live_test: they start the processes of a robot, so they run alone
-# and carry the label "live". The label "threads" is for tests that the thread sanitizer repeats.
+# *_live_test.cpp make a program of their own, <folder>_live_test: they start the processes of a robot, so each has a
+# machine of its own (in_own_machine.sh) or runs alone, and carries the label "live". The label "threads" is for tests that the thread sanitizer repeats.
 function(culprit_library path)
   cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES" ${ARGN})
   get_filename_component(folder ${path} NAME)
@@ -111,7 +121,7 @@ function(culprit_library path)
   endif()
   if(live_tests)
     culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${with} PACKAGES ${ARG_TEST_PACKAGES}
-                 SERIAL LABELS live)
+                 LIVE LABELS live)
   endif()
 endfunction()
 
@@ -181,11 +191,11 @@ function(culprit_program name source)
   install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
 
-# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LABELS ...] [CASES n]): one CTest test for each TEST.
-# SERIAL tests run alone: they start processes or measure how a live robot behaves. Properties are tried on n random
-# cases each instead of 100.
+# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LIVE] [LABELS ...] [CASES n]): one CTest test for each
+# TEST. SERIAL tests run alone. LIVE tests have a machine of their own (in_own_machine.sh), or run alone; they wait more than they compute, so
+# two of them may run where one of the others does. Properties are tried on n random cases each instead of 100.
 function(culprit_test name)
-  cmake_parse_arguments(ARG "SERIAL" "" "SOURCES;USES;PACKAGES;LABELS;CASES" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;LIVE" "" "SOURCES;USES;PACKAGES;LABELS;CASES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_precompile_headers(${name} REUSE_FROM culprit_test_main)
   # Tests call what is theirs alone by the same names.
@@ -193,10 +203,13 @@ function(culprit_test name)
   target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PACKAGES} culprit_test_main GTest::gtest GTest::gmock
                                         rapidcheck culprit_test_options)
   set(properties TIMEOUT 300)
-  if(ARG_SERIAL)
+  if(ARG_SERIAL OR (ARG_LIVE AND NOT culprit_own_machine))
     list(APPEND properties RUN_SERIAL TRUE)
   endif()
-  if(NOT "live" IN_LIST ARG_LABELS)
+  if(ARG_LIVE)
+    set_target_properties(${name} PROPERTIES CROSSCOMPILING_EMULATOR "${culprit_own_machine}")
+  else()
+    list(APPEND properties PROCESSORS 2)
     add_dependencies(offline_tests ${name})
   endif()
   if("threads" IN_LIST ARG_LABELS)
