@@ -1,5 +1,5 @@
 # The two commands of this project are `make demo` and `make test`. Each installs what is missing first.
-.PHONY: build demo test bench format clean
+.PHONY: build demo test soak bench format clean
 
 # The programs that the README runs; `make test` builds the tests.
 build:
@@ -16,6 +16,17 @@ demo:
 test:
 	@scripts/install-dependencies --tests
 	scripts/test
+
+# What takes longer than a test may, some four hours in all: a robot that is broken and healed for an hour, 500 kills of culprit,
+# 40 changes of the core that its tests should notice, each fuzzer for five minutes.
+soak:
+	@scripts/install-dependencies --tests
+	cmake --preset release
+	cmake --build --preset release
+	scripts/soak
+	scripts/chaos
+	scripts/mutate
+	scripts/fuzz --seconds 300
 
 bench:
 	@scripts/install-dependencies --tests
