@@ -238,7 +238,6 @@ TEST_F(TwoMachines, StepBackAndDoNothingWhenTheyWereOnlySlow) {
   std::this_thread::sleep_for(3s);
   const std::string since = second->output().substr(second->output().find("from now on"));
   EXPECT_THAT(since, Not(HasSubstr("another culprit manages this robot")));
-  const TestNetwork::Visit visit(*network, TestNetwork::kRobot);
   EXPECT_LE(cameras().size(), 1u);
 }
 

@@ -35,14 +35,6 @@ bool is_in(const fs::path& process, std::uint32_t domain) {
   return !environment.empty() && own == std::to_string(domain);
 }
 
-// In the caller's network: others may use the domain in one of their own.
-bool is_in_this_network(const fs::path& process) {
-  std::error_code error;
-  const fs::path own = fs::read_symlink("/proc/thread-self/ns/net", error);
-  const fs::path theirs = fs::read_symlink(process / "ns/net", error);
-  return !error && own == theirs;
-}
-
 }  // namespace
 
 std::vector<int> processes_of(Member member, std::uint32_t domain) {
@@ -54,9 +46,7 @@ std::vector<int> processes_of(Member member, std::uint32_t domain) {
     int pid = 0;
     const auto [rest, failed] = std::from_chars(name.data(), name.data() + name.size(), pid);
     const bool is_process = failed == std::errc() && rest == name.data() + name.size();
-    if (is_process && runs(i->path(), member) && is_in(i->path(), domain) &&
-        is_in_this_network(i->path()))
-      pids.push_back(pid);
+    if (is_process && runs(i->path(), member) && is_in(i->path(), domain)) pids.push_back(pid);
   }
   return pids;
 }

@@ -12,9 +12,8 @@
 
 namespace culprit::sunset {
 
-// The pids of those sunset-nodes that were started as `member`, for this DDS domain, and in the
-// network namespace of the calling thread; usually one. Others' processes, of which the kernel does
-// not tell so much, are left out.
+// The pids of those sunset-nodes that were started as `member` and for this DDS domain; usually
+// one. Others' processes, of which the kernel does not tell so much, are left out.
 std::vector<int> processes_of(Member member, std::uint32_t domain);
 
 }  // namespace culprit::sunset
