@@ -7,8 +7,7 @@
 //   StrategyFailed, RoundSpent, LastResortReached, RuleExhausted     what was tried
 //   OrderAccepted of Silence and LiftSilence                         silences
 //   ComponentFound                                                   which process it last ran in
-//   LifecycleIntended                                                what a new process of it is
-//   brought to
+//   LifecycleIntended                                                where a new process is brought
 //   CameUp                                                           how long it is waited for
 //
 // Events of other kinds say nothing here.
