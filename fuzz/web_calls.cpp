@@ -21,7 +21,8 @@ std::vector<web::Route> all_routes() {
   static const RuleSet rules = *check(Source("fuzz.rules", kRules)).rules;
   static web::RuleDesk desk("fuzz.rules", kRules);
   std::vector<web::Route> routes = web::rule_routes(desk);
-  static web::OrderDesk orders(web::keeps_nothing("it is fuzzed"));
+  static OrderKeeper keeper("it is fuzzed");
+  static web::OrderDesk orders(keeper.keeping());
   orders.open(rules, [](const Order&) {});
   for (web::Route& route : web::order_routes(orders)) routes.push_back(std::move(route));
   return routes;
