@@ -25,8 +25,11 @@ const found = signal<Found[]>([])
 const form = signal<RuleDocument | null>(null)
 const unreadable = signal('') // why there is no form of the text
 
-// The form of the newest text: answers to older ones are dropped.
+// Form and text follow one another by the server. Whichever was changed last counts: answers to what was asked
+// before it are dropped, or a slow one would take back what was entered since.
 let asked = 0
+
+// The form of the text.
 async function readForm(): Promise<void> {
   const mine = ++asked
   try {
@@ -132,13 +135,14 @@ export function RulesPage() {
 
   const change = async (document: RuleDocument) => {
     form.value = document
-    ++asked // what is being read of the text is out of date
+    const mine = ++asked
     try {
       const reply = await call<{ text: string }>('POST', '/api/rules/text', document)
+      if (mine !== asked) return
       editor.current?.setText(reply.text)
       unreadable.value = ''
     } catch (error) {
-      unreadable.value = (error as Refusal).message
+      if (mine === asked) unreadable.value = (error as Refusal).message
     }
   }
   const format = () =>

@@ -1,6 +1,6 @@
 // The paper's rule SegmentationBad, from nothing, in the form.
 import { readFileSync } from 'node:fs'
-import { expect, file, isAccessible, picture, session } from './session.mjs'
+import { expect, expectSoon, file, isAccessible, picture, session } from './session.mjs'
 
 const kRule = `RULE SegmentationBad
   POLICIES WARNING
@@ -66,4 +66,39 @@ await session(['web', path], async (page) => {
   await page.getByText('as saved').waitFor()
   const saved = readFileSync(path, 'utf8').trim() + '\n'
   expect(saved === kRule, `this was saved:\n${saved}`)
+})
+
+// The server's answers come late and in the wrong order: nothing that was entered is lost.
+const slow = file('slow.rules')
+await session(['web', slow], async (page) => {
+  const form = page.getByRole('region', { name: 'Form' })
+  const text = page.locator('.cm-content')
+  await form.getByRole('button', { name: '+ Rule' }).click()
+  await text.filter({ hasText: 'RULE' }).waitFor()
+
+  const held = []
+  const isHeld = (count) => expectSoon(() => held.length === count, `not ${count} requests`)
+  await page.route('**/api/rules/text', (route) => held.push(route))
+  const enter = async (label, value) => {
+    const field = form.getByLabel(label, { exact: true })
+    await field.fill(value)
+    await field.press('Tab')
+  }
+  const answer = async (route) => {
+    const answered = page.waitForResponse((response) => response.request() === route.request())
+    await route.continue()
+    await (await answered).finished()
+  }
+  await enter('rule', 'Slow')
+  await isHeld(1)
+  await enter('trigger', 'segmentation_entropy > 0.06')
+  await isHeld(2)
+  await answer(held[1])
+  await text.filter({ hasText: 'segmentation_entropy > 0.06' }).waitFor()
+  await answer(held[0])
+  await page.unroute('**/api/rules/text')
+  await enter('helps in %', '77')
+  await text.filter({ hasText: '77' }).waitFor()
+  const written = await text.innerText()
+  for (const entered of ['RULE Slow', 'segmentation_entropy > 0.06', '77']) expect(written.includes(entered), `without ${entered}:\n${written}`)
 })

@@ -46,6 +46,13 @@ export function expect(condition, message) {
   if (!condition) throw new Error(message)
 }
 
+// Waits until `holds`.
+export async function expectSoon(holds, message) {
+  const end = Date.now() + kPatience
+  while (!holds() && Date.now() < end) await new Promise((resolve) => setTimeout(resolve, 10))
+  expect(holds(), message)
+}
+
 // Runs `steps` with a page of `culprit <args>`, and what it prints. Whatever the page complains of is a failure.
 export async function session(args, steps) {
   const server = serve([...args, '--port', '0'])
