@@ -238,6 +238,7 @@ class Run {
       const auto* accepted = std::get_if<OrderAccepted>(&event.what);
       const auto* refused = accepted ? std::get_if<Refuse>(&accepted->order.what) : nullptr;
       if (refused != nullptr) refused_.insert(rules_[refused->strategy].rule);
+      if (const auto* held = std::get_if<FailureHeldBack>(&event.what)) waits_[held->rule] = *held;
     }
     invariants_.check(*manager_, now, commands, truth());
     memory_.note(observations, manager_->events(), commands);
@@ -308,6 +309,9 @@ class Run {
       if (is_about(rules_[asked].rule) || is_joined(ComponentId(part), rules_[asked])) return true;
     }
     if (std::any_of(refused_.begin(), refused_.end(), is_about)) return true;
+    for (const auto& [rule, word] : waits_) {
+      if (is_about(rule) && waits_for_person(word)) return true;
+    }
     if (std::any_of(needed.begin(), needed.end(), [&](std::size_t p) { return is_never_seen(p); }))
       return true;
     for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
@@ -322,6 +326,18 @@ class Run {
       return std::find(needed.begin(), needed.end(), std::get<ComponentId>(silence.what).index) !=
              needed.end();
     });
+  }
+
+  // The last word on the failure was that another one may be its cause, and that one is left to a
+  // person. The part may only seem to need that cause: topics that all share join what does not.
+  bool waits_for_person(const FailureHeldBack& word) const {
+    const RuleStates& states = manager_->knowledge().states;
+    if (states[word.rule].phase != RulePhase::kFailing) return false;
+    return std::any_of(word.candidates.begin(), word.candidates.end(),
+                       [&](const Candidate& candidate) {
+                         return candidate.because && (states.awaits_person(*candidate.because) ||
+                                                      refused_.contains(*candidate.because));
+                       });
   }
 
   // It never spoke, and that was told.
@@ -379,8 +395,9 @@ class Run {
   std::multimap<Time, std::variant<Resume, Approve, Refuse>> due_;
   Time over_ = kQuiet;  // what happens by itself
   Time calm_since_{};
-  Time said_{};               // anything, the manager, last
-  std::set<RuleId> refused_;  // a person refused a strategy of theirs
+  Time said_{};                              // anything, the manager, last
+  std::set<RuleId> refused_;                 // a person refused a strategy of theirs
+  std::map<RuleId, FailureHeldBack> waits_;  // the last word on why each waits
   RunOutcome outcome_;
 };
 

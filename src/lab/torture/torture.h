@@ -19,8 +19,8 @@ struct RunOutcome {
 
 // Runs the scenario to its end, or to the first violation. Afterwards it must hold too that
 // - every part works, or something that was said excuses it: a storm or a pause, or about it or
-// about
-//   what it needs an exhausted rule, a silence, a refusal, a question that nobody answers;
+//   about what it needs an exhausted rule, a silence, a refusal, a question that nobody answers, or
+//   that it waits for such a rule, which may be its cause as far as anybody can see;
 // - the same observations give the same commands and events again.
 RunOutcome run(const Scenario& scenario);
 

@@ -1,9 +1,13 @@
 #include "torture/torture.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace culprit::torture {
 namespace {
+
+using namespace std::chrono_literals;
 
 TEST(Torture, HundredsOfRobotsAreTreatedAsPromised) {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
@@ -15,6 +19,28 @@ TEST(Torture, HundredsOfRobotsAreTreatedAsPromised) {
 TEST(Torture, WhatWasOnceFoundStaysMended) {
   for (const std::uint64_t seed : {485u, 1293u, 1982u, 4047u, 4284u, 5524u})
     EXPECT_FALSE(run(draw(seed)).violation) << report(shrink(draw(seed)));
+}
+
+bool says(const RunOutcome& outcome, const std::string& what) {
+  return std::any_of(outcome.timeline.begin(), outcome.timeline.end(),
+                     [&](const std::string& line) { return line.find(what) != std::string::npos; });
+}
+
+// Parts that hear a topic of all may need each other, as far as anybody can see. One of them cannot
+// be brought back, the other one waits for a person with it, and that was said.
+TEST(Torture, WhoeverSeemsToNeedAnExhaustedPartIsExcused) {
+  Scenario scenario;
+  scenario.seed = 1;
+  scenario.parts.resize(2);
+  scenario.has_infrastructure = true;
+  scenario.governor.limits.restarts = {1, 1h};
+  scenario.mishaps = {{Time(6s), Mishap::Kind::kKill, 0},
+                      {Time(12s), Mishap::Kind::kKill, 0},
+                      {Time(18s), Mishap::Kind::kBeyondRepair, 1}};
+  const RunOutcome outcome = run(scenario);
+  EXPECT_TRUE(says(outcome, "Silent0 is exhausted"));
+  EXPECT_TRUE(says(outcome, "Silent1 waits: it depends on c0, which may be the cause (Silent0)"));
+  EXPECT_FALSE(outcome.violation) << report(scenario);
 }
 
 TEST(Torture, TheSameSeedGivesTheSameRun) {
