@@ -40,6 +40,45 @@ TestRobot camera(const std::string& focus) {
   return robot;
 }
 
+// It has its components back only when it has all of them.
+TEST(Criticality, WhoMadeWayIsNotJudgedWhileAnyOfItsComponentsIsTaken) {
+  TestRobot robot(R"(
+COMPONENT camera NODE /camera
+COMPONENT lamp NODE /lamp
+RULE Blurred
+  POLICIES NON_CRITICAL
+  TRIGGER blur > 0.5
+    STRATEGY focus 90 10
+      ADAPTATION camera set_parameter angle 1 5
+      ADAPTATION lamp set_parameter angle 1 5
+RULE Dark
+  POLICIES ERROR
+  TRIGGER brightness < 0.5
+    STRATEGY light 90 10
+      ADAPTATION camera set_parameter on 1 20
+)");
+  for (const char* name : {"camera", "lamp"})
+    robot.add(name).parameters = {{"on", Value(std::int64_t{0})},
+                                  {"angle", Value(std::int64_t{0})}};
+  robot.discover();
+  for (int i = 0; i < 3; ++i) {
+    robot.signal("blur", Value(0.0));
+    robot.signal("brightness", Value(1.0));
+    robot.run_for(1s);
+  }
+  robot.signal("blur", Value(1.0));
+  robot.run_for(100ms);
+  ASSERT_EQ(robot.count("set angle of lamp: done"), 1u) << transcript(robot);
+  robot.signal("brightness", Value(0.2));
+  robot.run_for(100ms);
+  ASSERT_EQ(robot.count("Blurred.focus is left where it is: camera is needed for Dark"), 1u)
+      << transcript(robot);
+  robot.signal("blur", Value(0.0));
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("Blurred went away without a strategy of its own"), 1u)
+      << "the light may have helped" << transcript(robot);
+}
+
 TEST(Criticality, LetsNoErrorWaitForAVerdictOnALesserFailure) {
   TestRobot robot = camera("set_parameter angle 1 5");
   const StrategyId focus = robot.rules().rules[0].strategies.front();

@@ -175,6 +175,48 @@ TEST(Flips, NameAllFailuresThatAreInTheWay) {
   EXPECT_EQ(s.flips("last_restart"), "p_bad and r_bad were resolved\n");
 }
 
+// The last rule waits for the first one and, as long as the third is there, for the second.
+class Queue final : public Planner {
+ public:
+  std::vector<Verdict> plan(std::span<const RuleId> failures,
+                            const Knowledge& knowledge) const override {
+    const auto is_there = [&](std::size_t rule) {
+      return std::find(failures.begin(), failures.end(), RuleId(rule)) != failures.end();
+    };
+    const RuleId last = failures.back();
+    Verdict verdict;
+    verdict.rule = last;
+    Candidate candidate;
+    candidate.strategy = knowledge.rules[last].strategies.front();
+    if (is_there(0)) candidate.because = RuleId(0);
+    if (!is_there(0) && is_there(2)) candidate.because = RuleId(is_there(1) ? 1 : 2);
+    if (candidate.because) {
+      candidate.excluded = Condition::kDependency;
+    } else {
+      verdict.chosen = candidate.strategy;
+    }
+    verdict.candidates = {candidate};
+    return {verdict};
+  }
+};
+
+TEST(Flips, NameNoFailureThatIsInTheWayBecauseOfAnotherOneOnly) {
+  std::string rules = "COMPONENT c NODE /c\n";
+  for (const char* name : {"p", "q", "r", "last"})
+    rules += std::string("RULE ") + name + "\n  POLICIES ERROR\n  TRIGGER x > 1\n    STRATEGY " +
+             name + "_restart 60 10\n      ADAPTATION c restart 2\n";
+  Situation s(rules);
+  for (std::size_t rule = 0; rule < 4; ++rule) s.fails(rule);
+  const Queue planner;
+  FlipFinder finder(planner, s.failures(), s.knowledge());
+  const auto flips = finder.flips(s.strategy("last_restart"));
+  const auto resolved = std::find_if(flips.begin(), flips.end(), [](const Change& change) {
+    return std::holds_alternative<ResolvedChange>(change);
+  });
+  ASSERT_NE(resolved, flips.end());
+  EXPECT_EQ(std::get<ResolvedChange>(*resolved).rules, (std::vector{RuleId(0), RuleId(2)}));
+}
+
 TEST(Flips, OfWhatIsUnderRepair) {
   Situation s(std::string(kTwoRules) +
               "RULE Slow\n  POLICIES WARNING\n  TRIGGER x > 2\n    STRATEGY hurry 80 10\n"

@@ -240,6 +240,16 @@ TEST(BayesPlanner, DoesWhatIsSureAtOnceWhileAGreaterFailureDownstreamWaits) {
   }
 }
 
+TEST(BayesPlanner, SaysWhatIsChosenInsteadAtTheSameComponent) {
+  Scene scene(failure_of("c", "A") +
+              "RULE B\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY tune 50 10\nADAPTATION c "
+              "set_parameter p 1 9\n");
+  scene.fail("A").fail("B");
+  ASSERT_EQ(scene.plan(kBalanced), "A.restart");
+  EXPECT_EQ(scene.candidate("B.tune").excluded, Condition::kAffected);
+  EXPECT_EQ(scene.candidate("B.tune").because, scene.rule("A"));
+}
+
 TEST(BayesPlanner, PrefersTheStrategyThatClearsMore) {
   // Two rules touch one component; nothing else tells them apart.
   Scene scene(failure_of("a", "A") + failure_of("b", "B") +
