@@ -41,6 +41,7 @@ BagReading::BagReading(const RuleSet& rules, const BagContents& contents,
   diagnostics_.on_signal = [this](SignalId id, const std::string& text) {
     put(SignalRead{id, Value(text)});
   };
+  diagnostics_.on_status = [this](StatusHeard heard) { put(std::move(heard)); };
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     const std::string& declared = binding_.node_of(ComponentId(c));
     const std::string node = declared.empty() ? "/" + rules.components[c].name : declared;

@@ -22,7 +22,9 @@ enum class Tag : std::uint8_t {
   kNamesakesSeen = 15,
   kHearingLost = 16,
   kHearingRegained = 17,
-  kOverslept = 18
+  kOverslept = 18,
+  kStatusHeard = 19,
+  kParametersListed = 20
 };
 
 enum class OrderTag : std::uint8_t {
@@ -160,6 +162,21 @@ class Encoder {
   void write(const Overslept& o, Duration age) {
     head(Tag::kOverslept, age);
     out_.integer(o.by.count());
+  }
+  void write(const StatusHeard& o, Duration age) {
+    head(Tag::kStatusHeard, age);
+    out_.text(o.name);
+    out_.text(o.hardware_id);
+    texts(o.keys);
+  }
+  void write(const ParametersListed& o, Duration age) {
+    head(Tag::kParametersListed, age);
+    out_.natural(o.component.index);
+    texts(o.names);
+  }
+  void texts(const std::vector<std::string>& all) {
+    out_.natural(all.size());
+    for (const std::string& each : all) out_.text(each);
   }
   void write(const Order& o, Duration age) {
     head(Tag::kOrder, age);
@@ -311,9 +328,27 @@ class Decoder {
         return HearingRegained{};
       case Tag::kOverslept:
         return Overslept{Duration(in_.integer())};
+      case Tag::kStatusHeard: {
+        StatusHeard heard;
+        heard.name = in_.text();
+        heard.hardware_id = in_.text();
+        heard.keys = texts();
+        return heard;
+      }
+      case Tag::kParametersListed: {
+        const auto component = id<ComponentId>(rules_.components.size());
+        return ParametersListed{component, texts()};
+      }
     }
     in_.fail();
     return LinkTrouble{};
+  }
+
+  std::vector<std::string> texts() {
+    std::vector<std::string> all;
+    for (std::uint64_t left = in_.natural(); left > 0 && in_.is_good(); --left)
+      all.push_back(in_.text());
+    return all;
   }
 
   Order order() {

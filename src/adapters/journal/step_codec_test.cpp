@@ -69,7 +69,7 @@ decltype(Order::what) any_order() {
 decltype(Observation::what) anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 17)) {
+  switch (*rc::gen::inRange(0, 19)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -106,6 +106,10 @@ decltype(Observation::what) anything() {
       return HearingRegained{};
     case 15:
       return Overslept{Duration(*rc::gen::arbitrary<std::int64_t>())};
+    case 16:
+      return StatusHeard{text, "id", *rc::gen::arbitrary<std::vector<std::string>>()};
+    case 17:
+      return ParametersListed{component, *rc::gen::arbitrary<std::vector<std::string>>()};
     default:
       return LinkTrouble{text};
   }

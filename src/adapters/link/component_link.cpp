@@ -1,5 +1,7 @@
 #include "link/component_link.h"
 
+#include <algorithm>
+
 #include "base/tracer.h"
 #include "ros2/lifecycle.h"
 #include "ros2/parameter_store.h"
@@ -186,12 +188,32 @@ void ComponentLink::read_parameters() {
                  Repeat::kUntilAnswered, kJoining, [this, p](const CallResult& result) {
                    if (result.outcome != CallOutcome::kAnswered) return;
                    const auto response = decode<srv::GetParameters::Response>(result.reply);
-                   if (!response || response->values.size() != 1) return;
-                   if (auto value = to_value(response->values[0])) {
+                   if (!response) return;
+                   auto value =
+                       response->values.size() == 1 ? to_value(response->values[0]) : std::nullopt;
+                   if (value) {
                      inbox_.put(ParameterRead{ParameterId(p), std::move(*value)});
+                   } else {
+                     misses_parameter_ = true;
                    }
                  });
   }
+}
+
+void ComponentLink::check_parameters() {
+  if (!misses_parameter_.exchange(false)) return;
+  ServiceClient* client = make(parameter_names_, node_ + "/list_parameters",
+                               srv::ListParameters::kType, qos::kParameterServices);
+  if (client == nullptr) return;
+  client->call(encode(srv::ListParameters::Request{}), Repeat::kUntilAnswered, kJoining,
+               [this](const CallResult& result) {
+                 constexpr std::size_t kMost = 1000;
+                 if (result.outcome != CallOutcome::kAnswered) return;
+                 auto response = decode<srv::ListParameters::Response>(result.reply);
+                 if (!response) return;
+                 response->names.resize(std::min(response->names.size(), kMost));
+                 inbox_.put(ParametersListed{component_, std::move(response->names)});
+               });
 }
 
 void ComponentLink::probe(int pid) {

@@ -25,7 +25,7 @@
 namespace culprit::ros2 {
 
 // All members may be called from any thread. What comes of them is put into the inbox: a Reply for
-// each command, and LifecycleRead, ParameterRead and Probed as they become known.
+// each command, and LifecycleRead, ParameterRead, ParametersListed and Probed as they become known.
 class ComponentLink {
  public:
   // `self` is our own node, `node` the component's full name. All references must outlive the link.
@@ -43,6 +43,9 @@ class ComponentLink {
   // was told last. Events tell of transitions sooner, and they may be lost: nobody repeats them,
   // and the first ones pass before both sides know of each other.
   void check_lifecycle();
+
+  // Asks a node that lacks a parameter of the rules which ones it has: one of those may be meant.
+  void check_parameters();
 
   void execute(const Command& command);
 
@@ -94,12 +97,14 @@ class ComponentLink {
   Inbox& inbox_;
   // Not under the mutex: a receive thread that waited for it would stop whoever makes a client.
   std::atomic<Lifecycle> told_ = Lifecycle::kUnknown;
+  std::atomic<bool> misses_parameter_ = false;  // found since it was asked for its names
 
   std::mutex mutex_;  // guards what follows; never held while calling
   std::unique_ptr<ServiceClient> lifecycle_;
   std::unique_ptr<ServiceClient> lifecycle_reader_;  // where the rules only look
   std::unique_ptr<ServiceClient> parameters_;
   std::unique_ptr<ServiceClient> parameter_reader_;  // likewise
+  std::unique_ptr<ServiceClient> parameter_names_;   // if one was missing
   std::unique_ptr<ServiceClient> modes_;
   std::map<std::string, std::unique_ptr<ServiceClient>> routines_;
   std::map<std::string, std::string> services_;  // that the node offers: name -> type

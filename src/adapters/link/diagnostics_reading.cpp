@@ -1,5 +1,7 @@
 #include "link/diagnostics_reading.h"
 
+#include <utility>
+
 namespace culprit::ros2 {
 
 DiagnosticsReading::DiagnosticsReading(const RuleSet& rules) {
@@ -7,38 +9,62 @@ DiagnosticsReading::DiagnosticsReading(const RuleSet& rules) {
     const Signal& signal = rules.signals[s];
     if (const auto* source = std::get_if<DiagnosticKey>(&signal.source)) {
       const bool is_any = source->status == "*";
-      signals_.emplace(is_any ? source->key : source->status + "\n" + source->key, SignalId(s));
+      signals_.emplace(is_any ? source->key : source->status + "\n" + source->key,
+                       Wanted<SignalId>{SignalId(s)});
     } else if (std::holds_alternative<LookedUp>(signal.source)) {
-      signals_.emplace(signal.name, SignalId(s));
+      signals_.emplace(signal.name, Wanted<SignalId>{SignalId(s)});
     }
   }
   for (std::size_t d = 0; d < rules.diagnostics.size(); ++d)
-    levels_.emplace(rules.diagnostics[d].name, DiagnosticId(d));
+    levels_.emplace(rules.diagnostics[d].name, Wanted<DiagnosticId>{DiagnosticId(d)});
+  missing_ = signals_.size() + levels_.size();
 }
 
-void DiagnosticsReading::read(const msg::DiagnosticArray& message) const {
+void DiagnosticsReading::read(const msg::DiagnosticArray& message) {
   for (const msg::DiagnosticStatus& status : message.status) read(status);
+  for (std::size_t s = 0; s < message.status.size() && missing_ > 0; ++s)
+    tell_name(message.status[s]);
 }
 
-void DiagnosticsReading::read(const msg::DiagnosticStatus& status) const {
+void DiagnosticsReading::read(const msg::DiagnosticStatus& status) {
   read_named(status.name, status);
   if (status.hardware_id != status.name) read_named(status.hardware_id, status);
   for (const msg::KeyValue& pair : status.values) read(pair.key, pair.value);
 }
 
-void DiagnosticsReading::read_named(const std::string& name,
-                                    const msg::DiagnosticStatus& status) const {
+void DiagnosticsReading::read_named(const std::string& name, const msg::DiagnosticStatus& status) {
   const auto level = levels_.find(name);
-  if (level != levels_.end()) on_level(level->second, status.level);
+  if (level != levels_.end()) {
+    note_found(level->second);
+    on_level(level->second.id, status.level);
+  }
   for (const msg::KeyValue& pair : status.values) {
     read(name + "\n" + pair.key, pair.value);
     read(name + "_" + pair.key, pair.value);
   }
 }
 
-void DiagnosticsReading::read(const std::string& name, const std::string& text) const {
+void DiagnosticsReading::read(const std::string& name, const std::string& text) {
   const auto found = signals_.find(name);
-  if (found != signals_.end()) on_signal(found->second, text);
+  if (found == signals_.end()) return;
+  note_found(found->second);
+  on_signal(found->second.id, text);
+}
+
+template <class Id>
+void DiagnosticsReading::note_found(Wanted<Id>& wanted) {
+  if (!std::exchange(wanted.was_found, true)) --missing_;
+}
+
+void DiagnosticsReading::tell_name(const msg::DiagnosticStatus& status) {
+  const auto fits = [](const std::string& name) { return name.size() <= kLongestName; };
+  if (told_.size() >= kMostStatuses || !fits(status.name) || !fits(status.hardware_id)) return;
+  if (!told_.insert(status.name + "\n" + status.hardware_id).second) return;
+  StatusHeard heard{status.name, status.hardware_id, {}};
+  for (const msg::KeyValue& pair : status.values) {
+    if (heard.keys.size() < kMostKeys && fits(pair.key)) heard.keys.push_back(pair.key);
+  }
+  on_status(std::move(heard));
 }
 
 }  // namespace culprit::ros2

@@ -2,20 +2,28 @@
 //
 // A declared signal names a status, by its name or its hardware id, and a key. One that is only
 // used is looked for as a key of its name, or as "<hardware id>_<key>" or "<status name>_<key>"
-// (the convention of the SUNSET exemplar's blackboard).
+// (the convention of the SUNSET exemplar's blackboard). While not all of it was found, what is heard
+// instead is told, for whoever looks for a typing mistake.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "language/rule_set.h"
+#include "robot/observation.h"
 #include "ros2/messages.h"
 
 namespace culprit::ros2 {
 
 class DiagnosticsReading {
  public:
+  // Of what is told instead: strangers choose how much there is.
+  static constexpr std::size_t kMostStatuses = 256;
+  static constexpr std::size_t kMostKeys = 64;
+  static constexpr std::size_t kLongestName = 256;
+
   explicit DiagnosticsReading(const RuleSet& rules);
 
   // Whether the rules read any diagnostic.
@@ -24,16 +32,29 @@ class DiagnosticsReading {
   std::function<void(SignalId, const std::string& text)> on_signal;
   std::function<void(DiagnosticId, std::uint8_t level)> on_level;
 
-  // Calls the two above for what the rules want of `message`.
-  void read(const msg::DiagnosticArray& message) const;
+  std::function<void(StatusHeard)> on_status;  // each status once
+
+  // Calls the three above for what the rules want of `message`.
+  void read(const msg::DiagnosticArray& message);
 
  private:
-  void read(const msg::DiagnosticStatus& status) const;
-  void read_named(const std::string& name, const msg::DiagnosticStatus& status) const;
-  void read(const std::string& name, const std::string& text) const;
+  template <class Id>
+  struct Wanted {
+    Id id;
+    bool was_found = false;
+  };
 
-  std::unordered_map<std::string, SignalId> signals_;     // by "status\nkey", or by the bare name
-  std::unordered_map<std::string, DiagnosticId> levels_;  // by name or hardware id
+  void read(const msg::DiagnosticStatus& status);
+  void read_named(const std::string& name, const msg::DiagnosticStatus& status);
+  void read(const std::string& name, const std::string& text);
+  void tell_name(const msg::DiagnosticStatus& status);
+  template <class Id>
+  void note_found(Wanted<Id>& wanted);
+
+  std::unordered_map<std::string, Wanted<SignalId>> signals_;  // by "status\nkey", or the bare name
+  std::unordered_map<std::string, Wanted<DiagnosticId>> levels_;  // by name or hardware id
+  std::size_t missing_ = 0;                                       // of both
+  std::unordered_set<std::string> told_;                          // "name\nhardware id" of statuses
 };
 
 }  // namespace culprit::ros2

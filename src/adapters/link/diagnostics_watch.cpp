@@ -20,6 +20,7 @@ DiagnosticsWatch::DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox&
     : self_(self), inbox_(inbox), reading_(rules) {
   reading_.on_level = [this](DiagnosticId id, std::uint8_t level) { on_level(id, level); };
   reading_.on_signal = [this](SignalId id, const std::string& text) { on_signal(id, text); };
+  reading_.on_status = [this](StatusHeard heard) { inbox_.put(std::move(heard), Urgency::kSoon); };
 }
 
 void DiagnosticsWatch::on_sample(const Sample& sample) {

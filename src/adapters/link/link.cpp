@@ -463,6 +463,9 @@ void Link::on_parameter_event(const msg::ParameterEvent& event) {
 void Link::probe() {
   context_->forget_ended_namesakes();
   for (const auto& [node, each] : probed_) make_link(each.component, node)->probe(each.pid);
+  for (const Parameter& parameter : rules_.parameters) {
+    if (ComponentLink* link = link_of(parameter.component)) link->check_parameters();
+  }
   for (const Input& input : rules_.inputs) {
     if (input.kind != Input::Kind::kLifecycle) continue;
     if (ComponentLink* link = link_of(input.component)) link->check_lifecycle();

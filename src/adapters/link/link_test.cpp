@@ -231,6 +231,37 @@ TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
   const auto trouble = linked.wait<LinkTrouble>(
       [](const LinkTrouble& t) { return t.text.find("signal wrong") != std::string::npos; });
   EXPECT_TRUE(trouble) << "a field that is not there must be said";
+  EXPECT_FALSE(linked.has_seen<StatusHeard>([](const StatusHeard&) { return true; }))
+      << "all that the rules name was found";
+}
+
+// For whoever wrote a name otherwise: what is there instead is told once, and only while something
+// is missing.
+TEST(Link, TellsWhatDiagnosticsAndParametersAreReallyCalled) {
+  const TestDomain domain;
+  Robot robot(domain);
+  auto diagnostics = robot.publisher<msg::DiagnosticArray>("/diagnostics");
+  Linked linked(domain, {},
+                "COMPONENT robot NODE /robot\nSIGNAL hot DIAGNOSTIC moter KEY temperature\n"
+                "RULE R\nPOLICIES ERROR\nTRIGGER hot > 50 || parameter(robot, gian) > 2\n"
+                "STRATEGY s 50 10\nADAPTATION robot restart 5\n");
+  ASSERT_TRUE(linked.sees("/robot"));
+  Timer timer(robot.context->executor(), 20ms, [&] {
+    msg::DiagnosticArray array;
+    array.status = {{1, "motor", "", "m1", {{"temperature", "60.5"}}},
+                    {1, std::string(300, 'x'), "", "", {}}};
+    diagnostics.publish(array);
+  });
+  const auto heard =
+      linked.wait<StatusHeard>([](const StatusHeard& s) { return s.name == "motor"; });
+  ASSERT_TRUE(heard);
+  EXPECT_EQ(heard->hardware_id, "m1");
+  EXPECT_EQ(heard->keys, std::vector<std::string>{"temperature"});
+  const auto listed = linked.wait<ParametersListed>([](const ParametersListed&) { return true; });
+  ASSERT_TRUE(listed);
+  EXPECT_NE(std::find(listed->names.begin(), listed->names.end(), "gain"), listed->names.end());
+  EXPECT_FALSE(linked.has_seen<StatusHeard>([](const StatusHeard& s) { return s.name != "motor"; }))
+      << "no strangers' endless names";
 }
 
 // A best effort reader passes over what it takes for old.

@@ -30,27 +30,33 @@ bool begins_anew(const Adaptation& adaptation) {
   return restarts(adaptation) && adaptation.type != AdaptationType::kStop;
 }
 
-std::string_view words(StrategyKind kind) {
+// What there were so many of.
+struct Words {
+  std::string one;
+  std::string many;
+};
+
+Words words(StrategyKind kind) {
   switch (kind) {
     case StrategyKind::kConfiguration:
-      return "reconfigurations";
+      return {"reconfiguration", "reconfigurations"};
     case StrategyKind::kLifecycle:
-      return "lifecycle changes";
+      return {"lifecycle change", "lifecycle changes"};
     case StrategyKind::kProcess:
-      return "restarts of processes";
+      return {"restart of a process", "restarts of processes"};
   }
-  return "";
+  return {};
 }
 
 // Nothing while one more is available.
 std::optional<Limits::Limit> exceeded(const IntensityBudget& budget, Restraint restraint,
-                                      const std::string& what, Time now) {
+                                      const Words& what, Time now) {
   if (budget.available() <= now) return std::nullopt;
   const auto& [most, period] = budget.limit();
-  return Limits::Limit{
-      restraint,
-      std::to_string(most) + " " + what + " in " + to_string(period) + ", and no more are allowed",
-      budget.available()};
+  return Limits::Limit{restraint,
+                       std::to_string(most) + " " + (most == 1 ? what.one : what.many) + " in " +
+                           to_string(period) + ", and no more are allowed",
+                       budget.available()};
 }
 
 }  // namespace
@@ -78,27 +84,30 @@ Limits::Limits(const Knowledge& knowledge, Options options)
 }
 
 std::optional<Limits::Limit> Limits::on_all(Time now) const {
-  return exceeded(overall_, Restraint::kOverallIntensity, "strategies were begun", now);
+  return exceeded(overall_, Restraint::kOverallIntensity,
+                  {"strategy was begun", "strategies were begun"}, now);
 }
 
 std::optional<Limits::Limit> Limits::on(StrategyId id, Time now) const {
   const Strategy& strategy = knowledge_.rules[id];
   const StrategyKind kind = kind_of(strategy);
   if (auto limit = exceeded(kinds_[static_cast<std::size_t>(kind)], Restraint::kClassIntensity,
-                            std::string(words(kind)), now))
+                            words(kind), now))
     return limit;
   for (const ComponentId component : strategy.components) {
     const std::string& name = knowledge_.rules[component].name;
-    if (auto limit = exceeded(components_[component.index].budget, Restraint::kComponentIntensity,
-                              "strategies were begun at " + name, now))
+    if (auto limit =
+            exceeded(components_[component.index].budget, Restraint::kComponentIntensity,
+                     {"strategy was begun at " + name, "strategies were begun at " + name}, now))
       return limit;
     if (auto limit = quiet(component, now)) return limit;
   }
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (!begins_anew(adaptation)) continue;
     const std::string& name = knowledge_.rules[adaptation.component].name;
-    if (auto limit = exceeded(components_[adaptation.component.index].begun_anew,
-                              Restraint::kRestarts, "restarts of " + name, now))
+    if (auto limit =
+            exceeded(components_[adaptation.component.index].begun_anew, Restraint::kRestarts,
+                     {"restart of " + name, "restarts of " + name}, now))
       return limit;
   }
   for (const Adaptation& adaptation : strategy.adaptations) {

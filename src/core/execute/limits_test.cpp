@@ -105,6 +105,16 @@ TEST(Limits, BoundWhatIsBegunAtAComponentInItsPeriod) {
   EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 60s));
 }
 
+TEST(Limits, SayHowManyThereWere) {
+  Two two;
+  Limits::Options options;
+  options.restarts = {1, 1h};
+  Limits limits(two.knowledge, options);
+  limits.began(two.strategy("down_again"), kStart);
+  EXPECT_EQ(limits.on(two.strategy("down_again"), kStart)->reason,
+            "1 restart of down in 1h, and no more are allowed");
+}
+
 TEST(Limits, BoundTheRestartsOfAComponentWhicheverRulesAsk) {
   Two two;
   Limits::Options options;

@@ -209,7 +209,12 @@ class Describer {
     return rules_[id].name + " was never seen: no node publishes it";
   }
   std::string unseen(SignalId id) const {
-    return "signal " + rules_[id].name + " was never seen: nothing tells it";
+    const Signal& signal = rules_[id];
+    const auto* key = std::get_if<DiagnosticKey>(&signal.source);
+    const std::string source = key == nullptr || key->status == "*"
+                                   ? "it"
+                                   : "the key '" + key->key + "' of status '" + key->status + "'";
+    return "signal " + signal.name + " was never seen: nothing tells " + source;
   }
   std::string unseen(ParameterId id) const {
     const Parameter& parameter = rules_[id];

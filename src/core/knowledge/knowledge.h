@@ -8,6 +8,7 @@
 #include "knowledge/couplings.h"
 #include "knowledge/dependency_graph.h"
 #include "knowledge/event.h"
+#include "knowledge/heard_names.h"
 #include "knowledge/outcomes.h"
 #include "knowledge/rivals.h"
 #include "knowledge/rule_states.h"
@@ -30,7 +31,8 @@ struct Knowledge {
         couplings(rules),
         withheld(rules.strategies.size()) {}
 
-  // What `other` knows, for `rule_set`: a copy of its rules. Its events are left out.
+  // What `other` knows, for `rule_set`: a copy of its rules. Its events, and the names that only
+  // reports need, are left out.
   Knowledge(const RuleSet& rule_set, const Knowledge& other)
       : rules(rule_set),
         signals(rules, other.signals),
@@ -51,6 +53,7 @@ struct Knowledge {
   DependencyGraph graph;
   ComponentStates components;
   Sightings sightings;
+  HeardNames heard_names;
   RuleStates states;
   Beliefs beliefs;
   Couplings couplings;

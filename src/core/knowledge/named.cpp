@@ -77,6 +77,48 @@ std::string nearest_topic(const std::string& name, const DependencyGraph& graph)
   return closest_full_name(name, {published.begin(), published.end()});
 }
 
+std::string nearest_status(const std::string& name, const HeardNames& heard) {
+  std::vector<std::string_view> known;
+  for (const StatusHeard& status : heard.statuses) {
+    known.push_back(status.name);
+    known.push_back(status.hardware_id);
+  }
+  return closest(name, known);
+}
+
+// A key of this status or, if nobody has heard of it, a status. "*": of any.
+std::string nearest_key(const std::string& status, const std::string& key,
+                        const HeardNames& heard) {
+  std::vector<std::string_view> keys;
+  bool is_heard = status == "*";
+  for (const StatusHeard& each : heard.statuses) {
+    const bool is_it = each.name == status || each.hardware_id == status;
+    is_heard |= is_it;
+    if (is_it || status == "*") keys.insert(keys.end(), each.keys.begin(), each.keys.end());
+  }
+  return is_heard ? closest(key, keys) : nearest_status(status, heard);
+}
+
+// It may be there, and have no value that a rule could read.
+std::string nearest_parameter(const Parameter& parameter, const HeardNames& heard) {
+  const auto listed = heard.parameters.find(parameter.component);
+  if (listed == heard.parameters.end()) return "";
+  const auto& names = listed->second;
+  const std::string near = closest(parameter.name, {names.begin(), names.end()});
+  return near == parameter.name ? "" : near;
+}
+
+std::string nearest_source(const Signal& signal, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  if (const auto* field = std::get_if<TopicField>(&signal.source))
+    return nearest_topic(rules[field->topic].name, knowledge.graph);
+  if (const auto* parameter = std::get_if<ParameterId>(&signal.source))
+    return nearest_parameter(rules[*parameter], knowledge.heard_names);
+  if (const auto* key = std::get_if<DiagnosticKey>(&signal.source))
+    return nearest_key(key->status, key->key, knowledge.heard_names);
+  return nearest_key("*", signal.name, knowledge.heard_names);
+}
+
 }  // namespace
 
 std::vector<Named> named_by_rules(const Knowledge& knowledge) { return Finder(knowledge).find(); }
@@ -87,11 +129,12 @@ std::string nearest_name(const Nameable& name, const Knowledge& knowledge) {
     return nearest_node(rules[*component], knowledge.graph);
   if (const auto* topic = std::get_if<TopicId>(&name))
     return nearest_topic(rules[*topic].name, knowledge.graph);
-  if (const auto* signal = std::get_if<SignalId>(&name)) {
-    const auto* field = std::get_if<TopicField>(&rules[*signal].source);
-    if (field != nullptr) return nearest_topic(rules[field->topic].name, knowledge.graph);
-  }
-  return "";
+  if (const auto* signal = std::get_if<SignalId>(&name))
+    return nearest_source(rules[*signal], knowledge);
+  if (const auto* parameter = std::get_if<ParameterId>(&name))
+    return nearest_parameter(rules[*parameter], knowledge.heard_names);
+  return nearest_status(rules.diagnostics[std::get<DiagnosticId>(name).index].name,
+                        knowledge.heard_names);
 }
 
 }  // namespace culprit

@@ -18,8 +18,9 @@ struct Named {
 // Every component, and what the triggers and conditions read, each once.
 std::vector<Named> named_by_rules(const Knowledge& knowledge);
 
-// What was probably meant by the name of a component or a topic that was not seen: the full name of
-// a node that is there, or of a topic that is published. Empty if nothing is near.
+// What was probably meant by a name that was not seen: the full name of a node that is there or of a
+// topic that is published, the name, hardware id or key of a diagnostic status that was heard, a
+// parameter that the component has. Empty if nothing is near.
 std::string nearest_name(const Nameable& name, const Knowledge& knowledge);
 
 }  // namespace culprit

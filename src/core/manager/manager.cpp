@@ -30,11 +30,14 @@ bool is_given_up(const Verdict& verdict, const Knowledge& knowledge) {
   return is_any;
 }
 
-// Samples and readings are many, and reach a plan only through the rules that they trigger.
+// Samples and readings are many, and reach a plan only through the rules that they trigger; names
+// do not reach it at all.
 bool is_news(const Observation& observation) {
   return !std::holds_alternative<SampleArrived>(observation.what) &&
          !std::holds_alternative<SignalRead>(observation.what) &&
-         !std::holds_alternative<DiagnosticRead>(observation.what);
+         !std::holds_alternative<DiagnosticRead>(observation.what) &&
+         !std::holds_alternative<StatusHeard>(observation.what) &&
+         !std::holds_alternative<ParametersListed>(observation.what);
 }
 
 }  // namespace

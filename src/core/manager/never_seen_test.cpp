@@ -48,6 +48,34 @@ TEST(NeverSeen, ATypingMistakeInANodeStartsNoSecondOne) {
   EXPECT_EQ(robot.count("Dead.s is held back: camera was never seen"), 1u) << transcript(robot);
 }
 
+// What a status, a key or a parameter is really called is known only if the robot was heard.
+TEST(NeverSeen, ATypingMistakeInADiagnosticOrAParameterIsTold) {
+  TestRobot robot(
+      "COMPONENT camera NODE /front/camera LAUNCH \"camera\"\n"
+      "SIGNAL hot DIAGNOSTIC moter KEY temperature\n"
+      "SIGNAL slow DIAGNOSTIC motor KEY sped\n"
+      "SIGNAL dark PARAMETER camera exposur\n"
+      "RULE R\n  POLICIES ERROR\n  TRIGGER hot > 1 || slow > 1 || dark > 1 || curent > 1 || "
+      "level(lense) > 1 || parameter(camera, gian) > 1 || parameter(camera, names) > 1\n"
+      "    STRATEGY s 90 10\n      ADAPTATION camera redeploy 2\n");
+  show_camera(robot);
+  robot.tell(StatusHeard{"motor", "m1", {"temperature", "speed", "current"}});
+  robot.tell(StatusHeard{"front", "lens", {"blur"}});
+  robot.tell(ParametersListed{ComponentId(0), {"exposure", "gain", "names"}});
+  robot.run_for(60s);
+  for (const char* line :
+       {"signal hot was never seen: nothing tells the key 'temperature' of status 'moter'; did you "
+        "mean 'motor'?",
+        "signal slow was never seen: nothing tells the key 'sped' of status 'motor'; did you mean "
+        "'speed'?",
+        "signal dark was never seen: nothing tells it; did you mean 'exposure'?",
+        "signal curent was never seen: nothing tells it; did you mean 'current'?",
+        "diagnostic lense was never seen: nobody tells it; did you mean 'lens'?",
+        "parameter gian of camera was never seen: no value was read; did you mean 'gain'?",
+        "parameter names of camera was never seen: no value was read. What"})
+    EXPECT_EQ(robot.count(line), 1u) << line << transcript(robot);
+}
+
 // As with a wrong ROS_DOMAIN_ID.
 TEST(NeverSeen, OnAnEmptyRobotNothingIsStarted) {
   TestRobot robot(

@@ -98,6 +98,8 @@ class Monitor {
   void on(Time at, const LifecycleRead& seen);
   void on(Time at, const ProcessSeen& seen);
   void on(Time at, const Probed& seen);
+  void on(Time at, const StatusHeard& seen);
+  void on(Time at, const ParametersListed& seen);
   void on(Time, const Reply&) {}  // the executor's
   void on(Time, const Order&) {}  // the governor's
   void on(Time at, const LinkTrouble& seen);

@@ -108,6 +108,12 @@ void Monitor::update_window(InputId id, Time now) {
   deadlines_.set(id.index, derived.values.next_change());
 }
 
+void Monitor::on(Time, const StatusHeard& seen) { knowledge_.heard_names.statuses.push_back(seen); }
+
+void Monitor::on(Time, const ParametersListed& seen) {
+  knowledge_.heard_names.parameters[seen.component] = seen.names;
+}
+
 void Monitor::on(Time, const DiagnosticRead& seen) {
   for (const InputId id : diagnostic_inputs_[seen.diagnostic.index]) {
     knowledge_.signals.set(id, Slot::of(std::int64_t{seen.level}));

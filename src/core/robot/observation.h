@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "base/endpoint_kind.h"
 #include "base/ids.h"
@@ -137,6 +138,20 @@ struct Reply {
   std::string text;
 };
 
+// A diagnostic status was heard for the first time, while one that the rules name was not: that one
+// may be meant. Each status once, of many the first ones.
+struct StatusHeard {
+  std::string name;
+  std::string hardware_id;
+  std::vector<std::string> keys;
+};
+
+// The parameters that a component has, which lacks one that the rules name.
+struct ParametersListed {
+  ComponentId component;
+  std::vector<std::string> names;
+};
+
 // Something about the link itself that a person should know: a payload that does not decode, two
 // nodes of one name.
 struct LinkTrouble {
@@ -160,7 +175,8 @@ struct Observation {
   Time at;
   std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived,
                SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply,
-               LinkTrouble, Order, NamesakesSeen, HearingLost, HearingRegained, Overslept>
+               LinkTrouble, Order, NamesakesSeen, HearingLost, HearingRegained, Overslept,
+               StatusHeard, ParametersListed>
       what;
 };
 
