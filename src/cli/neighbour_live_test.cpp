@@ -28,9 +28,9 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string rules_of(const std::string& robot) {
-  return "ROBOT " + robot + R"(
-COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
+std::string rules_of(const std::string& robot, const std::string& launch = "sunset-node camera") {
+  return "ROBOT " + robot + "\nCOMPONENT camera NODE /managed_subsystem/camera LAUNCH \"" + launch +
+         R"("
 RULE CameraGone
   POLICIES ERROR
   TRIGGER alive(camera) == false
@@ -45,13 +45,13 @@ struct Neighbours : testing::Test {
   }
   TestProgram run(const std::string& robot, const std::string& state,
                   std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments = {"culprit",
-                                          "run",
-                                          world.write(robot + ".rules", rules_of(robot)),
-                                          "--settle",
-                                          "1",
-                                          "--state-dir",
-                                          (world.folder() / state).string()};
+    return run_with(rules_of(robot), robot, state, std::move(more));
+  }
+  TestProgram run_with(const std::string& rules, const std::string& robot, const std::string& state,
+                       std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments = {
+        "culprit", "run",         world.write(robot + ".rules", rules), "--settle",
+        "1",       "--state-dir", (world.folder() / state).string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return TestProgram(world, std::move(arguments));
   }
@@ -84,6 +84,31 @@ TEST_F(Neighbours, OfOneMachineTakeOverAtOnceWhenTheManagerIsKilled) {
   camera.signal(SIGKILL);
   camera.wait();
   EXPECT_TRUE(second.prints("redeploy camera: done")) << second.output();
+}
+
+// Each has a journal of its own.
+TEST_F(Neighbours, DoNotGoOnWithWhatWasUnderWayBeforeAnotherOneManaged) {
+  const std::string rules = rules_of("robot", "sleep 20");  // a start that takes long
+  TestProgram camera(world, {"sunset-node", "camera"});
+  TestProgram first = run_with(rules, "robot", "one");
+  ASSERT_TRUE(first.prints("camera is there")) << first.output();
+  camera.signal(SIGKILL);
+  camera.wait();
+  ASSERT_TRUE(first.prints("camera is held responsible for CameraGone")) << first.output();
+  TestProgram second = run_with(rules, "robot", "two");
+  ASSERT_TRUE(second.prints("another culprit manages this robot")) << second.output();
+  first.signal(SIGKILL);
+  ASSERT_EQ(first.wait(), -SIGKILL);
+  ASSERT_TRUE(second.prints("this one manages the robot from now on")) << second.output();
+  TestProgram again = run_with(rules, "robot", "one");
+  ASSERT_TRUE(again.prints("another culprit manages this robot")) << again.output();
+  second.signal(SIGKILL);
+  ASSERT_EQ(second.wait(), -SIGKILL);
+  ASSERT_TRUE(again.prints("this one manages the robot from now on")) << again.output();
+  EXPECT_TRUE(again.prints("camera_redeploy for CameraGone: another culprit has managed the robot "
+                           "since, so it is not gone on with") ||
+              again.prints("camera_redeploy for CameraGone: that was more than 1min ago", 1s))
+      << again.output();
 }
 
 TEST_F(Neighbours, OfTwoRobotNamesDoNotManageTheSameNode) {

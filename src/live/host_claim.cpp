@@ -29,6 +29,7 @@ bool HostClaim::look() {
     const auto roots = ros2::NamedLock::holder(name_for(0));
     if (roots && roots->user == 0) {
       holder_ = described(*roots) + " of root";
+      holder_pid_ = roots->pid;
       lock_.reset();
       return false;
     }
@@ -47,6 +48,7 @@ bool HostClaim::look() {
   if (!known_ || !is_there(*known_)) known_ = ros2::NamedLock::holder(name_for(self));
   if (known_ && (known_->user == self || known_->user == 0)) {
     holder_ = described(*known_);
+    holder_pid_ = known_->pid;
     return false;
   }
   stranger_ = known_ ? described(*known_) + " of user " + std::to_string(known_->user)

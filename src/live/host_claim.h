@@ -23,6 +23,8 @@ class HostClaim {
   bool look();
   // Who has it instead, "process 123"; empty while it is ours.
   const std::string& holder() const { return holder_; }
+  // Its process; 0: in another container.
+  int holder_pid() const { return holder_pid_; }
   // A process that has no right to the name and keeps it from us; empty: there is none.
   const std::string& stranger() const { return stranger_; }
 
@@ -33,6 +35,7 @@ class HostClaim {
   std::optional<ros2::NamedLock> lock_;
   std::optional<ros2::NamedLock::Holder> known_;  // who was found to have our user's name
   std::string holder_;
+  int holder_pid_ = 0;
   std::string stranger_;
 };
 

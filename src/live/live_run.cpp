@@ -135,7 +135,9 @@ Expected<void> LiveRun::change_role(OrderTaker& desk, const std::atomic<bool>& s
                                               : journal::Ending::kSteppedBack);
   session_.reset();
   take_role();
+  frame_.manager_before = role_.manager_before();
   if (auto joined = join(std::move(rules)); !joined) return joined;
+  frame_.manager_before.reset();  // the sessions that come next follow this one
   session_->begin(stopped, known);
   session_->announce("role", role_.reason());
   open(desk);

@@ -1,6 +1,7 @@
 #include "live/live_session.h"
 
 #include <algorithm>
+#include <unistd.h>
 
 #include <fmt/core.h>
 
@@ -99,6 +100,7 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   session.governor = options.governor_record;
   session.advises = frame.advises;
   session.domain = domain;
+  session.process = getpid();
   session.boot = journal::boot_id();
   session.start = start;
   session.settling = options.settling;
@@ -216,7 +218,8 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
 
 RunBeginning LiveSession::look_back() {
   const std::filesystem::path& path = frame_.options.journal;
-  if (frame_.records) return begin_journal(path, rules_, {robot_->now(), wall_now(), domain_});
+  if (frame_.records)
+    return begin_journal(path, rules_, {robot_->now(), wall_now(), domain_}, frame_.manager_before);
   if (!frame_.options.no_journal.empty()) return begin_without_journal(path, robot_->now());
   return {};
 }

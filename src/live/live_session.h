@@ -53,6 +53,8 @@ class LiveSession {
     // What people had ordered of the culprit on another machine that managed before; nothing: none
     // did.
     std::optional<journal::StandingOrders> told_orders{};
+    // The process of the other culprit that managed until now (RoleOfCulprit::manager_before()).
+    std::optional<int> manager_before{};
   };
   // What a session leaves to the next one.
   struct Handover {

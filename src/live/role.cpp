@@ -32,6 +32,7 @@ RoleOfCulprit::RoleOfCulprit(const RuleSet& rules, std::uint32_t domain, std::st
       claim_(name_of_claim("robot-" + rules.robot)) {
   if (claim_.look()) return;
   role_ = Role::kAdvise;
+  manager_before_ = claim_.holder_pid();
   reason_ = advising(" (" + claim_.holder() + ")");
 }
 
@@ -56,6 +57,7 @@ bool RoleOfCulprit::has_changed(const ros2::Link& link, Time now, Time joined) {
   const auto elder = link.elder();
   const bool is_ours = claim_.look();
   const Role role = elder || !is_ours ? Role::kAdvise : Role::kManage;
+  if (role == Role::kAdvise) manager_before_ = elder ? 0 : claim_.holder_pid();
   if (role == role_) return false;
   if (role == Role::kManage) {
     if (now < later(joined, Manager::kDiscovery)) return false;

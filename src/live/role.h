@@ -7,6 +7,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -39,6 +40,10 @@ class RoleOfCulprit {
   // For the user: why it has this role. Empty: it manages from the start.
   const std::string& reason() const { return reason_; }
 
+  // The process of the other culprit that was last seen to manage the robot, 0 for one on another
+  // machine; nothing: none was.
+  std::optional<int> manager_before() const { return manager_before_; }
+
   // What people have ordered of the robot, as told by the latest other culprit that managed it;
   // nothing: there was none. Error: there was one, and it could not be told what.
   Expected<std::optional<journal::StandingOrders>> told_orders(const ros2::Link& link) const;
@@ -60,6 +65,7 @@ class RoleOfCulprit {
   std::map<std::string, HostClaim> node_claims_;
   Role role_ = Role::kManage;
   bool had_elder_ = false;  // this role is, or the last one was, because of one on another machine
+  std::optional<int> manager_before_;
   std::string reason_;
   std::set<std::string> warned_;
 };

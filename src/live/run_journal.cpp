@@ -74,9 +74,10 @@ void find_orders(const std::filesystem::path& path, Rows rows, const Recovery& r
 }
 
 std::optional<Recovery> take_over(const journal::Reader& reader, const RuleSet& rules,
-                                  const journal::Moment& now, RunBeginning& beginning) {
+                                  const journal::Moment& now, std::optional<int> manager_before,
+                                  RunBeginning& beginning) {
   const auto learned = reader.learned();
-  const auto recovery = journal::recover(reader, rules, now);
+  const auto recovery = journal::recover(reader, rules, now, manager_before);
   if (learned) beginning.learned = *learned;
   if (!learned || !recovery) {
     beginning.findings.push_back("the journal cannot be read whole: " +
@@ -109,7 +110,7 @@ std::filesystem::path default_journal(const std::filesystem::path& state_folder,
 }
 
 RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rules,
-                           const journal::Moment& now) {
+                           const journal::Moment& now, std::optional<int> manager_before) {
   RunBeginning beginning;
   std::error_code error;
   const bool was_there = std::filesystem::exists(path, error);
@@ -132,7 +133,7 @@ RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rul
   }
   std::optional<Recovery> recovery;
   if (const auto reader = journal::Reader::open(rows)) {
-    recovery = take_over(*reader, rules, now, beginning);
+    recovery = take_over(*reader, rules, now, manager_before, beginning);
     // A row that cannot be read now can never be dropped either.
     if (!recovery && beginning.writer && rows == path) (void)open({.is_damaged = true});
   }

@@ -27,9 +27,9 @@ struct RunBeginning {
 
 // Opens the journal, or reads it if it cannot be written, and finds out what the last run left
 // behind. Nothing that is wrong with a journal keeps culprit from watching the robot; but if it
-// cannot be told whether a person has paused it, it is paused.
+// cannot be told whether a person has paused it, it is paused. `manager_before`: as recover()'s.
 RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rules,
-                           const journal::Moment& now);
+                           const journal::Moment& now, std::optional<int> manager_before = {});
 
 // What people have ordered according to the file beside the journal, if it is not to be written.
 RunBeginning begin_without_journal(const std::filesystem::path& path, Time now);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "journal/bytes.h"
 #include "journal/requests.h"
 
 namespace culprit::journal {
@@ -17,6 +18,7 @@ class Trail {
   void begin_with(const Json& session) {
     if (!session.is_object()) return;
     latest_ = Time(Duration(integer_of(session, "start")));
+    process_ = static_cast<int>(integer_of(session, "process"));
     past_ = past_from_json(session.value("past", Json()), rules_);
     is_paused_ = flag_of(session, "paused");
     is_dry_run_ = flag_of(session, "dry_run");
@@ -33,11 +35,12 @@ class Trail {
   }
 
   void follow(const Entry& entry) {
+    if (entry.kind == kind::kSteps) latest_ = std::max(latest_, Time(Duration(first_step(entry))));
     const Json body = from_text(entry.body);
     if (!body.is_object()) return;
     if (entry.kind == kind::kEnd && flag_of(body, "stepped_back")) open_.clear();
     if (entry.kind == kind::kEvent) {
-      latest_ = Time(Duration(integer_of(body, "time")));
+      latest_ = std::max(latest_, Time(Duration(integer_of(body, "time"))));
       event(body);
       if (auto event = past_event(body, rules_)) past_.push_back(std::move(*event));
     }
@@ -49,21 +52,31 @@ class Trail {
   bool is_dry_run() const { return is_dry_run_; }
   const Past& past() const { return past_; }
 
-  // Those that had begun to change anything. Not after so long that nobody knows who changed what
-  // since: another culprit, or a person.
-  std::vector<Interrupted> open(Time now) && {
+  // Whether another culprit than the one that wrote these rows managed the robot last.
+  bool was_succeeded_by(std::optional<int> manager) const {
+    return manager && (*manager == 0 || *manager != process_);
+  }
+
+  // Those that had begun to change anything. Not where nobody knows who changed what since.
+  std::vector<Interrupted> open(Time now, std::optional<int> manager_before) && {
     std::erase_if(open_, [](const Interrupted& each) { return each.requests.empty(); });
-    if (now - latest_ <= kPastCounts) return std::move(open_);
+    const bool is_long_ago = now - latest_ > kGoneOnWith;
+    if (!is_long_ago && !was_succeeded_by(manager_before)) return std::move(open_);
+    const std::string why = is_long_ago
+                                ? "that was more than " + culprit::to_string(kGoneOnWith) + " ago"
+                                : "another culprit has managed the robot since";
     for (const Interrupted& each : open_) {
       const Strategy& strategy = rules_[each.strategy];
-      given_up_.push_back(strategy.name + " for " + rules_[strategy.rule].name +
-                          ": that was more than " + culprit::to_string(kPastCounts) +
-                          " ago, so it is not gone on with");
+      given_up_.push_back(strategy.name + " for " + rules_[strategy.rule].name + ": " + why +
+                          ", so it is not gone on with");
     }
     return {};
   }
 
  private:
+  // Rows of steps begin with the time of their first.
+  static std::int64_t first_step(const Entry& steps) { return ByteReader(steps.body).integer(); }
+
   void event(const Json& body) {
     const std::string type = text_of(body, "type");
     if (type == "order_accepted") order(text_of(body, "order"));
@@ -142,7 +155,8 @@ class Trail {
   std::vector<std::string>& given_up_;
   std::vector<Interrupted> open_;
   Past past_;
-  Time latest_{};  // event, or the beginning of the run
+  Time latest_{};    // event or step, or the beginning of the run
+  int process_ = 0;  // of the culprit that wrote the rows
   bool is_paused_ = false;
   bool is_dry_run_ = false;
 };
@@ -170,7 +184,8 @@ Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& 
 
 }  // namespace
 
-Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Moment& now) {
+Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Moment& now,
+                           std::optional<int> manager_before) {
   Recovery recovery;
   const auto last = journal.newest(kind::kSession);
   if (!last) return Error{last.error()};
@@ -213,13 +228,14 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Mo
       recovery.was_other_boot ? shift_of_clock(**last, robot_then, now) : Duration::zero();
   recovery.past = still_counting(
       recovery.is_other_robot() ? of_people(trail.past(), shift) : trail.past(), now.robot, rules);
-  // Whoever stops culprit may stop the robot as well: what comes back then proves nothing.
-  if (recovery.was_stopped) {
+  // Whoever stops culprit may stop the robot as well, and another culprit repairs it: what comes
+  // back then proves nothing.
+  if (recovery.was_stopped || trail.was_succeeded_by(manager_before)) {
     std::erase_if(recovery.past, [](const Event& event) {
       return std::holds_alternative<OutcomePending>(event.what);
     });
   }
-  recovery.interrupted = std::move(trail).open(now.robot);
+  recovery.interrupted = std::move(trail).open(now.robot, manager_before);
   return recovery;
 }
 

@@ -1,10 +1,12 @@
 // What the last run of culprit left behind: told from its intents, and from what it said since.
 //
 // A strategy was under way if it was chosen or resumed, at least one change for it was about to be
-// asked for, and neither its success nor the end of its undoing is on record. Only rows that are
-// what was written count (Cursor::is_as_written()).
+// asked for, and neither its success nor the end of its undoing is on record. It is not gone on with
+// where others may have changed the robot since: another culprit managed it, or nobody did for
+// longer than kGoneOnWith. Only rows that are what was written count (Cursor::is_as_written()).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "journal/known_robot.h"
@@ -14,6 +16,9 @@
 #include "knowledge/interrupted.h"
 
 namespace culprit::journal {
+
+// How long culprit may have been dead to go on with what it left in the middle.
+inline constexpr Duration kGoneOnWith = std::chrono::minutes(1);
 
 struct Recovery {
   bool had_run = false;           // there was a run before
@@ -38,7 +43,9 @@ struct Moment {
   int domain = 0;
 };
 
-// Errors: the file cannot be read.
-Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Moment& now);
+// `manager_before`: the process of the culprit that was seen to manage the robot until now, 0 for
+// one on another machine; nothing: none was. Errors: the file cannot be read.
+Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Moment& now,
+                           std::optional<int> manager_before = {});
 
 }  // namespace culprit::journal

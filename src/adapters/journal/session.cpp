@@ -69,6 +69,7 @@ Json to_json(const Session& session) {
   return {{"version", session.version},
           {"robot", session.robot},
           {"domain", session.domain},
+          {"process", session.process},
           {"boot", session.boot},
           {"start", session.start.time_since_epoch().count()},
           {"settling", session.settling.count()},
@@ -106,6 +107,7 @@ Expected<Session> session_from_json(const Json& json) {
   session.advises = flag_of(json, "advises");
   session.continued = flag_of(json, "continued");
   session.domain = static_cast<int>(integer_of(json, "domain", -1));
+  session.process = static_cast<int>(integer_of(json, "process"));
   session.boot = text_of(json, "boot");
   session.start = Time(Duration(integer_of(json, "start")));
   session.settling = Duration(integer_of(json, "settling"));

@@ -125,7 +125,8 @@ RULE CameraDead
 )";
 
 // What a run that ended in the middle of a redeploy leaves to one that begins `later`.
-journal::Recovery left_behind(Duration later, std::optional<journal::Ending> ending) {
+journal::Recovery left_behind(Duration later, std::optional<journal::Ending> ending,
+                              std::optional<int> manager_before = {}) {
   const TestFolder folder;
   TestRobot robot(kSlowCamera);
   robot.add("camera", {}, "/rgb");
@@ -143,7 +144,7 @@ journal::Recovery left_behind(Duration later, std::optional<journal::Ending> end
   const journal::Reader reader = value_of(journal::Reader::open(folder / "first.journal"));
   journal::Moment now = moment(robot);
   now.robot += later;
-  return value_of(journal::recover(reader, robot.rules(), now));
+  return value_of(journal::recover(reader, robot.rules(), now, manager_before));
 }
 
 bool has_verdict_on_its_strategy(const Past& past) {
@@ -168,10 +169,26 @@ TEST(Crash, WhatWasCutShortBySteppingBackIsOverAndProvesNothing) {
 }
 
 TEST(Crash, WhatWasCutShortLongAgoIsNotTakenUpAgain) {
-  const journal::Recovery found = left_behind(61min, {});
+  EXPECT_EQ(left_behind(30s, {}).interrupted.size(), 1u);
+  const journal::Recovery found = left_behind(61s, {});
   EXPECT_TRUE(found.interrupted.empty());
-  EXPECT_THAT(found.given_up, testing::ElementsAre("redeploy for CameraDead: that was more than 1h "
-                                                   "ago, so it is not gone on with"));
+  EXPECT_THAT(found.given_up, testing::ElementsAre("redeploy for CameraDead: that was more than "
+                                                   "1min ago, so it is not gone on with"));
+}
+
+// On one machine, with journals of their own or with one for both; or on two machines.
+TEST(Crash, WhatWasCutShortBeforeAnotherCulpritManagedIsNotTakenUpAgain) {
+  constexpr int kAnother = test::kProcess + 1;
+  constexpr int kOnAnotherMachine = 0;
+  for (const int manager : {kAnother, kOnAnotherMachine}) {
+    const journal::Recovery found = left_behind(1s, {}, manager);
+    EXPECT_TRUE(found.interrupted.empty());
+    EXPECT_THAT(found.given_up, testing::ElementsAre("redeploy for CameraDead: another culprit has "
+                                                     "managed the robot since, so it is not gone "
+                                                     "on with"));
+  }
+  EXPECT_EQ(left_behind(1s, {}, test::kProcess).interrupted.size(), 1u)
+      << "whose journal that is managed until now";
 }
 
 TEST(Crash, WhatTheLastRunLeftIsKnown) {

@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 using culprit::test::TestRobot;
 using namespace std::chrono_literals;
 
+inline constexpr int kProcess = 4711;  // of each culprit here
 inline constexpr std::int64_t kWall = 1'800'000'000'000'000'000;
 
 template <class T>
@@ -52,6 +53,7 @@ class Life {
     session.rules_path = "test.rules";
     session.rules_text = rules_text;
     session.planner = {{"name", "bayes"}};
+    session.process = kProcess;
     session.boot = journal::boot_id();
     session.start = robot.now;
     session.settling = 2s;
