@@ -43,6 +43,19 @@ struct Two {
     return settling ? settling->since - kResolved : -1s;
   }
 
+  // Likewise, where the cause went away by itself, and something else had changed before the effect
+  // came.
+  Duration settles_after_clearing() {
+    Attempt attempt;
+    attempt.strategy = rules[kCause].strategies.front();
+    attempt.first_change = attempt.effective = kCame + 1s;
+    CouplingWatch watch(knowledge);
+    watch.ended(attempt, kCame + 3s);
+    watch.cleared(kCause, kCame + 4s);
+    const auto& settling = knowledge.states[kEffect].settling;
+    return settling ? settling->since - (kCame + 4s) : -1s;
+  }
+
   static constexpr Time kCame{100s};
   static constexpr Time kResolved{125s};
   RuleSet rules;
@@ -58,6 +71,12 @@ TEST(CouplingWatch, GivesAnEffectAsLongToGoAsItTookToComeAndHalfAsLongAgain) {
 TEST(CouplingWatch, WaitsForTheWindowOfARuleThatCounts) {
   EXPECT_EQ(Two("HOLD 3/5", 2s).settles_after(), 4s);
   EXPECT_EQ(Two("HOLD 3/5", 0s).settles_after(), 1s);
+}
+
+TEST(CouplingWatch, TakesWhatCameSoonAfterItsCauseForOnItsWayWhateverHasChangedSince) {
+  EXPECT_EQ(Two("", 1500ms).settles_after_clearing(), 2250ms);
+  EXPECT_EQ(Two("", 2500ms).settles_after_clearing(), -1s) << "later than ten cycles";
+  EXPECT_EQ(Two("HOLD 3/5", 2500ms).settles_after_clearing(), 4750ms) << "and its window";
 }
 
 }  // namespace

@@ -93,6 +93,17 @@ TEST(DependencyGraph, LeadsThroughNodesThatAreNoComponents) {
   EXPECT_EQ(graph.upstream("seg"), Names{"camera"});
 }
 
+// Whoever looks now and then sees by the number that something changed, also if it is as it was.
+TEST(DependencyGraph, CountsEachChangeOnce) {
+  Graph graph(kThree);
+  graph.node("/camera").link("/camera", "/a", "/relay");
+  const auto before = (*graph).changes();
+  EXPECT_TRUE((*graph).endpoint_vanished("/camera", EndpointKind::kPublisher, "/a"));
+  EXPECT_EQ((*graph).changes(), before + 1);
+  EXPECT_TRUE((*graph).endpoint_appeared("/camera", EndpointKind::kPublisher, "/a"));
+  EXPECT_EQ((*graph).changes(), before + 2);
+}
+
 TEST(DependencyGraph, ANodeThatIsThereAppearsOnce) {
   Graph graph(kThree);
   EXPECT_TRUE((*graph).node_appeared("/camera"));

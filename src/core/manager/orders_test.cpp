@@ -96,8 +96,13 @@ TEST(Orders, WhatWasLearnedIsForgotten) {
   ASSERT_NE(r.manager().knowledge().beliefs[kRestart], prior) << transcript(r);
   r.order(order(Forget{RuleId(99)}));
   EXPECT_NE(r.manager().knowledge().beliefs[kRestart], prior) << "there is no such rule";
+  r.manager().set_coupling(kCameraDead, kDark, {3, 1});
+  r.order(order(Forget{kDark}));
+  EXPECT_TRUE(r.manager().knowledge().couplings.of(kCameraDead, kDark) == Coupling{});
+  r.manager().set_coupling(kCameraDead, kDark, {3, 1});
   r.order(order(Forget{}));
   EXPECT_EQ(r.manager().knowledge().beliefs[kRestart], prior);
+  EXPECT_TRUE(r.manager().knowledge().couplings.of(kCameraDead, kDark) == Coupling{});
 }
 
 TEST(Orders, ASilencedComponentIsWatchedAndLeftAloneUntilTheSilenceEnds) {

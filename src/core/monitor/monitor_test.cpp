@@ -266,15 +266,17 @@ TEST(Monitor, LosesAComponentThatDoesNotAnswerProbes) {
 }
 
 TEST(Monitor, ForgetsTheStateOfAProcessThatIsGone) {
-  Watched watched(rule("lifecycle(c) == \"active\" || parameter(c, p) > 1"));
+  Watched watched(rule("lifecycle(c) == \"active\" || parameter(c, p) > 1 || parameter(d, p) > 1"));
   watched.observe(1s, NodeAppeared{"/c", 7});
   watched.observe(1s, LifecycleRead{ComponentId(0), Lifecycle::kActive});
   watched.observe(1s, ParameterRead{ParameterId(0), Value(2.0)});
+  watched.observe(1s, ParameterRead{ParameterId(1), Value(2.0)});
   EXPECT_TRUE(watched.knowledge.signals[InputId(0)].known &&
               watched.knowledge.signals[InputId(1)].known);
   watched.observe(2s, ProcessSeen{ComponentId(0), ProcessState::kGone, 7, ""});
   EXPECT_FALSE(watched.knowledge.signals[InputId(0)].known ||
                watched.knowledge.signals[InputId(1)].known);
+  EXPECT_TRUE(watched.knowledge.signals[InputId(2)].known) << "of another component";
   EXPECT_EQ(watched.knowledge.components[ComponentId(0)].intended_lifecycle, Lifecycle::kActive);
 }
 
@@ -339,6 +341,21 @@ TEST(Monitor, ALocalNodeIsAtWorkThatPublishesOrPausesAsEver) {
   EXPECT_EQ(is_alive(), true);
   watched.observe(16s, Probed{ComponentId(0), false});
   EXPECT_EQ(is_alive(), false);
+}
+
+TEST(Monitor, ALocalNodeIsNotAtWorkBecauseAnotherOnePublishes) {
+  Watched watched(rule("!alive(c) || age(/t) > 1h || age(/u) > 1h || age(/v) > 1h"));
+  work_until(watched, 5s);
+  watched.observe(5s, NodeAppeared{"/d", 8});
+  for (const char* topic : {"/u", "/v"})
+    watched.observe(5s, EndpointAppeared{"/d", EndpointKind::kPublisher, topic});
+  watched.observe(5s, EndpointAppeared{"/c", EndpointKind::kPublisher, "/v"});
+  for (Duration at = 5s; at < 8s; at += 100ms) {
+    watched.observe(at, SampleArrived{TopicId(1), 1});
+    watched.observe(at, SampleArrived{TopicId(2), 1});
+    watched.observe(at, Probed{ComponentId(0), false});
+  }
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, false);
 }
 
 TEST(Monitor, WhoNeverAnsweredProvesNothingByNotAnswering) {

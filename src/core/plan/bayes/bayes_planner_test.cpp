@@ -141,6 +141,8 @@ TEST(BayesPlanner, GivesAFailureTimeToSettleAfterItsCauseIsGone) {
       Settling{scene.rule("A"), scene->now, scene->now + 500ms};
   EXPECT_EQ(scene.plan(kFewRedeployments), "");
   EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kSettling);
+  scene->couplings.set(scene.rule("A"), scene.rule("B"), {0, 1.8});
+  EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "as likely as not";
   scene->couplings.set(scene.rule("A"), scene.rule("B"), {0, 10});
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "they never went away together";
   scene->couplings.set(scene.rule("A"), scene.rule("B"), {});
