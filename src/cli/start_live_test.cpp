@@ -138,6 +138,34 @@ TEST_F(Start, ADemosNodesEndWithItAndARobotsNodesDoNotEndWithCulprit) {
   EXPECT_TRUE(eventually([&] { return nodes_on(demos).empty(); }));
 }
 
+// Lifecycle nodes that nobody drives, and rules that they must be active.
+TEST_F(Start, LaunchBringsUpWhatNobodyElseDrives) {
+  std::string text = "ROBOT up\n";
+  for (const char* name : {"planner", "map", "lidar", "wheels"}) {
+    const std::string node = name;
+    text += "COMPONENT " + node + " NODE /" + node + " LAUNCH \"ros2_peer_node " +
+            std::to_string(domain()) + " /" + node + "\"\nRULE " + node +
+            "_down\n  POLICIES ERROR\n  TRIGGER alive(" + node + ") == false || lifecycle(" + node +
+            ") != \"active\"\n    STRATEGY " + node + "_redeploy 90 10\n      ADAPTATION " + node +
+            " redeploy 5\n";
+  }
+  text += "DEPENDENCY planner ON map\nDEPENDENCY map ON lidar\n";
+  auto run = culprit({"run", world.write("up.rules", text), "--launch", "--state-dir", state()});
+  ASSERT_TRUE(run.prints("watching up", 60s)) << run.output();
+  for (const char* name : {"planner", "map", "lidar", "wheels"})
+    ASSERT_TRUE(run.prints(std::string(name) + " is there (process ")) << run.output();
+  EXPECT_LT(run.output().find("starting lidar"), run.output().find("starting planner"));
+  kill(pid_in(run.output(), "map"), SIGKILL);
+  EXPECT_TRUE(run.prints("map_down resolved by map_redeploy")) << run.output();
+  EXPECT_THAT(run.output(), Not(HasSubstr("STORM")));
+  for (const char* other : {"planner_down", "lidar_down", "wheels_down", "is not up"})
+    EXPECT_THAT(run.output(), Not(HasSubstr(other)));
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(), 0);
+  for (const char* name : {"planner", "map", "lidar", "wheels"})
+    kill(pid_in(run.output(), name), SIGKILL);
+}
+
 TEST_F(Start, ADemoKeepsItsPageWhereAPersonWatches) {
   const std::string demo =
       (own_folder() / "culprit").string() + " demo --scenario 001 --speed 4 --port 0";

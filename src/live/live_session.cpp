@@ -8,6 +8,7 @@
 #include "journal/requests.h"
 #include "knowledge/describe.h"
 #include "live/health.h"
+#include "live/launch.h"
 #include "live/role.h"
 #include "replay/replay.h"
 
@@ -45,32 +46,6 @@ ros2::Severity severity_of(const Event& event, const RuleSet& rules) {
                       std::holds_alternative<SleepNoticed>(event.what) ||
                       std::holds_alternative<Trouble>(event.what);
   return is_bad ? ros2::Severity::kWarn : ros2::Severity::kInfo;
-}
-
-// Looks at what is there, so that what runs already is not started again.
-std::vector<Observation> discover(LiveRobot& robot, const std::atomic<bool>& stop) {
-  constexpr Duration kLook = std::chrono::seconds(3);
-  std::vector<Observation> seen;
-  for (const Time end = robot.now() + kLook; robot.now() < end && !stop;) robot.observe(end, seen);
-  return seen;
-}
-
-// What is started so was asked for: it counts as seen.
-void launch_missing(LiveRobot& robot, const RuleSet& rules, const std::vector<Observation>& seen,
-                    KnownRobot& known, Listener& listener) {
-  ComponentBinding binding(rules);
-  std::vector<bool> is_there(rules.components.size());
-  for (const Observation& o : seen) {
-    if (const auto* node = std::get_if<NodeAppeared>(&o.what)) {
-      if (const auto component = binding.bind(node->node)) is_there[component->index] = true;
-    }
-  }
-  for (std::size_t c = 0; c < rules.components.size(); ++c) {
-    if (is_there[c] || rules.components[c].launch.empty()) continue;
-    listener.on_remark("starting " + rules.components[c].name + "\n");
-    robot.supervisor().start({}, ComponentId(c));
-    known.parts.push_back({rules.components[c].name, rules.components[c].node, {}});
-  }
 }
 
 // That no other culprit is to manage, whatever its robot is called.
@@ -266,8 +241,13 @@ void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_r
   std::vector<Observation> seen;
   const bool is_held = beginning.orders.pause || beginning.orders.dry_run;
   if (frame_.options.launches && !frame_.advises && !is_held) {
-    seen = discover(*robot_, stop);
-    launch_missing(*robot_, rules_, seen, beginning.known_robot, frame_.listener);
+    const auto start = [&](CommandId command, ComponentId component) {
+      robot_->supervisor().start(command, component);
+    };
+    Launched launched = launch(*robot_, rules_, start, frame_.listener, stop);
+    seen = std::move(launched.seen);
+    add(beginning.known_robot, {std::move(launched.parts), {}});
+    add(beginning.past, launched.past);
   }
   const auto go_on_with = [&](const journal::StandingOrders::Said& said, auto order) {
     seen.push_back({robot_->now(), Order{0, said.author, said.reason, order}});

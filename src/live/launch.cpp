@@ -1,0 +1,247 @@
+#include "live/launch.h"
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <set>
+
+#include "robot/component_binding.h"
+
+namespace culprit {
+namespace {
+
+// Producers before their consumers, else as the file has them. Who waits for one another comes in
+// the file's order, too.
+void add_in_order(ComponentId component, const RuleSet& rules, std::vector<bool>& is_visited,
+                  std::vector<ComponentId>& order) {
+  if (is_visited[component.index]) return;
+  is_visited[component.index] = true;
+  for (const Dependency& each : rules.dependencies) {
+    if (each.consumer == component) add_in_order(each.producer, rules, is_visited, order);
+  }
+  order.push_back(component);
+}
+
+std::vector<ComponentId> in_order(const RuleSet& rules) {
+  std::vector<bool> is_visited(rules.components.size());
+  std::vector<ComponentId> order;
+  for (std::size_t c = 0; c < rules.components.size(); ++c)
+    add_in_order(ComponentId(c), rules, is_visited, order);
+  return order;
+}
+
+class Starting {
+ public:
+  Starting(Robot& robot, const RuleSet& rules, const std::atomic<bool>& stop, LaunchTimes times)
+      : robot_(robot),
+        rules_(rules),
+        stop_(stop),
+        times_(times),
+        binding_(rules),
+        parts_(rules.components.size()) {}
+
+  void look() {
+    observe_until(later(robot_.now(), times_.look), [] { return false; });
+  }
+
+  bool is_there(ComponentId component) const { return parts_[component.index].joined.has_value(); }
+
+  void begin(ComponentId component, const StartComponent& start) {
+    part(component).start = next_request();
+    part(component).began = robot_.now();
+    start(part(component).start, component);
+    end_ = std::min(end_, later(robot_.now(), times_.patience));
+  }
+
+  // Says what went wrong; nothing: it is up, or nobody is to bring it up.
+  std::optional<std::string> bring_up(ComponentId component) {
+    const LifecycleDriver driver = rules_[component].lifecycle;
+    const bool joined = joins(component);
+    if (!part(component).trouble.empty()) return part(component).trouble;
+    if (driver == LifecycleDriver::kSelf || driver == LifecycleDriver::kLauncher)
+      return std::nullopt;
+    if (!joined || !is_managed(component)) return std::nullopt;  // the manager will see
+    if (driver == LifecycleDriver::kUndeclared && moves(component)) return std::nullopt;
+    const auto trouble =
+        step(component, Transition::kConfigure, Lifecycle::kUnconfigured, Lifecycle::kInactive);
+    if (trouble) return trouble;
+    return step(component, Transition::kActivate, Lifecycle::kInactive, Lifecycle::kActive);
+  }
+
+  // Nothing: it is not active, or was before.
+  std::optional<ComingUp> came_up(ComponentId component) const {
+    const Part& it = parts_[component.index];
+    if (it.state != Lifecycle::kActive || !it.joined || !it.began) return std::nullopt;
+    const auto driver = it.was_asked ? ComingUp::Driver::kCulprit : ComingUp::Driver::kOther;
+    return ComingUp{driver, *it.joined - *it.began, it.state_since - *it.joined};
+  }
+
+  std::vector<Observation> seen() && {
+    std::set<ComponentId> told;
+    std::vector<Observation> kept;
+    for (auto each = seen_.rbegin(); each != seen_.rend(); ++each) {
+      const auto* read = std::get_if<LifecycleRead>(&each->what);
+      if (read == nullptr || told.insert(read->component).second) kept.push_back(std::move(*each));
+    }
+    return {std::make_move_iterator(kept.rbegin()), std::make_move_iterator(kept.rend())};
+  }
+
+ private:
+  struct Part {
+    CommandId start{};
+    std::optional<Time> began;
+    std::optional<Time> joined;
+    bool has_lifecycle = false;
+    bool has_ended = false;
+    std::string trouble{};   // why it could not be started
+    bool was_asked = false;  // to change its lifecycle
+    Lifecycle state = Lifecycle::kUnknown;
+    Time state_since{};
+  };
+  Part& part(ComponentId component) { return parts_[component.index]; }
+
+  template <class Done>
+  bool observe_until(Time until, Done done) {
+    while (!done()) {
+      if (stop_ || robot_.now() >= until) return false;
+      const std::size_t before = seen_.size();
+      robot_.observe(until, seen_);
+      for (std::size_t i = before; i < seen_.size(); ++i) take(seen_[i]);
+      // Answers to requests that are not the manager's.
+      std::erase_if(seen_,
+                    [](const Observation& o) { return std::holds_alternative<Reply>(o.what); });
+    }
+    return true;
+  }
+
+  void take(const Observation& observation) {
+    if (const auto* node = std::get_if<NodeAppeared>(&observation.what)) {
+      const auto component = binding_.bind(node->node);
+      if (component && !part(*component).joined) part(*component).joined = observation.at;
+    } else if (const auto* end = std::get_if<EndpointAppeared>(&observation.what)) {
+      if (end->kind != EndpointKind::kServer || end->name != end->node + "/change_state") return;
+      if (const auto component = binding_.bind(end->node)) part(*component).has_lifecycle = true;
+    } else if (const auto* read = std::get_if<LifecycleRead>(&observation.what)) {
+      Part& it = part(read->component);
+      it.has_lifecycle = true;
+      if (it.state != read->state) it.state_since = observation.at;
+      it.state = read->state;
+    } else if (const auto* process = std::get_if<ProcessSeen>(&observation.what)) {
+      part(process->component).has_ended = process->state == ProcessState::kGone;
+    } else if (const auto* reply = std::get_if<Reply>(&observation.what)) {
+      take(*reply);
+    }
+  }
+
+  void take(const Reply& reply) {
+    if (reply.command == asked_) reply_ = reply;
+    if (reply.outcome == Outcome::kDone) return;
+    for (Part& each : parts_) {
+      if (each.start != reply.command || !each.began) continue;
+      each.has_ended = true;
+      each.trouble = reply.text;
+    }
+  }
+
+  bool joins(ComponentId component) {
+    observe_until(end_, [&] { return part(component).joined || part(component).has_ended; });
+    return part(component).joined && !part(component).has_ended;
+  }
+
+  // A node announces its services together with itself; what comes later comes soon.
+  bool is_managed(ComponentId component) {
+    return observe_until(std::min(end_, later(*part(component).joined, times_.least_grace)),
+                         [&] { return part(component).has_lifecycle; });
+  }
+
+  // Whether it leaves the state in which every lifecycle node begins, and nobody asked it here.
+  bool moves(ComponentId component) {
+    const Part& it = part(component);
+    const Duration grace = std::max(times_.least_grace, *it.joined - *it.began);
+    return observe_until(std::min(end_, later(*it.joined, grace)), [&] {
+      return it.state != Lifecycle::kUnknown && it.state != Lifecycle::kUnconfigured;
+    });
+  }
+
+  // Takes it from one state to the next, if it is in the first. What counts is what is read back.
+  std::optional<std::string> step(ComponentId component, Transition transition, Lifecycle from,
+                                  Lifecycle to) {
+    if (read(component) != from) return std::nullopt;
+    part(component).was_asked = true;
+    const Reply reply = ask(component, ChangeLifecycle{transition});
+    Lifecycle state = read(component);
+    for (const Time end = later(robot_.now(), times_.transition);
+         state == Lifecycle::kTransition && robot_.now() < end && !stop_;) {
+      observe_until(later(robot_.now(), kPeriod), [] { return false; });
+      state = read(component);
+    }
+    if (state == to) return std::nullopt;
+    const char* what = transition == Transition::kConfigure ? "to configure it" : "to activate it";
+    return std::string(what) + " did not succeed" + (reply.text.empty() ? "" : ": " + reply.text);
+  }
+
+  Lifecycle read(ComponentId component) {
+    const Reply reply = ask(component, ReadLifecycle{});
+    const auto* state = std::get_if<Lifecycle>(&reply.value);
+    return state == nullptr ? Lifecycle::kUnknown : *state;
+  }
+
+  template <class What>
+  Reply ask(ComponentId component, What what) {
+    asked_ = next_request();
+    reply_.reset();
+    robot_.execute({asked_, component, what, times_.transition});
+    observe_until(later(robot_.now(), times_.transition + times_.least_grace),
+                  [&] { return reply_ || part(component).has_ended; });
+    if (reply_) return *reply_;
+    const char* why = part(component).has_ended ? "its process has ended" : "no answer";
+    return {asked_, Outcome::kTimedOut, {}, why};
+  }
+
+  CommandId next_request() { return CommandId{kFirstRequest + ++requests_}; }
+
+  static constexpr std::uint64_t kFirstRequest = std::uint64_t{1}
+                                                 << 63;  // the manager's begin at 1
+  static constexpr Duration kPeriod = std::chrono::milliseconds(100);
+
+  Robot& robot_;
+  const RuleSet& rules_;
+  const std::atomic<bool>& stop_;
+  const LaunchTimes times_;
+  ComponentBinding binding_;
+  std::vector<Part> parts_;  // by component
+  Time end_ = kNever;
+  std::vector<Observation> seen_;
+  std::uint64_t requests_ = 0;
+  CommandId asked_{};
+  std::optional<Reply> reply_;
+};
+
+}  // namespace
+
+Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start, Listener& listener,
+                const std::atomic<bool>& stop, LaunchTimes times) {
+  Starting starting(robot, rules, stop, times);
+  starting.look();
+  std::vector<ComponentId> started;
+  for (const ComponentId c : in_order(rules)) {
+    if (stop || starting.is_there(c) || rules[c].launch.empty()) continue;
+    listener.on_remark("starting " + rules[c].name + "\n");
+    starting.begin(c, start);
+    started.push_back(c);
+  }
+  Launched launched;
+  for (const ComponentId c : started) {
+    launched.parts.push_back({rules[c].name, rules[c].node, {}});
+    if (stop) continue;
+    if (const auto trouble = starting.bring_up(c))
+      listener.on_remark("culprit: " + rules[c].name + " was started and is not up: " + *trouble +
+                         "\n");
+    if (const auto how = starting.came_up(c))
+      launched.past.push_back({robot.now(), CameUp{c, *how}});
+  }
+  launched.seen = std::move(starting).seen();
+  return launched;
+}
+
+}  // namespace culprit

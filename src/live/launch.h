@@ -1,0 +1,43 @@
+// `run --launch`: starts what is missing, and brings up what stands still after its start.
+//
+// A lifecycle node that nobody drives stays unconfigured for ever: it is configured and activated,
+// in the order of the DEPENDENCY lines, and where they say nothing in that of the file. A node that
+// does it itself, or has somebody who does, is left alone: the file says so (LIFECYCLE), or it moved
+// within the time that its start took. Nothing is judged meanwhile: the manager begins afterwards,
+// so that a start of many is no storm.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "knowledge/known_robot.h"
+#include "knowledge/past.h"
+#include "live/listener.h"
+#include "robot/robot.h"
+
+namespace culprit {
+
+// Starts a component's LAUNCH command; a Reply to the command says whether it runs.
+using StartComponent = std::function<void(CommandId, ComponentId)>;
+
+struct LaunchTimes {
+  Duration look = std::chrono::seconds(3);         // at what runs already
+  Duration patience = std::chrono::seconds(60);    // from the first start until all must be up
+  Duration least_grace = std::chrono::seconds(1);  // for a node to move by itself
+  Duration transition = std::chrono::seconds(10);  // for each that is asked for
+};
+
+// For the manager to begin with.
+struct Launched {
+  // What was observed. Of lifecycles only where they are now: how they got there was a start.
+  std::vector<Observation> seen;
+  std::vector<KnownRobot::Part> parts;  // what was started, and so counts as seen
+  Past past;                            // how it came up
+};
+
+// Ends early when `stop` is set.
+Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start, Listener& listener,
+                const std::atomic<bool>& stop, LaunchTimes times = {});
+
+}  // namespace culprit

@@ -1,0 +1,234 @@
+#include "live/launch.h"
+
+#include <map>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+#include "robot/component_binding.h"
+
+namespace culprit {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+struct ScriptedNode {
+  Duration start = 2s;  // from the launch until it is in the graph
+  bool has_lifecycle = true;
+  Duration activates_itself_after{};  // being there; 0: it does not
+  bool refuses = false;
+  bool loses_replies = false;
+  bool has_no_program = false;
+  bool crashes = false;  // instead of coming up
+  Lifecycle state = Lifecycle::kUnconfigured;
+};
+
+// Virtual time; nodes that come up as they are told to, and write down what they are asked.
+class ScriptedRobot : public Robot {
+ public:
+  explicit ScriptedRobot(const RuleSet& rules) : rules_(rules) {}
+
+  Time now() const override { return now_; }
+  void observe(Time until, std::vector<Observation>& observations) override {
+    const bool comes = !agenda_.empty() && agenda_.begin()->first <= until;
+    now_ = std::max(now_, comes ? agenda_.begin()->first : until);
+    if (!comes) return;
+    auto happens = agenda_.begin()->second;
+    agenda_.erase(agenda_.begin());
+    happens(observations);
+  }
+  void execute(const Command& command) override {
+    ScriptedNode& node = nodes[rules_[command.component].name];
+    Reply reply{command.id, Outcome::kDone, {}, ""};
+    if (const auto* change = std::get_if<ChangeLifecycle>(&command.what)) {
+      const bool up = change->transition == Transition::kActivate;
+      asked.push_back((up ? "activate " : "configure ") + rules_[command.component].name);
+      if (node.refuses) {
+        reply.outcome = Outcome::kRefused;
+        reply.text = "no calibration";
+      } else {
+        node.state = up ? Lifecycle::kActive : Lifecycle::kInactive;
+      }
+      if (node.loses_replies) reply.outcome = Outcome::kTimedOut;
+    } else {
+      reply.value = node.state;
+      in(0ms, [=, this, state = node.state](auto& out) {
+        out.push_back({now_, LifecycleRead{command.component, state}});
+      });
+    }
+    const Duration takes = reply.outcome == Outcome::kTimedOut ? command.timeout : Duration(1ms);
+    in(takes, [=, this](auto& out) { out.push_back({now_, reply}); });
+  }
+  void start(CommandId command, ComponentId component) {
+    const Component& what = rules_[component];
+    ScriptedNode& node = nodes[what.name];
+    started.push_back(what.name);
+    if (node.has_no_program)
+      return in(1ms, [=, this](auto& out) {
+        out.push_back({now_, Reply{command, Outcome::kUnreachable, {}, "no such program"}});
+      });
+    if (node.crashes)
+      return in(node.start, [=, this](auto& out) {
+        out.push_back({now_, ProcessSeen{component, ProcessState::kGone, 7, "exit code 1"}});
+      });
+    in(node.start, [=, this](auto& out) { appear(what.node, component, out); });
+    if (node.activates_itself_after > 0s)
+      in(node.start + node.activates_itself_after, [=, this](auto& out) {
+        nodes[what.name].state = Lifecycle::kActive;
+        out.push_back({now_, LifecycleRead{component, Lifecycle::kActive}});
+      });
+  }
+  void appear(const std::string& node, ComponentId component, std::vector<Observation>& out) {
+    out.push_back({now_, NodeAppeared{node, 7}});
+    ScriptedNode& it = nodes[rules_[component].name];
+    if (!it.has_lifecycle) return;
+    out.push_back({now_, EndpointAppeared{node, EndpointKind::kServer, node + "/change_state"}});
+    out.push_back({now_, LifecycleRead{component, it.state}});
+  }
+  template <class Happens>
+  void in(Duration after, Happens happens) {
+    agenda_.emplace(now_ + after, happens);
+  }
+
+  std::map<std::string, ScriptedNode> nodes;
+  std::vector<std::string> started, asked;
+
+ private:
+  const RuleSet& rules_;
+  Time now_{1h};
+  std::multimap<Time, std::function<void(std::vector<Observation>&)>> agenda_;
+};
+
+struct Remarks : Listener {
+  void on_remark(const std::string& lines) override { text += lines; }
+  std::string text;
+};
+
+class Launching : public testing::Test {
+ protected:
+  explicit Launching(const std::string& lidar = "")
+      : rules_(*check(Source("launch.rules",
+                             "COMPONENT planner NODE /planner LAUNCH \"planner\"\n"
+                             "COMPONENT lidar NODE /lidar LAUNCH \"lidar\" " +
+                                 lidar +
+                                 "\nCOMPONENT map NODE /map\n"
+                                 "DEPENDENCY planner ON lidar\n"))
+                    .rules),
+        robot(rules_) {}
+
+  void launch_all() {
+    launched = launch(
+        robot, rules_, [&](CommandId command, ComponentId c) { robot.start(command, c); }, remarks,
+        stop);
+  }
+
+ private:
+  const RuleSet rules_;
+
+ protected:
+  ScriptedRobot robot;
+  Remarks remarks;
+  std::atomic<bool> stop = false;
+  Launched launched;
+};
+struct LaunchingDriven : Launching {
+  LaunchingDriven() : Launching("LIFECYCLE launcher") {}
+};
+
+TEST_F(Launching, BringsUpWhatStandsStillProducersFirst) {
+  launch_all();
+  EXPECT_THAT(robot.started, ElementsAre("lidar", "planner"));
+  EXPECT_THAT(robot.asked, ElementsAre("configure lidar", "activate lidar", "configure planner",
+                                       "activate planner"));
+  EXPECT_EQ(launched.parts.size(), 2u);
+  EXPECT_THAT(remarks.text, testing::Not(HasSubstr("is not up")));
+  std::size_t lifecycles = 0;
+  for (const Observation& each : launched.seen) {
+    EXPECT_FALSE(std::holds_alternative<Reply>(each.what)) << "the manager did not ask";
+    if (const auto* read = std::get_if<LifecycleRead>(&each.what)) {
+      EXPECT_EQ(read->state, Lifecycle::kActive);
+      ++lifecycles;
+    }
+  }
+  EXPECT_EQ(lifecycles, 2u);
+  ASSERT_EQ(launched.past.size(), 2u);
+  const auto& how = std::get<CameUp>(launched.past[0].what).how;
+  EXPECT_EQ(how.driver, ComingUp::Driver::kCulprit);
+  EXPECT_EQ(how.joining, 2s);
+}
+
+TEST_F(Launching, LeavesANodeAloneThatActivatesItself) {
+  robot.nodes["lidar"].activates_itself_after = 1900ms;  // less than its start took
+  launch_all();
+  ASSERT_EQ(launched.past.size(), 2u);
+  const ComingUp lidar{ComingUp::Driver::kOther, 2s, 1900ms};
+  EXPECT_EQ(std::get<CameUp>(launched.past[0].what).how, lidar);
+  EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
+}
+
+TEST_F(LaunchingDriven, LeavesANodeAloneThatTheFileGivesToOthers) {
+  launch_all();
+  EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
+}
+
+TEST_F(Launching, LeavesANodeAloneThatIsInactiveOnPurpose) {
+  robot.nodes["lidar"].state = Lifecycle::kInactive;
+  launch_all();
+  EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
+}
+
+TEST_F(Launching, TouchesNothingThatRunsAlready) {
+  robot.in(10ms, [this](auto& out) { robot.appear("/lidar", ComponentId(1u), out); });
+  launch_all();
+  EXPECT_THAT(robot.started, ElementsAre("planner"));
+  EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
+}
+
+TEST_F(Launching, TellsWhoDidNotComeUpAndGoesOn) {
+  robot.nodes["lidar"].refuses = true;
+  launch_all();
+  EXPECT_THAT(robot.asked, ElementsAre("configure lidar", "configure planner", "activate planner"));
+  EXPECT_THAT(remarks.text, HasSubstr("lidar was started and is not up: to configure it did not "
+                                      "succeed: no calibration"));
+}
+
+TEST_F(Launching, BelievesWhatItReadsBackAndNotALostReply) {
+  robot.nodes["lidar"].loses_replies = true;
+  launch_all();
+  EXPECT_EQ(robot.nodes["lidar"].state, Lifecycle::kActive);
+  EXPECT_THAT(remarks.text, testing::Not(HasSubstr("is not up")));
+}
+
+TEST_F(Launching, DoesNotWaitForWhatCrashedNorForEver) {
+  const Time begin = robot.now();
+  robot.nodes["lidar"].crashes = true;
+  launch_all();
+  EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
+  EXPECT_LT(robot.now() - begin, 20s);
+  robot.nodes["planner"].start = 24h;
+  const Time again = robot.now();
+  launch_all();
+  EXPECT_LT(robot.now() - again, 70s);
+}
+
+TEST_F(Launching, TellsWhatCannotBeStartedAndDoesNotWaitForIt) {
+  const Time begin = robot.now();
+  robot.nodes["lidar"].has_no_program = true;
+  launch_all();
+  EXPECT_THAT(remarks.text, HasSubstr("lidar was started and is not up: no such program"));
+  EXPECT_LT(robot.now() - begin, 20s);
+}
+
+TEST_F(Launching, EndsWhenCulpritIsStopped) {
+  stop = true;
+  launch_all();
+  EXPECT_THAT(robot.started, IsEmpty());
+  EXPECT_THAT(robot.asked, IsEmpty());
+}
+
+}  // namespace
+}  // namespace culprit
