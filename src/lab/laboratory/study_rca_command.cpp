@@ -125,12 +125,14 @@ int study_regret(const RcaOptions& options) {
   const study::rca::RegretCampaign campaign{options.systems, options.seed, !options.untold};
   const StopSignals signals;
   std::optional<Progress> progress;
-  const auto regrets = study::rca::measure_regret(campaign, options.jobs,
-                                                  [&](std::uint64_t done, std::uint64_t total) {
-                                                    if (!progress) progress.emplace(0, total);
-                                                    progress->show(done);
-                                                    return !signals.stopped();
-                                                  });
+  const auto regrets = study::rca::measure_regret(
+      campaign, options.jobs,
+      [&](std::uint64_t done, std::uint64_t total) {
+        if (!progress) progress.emplace(0, total);
+        progress->show(done);
+        return true;
+      },
+      [&] { return signals.stopped().load(); });
   progress.reset();
   if (!regrets) return fail("interrupted; nothing is written", kFailed);
   const auto written = write_text(

@@ -8,6 +8,9 @@
 namespace culprit::study::rca {
 namespace {
 
+// Costs that differ by less are the same.
+constexpr double kTie = 1e-9;
+
 // All of a situation as bytes. Weights that differ by rounding are the same.
 std::string key_of(const Situation& situation) {
   std::string key;
@@ -129,24 +132,63 @@ class OptimumPlanner : public Planner {
 
 }  // namespace
 
+// Branch and bound: what may cost least is looked at first, and nothing that must cost more than
+// what is known already.
 const Optimum::Best& Optimum::best(const Situation& situation) {
+  // Who else is ill does not matter if all is known.
+  if (const auto told = process_.told_by_itself(situation)) return best(*told);
   const std::string key = key_of(situation);
   const auto known = known_.find(key);
   if (known != known_.end()) return known->second;
   Best best;
   if (situation.ill != 0) best.cost = process_.cost_of_leaving_it_ill();
   if (process_.is_open(situation)) {
-    for (const Round& round : process_.rounds(situation)) {
-      double sum = process_.cost(round);
-      if (sum >= best.cost) continue;
-      for (const RepairProcess::Outcome& outcome : process_.outcomes(situation, round)) {
-        sum += outcome.probability * cost(outcome.situation);
-        if (sum >= best.cost) break;
+    std::vector<Begun> all;
+    for (Round& round : process_.rounds(situation)) {
+      Begun begun{process_.cost(round), all.size(), std::move(round), {}};
+      begun.outcomes = process_.outcomes(situation, begun.round);
+      for (const RepairProcess::Outcome& outcome : begun.outcomes)
+        begun.least += outcome.probability * least(outcome.situation);
+      all.push_back(std::move(begun));
+    }
+    std::sort(all.begin(), all.end(), [](const Begun& a, const Begun& b) {
+      return std::pair(a.least, a.place) < std::pair(b.least, b.place);
+    });
+    std::size_t first = all.size();
+    for (Begun& begun : all) {
+      if (begun.least > best.cost + kTie) break;
+      const double sum = cost_below(begun, best.cost + kTie);
+      // Of those that cost the same, the first.
+      if (sum < best.cost - kTie || (sum < best.cost + kTie && begun.place < first)) {
+        best = {sum, std::move(begun.round)};
+        first = begun.place;
       }
-      if (sum < best.cost) best = {sum, round};
     }
   }
   return known_.emplace(key, std::move(best)).first->second;
+}
+
+// Of beginning so; or anything from `limit` on, if it is not less than that.
+double Optimum::cost_below(const Begun& begun, double limit) {
+  double sum = begun.least;
+  for (const RepairProcess::Outcome& outcome : begun.outcomes) {
+    if (sum >= limit) break;
+    sum += outcome.probability * (cost(outcome.situation) - least(outcome.situation));
+  }
+  return sum;
+}
+
+double Optimum::least(const Situation& situation) {
+  if (process_.is_told(situation)) return 0;
+  double sum = 0;
+  for (std::size_t h = 0; h < situation.belief.size();) {
+    const Members faulty = situation.belief[h].faulty;
+    double weight = 0;
+    for (; h < situation.belief.size() && situation.belief[h].faulty == faulty; ++h)
+      weight += situation.belief[h].weight;
+    sum += weight * cost(process_.told(situation, faulty));
+  }
+  return sum;
 }
 
 double Optimum::cost() {

@@ -17,6 +17,10 @@
 //
 //     V_planner / V - 1        with both summed over the first situations, and over the robots
 //
+// What is left out does not change it: subscriptions that nothing will ever tell apart are one
+// (repair_process.h), and a round is not followed any further that costs more than another one even
+// if somebody said from then on what broke. If what is seen says so anyway, that is the cost.
+//
 // Source: Kaelbling, Littman, Cassandra, "Planning and acting in partially observable stochastic
 // domains", Artificial Intelligence 101, 1998, section 3: the optimal policy is one of the belief.
 #pragma once
@@ -49,6 +53,15 @@ class Optimum {
     Round round;
   };
   const Best& best(const Situation& situation);
+  // A round that may begin.
+  struct Begun {
+    double least = 0;       // it costs no less
+    std::size_t place = 0;  // among all of the situation
+    Round round;
+    std::vector<RepairProcess::Outcome> outcomes;
+  };
+  double cost_below(const Begun& begun, double limit);
+  double least(const Situation& situation);
 
   const RepairProcess& process_;
   std::unordered_map<std::string, Best> known_;

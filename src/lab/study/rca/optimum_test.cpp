@@ -1,5 +1,9 @@
 #include "study/rca/optimum.h"
 
+#include <cmath>
+#include <map>
+#include <tuple>
+
 #include <gtest/gtest.h>
 
 #include "plan/bayes/bayes_planner.h"
@@ -39,6 +43,64 @@ TEST(Optimum, OfOneComponentIsWhatItIsByHand) {
   // A restart in vain costs as much as a redeployment: 1 + 0.01 each, and a little time.
   const double redeploy = 0.02 + 1 + 0.02 + 0.01;
   EXPECT_NEAR(optimal_cost(single(), Objective::kAdaptations), redeploy, 1e-9);
+}
+
+// Everything that may begin in everything that may be seen, and nothing is ever left out.
+class Enumerated {
+ public:
+  explicit Enumerated(const RepairProcess& process) : process_(process) {}
+
+  double cost() {
+    double sum = 0;
+    for (const auto& [probability, situation] : process_.beginnings())
+      sum += probability * cost(situation);
+    return sum;
+  }
+
+ private:
+  // Weights in billionths; tries as one number each.
+  using Key = std::tuple<Members, Members, std::vector<int>,
+                         std::vector<std::tuple<Members, Members, std::int64_t>>>;
+
+  double cost(const Situation& situation) {
+    if (situation.ill == 0) return 0;
+    Key key{situation.ill, situation.gone, {}, {}};
+    for (const auto& tries : situation.tries)
+      std::get<2>(key).push_back(8 * tries.turns + tries.tried);
+    for (const auto& [faulty, passing, weight] : situation.belief)
+      std::get<3>(key).emplace_back(faulty, passing, std::llround(1e9 * weight));
+    const auto known = known_.find(key);
+    if (known != known_.end()) return known->second;
+    double best = process_.cost_of_leaving_it_ill();
+    if (process_.is_open(situation)) {
+      for (const Round& round : process_.rounds(situation)) {
+        double sum = process_.cost(round);
+        for (const auto& [probability, next] : process_.outcomes(situation, round))
+          sum += probability * cost(next);
+        best = std::min(best, sum);
+      }
+    }
+    return known_[key] = best;
+  }
+
+  const RepairProcess& process_;
+  std::map<Key, double> known_;
+};
+
+// Where who has a fault stays in doubt (circles, several faults), and where it does not.
+TEST(Optimum, IsTheLeastOfAllWhateverIsLeftOut) {
+  for (const RcaSetting& setting :
+       {RcaSetting{3, 2, 0, false}, RcaSetting{3, 2, 0, true}, RcaSetting{2, 2, 0, true}}) {
+    for (const std::uint64_t seed : {1u, 2u}) {
+      const RcaScenario scenario = generate(setting, seed);
+      const RuleSet rules = rules_of(scenario);
+      for (const Objective objective : {Objective::kDowntime, Objective::kAdaptations}) {
+        const RepairProcess process(scenario, rules, objective);
+        EXPECT_NEAR(Optimum(process).cost(), Enumerated(process).cost(), 1e-9)
+            << setting.components << " components, seed " << seed << ", " << to_string(objective);
+      }
+    }
+  }
 }
 
 // a feeds b, surely. Who is ill says which it is, and a crash is seen.

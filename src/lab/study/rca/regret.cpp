@@ -59,25 +59,28 @@ RcaScenario regret_scenario(const RegretCampaign& campaign, std::uint32_t system
 }
 
 std::optional<std::vector<Regrets>> measure_regret(const RegretCampaign& campaign, unsigned jobs,
-                                                   const GoOn& go_on) {
+                                                   const GoOn& go_on,
+                                                   const std::function<bool()>& is_stopped) {
   using OfSystem = std::array<double, kEveryObjective.size()>;
   std::vector<Regrets> all;
   for (const Objective objective : kEveryObjective) all.push_back({objective, {}});
   work_in_order(
       0, campaign.systems, jobs,
-      [&](std::uint64_t i) {
+      [&](std::uint64_t i) -> std::optional<OfSystem> {
         const RcaScenario scenario = regret_scenario(campaign, static_cast<std::uint32_t>(i));
         const RuleSet rules = rules_of(scenario);
         OfSystem regrets{};
         for (std::size_t o = 0; o < regrets.size(); ++o) {
+          if (is_stopped && is_stopped()) return std::nullopt;
           const RepairProcess process(scenario, rules, kEveryObjective[o]);
           const double ours = expected_cost(process, rules, BayesPlanner(kEveryObjective[o]));
           regrets[o] = ours / Optimum(process).cost() - 1;
         }
         return regrets;
       },
-      [&](std::uint64_t i, const OfSystem& regrets) {
-        for (std::size_t o = 0; o < regrets.size(); ++o) all[o].of.push_back(regrets[o]);
+      [&](std::uint64_t i, const std::optional<OfSystem>& regrets) {
+        if (!regrets) return false;
+        for (std::size_t o = 0; o < regrets->size(); ++o) all[o].of.push_back((*regrets)[o]);
         return !go_on || go_on(i + 1, campaign.systems);
       });
   if (all.front().of.size() < campaign.systems) return std::nullopt;

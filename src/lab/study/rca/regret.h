@@ -5,6 +5,7 @@
 // robots these are is left to chance.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,9 +36,12 @@ struct Regrets {
 RcaSetting regret_setting(const RegretCampaign& campaign, std::uint32_t system);
 RcaScenario regret_scenario(const RegretCampaign& campaign, std::uint32_t system);
 
-// One for each objective. `go_on` is asked after each system; where it said no, nothing is given.
+// One for each objective. `go_on` is asked after each system, and `is_stopped`, on any thread,
+// before each of its objectives, which takes up to a second (null: never): where the one said no, or
+// the other yes, nothing is given.
 std::optional<std::vector<Regrets>> measure_regret(const RegretCampaign& campaign, unsigned jobs,
-                                                   const GoOn& go_on);
+                                                   const GoOn& go_on,
+                                                   const std::function<bool()>& is_stopped);
 
 // In a form of study/tables/render.h; and as
 //

@@ -98,6 +98,7 @@ RepairProcess::RepairProcess(const RcaScenario& scenario, const RuleSet& rules, 
     for (Members passing = 0; passing < one(ways_.size()); ++passing)
       ill_.push_back(spread(faulty, passing));
   }
+  tell_apart();
   constexpr double kMany = 10;
   const double cycles = scenario.horizon_s / seconds(rules.cycle);
   left_ill_ = weights_.time * cycles / static_cast<double>(rules.heaviest.count) +
@@ -122,6 +123,22 @@ Members RepairProcess::spread(Members faulty, Members passing) const {
     }
   }
   return ill;
+}
+
+// Faults only end, so two sets of subscriptions are alike for `faulty` if they make the same ill for
+// it and are alike for it without any one of its faults.
+void RepairProcess::tell_apart() {
+  alike_.resize(ill_.size());
+  for (Members faulty = 0; faulty < one(size()); ++faulty) {
+    std::map<std::vector<Members>, Members> first;
+    for (Members passing = 0; passing < one(ways_.size()); ++passing) {
+      std::vector<Members> shown{ill(faulty, passing)};
+      for (std::size_t c = 0; c < size(); ++c) {
+        if (has(faulty, c)) shown.push_back(alike(faulty & ~one(c), passing));
+      }
+      alike_[place(faulty, passing)] = first.try_emplace(std::move(shown), passing).first->second;
+    }
+  }
 }
 
 double RepairProcess::probability_of(Members passing) const {
@@ -160,15 +177,11 @@ std::vector<RepairProcess::Outcome> RepairProcess::beginnings() const {
   return all;
 }
 
-// Forgets what no longer matters: the tries of those that are well, and which subscriptions pass
-// that nobody's illness can take any more.
+// Forgets what no longer matters: the tries of those that are well, and which subscriptions pass as
+// far as nothing that may still be seen depends on it.
 Situation RepairProcess::settled(Seen seen, std::vector<Hypothesis> belief,
                                  std::vector<Situation::Tries> tries) const {
-  Members relevant = 0;
-  for (std::size_t w = 0; w < ways_.size(); ++w) {
-    if (has(seen.first, ways_[w].to) && (ways_[w].from & seen.first) != 0) relevant |= one(w);
-  }
-  for (Hypothesis& h : belief) h.passing &= relevant;
+  for (Hypothesis& h : belief) h.passing = alike(h.faulty, h.passing);
   Situation situation{seen.first, seen.second, std::move(tries), merged(std::move(belief))};
   for (std::size_t c = 0; c < size(); ++c) {
     Situation::Tries& of_one = situation.tries[c];
@@ -331,6 +344,36 @@ double RepairProcess::cost(const Round& round) const {
     sum += plan::try_cost(effort, weights_, rules_);
   }
   return sum + plan::try_cost({Cycles{longest}}, CostWeights{.time = weights_.time}, rules_);
+}
+
+Situation RepairProcess::told(const Situation& situation, Members faulty) const {
+  Situation known{faulty, situation.gone, situation.tries, {{faulty, 0, 1}}};
+  for (std::size_t c = 0; c < size(); ++c) {
+    if (!has(faulty, c)) known.tries[c] = {};
+  }
+  return known;
+}
+
+bool RepairProcess::is_told(const Situation& situation) const {
+  const auto& belief = situation.belief;
+  return belief.size() == 1 && belief.front().faulty == situation.ill &&
+         belief.front().passing == 0;
+}
+
+std::optional<Situation> RepairProcess::told_by_itself(const Situation& situation) const {
+  if (situation.belief.empty() || is_told(situation)) return std::nullopt;
+  const Members all = situation.belief.front().faulty;
+  std::array<std::optional<Members>, std::size_t{1} << kMostComponents> by_ill;
+  for (const Hypothesis& h : situation.belief) {
+    if (h.faulty != all) return std::nullopt;
+    for (Members left = all;; left = (left - 1) & all) {
+      auto& before = by_ill[ill(left, h.passing)];
+      if (before.value_or(left) != left) return std::nullopt;
+      before = left;
+      if (left == 0) break;
+    }
+  }
+  return told(situation, all);
 }
 
 void RepairProcess::show(const Situation& situation, Knowledge& knowledge) const {

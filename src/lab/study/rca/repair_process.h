@@ -106,6 +106,16 @@ class RepairProcess {
   double cost(const Round& round) const;
   double cost_of_leaving_it_ill() const { return left_ill_; }
 
+  // The situation if somebody said which components have a fault, and always would: only those are
+  // ill, as if no subscription passed anything on. No way on costs less than on average over what
+  // may be said. `faulty` is one of its hypotheses'.
+  Situation told(const Situation& situation, Members faulty) const;
+  // The same if nobody need say it: what is seen shows it, and always will. Nothing if it does not,
+  // or is such a situation.
+  std::optional<Situation> told_by_itself(const Situation& situation) const;
+  // Is it such a situation?
+  bool is_told(const Situation& situation) const;
+
   // Is anybody ill for whom something is left to try?
   bool is_open(const Situation& situation) const;
   // Is nothing left to try at this component?
@@ -132,9 +142,14 @@ class RepairProcess {
   using Sorted = std::map<Seen, std::vector<Situation::Hypothesis>>;
 
   Members spread(Members faulty, Members passing) const;
-  Members ill(Members faulty, Members passing) const {
-    return ill_[faulty << ways_.size() | passing];
+  std::size_t place(Members faulty, Members passing) const {
+    return faulty << ways_.size() | passing;
   }
+  Members ill(Members faulty, Members passing) const { return ill_[place(faulty, passing)]; }
+  // The first set of subscriptions that can never be told from `passing` as long as there are no
+  // other faults than these.
+  Members alike(Members faulty, Members passing) const { return alike_[place(faulty, passing)]; }
+  void tell_apart();
   double probability_of(Members passing) const;
   double likelihood(const Situation& situation, std::size_t component) const;
   double success(const Situation& situation, const Treated& treated) const;
@@ -152,6 +167,7 @@ class RepairProcess {
   std::vector<Members> upstream_;  // by component, by the graph
   std::vector<std::size_t> dependents_;
   std::vector<Members> ill_;            // by faulty and passing
+  std::vector<Members> alike_;          // as well
   std::vector<std::size_t> redundant_;  // by component: how many sources have to be ill together
 };
 
