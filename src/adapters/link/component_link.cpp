@@ -202,9 +202,17 @@ void ComponentLink::read_parameters() {
 
 void ComponentLink::check_parameters() {
   if (!misses_parameter_.exchange(false)) return;
-  ServiceClient* client = make(parameter_names_, node_ + "/list_parameters",
-                               srv::ListParameters::kType, qos::kParameterServices);
-  if (client == nullptr) return;
+  ServiceClient* client = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!parameter_names_) {
+      const ServiceName name{node_ + "/list_parameters", std::string(srv::ListParameters::kType)};
+      auto made = ServiceClient::create(self_, name, qos::kParameterServices);
+      if (!made) return;  // a secured domain need not allow it
+      parameter_names_ = std::move(*made);
+    }
+    client = parameter_names_.get();
+  }
   client->call(encode(srv::ListParameters::Request{}), Repeat::kUntilAnswered, kJoining,
                [this](const CallResult& result) {
                  constexpr std::size_t kMost = 1000;

@@ -280,6 +280,18 @@ TEST(Monitor, ForgetsTheStateOfAProcessThatIsGone) {
   EXPECT_EQ(watched.knowledge.components[ComponentId(0)].intended_lifecycle, Lifecycle::kActive);
 }
 
+TEST(Monitor, ANodeIsOfARunningProcessUnlessItsOwnIsKnownToBeStopped) {
+  Watched watched(rule("!alive(c)"));
+  const auto process = [&] { return watched.knowledge.components[ComponentId(0)].process; };
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(2s, ProcessSeen{ComponentId(0), ProcessState::kStopped, 7, ""});
+  watched.observe(3s, NodeAppeared{"/c", 7});
+  EXPECT_EQ(process(), ProcessState::kStopped) << "it was only discovered anew";
+  watched.observe(4s, ProcessSeen{ComponentId(0), ProcessState::kGone, 7, ""});
+  watched.observe(5s, NodeAppeared{"/c", 8});
+  EXPECT_EQ(process(), ProcessState::kRunning);
+}
+
 // As where `respawn` of a launch file starts a node again: it comes up unconfigured.
 TEST(Monitor, NobodyIntendedTheStateThatANewProcessComesUpIn) {
   Watched watched(rule("!alive(c)"));
