@@ -92,6 +92,21 @@ TEST(Limits, DoubleTheTimeBetweenRestarts) {
   EXPECT_FALSE(limits.on(two.strategy("down_again"), now)) << "each component has its own";
 }
 
+TEST(Limits, ForgetTheRestartsOfWhatHasBeenWellSinceThen) {
+  Two two;
+  Limits::Options options;
+  options.backoff = {100s, 400s, 60s};
+  Limits limits(two.knowledge, options);
+  const StrategyId again = two.strategy("up_again");
+  const RuleId rule = two.knowledge.rules[again].rule;
+  limits.began(again, kStart);
+  limits.note({kStart, FailureResolved{rule, FailureResolved::How::kByStrategy, again, {}}});
+  two.knowledge.states.state(rule).failing_since = kStart + 59s;
+  EXPECT_EQ(restraint(limits.on(again, kStart + 61s)), Restraint::kBackoff);
+  two.knowledge.states.state(rule).failing_since = kStart + 60s;
+  EXPECT_FALSE(limits.on(again, kStart + 61s));
+}
+
 TEST(Limits, BoundWhatIsBegunAtAComponentInItsPeriod) {
   Two two;
   Limits::Options options;

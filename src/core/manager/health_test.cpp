@@ -30,8 +30,10 @@ Manager::Options healthy_after(Duration healthy) {
   return options;
 }
 
-TestRobot robot_that_is_well(Duration healthy) {
-  TestRobot robot(kRules, std::make_unique<BayesPlanner>(), healthy_after(healthy));
+TestRobot robot_that_is_well(Duration healthy, Intensity restarts = {}) {
+  Manager::Options options = healthy_after(healthy);
+  options.governor.limits.restarts = restarts;
+  TestRobot robot(kRules, std::make_unique<BayesPlanner>(), options);
   robot.add("camera", {}, "/image");
   robot.add("fusion", {"camera"}, "/fused");
   robot.discover();
@@ -159,6 +161,19 @@ TEST(ProvenHealth, ACrashLoopGoesOnBeingOneAcrossCrashesOfCulprit) {
   EXPECT_GE(robot.count("CameraSilent is exhausted"), 1u) << transcript(robot);
   EXPECT_LE(robot.count_asked("camera: activate") + robot.count_asked("camera: start"), 4u)
       << transcript(robot);
+}
+
+// Also if few attempts were made, and the next culprit would be allowed more.
+TEST(ProvenHealth, WhatIsLeftToAPersonIsSoAcrossCrashesOfCulprit) {
+  TestRobot robot = robot_that_is_well(20s, {1, 1h});
+  robot["camera"].fault = "a person";
+  robot.run_for(30s);
+  ASSERT_EQ(robot.count("CameraSilent is exhausted"), 1u) << transcript(robot);
+  ASSERT_EQ(robot.count("camera is held responsible"), 1u) << transcript(robot);
+  crash_and_go_on(robot, 20s);
+  robot.run_for(60s);
+  EXPECT_EQ(robot.count("camera is held responsible"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent is exhausted"), 2u) << "whoever looks now is told too";
 }
 
 // As the paper has it; what its studies are run with.
