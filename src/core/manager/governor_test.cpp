@@ -303,6 +303,14 @@ TEST(Evidence, ItIsEndedOnceItIsSilentItself) {
   EXPECT_TRUE(robot.works("fusion")) << transcript(robot);
 }
 
+TEST(Evidence, TheSilenceOfOneOfItsTopicsIsEnoughWhateverElseTheRuleReads) {
+  TestRobot robot = camera_and_fusion("age(/fused) > 1h || age(/depth) > 300ms", with_evidence());
+  robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/depth"});
+  robot.tell(SampleArrived{TopicId(1), 1});
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.was_asked("camera: stop process")) << transcript(robot);
+}
+
 TEST(Evidence, AProcessThatIsGoneOrStoppedNeedsNoMore) {
   TestRobot robot = camera_and_fusion("age(/fused) > 300ms", with_evidence());
   robot.kill("camera");
