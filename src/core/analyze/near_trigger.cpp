@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 namespace culprit {
 namespace {
@@ -75,7 +76,8 @@ std::optional<NearTrigger> comparison(RuleId rule, std::size_t at, const Knowled
   const double value = number(slot, of_whole || read.is_converted);
   const double threshold =
       number(trigger.constants[given.push.operand].slot, of_whole || given.is_converted);
-  const bool is_negated = right.end + 1 < code.size() && code[right.end + 1].op == Op::kNot;
+  const auto rest = std::span(code).subspan(right.end + 1);
+  const bool is_negated = !rest.empty() && rest.front().op == Op::kNot;
   const bool holds = input_first ? is_true(op, value, threshold) : is_true(op, threshold, value);
   if (holds != is_negated) return std::nullopt;
   const double unit = knowledge.rules[input].type == Type::kDuration ? seconds(Duration(1)) : 1;

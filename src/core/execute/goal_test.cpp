@@ -54,6 +54,22 @@ TEST(Goal, OfAStartIsToBeActive) {
   EXPECT_EQ(std::get<LifecycleGoal>(goals.of(1)[1]).target, Lifecycle::kActive);
 }
 
+TEST(Goal, LeavesADriverOfWhichNothingIsKnownTheTimeToShowItself) {
+  using namespace std::chrono_literals;
+  using Driver = ComingUp::Driver;
+  Goals goals;
+  goals.intended(Lifecycle::kActive);
+  ComingUp& before = goals.knowledge.components[ComponentId(0)].coming_up;
+  const auto grace = [&] { return std::get<LifecycleGoal>(goals.of(0)[2]).grace; };
+  EXPECT_EQ(grace(), 1s) << "the impact";
+  before = {Driver::kUnknown, 3s, {}};
+  EXPECT_EQ(grace(), 3s);
+  before = {Driver::kOther, 3s, 2s};
+  EXPECT_EQ(grace(), 5s);
+  before = {Driver::kCulprit, 3s, 2s};
+  EXPECT_EQ(grace(), 0s) << "nobody else brought it up";
+}
+
 TEST(Goal, OfADecreaseIsToAddLess) {
   const auto goal = std::get<ParameterGoal>(Goals().of(2).front());
   EXPECT_EQ(goal.kind, Kind::kAdd);

@@ -245,7 +245,7 @@ TEST(Orders, WhatMakesNoSenseIsRefusedWithItsReason) {
   r.order(order(Resume{}));
   r.order(order(LiftSilence{kDark}));
   r.order(order(Silence{ComponentId(99), {}}));
-  r.order(order(RunStrategy{StrategyId(99)}));
+  r.order(order(RunStrategy{StrategyId(r.rules().strategies.size())}));
   r.order(order(Forget{RuleId(r.rules().rules.size())}));
   r.order(order(Pause{}));
   r.order(order(RunStrategy{kLight}));

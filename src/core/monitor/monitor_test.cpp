@@ -292,6 +292,19 @@ TEST(Monitor, ANodeIsOfARunningProcessUnlessItsOwnIsKnownToBeStopped) {
   EXPECT_EQ(process(), ProcessState::kRunning);
 }
 
+TEST(Monitor, ANodeThatIsOnlyDiscoveredAnewIsAsItWas) {
+  Watched watched(rule("lifecycle(c) == \"active\""));
+  const auto lifecycle = [&] { return watched.knowledge.components[ComponentId(0)].lifecycle; };
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  watched.observe(2s, NodeAppeared{"/c", 7});
+  EXPECT_EQ(lifecycle(), Lifecycle::kActive);
+  watched.observe(3s, NodeAppeared{"/c", 0});
+  watched.observe(3s, LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  watched.observe(4s, NodeAppeared{"/c", 0});
+  EXPECT_EQ(lifecycle(), Lifecycle::kUnknown) << "of another machine it may be another process";
+}
+
 // As where `respawn` of a launch file starts a node again: it comes up unconfigured.
 TEST(Monitor, NobodyIntendedTheStateThatANewProcessComesUpIn) {
   Watched watched(rule("!alive(c)"));
