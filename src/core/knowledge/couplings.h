@@ -1,5 +1,5 @@
 // How surely a failure goes away when another one is resolved: kappa(j -> i), learned for each
-// ordered pair of rules (docs/planning.md).
+// ordered pair of rules (docs/planning.md, which also says what its truth is).
 //
 //     kappa(j -> i) = (n0 kappa0 + cleared) / (n0 + cleared + stayed)
 //

@@ -21,7 +21,8 @@
 // "learning", if anything was:
 //
 //     "learning": [{"failure": "F1", "rule": "RGBDead", "strategy": "redeploy", "executed": 27.4,
-//                   "initial": 0.48, "truth": 0.6, "believed": 0.55, "error": 0.05,
+//                   "initial": 0.48, "truth": 0.6, "truth_of_all": 0.6,
+//                   "believed": 0.55, "error": 0.05,
 //                   "learned": [{"mean": 0.5, "sd": 0}, ...]}]
 //
 // "executed" is a mean over the series; "believed" is what the last of "learned" has.

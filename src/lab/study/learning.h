@@ -15,11 +15,16 @@ struct LearningCurve {
   std::string rule;
   std::string strategy;
   double initial = 0;  // what the designer believed
-  double truth = 0;    // the true success rate, of all the times that it was executed
+  double truth = 0;    // how often it ends the fault, of the times that it was learned from
   // After the first, second, ... experiment; each over the repetitions of the whole series.
   std::vector<Moments> learned;
   double executed = 0;  // how often in a series, on average
   double counted = 0;   // as often it was learned from
+  // How often it ends the fault, of all the times that it was executed; the truth, too, if it was
+  // never learned from. It is another number where what nobody can judge is not like what can be
+  // judged: beside an outage that hides whether it helped, other faults are there than without one.
+  // What is learned can be held only against what could be seen.
+  double truth_of_all = 0;
 
   // What is believed at the end, and how far that is from the truth.
   double believed() const { return learned.empty() ? initial : learned.back().mean(); }

@@ -1,6 +1,7 @@
 #include "study/rca/learning.h"
 
 #include <algorithm>
+#include <deque>
 #include <map>
 #include <utility>
 
@@ -44,6 +45,7 @@ class Learner {
   // `result` may be null: nothing is measured.
   void play(std::uint64_t seed, LearningResult* result) {
     scenario_.seed = seed;
+    for (Truth& truth : truths_) truth.pending.clear();
     scenario_.faults = random_faults(campaign_.setting, simulation::mix(seed));
     RcaRobot robot(scenario_, rules_, kQuiet);
     Manager::Options options;
@@ -74,8 +76,9 @@ class Learner {
       const Belief before = initial[StrategyId(s)];
       result.strategies.push_back(
           {rules_[strategy.components.front()].name + "." + strategy.name, before.mean().value,
-           truths_[s].first, truths_[s].second, beliefs_[s].mean().value,
-           beliefs_[s].alpha + beliefs_[s].beta - before.alpha - before.beta});
+           truths_[s].executed, truths_[s].helped, beliefs_[s].mean().value,
+           beliefs_[s].alpha + beliefs_[s].beta - before.alpha - before.beta, truths_[s].judged,
+           truths_[s].judged_helped});
     }
     for (const auto& [pair, truth] : coupled_) {
       const auto found = couplings_.find(pair);
@@ -86,6 +89,16 @@ class Learner {
   }
 
  private:
+  // Of one strategy (learning.h).
+  struct Truth {
+    int executed = 0;
+    int helped = 0;
+    int judged = 0;
+    int judged_helped = 0;
+    bool has_last_helped = false;
+    std::deque<std::pair<Time, bool>> pending;  // when the verdict counts: did it help?
+  };
+
   // Long enough for a fault that shows now and then, and for each outcome to count before the end.
   static constexpr Duration kHealthy = std::chrono::seconds(3);
   static constexpr Duration kQuiet = std::chrono::seconds(12);
@@ -110,16 +123,20 @@ class Learner {
   void note_effect(std::size_t component, Repair repair, bool has_helped) {
     if (!has_helped) return;
     for (const StrategyId id : rules_.rules[component].strategies) {
-      if (rules_[id].name == to_string(repair)) ++truths_[id.index].second;
+      if (rules_[id].name != to_string(repair)) continue;
+      ++truths_[id.index].helped;
+      truths_[id.index].has_last_helped = true;
     }
   }
 
   void note_events(std::span<const Event> events, const Knowledge& knowledge, const Plant& plant) {
     for (const Event& event : events) {
       if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
-        ++truths_[chosen->strategy.index].first;
+        ++truths_[chosen->strategy.index].executed;
+        truths_[chosen->strategy.index].has_last_helped = false;
         early_.erase(rules_[chosen->strategy].rule);
       }
+      note_outcome(event);
       const auto* resolved = std::get_if<FailureResolved>(&event.what);
       if (resolved == nullptr) continue;
       if (!resolved->strategy) {
@@ -151,6 +168,24 @@ class Learner {
         cleared += stays ? 0 : 1;
       }
     }
+  }
+
+  // A verdict is of the last execution, and says when it will count; one that never will counts, as
+  // nothing, at once.
+  void note_outcome(const Event& event) {
+    if (const auto* judged = std::get_if<OutcomePending>(&event.what)) {
+      Truth& truth = truths_[judged->strategy.index];
+      truth.pending.emplace_back(judged->due, truth.has_last_helped);
+    }
+    const auto* counted = std::get_if<OutcomeCounted>(&event.what);
+    if (counted == nullptr) return;
+    Truth& truth = truths_[counted->strategy.index];
+    if (truth.pending.empty() || event.at < truth.pending.front().first) return;
+    if (counted->as != OutcomeCounted::As::kNothing) {
+      ++truth.judged;
+      truth.judged_helped += truth.pending.front().second ? 1 : 0;
+    }
+    truth.pending.pop_front();
   }
 
   // Some failures show it before their cause does that it was repaired.
@@ -197,7 +232,7 @@ class Learner {
   RcaScenario scenario_;
   RuleSet rules_;
   std::vector<Belief> beliefs_;
-  std::vector<std::pair<int, int>> truths_;      // by strategy: executed, helped
+  std::vector<Truth> truths_;                    // by strategy
   std::map<RuleId, std::vector<RuleId>> early_;  // by cause: effects that were gone before it
   std::map<std::pair<RuleId, RuleId>, std::pair<int, int>> coupled_;  // asked, cleared
   std::map<std::pair<RuleId, RuleId>, Coupling> couplings_;           // by cause and effect

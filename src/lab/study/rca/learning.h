@@ -50,18 +50,26 @@ struct LearnedRate {
   int helped = 0;  // in truth
   double believed = 0;
   double counted = 0;  // outcomes that were learned from
+  int judged = 0;      // executions that these are of
+  int judged_helped = 0;
 
-  double truth() const { return executed == 0 ? 0 : static_cast<double>(helped) / executed; }
+  // Of what was learned from: beside another repair nobody can judge (docs/planning.md).
+  double truth() const { return judged == 0 ? 0 : static_cast<double>(judged_helped) / judged; }
 };
 
-// Of one failure that others were there with when it was resolved: did they go away with it?
+// kappa(cause -> effect): learned, and in truth (docs/planning.md). The truth is known from the plant:
+// an effect has no other source if no other failure that is there passes on to it, and goes away if it
+// has no fault of its own.
 struct LearnedCoupling {
   std::string cause;
   std::string effect;
-  int asked = 0;
-  int cleared = 0;  // in truth
-  double counted = 0;
-  double counted_cleared = 0;
+  int asked = 0;       // a strategy resolved `cause`, and `effect` was there without another source
+  int cleared = 0;     // of these: it goes away
+  double counted = 0;  // what was learned from
+  double counted_cleared = 0;  // of these: it went away
+
+  double truth() const { return asked == 0 ? 0 : static_cast<double>(cleared) / asked; }
+  double learned() const { return counted == 0 ? 0 : counted_cleared / counted; }
 };
 
 struct LearningResult {

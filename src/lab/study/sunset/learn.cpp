@@ -9,23 +9,24 @@ namespace culprit::study {
 namespace {
 
 // How long an outcome has to stand until it is learned from. The tables of the study judge at once,
-// as the paper does; but SUNSET's own monitoring shows an outage some 4 s late, and until then
-// every strategy for a bad picture seems not to help.
-constexpr Duration kProof = std::chrono::seconds(5);
-
-// How much longer than a run of the study one lasts that is learned from: the newest version shows
-// an outage only 9 s late, a second repair comes later still, and each outcome has to stand.
-constexpr Duration kLonger = std::chrono::seconds(15);
+// as the paper does; but SUNSET's own monitoring shows an outage late, and until then every strategy
+// for a bad picture seems not to help: a topic is slow once its last pictures, a window of them, came
+// in at less than one each second.
+Duration proof(const sunset::model::Profile& profile) {
+  constexpr Duration kEach = std::chrono::seconds(1);
+  return (static_cast<std::int64_t>(profile.frequency_window) + 1) * kEach;
+}
 
 // Of the bag's pictures.
 constexpr Duration kFramePeriod = std::chrono::milliseconds(100);
 
 // A run that is learned from begins shortly before its faults. The managers of the profiles `head`
 // and `october` begin before the blackboard has counted as many pictures as it wants to: it says
-// that all is silent, and whatever is restarted then seems to help.
+// that all is silent, and whatever is restarted then seems to help. It lasts longer than one of the
+// tables: a second repair comes later than an outage is shown, and each outcome has to stand.
 sunset::model::Profile to_learn_from(sunset::model::Profile profile) {
   profile.manager_start = profile.injection.least - profile.blackboard_period;
-  profile.end_of_run += kLonger;
+  profile.end_of_run += 3 * proof(profile);
   return profile;
 }
 
@@ -44,9 +45,26 @@ void wait_for_pictures(RuleSet& rules, const sunset::model::Profile& profile) {
 struct Learner {
   StrategyId strategy;
   LearningCurve curve;
-  std::int64_t executed = 0;
-  std::int64_t remedies = 0;
+  // Of each execution, and of each that was learned from: is the fault one that it ends?
+  Moments remedies;
+  Moments learned_remedies;
+
+  void note(const SunsetRun& run, const RuleSet& rules);
 };
+
+// A strategy that had ended the fault already, and is executed again since an
+// outage hides that, is still the one that this failure needs.
+void Learner::note(const SunsetRun& run, const RuleSet& rules) {
+  const double is_remedy = judge(strategy, rules, run.scenario.faults).is_remedy ? 1 : 0;
+  for (const Event& event : run.events) {
+    if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
+      if (chosen->strategy == strategy) remedies.add(is_remedy);
+    } else if (const auto* counted = std::get_if<OutcomeCounted>(&event.what)) {
+      if (counted->strategy == strategy && counted->as != OutcomeCounted::As::kNothing)
+        learned_remedies.add(is_remedy);
+    }
+  }
+}
 
 // The paper's name of the failure; empty: no fault of SUNSET causes it.
 std::string failure_of(const std::string& rule) {
@@ -67,7 +85,7 @@ std::vector<Learner> learners(const RuleSet& rules, std::uint32_t experiments) {
     if (failure.empty()) continue;
     Learner learner;
     learner.strategy = StrategyId(s);
-    learner.curve = {failure, rule, strategy.name, strategy.success.value, 0, {}, 0, 0};
+    learner.curve = {failure, rule, strategy.name, strategy.success.value, 0, {}, 0, 0, 0};
     learner.curve.learned.resize(experiments);
     all.push_back(std::move(learner));
   }
@@ -76,8 +94,6 @@ std::vector<Learner> learners(const RuleSet& rules, std::uint32_t experiments) {
 
 }  // namespace
 
-// The true rate of a strategy is how often it ended a fault, of all the times that it was executed:
-// what comes first meets other faults than what comes second.
 std::vector<LearningCurve> SunsetStudy::learn(
     std::uint32_t experiments, std::uint32_t repetitions,
     const std::function<void(std::uint64_t)>& told) const {
@@ -96,7 +112,7 @@ std::vector<LearningCurve> SunsetStudy::learn(
       const std::uint64_t seed = seed_of({repetition, experiment});
       sunset::model::SunsetModel model(profile, seed);
       Manager::Options options = manager_options(profile);
-      options.governor.limits.backoff.healthy = kProof;
+      options.governor.limits.backoff.healthy = proof(profile);
       Manager manager(rules, planner_of(setting.configuration), options);
       for (std::size_t s = 0; s < rules.strategies.size(); ++s)
         manager.set_belief(StrategyId(s), beliefs[StrategyId(s)]);
@@ -107,11 +123,7 @@ std::vector<LearningCurve> SunsetStudy::learn(
       if (told) told(std::uint64_t{repetition} * experiments + experiment + 1);
       for (Learner& learner : all) {
         learner.curve.learned[experiment].add(beliefs[learner.strategy].mean().value);
-        for (const SunsetRun::Choice& choice : run.choices) {
-          if (choice.strategy != learner.strategy) continue;
-          ++learner.executed;
-          if (choice.is_remedy) ++learner.remedies;
-        }
+        learner.note(run, rules);
       }
     }
     for (Learner& learner : all) {
@@ -123,10 +135,12 @@ std::vector<LearningCurve> SunsetStudy::learn(
   }
   std::vector<LearningCurve> curves;
   for (Learner& learner : all) {
-    if (learner.executed > 0)
-      learner.curve.truth =
-          static_cast<double>(learner.remedies) / static_cast<double>(learner.executed);
-    learner.curve.executed = static_cast<double>(learner.executed) / std::max(1U, repetitions);
+    LearningCurve& curve = learner.curve;
+    const Moments& executed = learner.remedies;
+    const Moments& judged = learner.learned_remedies;
+    curve.truth_of_all = executed.count() > 0 ? executed.mean() : 0;
+    curve.truth = judged.count() > 0 ? judged.mean() : curve.truth_of_all;
+    curve.executed = static_cast<double>(executed.count()) / std::max(1U, repetitions);
     curves.push_back(std::move(learner.curve));
   }
   return curves;
