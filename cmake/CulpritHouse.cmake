@@ -25,6 +25,10 @@ if(CULPRIT_SANITIZE)
   target_link_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE})
 endif()
 
+# For what fuzzers may look into, as fuzz/CMakeLists.txt has it: not for programs and tests, which would only compile longer.
+add_library(culprit_library_options INTERFACE)
+target_link_libraries(culprit_library_options INTERFACE culprit_options)
+
 # Tests are compiled to be built soon: what they test is optimised as for users.
 add_library(culprit_test_options INTERFACE)
 target_link_libraries(culprit_test_options INTERFACE culprit_options)
@@ -93,7 +97,7 @@ function(culprit_library path)
   target_include_directories(${folder} ${scope} $<BUILD_INTERFACE:${headers}> $<INSTALL_INTERFACE:include/culprit>)
   target_link_libraries(${folder} ${scope} ${ARG_USES} ${ARG_PACKAGES})
   if(sources)
-    target_link_libraries(${folder} PRIVATE $<BUILD_INTERFACE:culprit_options>)
+    target_link_libraries(${folder} PRIVATE $<BUILD_INTERFACE:culprit_library_options>)
   endif()
   if(path MATCHES "^(base$|core/)")
     culprit_install_library(${folder} ${dir})

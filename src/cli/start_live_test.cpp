@@ -166,6 +166,52 @@ TEST_F(Start, LaunchBringsUpWhatNobodyElseDrives) {
     kill(pid_in(run.output(), name), SIGKILL);
 }
 
+TEST_F(Start, NoContainerIsEndedForOneOfItsNodes) {
+  const std::string peer = "ros2_peer_node " + std::to_string(domain());
+  TestProgram box(world,
+                  {"ros2_peer_node", std::to_string(domain()), "/box", "/detector", "/tracker"});
+  auto run = culprit({"run", world.write("composed.rules", R"(
+COMPONENT detector NODE /detector LAUNCH ")" + peer + R"( /detector"
+RULE DetectorWeak
+  POLICIES ERROR ATTEMPTS 1
+  TRIGGER parameter(detector, gain) < 5
+    STRATEGY detector_redeploy 90 10
+      ADAPTATION detector redeploy 5
+)"),
+                      "--state-dir", state()});
+  EXPECT_TRUE(run.prints("detector lives in the container /box, with /tracker")) << run.output();
+  EXPECT_TRUE(run.prints("DetectorWeak is exhausted")) << run.output();
+  EXPECT_FALSE(box.wait(100ms)) << "the container was ended";
+  EXPECT_THAT(run.output(), Not(HasSubstr("detector is lost")));
+}
+
+// As by ros2 launch with respawn=True.
+TEST_F(Start, WhatItsLauncherStartsAgainIsEndedAndNotDoubled) {
+  const std::string peer = "ros2_peer_node " + std::to_string(domain());
+  const TestProgram launcher(
+      world, {"sh", "-c", "while :; do " + (own_folder() / peer).string() + " /lidar; done"});
+  auto run = culprit({"run", world.write("respawned.rules", R"(
+COMPONENT lidar NODE /lidar RESPAWNED LAUNCH ")" + peer + R"( /lidar"
+RULE LidarGone
+  POLICIES ERROR
+  TRIGGER alive(lidar) == false
+    STRATEGY lidar_redeploy 90 10
+      ADAPTATION lidar redeploy 5
+)"),
+                      "--state-dir", state()});
+  ASSERT_TRUE(run.prints("lidar is there (process ")) << run.output();
+  const int first = pid_in(run.output(), "lidar");
+  kill(first, SIGSTOP);
+  EXPECT_TRUE(run.prints("LidarGone resolved")) << run.output();
+  ASSERT_TRUE(eventually([&] { return pid_in(run.output(), "lidar") != first; }));
+  EXPECT_FALSE(std::filesystem::exists(state() + "/log/lidar.log")) << "culprit started one";
+  std::ifstream parent("/proc/" + std::to_string(pid_in(run.output(), "lidar")) + "/status");
+  const std::string status(std::istreambuf_iterator<char>(parent), {});
+  EXPECT_THAT(status, HasSubstr("PPid:\t" + std::to_string(launcher.pid()) + "\n"));
+  kill(launcher.pid(), SIGKILL);
+  kill(pid_in(run.output(), "lidar"), SIGKILL);
+}
+
 TEST_F(Start, ADemoKeepsItsPageWhereAPersonWatches) {
   const std::string demo =
       (own_folder() / "culprit").string() + " demo --scenario 001 --speed 4 --port 0";

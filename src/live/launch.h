@@ -4,7 +4,7 @@
 // in the order of the DEPENDENCY lines, and where they say nothing in that of the file. A node that
 // does it itself, or has somebody who does, is left alone: the file says so (LIFECYCLE), or it moved
 // within the time that its start took. Nothing is judged meanwhile: the manager begins afterwards,
-// so that a start of many is no storm.
+// so that a start of many is no storm. What is RESPAWNED is for its launcher to start.
 #pragma once
 
 #include <atomic>

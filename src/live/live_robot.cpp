@@ -3,6 +3,19 @@
 #include <algorithm>
 
 namespace culprit {
+namespace {
+
+// ", with /tracker, /filter"
+std::string with(const owners::ComponentContainers::Home& home) {
+  constexpr std::size_t kShown = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(home.others.size(), kShown); ++i)
+    text += (i == 0 ? ", with " : ", ") + home.others[i];
+  const std::size_t more = home.others.size() - std::min(home.others.size(), kShown);
+  return more == 0 ? text : text + " and " + std::to_string(more) + " more";
+}
+
+}  // namespace
 
 Expected<std::unique_ptr<LiveRobot>> LiveRobot::open(const RuleSet& rules, Options options) {
   std::unique_ptr<LiveRobot> robot(new LiveRobot(rules));
@@ -20,6 +33,7 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
   witness(before, observations);
   // A component whose process was found is watched from now on, whoever started it.
   for (std::size_t i = before; i < observations.size(); ++i) {
+    containers_.observe(observations[i]);
     const auto* appeared = std::get_if<NodeAppeared>(&observations[i].what);
     if (appeared == nullptr || appeared->pid == 0) continue;
     if (const auto component = binding_.bind(appeared->node))
@@ -60,16 +74,31 @@ void LiveRobot::witness(std::size_t before, std::vector<Observation>& observatio
 
 void LiveRobot::execute(const Command& command) {
   if (std::holds_alternative<StopProcess>(command.what)) {
-    const Adaptation& what =
-        rules_[command.purpose.strategy].adaptations[command.purpose.adaptation];
-    const bool is_replaced = what.type == AdaptationType::kRedeploy;
-    supervisor_->stop(command.id, command.component,
-                      is_replaced ? owners::Ending::kToStartAgain : owners::Ending::kForGood);
+    stop_process(command);
   } else if (std::holds_alternative<StartProcess>(command.what)) {
     supervisor_->start(command.id, command.component);
   } else {
     link_->execute(command);
   }
+}
+
+// What culprit started is the component's by its LAUNCH, whatever else is in it.
+void LiveRobot::stop_process(const Command& command) {
+  const auto home = containers_.home_of(command.component);
+  if (home && !supervisor_->has_started(command.component)) {
+    const std::string& name = rules_[command.component].name;
+    return inbox_.put(Reply{command.id,
+                            Outcome::kRefused,
+                            {},
+                            name + " lives in the container " + home->container + with(*home) +
+                                ": ending its process would end them all. Declare a COMPONENT "
+                                "with NODE " +
+                                home->container + " and a LAUNCH, and redeploy that"});
+  }
+  const Adaptation& what = rules_[command.purpose.strategy].adaptations[command.purpose.adaptation];
+  const bool is_replaced = what.type == AdaptationType::kRedeploy;
+  supervisor_->stop(command.id, command.component,
+                    is_replaced ? owners::Ending::kToStartAgain : owners::Ending::kForGood);
 }
 
 }  // namespace culprit

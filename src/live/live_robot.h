@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "link/link.h"
+#include "owners/component_containers.h"
 #include "owners/supervisor.h"
 #include "robot/inbox.h"
 #include "robot/robot.h"
@@ -38,14 +39,16 @@ class LiveRobot : public Robot {
   owners::Supervisor& supervisor() { return *supervisor_; }
 
  private:
-  explicit LiveRobot(const RuleSet& rules) : rules_(rules), binding_(rules) {}
+  explicit LiveRobot(const RuleSet& rules) : rules_(rules), binding_(rules), containers_(rules) {}
 
   void listen(Time until, std::vector<Observation>& observations);
   void witness(std::size_t before, std::vector<Observation>& observations);
+  void stop_process(const Command& command);
 
   const RuleSet& rules_;
   Inbox inbox_;
   ComponentBinding binding_;
+  owners::ComponentContainers containers_;
   std::unique_ptr<owners::Supervisor> supervisor_;
   std::unique_ptr<ros2::Link> link_;
   std::optional<Time> deaf_since_;

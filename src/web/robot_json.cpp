@@ -123,7 +123,7 @@ Json rules_to_json(const RuleSet& rules) {
             {"components", Json::array()}, {"topics", Json::array()},
             {"inputs", Json::array()},     {"rules", Json::array()}};
   for (const Component& c : rules.components)
-    json["components"].push_back({{"name", c.name}, {"can_start", !c.launch.empty()}});
+    json["components"].push_back({{"name", c.name}, {"can_start", c.can_start_again()}});
   for (const Topic& t : rules.topics) json["topics"].push_back(t.name);
   for (const Input& i : rules.inputs) json["inputs"].push_back(describe(i, rules));
   for (const Rule& rule : rules.rules) {

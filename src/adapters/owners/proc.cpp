@@ -99,6 +99,13 @@ std::optional<char> state_letter(int pid) {
   return rest.empty() ? std::nullopt : std::optional(rest.front());
 }
 
+std::optional<int> parent_of(int pid) {
+  std::istringstream rest(stat_after_command(pid));
+  char state = 0;
+  int parent = 0;
+  return rest >> state >> parent ? std::optional(parent) : std::nullopt;
+}
+
 std::optional<Time> started_at(int pid) {
   std::istringstream rest(stat_after_command(pid));
   std::string skipped;

@@ -12,6 +12,9 @@ namespace culprit::owners {
 // 'R', 'S', 'T' (stopped), 'Z' (ended, not reaped) ...; nothing if there is no such process.
 std::optional<char> state_letter(int pid);
 
+// Who started it, or who got it when that one had ended; nothing if there is no such process.
+std::optional<int> parent_of(int pid);
+
 // On live_now()'s clock, to a hundredth of a second.
 std::optional<Time> started_at(int pid);
 

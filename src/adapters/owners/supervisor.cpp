@@ -18,6 +18,8 @@
 namespace culprit::owners {
 namespace {
 
+using namespace std::chrono_literals;
+
 // Numbers are given out anew.
 bool was_there(int pid, Time known) {
   const auto started = started_at(pid);
@@ -104,9 +106,11 @@ Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const 
 
 void Supervisor::start(CommandId command, ComponentId component) {
   const Component& what = rules_[component];
+  const std::lock_guard lock(mutex_);
+  if (is_left_to_launcher(component))
+    return answer(command, Outcome::kDone, "its launcher starts it again");
   if (what.launch.empty())
     return answer(command, Outcome::kUnreachable, what.name + " has no LAUNCH command");
-  const std::lock_guard lock(mutex_);
   if (!is_gone(component))
     return answer(command, Outcome::kRefused, what.name + " is running already");
   if (const auto begun = begin_start(command, component); !begun)
@@ -185,6 +189,7 @@ void Supervisor::watch(ComponentId component, int pid, Relation relation) {
   const bool is_others = relation == Relation::kAdopted && !carries_mark(pid, marked_as(component));
   if (const auto identity = is_others ? identity_of(pid) : std::nullopt)
     identities_.try_emplace(component, *identity);
+  note_launcher(component, pid, is_others);
   members_.push_back({component, std::move(*process)});
   inbox_.put(ProcessSeen{component, ProcessState::kRunning, pid, ""});
   wake();
@@ -210,13 +215,49 @@ std::optional<std::string> Supervisor::doubt(const Member& member) const {
          "; if that is right, start culprit anew";
 }
 
-void Supervisor::stop(CommandId command, ComponentId component, Ending ending) {
-  const std::lock_guard lock(mutex_);
+void Supervisor::note_launcher(ComponentId component, int pid, bool is_others) {
+  constexpr int kInit = 1;  // it gets those whose parent has ended
+  if (!rules_[component].is_respawned) return;
+  if (!is_others) launchers_[component] = Launcher{};
+  const auto parent = parent_of(pid);
+  if (is_others && parent && *parent > kInit)
+    launchers_[component] = Launcher{*parent, started_at(*parent)};
+}
+
+// Also if it is not known who its launcher is: two of one name would be worse than none.
+bool Supervisor::is_left_to_launcher(ComponentId component) const {
+  if (!rules_[component].is_respawned) return false;
+  const auto launcher = launchers_.find(component);
+  if (launcher == launchers_.end()) return true;
+  const auto& [pid, began] = launcher->second;
+  if (pid == 0 || state_letter(pid).value_or('Z') == 'Z') return false;
+  constexpr Duration kSame = 100ms;  // two readings of one start differ by the clocks' rounding
+  const auto begins = started_at(pid);
+  return begins && began && std::chrono::abs(*begins - *began) < kSame;
+}
+
+std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending ending) const {
   for (const Member& member : members_) {
     if (member.component != component) continue;
-    if (auto why = doubt(member)) return answer(command, Outcome::kRefused, std::move(*why));
+    if (auto why = doubt(member)) return why;
   }
-  if (ending == Ending::kForGood || is_gone(component)) {
+  const Component& what = rules_[component];
+  if (!what.is_respawned) return std::nullopt;
+  if (!is_left_to_launcher(component)) {
+    if (!what.launch.empty() || ending == Ending::kForGood) return std::nullopt;
+    return "the launcher of " + what.name +
+           " has ended, and nobody would start it again: it has no LAUNCH command";
+  }
+  if (ending == Ending::kForGood)
+    return what.name + " is RESPAWNED: its launcher would start it again";
+  return std::nullopt;
+}
+
+void Supervisor::stop(CommandId command, ComponentId component, Ending ending) {
+  const std::lock_guard lock(mutex_);
+  if (auto why = why_not_end(component, ending))
+    return answer(command, Outcome::kRefused, std::move(*why));
+  if (ending == Ending::kForGood || is_gone(component) || is_left_to_launcher(component)) {
     begin_shutdown(command, component);
   } else {
     const auto lock_of_start = lock_start_of(component);
@@ -275,6 +316,15 @@ bool Supervisor::is_known(ComponentId component, int pid) const {
   return std::any_of(members_.begin(), members_.end(), [&](const Member& m) {
     return m.process.pid() == pid && m.component == component;
   });
+}
+
+bool Supervisor::has_started(ComponentId component) const {
+  const std::lock_guard lock(mutex_);
+  return !is_gone(component) &&
+         std::none_of(members_.begin(), members_.end(), [&](const Member& m) {
+           return m.component == component && m.process.relation() == Relation::kAdopted &&
+                  !carries_mark(m.process.pid(), marked_as(component));
+         });
 }
 
 bool Supervisor::is_gone(ComponentId component) const {

@@ -16,6 +16,9 @@
 // is ended to be started again is ended only if the start was tried, all but its last step. Nobody
 // waits here for a program whose file system does not answer.
 //
+// A component that is RESPAWNED is its launcher's to start: it is ended, and its launcher starts it
+// again. It is started here only once that launcher is known and has ended.
+//
 // Whatever it started goes on running when the supervisor ends, unless stop_all() was called or its
 // lifetime is the starter's.
 #pragma once
@@ -63,7 +66,8 @@ class Supervisor {
   Supervisor(const RuleSet& rules, Options options, Inbox& inbox);
   ~Supervisor();
 
-  // Starts the component's launch command and replies when it runs.
+  // Starts the component's launch command and replies when it runs; or at once, without a pid, if
+  // its launcher starts it.
   void start(CommandId command, ComponentId component);
 
   // Ends all processes of the component that are watched, and no others, whatever their numbers;
@@ -78,6 +82,10 @@ class Supervisor {
   // Likewise, of a process that an earlier run of culprit knew, if it is not a zombie now. Says
   // nothing where another process of the component is watched.
   void adopt_again(ComponentId component, int pid, Time known);
+
+  // Whether all processes of the component that run were started here, or by a supervisor of the
+  // same robot before, and there is one.
+  bool has_started(ComponentId component) const;
 
   // Ends every process that was started here, and waits until all are gone.
   void stop_all();
@@ -109,6 +117,12 @@ class Supervisor {
     Time escalate = kNever;  // when the next one is due
   };
 
+  // Who started a RESPAWNED component.
+  struct Launcher {
+    int pid = 0;  // 0: a supervisor, since the launcher had ended
+    std::optional<Time> began{};
+  };
+
   std::string marked_as(ComponentId component) const;
   Program program_of(ComponentId component) const;
   Expected<FileDescriptor> lock_start_of(ComponentId component) const;
@@ -119,6 +133,9 @@ class Supervisor {
   void watch(ComponentId component, int pid, Relation relation);
   Expected<void> begin_start(CommandId command, ComponentId component);
   std::optional<std::string> doubt(const Member& member) const;
+  void note_launcher(ComponentId component, int pid, bool is_others);
+  bool is_left_to_launcher(ComponentId component) const;
+  std::optional<std::string> why_not_end(ComponentId component, Ending ending) const;
   void finish_starts();
   void finish_trials(Time now);
   void finish_shutdowns(Time now);
@@ -144,6 +161,7 @@ class Supervisor {
   std::vector<Trial> trials_;
   std::vector<Shutdown> shutdowns_;
   std::map<ComponentId, Identity> identities_;  // of what others started, when it was found first
+  std::map<ComponentId, Launcher> launchers_;   // of what is RESPAWNED
   bool is_ending_ = false;
   FileDescriptor wake_;
   std::thread thread_;

@@ -34,9 +34,14 @@ using namespace std::chrono_literals;
 class Supervised {
  public:
   explicit Supervised(const std::string& launch, const std::string& robot = "")
+      : Supervised(Declared{"LAUNCH \"" + launch + "\""}, robot) {}
+  struct Declared {
+    std::string clauses;
+  };
+  explicit Supervised(const Declared& component, const std::string& robot = "")
       : folder_(std::filesystem::temp_directory_path() /
                 ("culprit-test-" + std::to_string(getpid()))),
-        rules_(*check(Source("test.rules", "COMPONENT c LAUNCH \"" + launch + "\"\n")).rules),
+        rules_(*check(Source("test.rules", "COMPONENT c " + component.clauses + "\n")).rules),
         robot_(robot) {
     supervise();
   }
@@ -116,6 +121,82 @@ class Supervised {
 };
 
 bool exists(int pid) { return kill(pid, 0) == 0; }
+
+// Somebody else's launcher, which starts a process again whenever it ends.
+class Respawning {
+ public:
+  Respawning() : pid_(*spawn({{"sh", "-c", "while :; do sleep 1000; done"}, {}, "/dev/null"})) {}
+  ~Respawning() {
+    const int left = child();
+    end();
+    if (left != 0) kill(left, SIGKILL);
+  }
+  // The process that runs now, another than `before`.
+  int child(int before = 0) const {
+    for (int tries = 0; tries < 1000; ++tries) {
+      for (const Relative& each : descendants_of(pid_)) {
+        if (each.pid != before && each.command == "sleep") return each.pid;
+      }
+      if (is_ended_) return 0;
+      std::this_thread::sleep_for(10ms);
+    }
+    return 0;
+  }
+  void end() {
+    if (std::exchange(is_ended_, true)) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+
+ private:
+  int pid_;
+  bool is_ended_ = false;
+};
+
+TEST(Supervisor, LeavesWhatIsRespawnedToItsLauncher) {
+  const Respawning launcher;
+  Supervised c(Supervised::Declared{"LAUNCH \"sleep 2000\" RESPAWNED"});
+  const int first = launcher.child();
+  c.supervisor->adopt(ComponentId(0), first, live_now());
+  c.supervisor->stop({3}, ComponentId(0), Ending::kForGood);
+  EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused) << "it would come back";
+  EXPECT_TRUE(exists(first));
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
+  EXPECT_EQ(c.start(), 0) << "a second one was started";
+  EXPECT_NE(launcher.child(first), 0);
+}
+
+TEST(Supervisor, TakesOverFromALauncherThatHasEnded) {
+  Respawning launcher;
+  Supervised c(Supervised::Declared{"LAUNCH \"sleep 2000\" RESPAWNED"}, "7/test");
+  const int orphan = launcher.child();
+  c.supervisor->adopt(ComponentId(0), orphan, live_now());
+  launcher.end();
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
+  const int ours = c.start();
+  EXPECT_NE(ours, 0);
+  c.supervise();  // another culprit knows it by its mark
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
+  EXPECT_NE(c.start(), 0) << "there is no launcher any more to wait for";
+}
+
+TEST(Supervisor, EndsNoOrphanThatNobodyWouldStartAgain) {
+  Respawning launcher;
+  Supervised c(Supervised::Declared{"RESPAWNED"});
+  const int orphan = launcher.child();
+  c.supervisor->adopt(ComponentId(0), orphan, live_now());
+  launcher.end();
+  const Reply reply = c.stop_to_start_again();
+  EXPECT_EQ(reply.outcome, Outcome::kRefused);
+  EXPECT_NE(reply.text.find("launcher of c has ended"), std::string::npos) << reply.text;
+  EXPECT_TRUE(exists(orphan));
+  kill(orphan, SIGKILL);
+}
+
+TEST(Supervisor, StartsNothingBesideALauncherThatItDoesNotKnow) {
+  Supervised c(Supervised::Declared{"LAUNCH \"sleep 2000\" RESPAWNED"});
+  EXPECT_EQ(c.start(), 0);
+}
 
 // A node that writes megabytes a second, for ever.
 TEST(Supervisor, KeepsTheEndOfALogAndNotAllOfIt) {

@@ -196,7 +196,7 @@ void check_conditions(const RuleConditions& rule, const RuleSet& rules,
 void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
                        std::vector<Diagnostic>& diagnostics) {
   const Rule& checked = rules[rule.rule];
-  const auto can_be_launched = [&](ComponentId c) { return !rules[c].launch.empty(); };
+  const auto can_be_launched = [&](ComponentId c) { return rules[c].can_start_again(); };
   const auto launches = [&](const Adaptation& a) {
     return a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart;
   };

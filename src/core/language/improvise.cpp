@@ -14,7 +14,7 @@ std::string strategy(const std::string& component, const std::string& what, Cycl
 std::string rule(const Component& component, Cycles heaviest) {
   const std::string& name = component.name;
   const std::string lifecycle = "lifecycle(" + name + ")";
-  const bool can_launch = !component.launch.empty();
+  const bool can_launch = component.can_start_again();
   std::string text = "\nRULE " + std::string(kImprovised) + name +
                      "\n  POLICIES NON_CRITICAL FOR 2s ATTEMPTS 3\n  TRIGGER ";
   if (can_launch) text += "!alive(" + name + ") || " + lifecycle + " == \"finalized\" || ";

@@ -195,12 +195,16 @@ class Parser {
       } else if (clause.text == "REQUIRED" && !component.is_required) {
         s.next();
         component.is_required = true;
+      } else if (clause.text == "RESPAWNED" && !component.is_respawned) {
+        s.next();
+        component.is_respawned = true;
       } else if (clause.text == "LIFECYCLE" &&
                  component.lifecycle == syntax::LifecycleDriver::kUndeclared) {
         s.next();
         if (!lifecycle(s, component)) return false;
       } else {
-        return read_.unexpected_clause(clause, {"NODE", "LAUNCH", "REQUIRED", "LIFECYCLE"});
+        return read_.unexpected_clause(clause,
+                                       {"NODE", "LAUNCH", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
       }
     }
     file_.components.push_back(std::move(component));

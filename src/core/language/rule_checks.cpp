@@ -21,7 +21,11 @@ bool sets_parameter(const Adaptation& a) {
 }
 bool ends_process(const Adaptation& a) { return a.type == kRedeploy || a.type == kStop; }
 bool changes_presence(const Adaptation& a) { return a.type == kStart || a.type == kStop; }
-bool needs_launch(AdaptationType type) { return type == kRedeploy || type == kStart; }
+bool lacks_launch(const culprit::Adaptation& adaptation, const RuleSet& rules) {
+  const Component& component = rules[adaptation.component];
+  if (adaptation.type == kRedeploy) return !component.can_start_again();
+  return adaptation.type == kStart && component.launch.empty();
+}
 
 // It does no harm, so it is only a warning.
 constexpr const char* kRestartInVain =
@@ -145,15 +149,16 @@ void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
   for (const StrategyId s : rules[id].strategies) {
     const Strategy& strategy = rules[s];
     while (written->name.text != strategy.name) ++written;
-    const auto missing = std::find_if(
-        strategy.adaptations.begin(), strategy.adaptations.end(),
-        [&](const auto& a) { return needs_launch(a.type) && rules[a.component].launch.empty(); });
+    const auto missing = std::find_if(strategy.adaptations.begin(), strategy.adaptations.end(),
+                                      [&](const auto& a) { return lacks_launch(a, rules); });
     if (missing == strategy.adaptations.end()) continue;
     const auto place = static_cast<std::size_t>(missing - strategy.adaptations.begin());
+    const bool is_ended = missing->type == kRedeploy;
     impossible.push_back({Code::kNoLaunch, Severity::kWarning, written->adaptations[place].span,
                           "strategy '" + strategy.name + "' can never run: component '" +
                               rules[missing->component].name + "' has no LAUNCH command",
-                          "add LAUNCH \"program arguments\" to its COMPONENT line"});
+                          std::string("add LAUNCH \"program arguments\" to its COMPONENT line") +
+                              (is_ended ? ", or RESPAWNED if its launcher starts it again" : "")});
   }
   if (!impossible.empty() && impossible.size() == rules[id].strategies.size()) {
     // One mistake, one message: this one says what those of the strategies would.

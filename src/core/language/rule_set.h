@@ -29,6 +29,10 @@ struct Component {
   bool declared = true;             // by a COMPONENT line
   bool is_required = false;  // a person is told if it is not there, also if no rule is about that
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
+  bool is_respawned = false;  // whoever started it starts it again: culprit ends it and waits
+
+  // Whether somebody starts it again after its end.
+  bool can_start_again() const { return is_respawned || !launch.empty(); }
 };
 
 struct Topic {

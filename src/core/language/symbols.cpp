@@ -73,9 +73,13 @@ void Symbols::declare(const syntax::File& file) {
 }
 
 void Symbols::declare_component(const syntax::Component& written) {
-  Component component{
-      written.name.text, written.node ? written.node->text : "", {}, true, written.is_required,
-      written.lifecycle};
+  Component component{written.name.text,
+                      written.node ? written.node->text : "",
+                      {},
+                      true,
+                      written.is_required,
+                      written.lifecycle,
+                      written.is_respawned};
   const ComponentId id(rules_.components.size());
   if (written.node) {
     const auto [owner, is_first] = components_by_node_.emplace(written.node->text, id);

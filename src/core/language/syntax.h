@@ -87,6 +87,7 @@ struct Component {
   std::optional<Name> node;
   std::optional<Name> launch;  // the quoted text, unescaped
   bool is_required = false;
+  bool is_respawned = false;
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
 };
 

@@ -130,10 +130,11 @@ std::string component_line() {
   const std::string node = maybe(words({"NODE", ros_name()}));
   const std::string launch = maybe(words({"LAUNCH", text()}));
   const std::string required = maybe("REQUIRED");
+  const std::string respawned = maybe("RESPAWNED");
   const char* driver = coin() ? "self" : coin() ? "managed" : "launcher";
   const std::string lifecycle = maybe(words({"LIFECYCLE", driver}));
-  return coin() ? words({"COMPONENT", identifier(), node, launch, required, lifecycle})
-                : words({"COMPONENT", identifier(), lifecycle, required, launch, node});
+  return coin() ? words({"COMPONENT", identifier(), node, launch, respawned, required, lifecycle})
+                : words({"COMPONENT", identifier(), lifecycle, required, respawned, launch, node});
 }
 
 std::string signal_line() {

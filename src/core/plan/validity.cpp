@@ -20,12 +20,12 @@ bool is_left_alone(const Adaptation& adaptation, const Knowledge& knowledge) {
 std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
   const bool is_alive = state.alive.value_or(false);
-  const bool can_launch = !knowledge.rules[adaptation.component].launch.empty();
+  const Component& component = knowledge.rules[adaptation.component];
   switch (adaptation.type) {
     case AdaptationType::kRedeploy:
-      return can_launch ? "" : "has no LAUNCH command";
+      return component.can_start_again() ? "" : "has no LAUNCH command";
     case AdaptationType::kStart:
-      if (!can_launch) return "has no LAUNCH command";
+      if (component.launch.empty()) return "has no LAUNCH command";
       return is_alive ? "is there already" : "";
     case AdaptationType::kStop:
       return is_alive || state.known_pid() != 0 ? "" : "is not there";

@@ -89,7 +89,7 @@ class Completion {
     if (statement == "COMPONENT") {
       if (words_.back() == "NODE") return names(&live_nodes);
       if (words_.back() == "LIFECYCLE") return keywords({"self", "managed", "launcher"});
-      return keywords({"NODE", "LAUNCH", "REQUIRED", "LIFECYCLE"});
+      return keywords({"NODE", "LAUNCH", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
     }
     if (statement == "SIGNAL") return signal();
     if (statement == "IGNORE") {

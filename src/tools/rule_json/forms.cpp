@@ -20,6 +20,7 @@ std::vector<Form> table() {
        {name},
        {{"NODE", "node", kName},
         {"LAUNCH", "launch", kText},
+        {"RESPAWNED", "respawned", kFlag},
         {"REQUIRED", "required", kFlag},
         {"LIFECYCLE", "lifecycle", kWord}},
        {}},

@@ -1,17 +1,20 @@
 // A managed node in a process of its own, for tests to watch, steer and kill:
 //
-//     ros2_peer_node <domain> <full name>
+//     ros2_peer_node <domain> <full name>...
 //
-// It has the parameters gain (0..10), count (not negative), label and serial (read-only), the
+// Each has the parameters gain (0..10), count (not negative), label and serial (read-only), the
 // service ~/trigger, ~/value at 10 Hz while it is active, and one status on /diagnostics each
-// second.
+// second. Of several the first is a component container (rclcpp_components), which loads nothing
+// more, and the others live in it.
 #include <charconv>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ros2/lifecycle_node.h"
 #include "ros2/messages.h"
@@ -51,6 +54,16 @@ class PeerNode {
     diagnostics_.emplace(std::move(*diagnostics));
     diagnose_.emplace(executor_, 1s, [this] { diagnose(); });
     managed_->node().log(Severity::kInfo, "ready");
+    return {};
+  }
+
+  Expected<void> serve_loading() {
+    auto load = ServiceServer::create(managed_->node().entry(),
+                                      {managed_->node().name().full() + "/_container/load_node",
+                                       "composition_interfaces/srv/LoadNode"},
+                                      qos::kServices, [](ByteView) { return Bytes(); });
+    if (!load) return Error{load.error()};
+    load_ = std::move(*load);
     return {};
   }
 
@@ -115,6 +128,7 @@ class PeerNode {
   int ticks_ = 0;
   std::unique_ptr<LifecycleNode> managed_;
   std::unique_ptr<ServiceServer> trigger_;
+  std::unique_ptr<ServiceServer> load_;
   std::optional<Publisher<msg::DiagnosticArray>> diagnostics_;
   std::optional<Publisher<msg::Float64>> value_;
   std::optional<Timer> diagnose_;
@@ -129,7 +143,7 @@ int fail(const std::string& why) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return fail("usage: ros2_peer_node <domain> <full name>");
+  if (argc < 3) return fail("usage: ros2_peer_node <domain> <full name>...");
   Executor executor;
   if (auto stops = executor.stop_on({SIGINT, SIGTERM}); !stops) return fail(stops.error());
   ParticipantOptions options;
@@ -137,12 +151,18 @@ int main(int argc, char** argv) {
   std::from_chars(domain.data(), domain.data() + domain.size(), options.domain);
   options.reach = Reach::kLocalhost;
   options.gid_size = GidSize::kHumbleAndOlder;
-  auto name = parse_node_name(argv[2]);
-  if (!name) return fail(name.error());
   auto context = Context::create(executor, options);
   if (!context) return fail(context.error());
-  PeerNode peer(executor);
-  if (auto opened = peer.open(**context, *name); !opened) return fail(opened.error());
+  std::vector<std::unique_ptr<PeerNode>> peers;
+  for (int i = 2; i < argc; ++i) {
+    auto name = parse_node_name(argv[i]);
+    if (!name) return fail(name.error());
+    peers.push_back(std::make_unique<PeerNode>(executor));
+    if (auto opened = peers.back()->open(**context, *name); !opened) return fail(opened.error());
+  }
+  if (peers.size() > 1) {
+    if (auto opened = peers.front()->serve_loading(); !opened) return fail(opened.error());
+  }
   executor.run();
   return 0;
 }

@@ -1,0 +1,43 @@
+#include "owners/component_containers.h"
+
+namespace culprit::owners {
+namespace {
+
+// ROS 2's ComponentManager.
+constexpr std::string_view kLoad = "/_container/load_node";
+
+}  // namespace
+
+void ComponentContainers::observe(const Observation& observation) {
+  if (const auto* node = std::get_if<NodeAppeared>(&observation.what)) {
+    const auto component = binding_.bind(node->node);
+    if (node->pid == 0) return;
+    processes_[node->node] = node->pid;
+    if (component) last_[*component] = node->pid;
+  } else if (const auto* gone = std::get_if<NodeVanished>(&observation.what)) {
+    processes_.erase(gone->node);
+    containers_.erase(gone->node);
+  } else if (const auto* end = std::get_if<EndpointAppeared>(&observation.what)) {
+    if (end->kind == EndpointKind::kServer && end->name == end->node + std::string(kLoad))
+      containers_.insert(end->node);
+  }
+}
+
+std::optional<ComponentContainers::Home> ComponentContainers::home_of(ComponentId component) const {
+  const auto last = last_.find(component);
+  if (last == last_.end()) return std::nullopt;
+  const std::string& self = binding_.node_of(component);
+  if (containers_.contains(self)) return std::nullopt;
+  Home home;
+  for (const auto& [node, process] : processes_) {
+    if (process != last->second || node == self) continue;
+    if (containers_.contains(node)) {
+      home.container = node;
+    } else {
+      home.others.push_back(node);
+    }
+  }
+  return home.container.empty() ? std::nullopt : std::optional(home);
+}
+
+}  // namespace culprit::owners

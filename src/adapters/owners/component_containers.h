@@ -1,0 +1,41 @@
+// Which components live in a component container (rclcpp_components): one process with many nodes,
+// of which one loads the others. To end that process is to end them all.
+//
+// A node in one process with others is nothing of the kind by itself: many programs make several
+// nodes, and start with all of them again.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "robot/component_binding.h"
+#include "robot/observation.h"
+
+namespace culprit::owners {
+
+class ComponentContainers {
+ public:
+  explicit ComponentContainers(const RuleSet& rules) : binding_(rules) {}
+
+  void observe(const Observation& observation);
+
+  struct Home {
+    std::string container;            // the node that loads
+    std::vector<std::string> others;  // that live there now, besides
+  };
+  // Where the component lives, or lived last if that is there still. Nothing: in a process of its
+  // own, or the process is not known, or it is the container.
+  std::optional<Home> home_of(ComponentId component) const;
+
+ private:
+  ComponentBinding binding_;
+  std::map<std::string, int> processes_;  // of the nodes of the graph
+  std::set<std::string> containers_;      // among them
+  std::map<ComponentId, int> last_;       // where each was seen last
+};
+
+}  // namespace culprit::owners

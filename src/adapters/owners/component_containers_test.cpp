@@ -1,0 +1,70 @@
+#include "owners/component_containers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+
+namespace culprit::owners {
+namespace {
+
+using testing::ElementsAre;
+
+class ComponentContainersTest : public testing::Test {
+ protected:
+  void appear(const std::string& node, int pid) { see(NodeAppeared{node, pid}); }
+  void load(const std::string& node) {
+    see(EndpointAppeared{node, EndpointKind::kServer, node + "/_container/load_node"});
+  }
+  template <class What>
+  void see(What what) {
+    containers_.observe({Time(), std::move(what)});
+  }
+  std::optional<ComponentContainers::Home> home_of(unsigned component) const {
+    return containers_.home_of(ComponentId(component));
+  }
+
+ private:
+  const RuleSet rules_ = *check(Source("composed.rules",
+                                       "COMPONENT detector NODE /detector\n"
+                                       "COMPONENT box NODE /box\n"))
+                              .rules;
+  ComponentContainers containers_{rules_};
+};
+
+TEST_F(ComponentContainersTest, KnowWhoLivesWithWhom) {
+  appear("/detector", 7);
+  EXPECT_FALSE(home_of(0)) << "alone";
+  appear("/tracker", 7);
+  EXPECT_FALSE(home_of(0)) << "a program of two nodes";
+  appear("/box", 7);
+  load("/box");
+  ASSERT_TRUE(home_of(0));
+  EXPECT_EQ(home_of(0)->container, "/box");
+  EXPECT_THAT(home_of(0)->others, ElementsAre("/tracker"));
+  EXPECT_FALSE(home_of(1)) << "the container itself";
+}
+
+TEST_F(ComponentContainersTest, RememberWhereAComponentLivedThatWasUnloaded) {
+  appear("/box", 7);
+  load("/box");
+  appear("/detector", 7);
+  see(NodeVanished{"/detector"});
+  ASSERT_TRUE(home_of(0)) << "its container runs on";
+  see(NodeVanished{"/box"});
+  EXPECT_FALSE(home_of(0)) << "nobody is left to protect";
+}
+
+TEST_F(ComponentContainersTest, BelieveNoServiceOfAnotherProcessOrName) {
+  appear("/detector", 7);
+  appear("/box", 8);
+  load("/box");
+  EXPECT_FALSE(home_of(0));
+  appear("/elsewhere", 7);
+  see(EndpointAppeared{"/elsewhere", EndpointKind::kServer, "/box/_container/load_node"});
+  see(EndpointAppeared{"/elsewhere", EndpointKind::kClient, "/elsewhere/_container/load_node"});
+  EXPECT_FALSE(home_of(0));
+}
+
+}  // namespace
+}  // namespace culprit::owners
