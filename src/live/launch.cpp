@@ -62,6 +62,7 @@ class Starting {
       return std::nullopt;
     if (!joined || !is_managed(component)) return std::nullopt;  // the manager will see
     if (driver == LifecycleDriver::kUndeclared && moves(component)) return std::nullopt;
+    if (robot_.now() >= end_) return "there was no time left to configure and activate it";
     const auto trouble =
         step(component, Transition::kConfigure, Lifecycle::kUnconfigured, Lifecycle::kInactive);
     if (trouble) return trouble;

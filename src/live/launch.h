@@ -23,7 +23,7 @@ using StartComponent = std::function<void(CommandId, ComponentId)>;
 
 struct LaunchTimes {
   Duration look = std::chrono::seconds(3);         // at what runs already
-  Duration patience = std::chrono::seconds(60);    // from the first start until all must be up
+  Duration patience = std::chrono::seconds(60);    // from the first start: later none is brought up
   Duration least_grace = std::chrono::seconds(1);  // for a node to move by itself
   Duration transition = std::chrono::seconds(10);  // for each that is asked for
 };

@@ -223,6 +223,15 @@ TEST_F(Launching, TellsWhatCannotBeStartedAndDoesNotWaitForIt) {
   EXPECT_LT(robot.now() - begin, 20s);
 }
 
+// One that hangs must not keep the manager from its work for as long as there are others.
+TEST_F(Launching, BringsNobodyUpAnyMoreAfterAMinute) {
+  robot.nodes["lidar"].start = 29s;
+  robot.nodes["lidar"].loses_replies = true;
+  launch_all();
+  EXPECT_THAT(robot.asked, ElementsAre("configure lidar", "activate lidar"));
+  EXPECT_THAT(remarks.text, HasSubstr("planner was started and is not up: there was no time left"));
+}
+
 TEST_F(Launching, EndsWhenCulpritIsStopped) {
   stop = true;
   launch_all();
