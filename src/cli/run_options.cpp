@@ -45,7 +45,8 @@ void RunOptions::add_to(CLI::App& command) {
   command.add_option("RULES", rules, "The rule file")->required();
   command.add_flag("--dry-run", dry_run, "Say what would be done, and do nothing");
   command.add_flag("--launch", launch,
-                   "Start components that are missing, by their LAUNCH commands");
+                   "Start components that are missing, by their LAUNCH commands, and bring their "
+                   "lifecycle nodes up");
   command.add_flag("--improvise", improvise,
                    "Also repair components that no rule adapts, by what they offer: restart, "
                    "redeploy");

@@ -11,7 +11,6 @@ constexpr std::string_view kLoad = "/_container/load_node";
 void ComponentContainers::observe(const Observation& observation) {
   if (const auto* node = std::get_if<NodeAppeared>(&observation.what)) {
     const auto component = binding_.bind(node->node);
-    if (node->pid == 0) return;
     processes_[node->node] = node->pid;
     if (component) last_[*component] = node->pid;
   } else if (const auto* gone = std::get_if<NodeVanished>(&observation.what)) {
@@ -25,7 +24,7 @@ void ComponentContainers::observe(const Observation& observation) {
 
 std::optional<ComponentContainers::Home> ComponentContainers::home_of(ComponentId component) const {
   const auto last = last_.find(component);
-  if (last == last_.end()) return std::nullopt;
+  if (last == last_.end() || last->second == 0) return std::nullopt;
   const std::string& self = binding_.node_of(component);
   if (containers_.contains(self)) return std::nullopt;
   Home home;

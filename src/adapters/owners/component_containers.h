@@ -33,9 +33,9 @@ class ComponentContainers {
 
  private:
   ComponentBinding binding_;
-  std::map<std::string, int> processes_;  // of the nodes of the graph
+  std::map<std::string, int> processes_;  // of the nodes of the graph; 0: not known
   std::set<std::string> containers_;      // among them
-  std::map<ComponentId, int> last_;       // where each was seen last
+  std::map<ComponentId, int> last_;       // where each was seen last; likewise
 };
 
 }  // namespace culprit::owners

@@ -55,6 +55,18 @@ TEST_F(ComponentContainersTest, RememberWhereAComponentLivedThatWasUnloaded) {
   EXPECT_FALSE(home_of(0)) << "nobody is left to protect";
 }
 
+TEST_F(ComponentContainersTest, ForgetAComponentThatMovedToAnotherMachine) {
+  appear("/box", 7);
+  load("/box");
+  appear("/detector", 7);
+  see(NodeVanished{"/detector"});
+  appear("/detector", 0);
+  EXPECT_FALSE(home_of(0));
+  appear("/elsewhere", 0);
+  load("/elsewhere");
+  EXPECT_FALSE(home_of(0)) << "that neither process is known makes them not one";
+}
+
 TEST_F(ComponentContainersTest, BelieveNoServiceOfAnotherProcessOrName) {
   appear("/detector", 7);
   appear("/box", 8);
