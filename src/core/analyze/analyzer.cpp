@@ -264,14 +264,15 @@ void Analyzer::judge(RuleId id, Time now) {
     case Attempt::Stage::kOver: {
       const bool had_failure = !attempt.has_no_failure;
       end_attempt(id, now);
-      if (!had_failure) return;
+      if (!had_failure) return look_at(id, now);  // the failure may have come meanwhile
       exhaust_if_spent(id, now);
       return watch_failing(id, now);
     }
   }
   if (attempt.has_no_failure) {
     knowledge_.tell(now, OrderCarriedOut{attempt.strategy});
-    return end_attempt(id, now);
+    end_attempt(id, now);
+    return look_at(id, now);
   }
   // Before anybody knows how it ends: what keeps an outcome from counting must not depend on it.
   if (attempt.deadline == kNever) attempt.is_ambiguous |= couplings_.is_echo(attempt);
@@ -306,13 +307,11 @@ void Analyzer::end_attempt(RuleId id, Time now) {
   const Attempt attempt = *std::exchange(knowledge_.states.state(id).attempt, std::nullopt);
   couplings_.ended(attempt, now);
   knowledge_.states.enter(id, attempt.has_no_failure ? RulePhase::kQuiet : RulePhase::kFailing);
-  // The failure may have come meanwhile.
-  if (attempt.has_no_failure) knowledge_.signals.touch(id);
 }
 
 void Analyzer::abandon(RuleId id, Time now) {
   end_attempt(id, now);
-  look_at(id, now);  // the failure may be gone already
+  look_at(id, now);  // the failure may be gone already, or have come
 }
 
 void Analyzer::make_way(RuleId id, StrategyId other, Time now) {

@@ -16,10 +16,10 @@ INSTANTIATE_TEST_SUITE_P(EachPlanner, ExhaustedCause, testing::Values(paper, bay
 
 std::string node(int i) { return "c" + std::to_string(i); }
 
-std::string rule(int i) {
+std::string rule(int i, int attempts = 2) {
   return "COMPONENT " + node(i) + " NODE /" + node(i) + " LAUNCH \"" + node(i) + "\"\nRULE Silent" +
-         std::to_string(i) + "\nPOLICIES ERROR ATTEMPTS 2\nTRIGGER age(/" + node(i) +
-         ") > 350ms\nSTRATEGY restart 50 10\nADAPTATION " + node(i) +
+         std::to_string(i) + "\nPOLICIES ERROR ATTEMPTS " + std::to_string(attempts) +
+         "\nTRIGGER age(/" + node(i) + ") > 350ms\nSTRATEGY restart 50 10\nADAPTATION " + node(i) +
          " restart 3\nSTRATEGY redeploy 90 10\nADAPTATION " + node(i) + " redeploy 10\n";
 }
 
@@ -60,6 +60,47 @@ TEST_P(ExhaustedCause, LetsItsEffectsBeRepairedOnceItIsGone) {
   robot["c0"].fault.clear();
   robot.run_for(30s);
   EXPECT_TRUE(robot.works("c1")) << transcript(robot);
+}
+
+// c1 can only be focused, which makes no sense while it is dead. Rounds in which nothing could be
+// tried are no attempts: once it is back, it is focused.
+TEST_P(ExhaustedCause, IsNotWhoeverWaitsUntilItsComponentIsRepaired) {
+  for (const bool is_by_person : {false, true}) {
+    TestRobot robot(
+        rule(1, is_by_person ? 2 : 9) +
+            "RULE Blurred\nPOLICIES NON_CRITICAL ATTEMPTS 2\nTRIGGER blur > 0.5\nSTRATEGY focus "
+            "80 10\nADAPTATION c1 set_parameter angle 1 2\n",
+        GetParam()());
+    robot.add("c1", {}, "/c1").parameters["angle"] = Value(std::int64_t{0});
+    robot.discover();
+    robot.run_for(2s);
+    robot["c1"].dies_at_start = true;
+    robot.kill("c1");
+    robot.signal("blur", Value(1.0));
+    robot.run_for(is_by_person ? 300s : 30s);
+    EXPECT_EQ(robot.count("Silent1 is exhausted"), is_by_person ? 1u : 0u) << transcript(robot);
+    EXPECT_EQ(robot.count("Blurred is exhausted"), 0u) << transcript(robot);
+    EXPECT_FALSE(robot.was_asked("c1: set"));
+    robot["c1"].dies_at_start = false;
+    if (is_by_person) robot.start_by_hand("c1");
+    robot.run_for(120s);
+    EXPECT_TRUE(robot.was_asked("c1: set")) << transcript(robot);
+  }
+}
+
+// Nobody is at work on c1, so whoever needs it is told to a person.
+TEST_P(ExhaustedCause, IsWhoeverNeedsWhatNobodyRepairs) {
+  TestRobot robot(
+      "COMPONENT c1 NODE /c1\nRULE Blurred\nPOLICIES NON_CRITICAL ATTEMPTS 2\nTRIGGER blur > "
+      "0.5\nSTRATEGY focus 80 10\nADAPTATION c1 set_parameter angle 1 2\n",
+      GetParam()());
+  robot.add("c1", {}, "/c1");
+  robot.discover();
+  robot.run_for(2s);
+  robot.signal("blur", Value(1.0));
+  robot.kill("c1");
+  robot.run_for(120s);
+  EXPECT_EQ(robot.count("Blurred is exhausted"), 1u) << transcript(robot);
 }
 
 // A bad value of c1, which one reconfiguration may mend.

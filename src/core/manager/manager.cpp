@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "plan/allowed.h"
+#include "plan/awaits_repair.h"
 #include "plan/beside_exhausted.h"
 #include "plan/explained_by.h"
 
@@ -218,7 +219,7 @@ void Manager::plan(Time now) {
       const bool has_to_wait =
           governor_.holds_back(*verdict.chosen, now) || governor_.withholds(*verdict.chosen, now);
       if (!has_to_wait) carry_out(verdict, now);
-    } else if (verdict.is_spent) {
+    } else if (verdict.is_spent && !plan::awaits_repair(verdict, knowledge_)) {
       hold_back(verdict, now);
       analyzer_.round_is_spent(verdict.rule, now);
     } else {

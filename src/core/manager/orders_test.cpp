@@ -240,6 +240,26 @@ TEST(Orders, AStrategyRunByHandActsWithoutItsFailureAndTeachesNothing) {
   EXPECT_EQ(r.count("Dark detected"), 1u) << transcript(r);
 }
 
+// What failed is known to have failed before anything else is decided: c1, whose silence it
+// explains, is not replaced meanwhile.
+TEST(Orders, AStrategyRunByHandThatFailsLeavesItsFailureBehindAtOnce) {
+  const auto rule = [](const std::string& node) {
+    return "COMPONENT " + node + " NODE /" + node + " LAUNCH \"" + node + "\"\nRULE Silent_" +
+           node + "\nPOLICIES ERROR\nTRIGGER age(/" + node +
+           ") > 350ms\nSTRATEGY redeploy 90 10\nADAPTATION " + node + " redeploy 10\n";
+  };
+  TestRobot r(rule("c0") + rule("c1"));
+  r.add("c0", {}, "/c0").start_time = 900s;
+  r.add("c1", {"c0"}, "/c1");
+  r.discover();
+  r.run_for(2s);
+  r.order(order(RunStrategy{StrategyId(0)}));
+  r.run_for(300s);
+  EXPECT_GE(r.count("redeploy did not resolve Silent_c0"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("Silent_c0 detected"), 1u) << transcript(r);
+  EXPECT_FALSE(r.was_asked("c1:")) << transcript(r);
+}
+
 TEST(Orders, WhatMakesNoSenseIsRefusedWithItsReason) {
   TestRobot r = robot();
   r.order(order(Resume{}));

@@ -107,6 +107,13 @@ void TestRobot::stop(const std::string& name) {
   step();
 }
 
+void TestRobot::start_by_hand(const std::string& name) {
+  Component& component = components_.at(name);
+  component.pid = ++last_pid_;
+  come_up(component);
+  step();
+}
+
 void TestRobot::later(Duration delay, std::function<void()> action) {
   agenda_.emplace(now + delay, std::move(action));
 }
@@ -231,15 +238,17 @@ void TestRobot::start(Component& c, const Command& command) {
       observe(ProcessSeen{command.component, ProcessState::kGone, c.pid, "exit code 1"});
     });
   }
-  later(c.start_time, [this, &c] {
-    c.process = ProcessState::kRunning;
-    c.state = c.state_at_start;
-    c.answers = true;
-    if (c.fault == "restart" || c.fault == "redeploy") c.fault.clear();
-    appear(c);
-    if (c.activates_itself_after > Duration::zero())
-      later(c.activates_itself_after, [this, &c, pid = c.pid] { activate_itself(c, pid); });
-  });
+  later(c.start_time, [this, &c] { come_up(c); });
+}
+
+void TestRobot::come_up(Component& c) {
+  c.process = ProcessState::kRunning;
+  c.state = c.state_at_start;
+  c.answers = true;
+  if (c.fault == "restart" || c.fault == "redeploy") c.fault.clear();
+  appear(c);
+  if (c.activates_itself_after > Duration::zero())
+    later(c.activates_itself_after, [this, &c, pid = c.pid] { activate_itself(c, pid); });
 }
 
 void TestRobot::activate_itself(Component& c, int pid) {

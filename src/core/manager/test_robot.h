@@ -61,7 +61,8 @@ class TestRobot {
   void signal(const std::string& name, Value value);
   void kill(
       const std::string& name);  // -9: its process is gone, its node lingers until its lease ends
-  void stop(const std::string& name);  // -STOP
+  void stop(const std::string& name);           // -STOP
+  void start_by_hand(const std::string& name);  // a person does
   void run_for(Duration time);
   // All stands still, the manager too.
   void freeze(Duration time);
@@ -121,6 +122,7 @@ class TestRobot {
              std::string text = "");
   void change_lifecycle(Component& component, const Command& command, Transition transition);
   void start(Component& component, const Command& command);
+  void come_up(Component& component);
   void appear(const Component& component);
   void activate_itself(Component& component, int pid);
   void show_ends();  // of what runs

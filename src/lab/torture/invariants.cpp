@@ -232,9 +232,13 @@ void Invariants::check_the_dead(const Manager& manager, Time now) {
   std::vector<Time> since(rules_.rules.size(), kNever);
   for (const RuleId id : plannable) {
     const ComponentId component = rules_[id].components.front();
-    const bool is_left = is_dead(knowledge.components[component]) && !is_held &&
+    const auto& strategies = rules_[id].strategies;
+    // Whoever can only set a parameter of what is dead waits until it is back.
+    const bool can_replace = std::any_of(strategies.begin(), strategies.end(),
+                                         [&](StrategyId s) { return replaces(rules_[s]); });
+    const bool is_left = can_replace && is_dead(knowledge.components[component]) && !is_held &&
                          knowledge.states.reservation(component) == nullptr &&
-                         std::none_of(rules_[id].strategies.begin(), rules_[id].strategies.end(),
+                         std::none_of(strategies.begin(), strategies.end(),
                                       [&](StrategyId s) { return is_excused(manager, s); });
     if (!is_left) continue;
     since[id.index] = std::min(left_dead_since_[id.index], now);

@@ -1,0 +1,52 @@
+#include "plan/awaits_repair.h"
+
+#include <algorithm>
+
+#include "plan/validity.h"
+
+namespace culprit::plan {
+namespace {
+
+bool brings_back(const Strategy& strategy, ComponentId component) {
+  return std::any_of(
+      strategy.adaptations.begin(), strategy.adaptations.end(), [&](const Adaptation& a) {
+        return a.component == component &&
+               (a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart);
+      });
+}
+
+bool may_bring_back(RuleId rule, ComponentId component, const Knowledge& knowledge) {
+  const auto& strategies = knowledge.rules[rule].strategies;
+  return std::any_of(strategies.begin(), strategies.end(), [&](StrategyId id) {
+    const Strategy& strategy = knowledge.rules[id];
+    if (!brings_back(strategy, component)) return false;
+    return knowledge.states.awaits_person(rule) || !invalidity(strategy, knowledge);
+  });
+}
+
+bool is_under_repair(ComponentId component, const Knowledge& knowledge) {
+  if (knowledge.components[component].alive.value_or(false)) return false;
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
+    const RuleId id(r);
+    const bool is_at_work = knowledge.states.is_active(id) || knowledge.states.awaits_person(id);
+    if (is_at_work && may_bring_back(id, component, knowledge)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool awaits_repair(const Verdict& verdict, const Knowledge& knowledge) {
+  const auto& strategies = knowledge.rules[verdict.rule].strategies;
+  const bool has_last_resort =
+      std::any_of(strategies.begin(), strategies.end(),
+                  [&](StrategyId id) { return knowledge.rules[id].is_last_resort; });
+  if (has_last_resort || verdict.candidates.empty()) return false;
+  // What was tried and what makes no sense for another reason is as in any other round.
+  return std::all_of(verdict.candidates.begin(), verdict.candidates.end(),
+                     [](const Candidate& c) { return c.excluded == Condition::kInvalid; }) &&
+         std::any_of(verdict.candidates.begin(), verdict.candidates.end(),
+                     [&](const Candidate& c) { return is_under_repair(c.component, knowledge); });
+}
+
+}  // namespace culprit::plan
