@@ -114,6 +114,16 @@ TEST(UnitSettings, WhatEndsNothingNeedNotBeAnybody) {
   EXPECT_THAT(settings("stop", "restart"), HasSubstr("User= has to be whoever runs them: camera."));
 }
 
+TEST(UnitSettings, WhatSystemdStartsAndEndsTakesARightAndNothingElse) {
+  const std::string rules =
+      "COMPONENT camera UNIT camera.service\nRULE r\n POLICIES ERROR\n TRIGGER age(/rgb) > 1s\n"
+      "  STRATEGY a 50 10\n   ADAPTATION camera redeploy 1\n";
+  const std::string text = unit_settings(*check(Source("test.rules", rules)).rules, {"/r"});
+  EXPECT_THAT(text, HasSubstr("NoExecPaths=/\n"));
+  EXPECT_THAT(text, Not(HasSubstr("DynamicUser")));
+  EXPECT_THAT(text, HasSubstr("User= needs the right to (docs/security.md): camera."));
+}
+
 TEST(UnitSettings, OtherUsersProcessesTakeCapabilities) {
   const UnitOptions options{"/r", NodeOwner::kOtherUsers};
   EXPECT_THAT(settings("stop", "redeploy", options),

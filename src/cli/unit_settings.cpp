@@ -12,6 +12,7 @@ namespace {
 struct Processes {
   std::vector<std::string> started;
   std::vector<std::string> ended;
+  std::vector<std::string> of_systemd;  // that is asked to do it
 };
 
 Processes processes_of(const RuleSet& rules) {
@@ -23,6 +24,12 @@ Processes processes_of(const RuleSet& rules) {
   for (const Strategy& strategy : rules.strategies) {
     for (const Adaptation& adaptation : strategy.adaptations) {
       const bool redeploys = adaptation.type == AdaptationType::kRedeploy;
+      const bool starts_or_ends = redeploys || adaptation.type == AdaptationType::kStart ||
+                                  adaptation.type == AdaptationType::kStop;
+      if (starts_or_ends && rules[adaptation.component].unit) {
+        add(processes.of_systemd, adaptation.component);
+        continue;
+      }
       if (redeploys || adaptation.type == AdaptationType::kStart)
         add(processes.started, adaptation.component);
       if (redeploys || adaptation.type == AdaptationType::kStop)
@@ -70,7 +77,7 @@ std::string end_settings(const Processes& processes, NodeOwner nodes) {
     if (ends)
       return fmt::format("# These are ended, so User= has to be whoever runs them: {}.\n",
                          fmt::join(processes.ended, ", "));
-    if (!processes.started.empty()) return "";
+    if (!processes.started.empty() || !processes.of_systemd.empty()) return "";
     return "# No process is ever ended or started: it need not be anybody.\n"
            "User=\n"
            "DynamicUser=yes\n";
@@ -99,6 +106,11 @@ std::string unit_settings(const RuleSet& rules, const UnitOptions& options) {
   for (const auto& [name, value] : options.environment)
     text += fmt::format("Environment={}\n", quoted(name + "=" + value));
   text += "\n" + start_settings(processes);
+  if (!processes.of_systemd.empty())
+    text += fmt::format(
+        "\n# systemd is asked to start and end these, so User= needs the right to "
+        "(docs/security.md): {}.\n",
+        fmt::join(processes.of_systemd, ", "));
   const std::string more = end_settings(processes, options.nodes);
   return more.empty() ? text : text + "\n" + more;
 }

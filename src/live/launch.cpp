@@ -226,7 +226,7 @@ Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start,
   starting.look();
   std::vector<ComponentId> started;
   for (const ComponentId c : in_order(rules)) {
-    if (stop || starting.is_there(c) || rules[c].launch.empty() || rules[c].is_respawned) continue;
+    if (stop || starting.is_there(c) || !rules[c].can_start() || rules[c].is_respawned) continue;
     listener.on_remark("starting " + rules[c].name + "\n");
     starting.begin(c, start);
     started.push_back(c);

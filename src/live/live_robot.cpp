@@ -36,8 +36,10 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
     containers_.observe(observations[i]);
     const auto* appeared = std::get_if<NodeAppeared>(&observations[i].what);
     if (appeared == nullptr || appeared->pid == 0) continue;
-    if (const auto component = binding_.bind(appeared->node))
-      supervisor_->adopt(*component, appeared->pid, observations[i].at);
+    const auto component = binding_.bind(appeared->node);
+    if (!component) continue;
+    supervisor_->adopt(*component, appeared->pid, observations[i].at);
+    units_.found(*component, appeared->pid);
   }
 }
 
@@ -76,10 +78,15 @@ void LiveRobot::execute(const Command& command) {
   if (std::holds_alternative<StopProcess>(command.what)) {
     stop_process(command);
   } else if (std::holds_alternative<StartProcess>(command.what)) {
-    supervisor_->start(command.id, command.component);
+    start(command.id, command.component);
   } else {
     link_->execute(command);
   }
+}
+
+void LiveRobot::start(CommandId command, ComponentId component) {
+  if (rules_[component].unit) return units_.start(command, component);
+  supervisor_->start(command, component);
 }
 
 // What culprit started is the component's by its LAUNCH, whatever else is in it.
@@ -97,8 +104,11 @@ void LiveRobot::stop_process(const Command& command) {
   }
   const Adaptation& what = rules_[command.purpose.strategy].adaptations[command.purpose.adaptation];
   const bool is_replaced = what.type == AdaptationType::kRedeploy;
-  supervisor_->stop(command.id, command.component,
-                    is_replaced ? owners::Ending::kToStartAgain : owners::Ending::kForGood);
+  const auto ending = is_replaced ? owners::Ending::kToStartAgain : owners::Ending::kForGood;
+  if (rules_[command.component].unit)
+    return units_.stop(command.id, command.component, std::get<StopProcess>(command.what).pid,
+                       ending);
+  supervisor_->stop(command.id, command.component, ending);
 }
 
 }  // namespace culprit

@@ -7,6 +7,7 @@
 #include "link/link.h"
 #include "owners/component_containers.h"
 #include "owners/supervisor.h"
+#include "owners/units.h"
 #include "robot/inbox.h"
 #include "robot/robot.h"
 
@@ -26,6 +27,9 @@ class LiveRobot : public Robot {
   void observe(Time until, std::vector<Observation>& observations) override;
   void execute(const Command& command) override;
 
+  // Starts a component: by its LAUNCH, or by asking the systemd that runs its UNIT.
+  void start(CommandId command, ComponentId component);
+
   void interrupt() override { inbox_.interrupt(); }
 
   // Since when it is not sure that what the robot says is heard, or that nobody else manages it;
@@ -39,7 +43,8 @@ class LiveRobot : public Robot {
   owners::Supervisor& supervisor() { return *supervisor_; }
 
  private:
-  explicit LiveRobot(const RuleSet& rules) : rules_(rules), binding_(rules), containers_(rules) {}
+  explicit LiveRobot(const RuleSet& rules)
+      : rules_(rules), binding_(rules), containers_(rules), units_(rules, inbox_) {}
 
   void listen(Time until, std::vector<Observation>& observations);
   void witness(std::size_t before, std::vector<Observation>& observations);
@@ -49,6 +54,7 @@ class LiveRobot : public Robot {
   Inbox inbox_;
   ComponentBinding binding_;
   owners::ComponentContainers containers_;
+  owners::Units units_;
   std::unique_ptr<owners::Supervisor> supervisor_;
   std::unique_ptr<ros2::Link> link_;
   std::optional<Time> deaf_since_;

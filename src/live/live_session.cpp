@@ -242,7 +242,7 @@ void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_r
   const bool is_held = beginning.orders.pause || beginning.orders.dry_run;
   if (frame_.options.launches && !frame_.advises && !is_held) {
     const auto start = [&](CommandId command, ComponentId component) {
-      robot_->supervisor().start(command, component);
+      robot_->start(command, component);
     };
     Launched launched = launch(*robot_, rules_, start, frame_.listener, stop);
     seen = std::move(launched.seen);

@@ -7,6 +7,7 @@
 #include "language/live_checks.h"
 #include "language/live_findings.h"
 #include "live/robot_survey.h"
+#include "owners/units.h"
 #include "robot/inbox.h"
 
 namespace culprit {
@@ -96,7 +97,15 @@ LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& s
                        [&](const RuleSet* each) { return is_all_found(*each, robot); });
   };
   look_until(all_found, later(live_now(), wait), stop);
-  return survey.inventory();
+  LiveInventory robot = survey.inventory();
+  for (const RuleSet* each : rules) {
+    for (const Component& component : each->components) {
+      if (!component.unit || stop.stop_requested()) continue;
+      if (const auto could = owners::could_manage(*component.unit); !could)
+        robot.unit_troubles.push_back({*component.unit, could.error()});
+    }
+  }
+  return robot;
 }
 
 Expected<Sighting> sight(const Source& source,

@@ -19,7 +19,8 @@ namespace culprit {
 // "no nodes were seen on domain 7; is ROS_DOMAIN_ID the robot's?"
 std::string nobody_on(std::uint32_t domain);
 
-// Looks until all that these rules name is there, or `wait` is over, or it is to stop.
+// Looks until all that these rules name is there, or `wait` is over, or it is to stop; and asks
+// systemd about their units.
 LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& survey,
                        Duration wait, const std::stop_token& stop = {});
 

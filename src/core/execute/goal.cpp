@@ -140,7 +140,14 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       return std::vector<Goal>{LifecycleGoal{Lifecycle::kInactive, {}},
                                LifecycleGoal{Lifecycle::kActive, {}}};
     case AdaptationType::kRedeploy: {
-      std::vector<Goal> goals{GoneGoal{}, present(adaptation.component, knowledge)};
+      GoneGoal gone;
+      PresentGoal back = present(adaptation.component, knowledge);
+      // systemd may be faster than the news of the end.
+      if (knowledge.rules[adaptation.component].unit) {
+        gone.pid = state.known_pid();
+        back.instead_of = gone.pid;
+      }
+      std::vector<Goal> goals{gone, back};
       // A managed node comes back unconfigured unless it brings itself up: it is brought to where
       // it was, or to where a rule says that it must be.
       if (state.intended_lifecycle == Lifecycle::kUnknown) return goals;

@@ -46,6 +46,20 @@ TEST(Goal, OfARedeployIsTheLifecycleThatWasIntended) {
   EXPECT_EQ(goals.of(0).size(), 2u) << "it stays as it comes up";
 }
 
+TEST(Goal, OfARedeployedUnitIsAnyProcessButTheOneThatIsThere) {
+  const RuleSet rules =
+      *check(Source("unit.rules",
+                    "COMPONENT c NODE /c UNIT c.service\nRULE Dead\nPOLICIES ERROR\n"
+                    "TRIGGER !alive(c)\nSTRATEGY again 90 10\nADAPTATION c redeploy 5\n"))
+           .rules;
+  Knowledge knowledge{rules};
+  knowledge.components[ComponentId(0)].pid = 7;
+  const auto goals = goals_of(rules.strategies[0].adaptations.front(), knowledge);
+  ASSERT_EQ(goals->size(), 2u);
+  EXPECT_EQ(std::get<GoneGoal>((*goals)[0]).pid, 7);
+  EXPECT_EQ(std::get<PresentGoal>((*goals)[1]).instead_of, 7);
+}
+
 TEST(Goal, OfAStartIsToBeActive) {
   Goals goals;
   EXPECT_EQ(goals.of(1).size(), 1u);

@@ -151,7 +151,7 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   if (std::holds_alternative<ModeGoal>(goal_) && has_changed_anything() &&
       !state.alive.value_or(true))
     return give_up("whoever changes its mode is gone");
-  if (const auto* gone = std::get_if<GoneGoal>(&goal_)) return pursue(*gone, state, now);
+  if (const auto* gone = std::get_if<GoneGoal>(&goal_)) return pursue(*gone, knowledge, now);
   if (const auto* present = std::get_if<PresentGoal>(&goal_)) return pursue(*present, state, now);
   if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return pursue(*service, now);
   // The change was not sent, for there was nobody to send it to.
@@ -249,11 +249,14 @@ std::optional<Pursuit::Request> Pursuit::pursue(const ServiceGoal& goal, Time no
   return answer_->outcome == Outcome::kDone ? reach() : give_up(why(*answer_));
 }
 
-std::optional<Pursuit::Request> Pursuit::pursue(const GoneGoal& goal, const ComponentState& state,
+std::optional<Pursuit::Request> Pursuit::pursue(const GoneGoal& goal, const Knowledge& knowledge,
                                                 Time now) {
+  const ComponentState& state = knowledge.components[component_];
   const bool is_replaced = goal.pid != 0 && state.in_graph && state.known_pid() != goal.pid;
-  if (is_replaced && !has_changed_anything()) return reach();
-  if (state.in_graph && state.known_pid() == 0)
+  const bool was_ended = answer_ && answer_->outcome == Outcome::kDone;
+  if (is_replaced && (!has_changed_anything() || was_ended)) return reach();
+  // systemd knows it by its unit, also if it is another user's.
+  if (state.in_graph && state.known_pid() == 0 && !knowledge.rules[component_].unit)
     return give_up("its process is not known; is it on another machine?");
   if (!has_changed_anything())
     return change(StopProcess{goal.pid != 0 ? goal.pid : state.known_pid()}, now);

@@ -88,6 +88,31 @@ TEST(PursuitOfAProcess, EndsNoneThatHasTakenTheOldOnesPlace) {
   EXPECT_TRUE(pursuit.is_reached());
 }
 
+// systemd may have started another one before it is heard that the old one has ended.
+TEST(PursuitOfAProcess, IsOverWhenAnotherHasTakenThePlaceOfTheOneThatWasEnded) {
+  One one;
+  one.runs(7, true);
+  Pursuit pursuit(GoneGoal{7}, one.c, kStart);
+  ASSERT_TRUE(is<StopProcess>(pursuit.advance(one.knowledge, kStart)));
+  one.runs(8, true);
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart + 1ms));
+  EXPECT_FALSE(pursuit.is_reached()) << "it may be the wrong one";
+  pursuit.answered(done(), kStart + 2ms);
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart + 3ms));
+  EXPECT_TRUE(pursuit.is_reached());
+}
+
+// systemd knows the processes of a unit, also those of other users, which nobody else may see.
+TEST(PursuitOfAProcess, EndsAUnitOfWhichTheProcessIsNotKnown) {
+  One one;
+  one.runs(0, true);
+  Pursuit of_nobody(GoneGoal{}, one.c, kStart);
+  EXPECT_FALSE(of_nobody.advance(one.knowledge, kStart));
+  one.rules.components[0].unit = SystemdUnit{"c.service"};
+  Pursuit of_systemd(GoneGoal{}, one.c, kStart);
+  EXPECT_TRUE(is<StopProcess>(of_systemd.advance(one.knowledge, kStart)));
+}
+
 TEST(PursuitOfAProcess, BelievesNoAnswerWhileTheOperatingSystemSaysThatItRuns) {
   One one;
   one.runs(7, true);

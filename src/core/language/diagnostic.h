@@ -48,6 +48,7 @@ enum class Code : std::uint16_t {
   kNoLaunch = 41,
   kNeverValid = 42,
   kStopsRequired = 43,
+  kTwoOwners = 44,
   kAlwaysTrue = 50,
   kNeverTrue = 51,
   kOscillation = 52,
@@ -64,6 +65,7 @@ enum class Code : std::uint16_t {
   kNoSuchParameter = 62,
   kNoSuchDiagnostic = 63,
   kNoSuchService = 64,
+  kNoSuchUnit = 65,
 };
 
 // "R011"

@@ -185,8 +185,8 @@ std::vector<Explanation> rule_explanations() {
        "      ADAPTATION camera activate 5\n",
        rule_with("rate(/robot/image) < 1")},
       {Code::kNoLaunch, "a strategy needs a LAUNCH command that is missing",
-       "redeploy and start run the LAUNCH command of the component. Without one culprit cannot "
-       "start it, and the strategy is never chosen.",
+       "redeploy and start run the LAUNCH command of the component, or ask the systemd that runs "
+       "its UNIT. Without either culprit cannot start it, and the strategy is never chosen.",
        "COMPONENT camera NODE /robot/camera\n"
        "RULE CameraFails\n  POLICIES ERROR\n  TRIGGER rate(/robot/image) < 1\n"
        "    STRATEGY restart 50 10\n      ADAPTATION camera restart 5\n"
@@ -212,6 +212,12 @@ std::vector<Explanation> rule_explanations() {
                                                                     "ERROR", "STRATEGY quiet 50 10",
                                                                     "ADAPTATION camera stop 5"),
        "COMPONENT camera NODE /robot/camera REQUIRED\n" + rule_with("rate(/robot/image) < 1")},
+      {Code::kTwoOwners, "it is not clear who starts and ends a component",
+       "Who starts a component is asked to end it, too: culprit itself (LAUNCH), systemd (UNIT) or "
+       "a launcher that respawns it (RESPAWNED). Two of them would start it twice; and a unit that "
+       "runs two components cannot be restarted for one of them.",
+       "COMPONENT camera NODE /robot/camera UNIT camera.service LAUNCH \"camera_driver\"\n",
+       "COMPONENT camera NODE /robot/camera UNIT camera.service\n"},
       {Code::kAlwaysTrue, "a trigger reads nothing and is always true",
        "A trigger that reads no signal, topic or component says the same whatever the robot does: "
        "this failure would be there from the start and could never be resolved.",
@@ -338,6 +344,13 @@ std::vector<Explanation> robot_explanations() {
                               "ADAPTATION camera change_mode night 5"),
                     rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY calibrate 50 10",
                               "ADAPTATION camera call ~/recalibrate 5")),
+      against_robot(Code::kNoSuchUnit, "culprit could not start and end this unit",
+                    "Whoever runs the component has to be asked, and systemd cannot be reached, "
+                    "has no such unit, or does not let culprit's user manage it "
+                    "(docs/security.md). Nothing would be ended when the rule fires, and nothing "
+                    "started.",
+                    "COMPONENT camera NODE /robot/camera UNIT camra.service\n",
+                    "COMPONENT camera NODE /robot/camera UNIT camera.service\n"),
   };
 }
 
@@ -394,6 +407,8 @@ const LiveInventory& example_robot() {
                       {"/robot/camera/set_parameters", "rcl_interfaces/srv/SetParameters"},
                       {"/robot/camera/recalibrate", "std_srvs/srv/Trigger"}};
     robot.diagnostics = {{"camera", "camera_0", 0, {{"entropy", "0.03"}}}};
+    robot.unit_troubles = {
+        {{"camra.service", false}, "systemd has no camra.service; did you mean camera.service?"}};
     return robot;
   }();
   return kRobot;

@@ -43,6 +43,7 @@ bool exists(Code code) {
     case Code::kNoLaunch:
     case Code::kNeverValid:
     case Code::kStopsRequired:
+    case Code::kTwoOwners:
     case Code::kAlwaysTrue:
     case Code::kNeverTrue:
     case Code::kCircularDependency:
@@ -58,6 +59,7 @@ bool exists(Code code) {
     case Code::kNoSuchParameter:
     case Code::kNoSuchDiagnostic:
     case Code::kNoSuchService:
+    case Code::kNoSuchUnit:
       return true;
   }
   return false;

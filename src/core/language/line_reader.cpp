@@ -10,12 +10,12 @@ namespace {
 
 using syntax::Name;
 
-constexpr std::array<std::string_view, 33> kReservedWords = {
+constexpr std::array<std::string_view, 35> kReservedWords = {
     "ROBOT",     "CYCLE",      "CONST",    "COMPONENT", "DEPENDENCY", "IGNORE", "SIGNAL",
     "RULE",      "POLICIES",   "TRIGGER",  "STRATEGY",  "NODE",       "LAUNCH", "ON",
     "TOPIC",     "FIELD",      "STALE",    "RANGE",     "KEY",        "FOR",    "DIAGNOSTIC",
     "PARAMETER", "HOLD",       "COOLDOWN", "ATTEMPTS",  "ON_CHANGE",  "WHEN",   "ADAPTATION",
-    "INTERLOCK", "LASTRESORT", "REQUIRED", "LIFECYCLE", "RESPAWNED"};
+    "INTERLOCK", "LASTRESORT", "REQUIRED", "LIFECYCLE", "RESPAWNED",  "UNIT",   "USER"};
 
 bool is_reserved(std::string_view word) {
   return std::find(kReservedWords.begin(), kReservedWords.end(), word) != kReservedWords.end();

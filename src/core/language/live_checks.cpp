@@ -54,6 +54,7 @@ class LiveChecks {
       before = &o;
     }
     for (const syntax::Signal& signal : file_.signals) key(signal);
+    for (const syntax::Component& component : file_.components) unit(component);
     for (const syntax::Rule& rule : file_.rules) {
       for (const syntax::Strategy& strategy : rule.strategies) {
         for (const syntax::Adaptation& a : strategy.adaptations) services(a);
@@ -82,6 +83,16 @@ class LiveChecks {
     }
   }
 
+  // ---- who starts it
+
+  void unit(const syntax::Component& written) {
+    const Component* c = component_of(written.name.text);
+    if (c == nullptr || !c->unit) return;
+    for (const LiveInventory::UnitTrouble& each : robot_.unit_troubles) {
+      if (each.unit == *c->unit) warn(Code::kNoSuchUnit, written.unit->span, each.why, "");
+    }
+  }
+
   // ---- the graph
 
   void component(const Occurrence& o) {
@@ -89,9 +100,9 @@ class LiveChecks {
     if (c == nullptr || !node_of(o.name).empty() || !is_first(OccurrenceKind::kComponent, c->name))
       return;
     const auto declared = declarations_.find(c->name);
-    const std::string remedy = c->launch.empty()
-                                   ? "start it, or correct the name"
-                                   : "start it (culprit run --launch does), or correct the name";
+    const std::string remedy = c->can_start()
+                                   ? "start it (culprit run --launch does), or correct the name"
+                                   : "start it, or correct the name";
     if (!c->node.empty()) {
       const bool has_node = declared != declarations_.end() && declared->second->node;
       warn(Code::kNoSuchNode, has_node ? declared->second->node->span : o.span,

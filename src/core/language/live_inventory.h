@@ -46,6 +46,13 @@ struct LiveInventory {
   std::map<std::string, Topic> topics;
   std::map<std::string, std::string> services;  // with their types
   std::vector<Status> diagnostics;
+  // The units of the rules that culprit could not start and end.
+  struct UnitTrouble {
+    SystemdUnit unit;
+    std::string why;
+    bool operator==(const UnitTrouble&) const = default;
+  };
+  std::vector<UnitTrouble> unit_troubles{};
   bool operator==(const LiveInventory&) const = default;
 
   // Whether anybody is there but tools, whose nodes are hidden, and culprit.

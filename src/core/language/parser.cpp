@@ -192,6 +192,12 @@ class Parser {
                                   "write it in quotes: LAUNCH \"ros2 run package program\"");
         }
         component.launch = Name{std::get<std::string>(command.literal), command.span};
+      } else if (clause.text == "UNIT" && !component.unit) {
+        s.next();
+        component.unit = read_.name_or_text(s, "the unit's name");
+        if (!component.unit) return false;
+        component.is_users_unit = s.peek().text == "USER";
+        if (component.is_users_unit) s.next();
       } else if (clause.text == "REQUIRED" && !component.is_required) {
         s.next();
         component.is_required = true;
@@ -203,8 +209,8 @@ class Parser {
         s.next();
         if (!lifecycle(s, component)) return false;
       } else {
-        return read_.unexpected_clause(clause,
-                                       {"NODE", "LAUNCH", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+        return read_.unexpected_clause(
+            clause, {"NODE", "LAUNCH", "UNIT", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
       }
     }
     file_.components.push_back(std::move(component));

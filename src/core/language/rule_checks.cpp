@@ -24,7 +24,7 @@ bool changes_presence(const Adaptation& a) { return a.type == kStart || a.type =
 bool lacks_launch(const culprit::Adaptation& adaptation, const RuleSet& rules) {
   const Component& component = rules[adaptation.component];
   if (adaptation.type == kRedeploy) return !component.can_start_again();
-  return adaptation.type == kStart && component.launch.empty();
+  return adaptation.type == kStart && !component.can_start();
 }
 
 // It does no harm, so it is only a warning.
@@ -157,7 +157,8 @@ void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
     impossible.push_back({Code::kNoLaunch, Severity::kWarning, written->adaptations[place].span,
                           "strategy '" + strategy.name + "' can never run: component '" +
                               rules[missing->component].name + "' has no LAUNCH command",
-                          std::string("add LAUNCH \"program arguments\" to its COMPONENT line") +
+                          std::string("add LAUNCH \"program arguments\" to its COMPONENT line, "
+                                      "or UNIT if systemd runs it") +
                               (is_ended ? ", or RESPAWNED if its launcher starts it again" : "")});
   }
   if (!impossible.empty() && impossible.size() == rules[id].strategies.size()) {

@@ -21,6 +21,13 @@ using syntax::AdaptationType;
 using syntax::Criticality;
 using syntax::LifecycleDriver;
 
+// A service that systemd runs.
+struct SystemdUnit {
+  std::string name;         // "lidar.service"
+  bool is_of_user = false;  // of the user's own systemd, not of the system's
+  bool operator==(const SystemdUnit&) const = default;
+};
+
 // A managed ROS 2 node (paper: c in C).
 struct Component {
   std::string name;
@@ -31,8 +38,12 @@ struct Component {
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
   bool is_respawned = false;  // whoever started it starts it again: culprit ends it and waits
 
+  std::optional<SystemdUnit> unit{};  // that runs it: systemd is asked to start and to end it
+
+  // Whether it can be told to start.
+  bool can_start() const { return unit || !launch.empty(); }
   // Whether somebody starts it again after its end.
-  bool can_start_again() const { return is_respawned || !launch.empty(); }
+  bool can_start_again() const { return is_respawned || can_start(); }
 };
 
 struct Topic {

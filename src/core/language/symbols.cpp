@@ -33,6 +33,17 @@ std::optional<std::vector<std::string>> split_command(std::string_view text) {
   return arguments;
 }
 
+// As systemd names them (systemd.unit(5)); a template without its instance is none.
+bool is_service_unit(std::string_view name) {
+  constexpr std::string_view kSuffix = ".service";
+  const auto may_be_there = [](unsigned char c) {
+    return c < 128 &&
+           (std::isalnum(c) != 0 || std::string_view(":-_.\\@").find(c) != std::string_view::npos);
+  };
+  return name.size() > kSuffix.size() && name.ends_with(kSuffix) && !name.ends_with("@.service") &&
+         name[0] != '@' && std::all_of(name.begin(), name.end(), may_be_there);
+}
+
 std::string key_of(const Input& input) {
   std::string key;
   for (const auto part :
@@ -98,8 +109,37 @@ void Symbols::declare_component(const syntax::Component& written) {
                               "write the program and its arguments; close every quote"});
     }
   }
+  if (written.unit) component.unit = declared_unit(written);
   declared_components_.push_back(components_.emplace(component.name, id).first->first);
   rules_.components.push_back(std::move(component));
+}
+
+// One unit runs one component, and nobody else does.
+SystemdUnit Symbols::declared_unit(const syntax::Component& written) {
+  const syntax::Name& name = *written.unit;
+  const auto report = [&](Code code, std::string cause, std::string remedy) {
+    diagnostics_.push_back(
+        {code, Severity::kError, name.span, std::move(cause), std::move(remedy)});
+  };
+  SystemdUnit unit{name.text, written.is_users_unit};
+  if (!is_service_unit(unit.name)) {
+    report(Code::kSyntax, "this is no service of systemd",
+           "write its whole name, as systemctl list-units does: UNIT lidar.service");
+  } else if (written.launch || written.is_respawned) {
+    const std::string other = written.launch ? "LAUNCH" : "RESPAWNED";
+    report(Code::kTwoOwners,
+           "component '" + written.name.text + "' has a UNIT and " + other +
+               ", so it is not clear who starts it",
+           "keep UNIT if systemd runs it, else " + other);
+  }
+  const auto same = std::find_if(rules_.components.begin(), rules_.components.end(),
+                                 [&](const Component& c) { return c.unit == unit; });
+  if (same != rules_.components.end()) {
+    report(Code::kTwoOwners,
+           "this unit runs component '" + same->name + "' already, and would end with it",
+           "give each component a unit of its own, or leave one of them without");
+  }
+  return unit;
 }
 
 void Symbols::declare_signal(const syntax::Signal& s) {

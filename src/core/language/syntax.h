@@ -88,6 +88,8 @@ struct Component {
   std::optional<Name> launch;  // the quoted text, unescaped
   bool is_required = false;
   bool is_respawned = false;
+  std::optional<Name> unit{};
+  bool is_users_unit = false;
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
 };
 

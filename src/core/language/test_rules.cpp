@@ -131,10 +131,13 @@ std::string component_line() {
   const std::string launch = maybe(words({"LAUNCH", text()}));
   const std::string required = maybe("REQUIRED");
   const std::string respawned = maybe("RESPAWNED");
+  const std::string unit = maybe(words({"UNIT", name(), maybe("USER")}));
   const char* driver = coin() ? "self" : coin() ? "managed" : "launcher";
   const std::string lifecycle = maybe(words({"LIFECYCLE", driver}));
-  return coin() ? words({"COMPONENT", identifier(), node, launch, respawned, required, lifecycle})
-                : words({"COMPONENT", identifier(), lifecycle, required, respawned, launch, node});
+  return coin() ? words({"COMPONENT", identifier(), node, launch, unit, respawned, required,
+                         lifecycle})
+                : words({"COMPONENT", identifier(), lifecycle, required, respawned, unit, launch,
+                         node});
 }
 
 std::string signal_line() {

@@ -48,6 +48,19 @@ TEST(NeverSeen, ATypingMistakeInANodeStartsNoSecondOne) {
   EXPECT_EQ(robot.count("Dead.s is held back: camera was never seen"), 1u) << transcript(robot);
 }
 
+// Its owner's word is proof.
+TEST(NeverSeen, AUnitThatFailedIsStartedThoughItsNodeWasNeverThere) {
+  TestRobot robot(
+      "COMPONENT camera NODE /camera UNIT camera.service\n"
+      "RULE Dead\n  POLICIES ERROR\n  TRIGGER !alive(camera)\n"
+      "    STRATEGY s 90 10\n      ADAPTATION camera redeploy 2\n");
+  robot.add("camera").process = ProcessState::kGone;
+  robot.tell(ProcessSeen{ComponentId(0), ProcessState::kGone, 7, "camera.service failed"});
+  robot.run_for(60s);
+  EXPECT_EQ(robot.count("camera is lost"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("camera is there"), 1u) << transcript(robot);
+}
+
 // What a status, a key or a parameter is really called is known only if the robot was heard.
 TEST(NeverSeen, ATypingMistakeInADiagnosticOrAParameterIsTold) {
   TestRobot robot(

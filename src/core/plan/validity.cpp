@@ -25,7 +25,7 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
     case AdaptationType::kRedeploy:
       return component.can_start_again() ? "" : "has no LAUNCH command";
     case AdaptationType::kStart:
-      if (component.launch.empty()) return "has no LAUNCH command";
+      if (!component.can_start()) return "has no LAUNCH command";
       return is_alive ? "is there already" : "";
     case AdaptationType::kStop:
       return is_alive || state.known_pid() != 0 ? "" : "is not there";

@@ -89,7 +89,10 @@ class Completion {
     if (statement == "COMPONENT") {
       if (words_.back() == "NODE") return names(&live_nodes);
       if (words_.back() == "LIFECYCLE") return keywords({"self", "managed", "launcher"});
-      return keywords({"NODE", "LAUNCH", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+      if (words_.back() == "UNIT") return {};
+      if (words_[words_.size() - 2] == "UNIT")
+        return keywords({"USER", "NODE", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+      return keywords({"NODE", "LAUNCH", "UNIT", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
     }
     if (statement == "SIGNAL") return signal();
     if (statement == "IGNORE") {

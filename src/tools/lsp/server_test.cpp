@@ -145,7 +145,11 @@ TEST(LspServer, ShowsWhatThingsAre) {
 TEST(LspServer, ProposesWhatFitsThePlace) {
   Session session(std::string(kText) +
                   "\n  TRIGGER \n      ADAPTATION \n      ADAPTATION camera \n"
-                  "  POLICIES \n  TRIGGER age(\n  TRIGGER alive(\n");
+                  "  POLICIES \n  TRIGGER age(\n  TRIGGER alive(\n"
+                  "COMPONENT a \nCOMPONENT a UNIT \nCOMPONENT a UNIT a.service \n");
+  EXPECT_THAT(labels(session.ask("completion", 18, 12)), Contains("UNIT"));
+  EXPECT_THAT(labels(session.ask("completion", 19, 17)), testing::IsEmpty());
+  EXPECT_THAT(labels(session.ask("completion", 20, 27)), Contains("USER"));
   EXPECT_THAT(labels(session.ask("completion", 11, 0)), Contains("RULE"));
   EXPECT_THAT(labels(session.ask("completion", 12, 10)), Contains("entropy"));
   EXPECT_THAT(labels(session.ask("completion", 12, 10)), Contains("phi"));

@@ -20,6 +20,8 @@ std::vector<Form> table() {
        {name},
        {{"NODE", "node", kName},
         {"LAUNCH", "launch", kText},
+        {"UNIT", "unit", kName},
+        {"USER", "user", kFlag},
         {"RESPAWNED", "respawned", kFlag},
         {"REQUIRED", "required", kFlag},
         {"LIFECYCLE", "lifecycle", kWord}},

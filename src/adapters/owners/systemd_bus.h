@@ -1,0 +1,93 @@
+// systemd, asked over D-Bus: what its services do, and to start and to end them
+// (org.freedesktop.systemd1(5)).
+//
+// Every call has a time limit, and blocks its thread for so long at most. What comes back is not
+// trusted: it is of the type that systemd documents, or an error. The connection is made by the
+// first call, and again by the next one after it was lost.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/expected.h"
+#include "base/time.h"
+#include "language/rule_set.h"
+
+struct sd_bus;
+struct sd_bus_message;
+
+namespace culprit::owners {
+
+struct BusError;
+
+// What systemd says of a service.
+struct UnitState {
+  enum class Activity : std::uint8_t {
+    kActive,
+    kActivating,  // it is being started, also by Restart=
+    kDeactivating,
+    kInactive,
+    kFailed
+  };
+  bool is_loaded = false;  // there is such a unit, and its file makes sense
+  Activity activity = Activity::kInactive;
+  bool has_job = false;    // it is asked for something that is not done yet
+  int main_pid = 0;        // 0: none
+  int last_main_pid = 0;   // of this boot; 0: none
+  std::string load_state;  // "loaded", "not-found", "masked", ...
+  std::string result;      // how it ended: "success", "exit-code", "start-limit-hit", ...
+
+  bool is_over() const { return activity == Activity::kInactive || activity == Activity::kFailed; }
+};
+
+class SystemdBus {
+ public:
+  enum class Whose : std::uint8_t { kSystem, kUser };
+  static constexpr Duration kPatience = std::chrono::seconds(2);
+
+  explicit SystemdBus(Whose whose) : whose_(whose) {}
+
+  // Errors say what is wrong and what to do. Where systemd refused, nothing was done.
+  Expected<UnitState> state_of(const std::string& unit);
+  Expected<void> start(const std::string& unit) { return ask("StartUnit", unit); }
+  Expected<void> stop(const std::string& unit) { return ask("StopUnit", unit); }
+  Expected<void> restart(const std::string& unit) { return ask("RestartUnit", unit); }
+  // SIGKILL to all processes of the unit.
+  Expected<void> kill(const std::string& unit);
+
+  // Whether the process is of that unit.
+  Expected<bool> runs(const std::string& unit, int pid);
+  // The services that systemd has loaded, or could load.
+  Expected<std::vector<std::string>> services();
+  // Whether culprit has the right to start and to end it. Errors: it has not.
+  Expected<void> may_manage(const std::string& unit);
+
+ private:
+  struct Closing {
+    void operator()(sd_bus* bus) const;
+  };
+  struct Message {
+    Message() = default;
+    Message(const Message&) = delete;
+    Message& operator=(const Message&) = delete;
+    ~Message();
+    sd_bus_message* it = nullptr;
+  };
+
+  Expected<void> connect();
+  Expected<void> ask(const char* method, const std::string& unit);
+  Error failed(const std::string& what, int error, const BusError& why);
+  template <class... Values>
+  Expected<void> call(const std::string& what, Message& reply, const char* method,
+                      const char* types, Values... values);
+  Expected<std::string> path_of(const std::string& unit);
+  Expected<std::string> text(const std::string& path, const char* interface, const char* name);
+  Expected<int> process(const std::string& path, const char* name);
+  Expected<bool> has_job(const std::string& path);
+
+  Whose whose_;
+  std::unique_ptr<sd_bus, Closing> bus_;
+};
+
+}  // namespace culprit::owners

@@ -1,0 +1,98 @@
+// Stand-ins for systemd, for tests: a server that speaks its published interface on a real
+// dbus-daemon, and systemd itself.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "owners/units.h"
+
+namespace culprit::owners {
+
+// A real dbus-daemon on a socket of its own, which is both buses of whoever looks for them meanwhile.
+class TestBus {
+ public:
+  TestBus();
+  ~TestBus();
+  const std::string& address() const { return address_; }
+  void signal(int number) const;
+
+ private:
+  std::filesystem::path folder_;
+  std::string address_;
+  int pid_ = 0;
+};
+
+struct TestUnit {
+  bool restarts = false;      // Restart=always
+  bool heeds_signals = true;  // ends when it is asked politely
+  bool is_broken = false;     // it ends at once, with an error
+  std::string active = "inactive";
+  int pid = 0;
+  int last_pid = 0;
+  std::string result = "success";
+};
+
+// Speaks org.freedesktop.systemd1 on that bus, as far as culprit asks. A unit runs `sleep`, really.
+class TestSystemd {
+ public:
+  explicit TestSystemd(const TestBus& bus);
+  ~TestSystemd();
+
+  void add(const std::string& name, TestUnit unit = {});
+  // As `systemctl start`.
+  int start(const std::string& name);
+  int pid_of(const std::string& name);
+  // What was asked, in order: "RestartUnit lidar.service".
+  std::vector<std::string> asked();
+
+  // Every request is refused with this D-Bus error; empty: none.
+  void refuse(const std::string& error);
+  // What it says instead of the states of units; empty: the truth.
+  void say(const std::string& active, std::uint32_t main_pid);
+
+ private:
+  friend struct TestSystemdMethods;
+  void run();
+  void reap();
+  void begin(const std::string& name);
+  void end(TestUnit& unit, int number);
+
+  std::mutex mutex_;
+  std::map<std::string, TestUnit> units_;
+  std::vector<std::string> asked_;
+  std::string refusal_;
+  std::string said_active_;
+  std::uint32_t said_pid_ = 0;
+  std::vector<std::string> to_start_;  // RestartUnit: once the old one has ended
+  struct sd_bus* bus_ = nullptr;
+  std::atomic<bool> is_ending_ = false;
+  std::thread thread_;
+};
+
+// systemd itself: a user instance with a dbus-daemon of its own, and no units but those that are
+// written. Needs the right to mount, and gives nothing where the machine does not grant it.
+class UserSystemd {
+ public:
+  static std::unique_ptr<UserSystemd> begin();
+  ~UserSystemd();
+
+  // Writes the unit `name`, which runs `command`, and starts it. It writes a line for each start.
+  void start(const std::string& name, const std::string& command, const std::string& settings);
+  int starts_of(const std::string& name) const;
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  UserSystemd() = default;
+
+  std::filesystem::path folder_;
+  int pid_ = 0;
+};
+
+}  // namespace culprit::owners

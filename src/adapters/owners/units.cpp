@@ -1,0 +1,288 @@
+#include "owners/units.h"
+
+#include <algorithm>
+#include <csignal>
+
+#include "base/closest.h"
+#include "base/live_clock.h"
+#include "owners/proc.h"
+
+namespace culprit::owners {
+namespace {
+
+using Activity = UnitState::Activity;
+
+// Numbers are given out anew; two readings of one start differ by the clocks' rounding.
+bool is_running(int pid, std::optional<Time> began) {
+  constexpr Duration kSame = std::chrono::milliseconds(100);
+  const auto begins = started_at(pid);
+  return pid != 0 && began && begins && std::chrono::abs(*begins - *began) < kSame &&
+         state_letter(pid).value_or('Z') != 'Z';
+}
+
+// It is a zombie, or was reaped.
+bool has_ended(int pid) { return state_letter(pid).value_or('Z') == 'Z'; }
+
+bool is_stopped(int pid) {
+  const char state = state_letter(pid).value_or('Z');
+  return state == 'T' || state == 't';
+}
+
+std::string in_words(const UnitState& state, const std::string& unit) {
+  if (state.activity == Activity::kFailed) return unit + " failed: " + state.result;
+  return unit + " is inactive";
+}
+
+Error not_loaded(const SystemdUnit& unit, const UnitState& state, SystemdBus& bus) {
+  const std::string owner = unit.is_of_user ? "the user's systemd" : "systemd";
+  if (state.load_state != "not-found")
+    return Error{owner + " cannot use " + unit.name + " (" + state.load_state +
+                 "); systemctl status says why"};
+  std::string near;
+  if (const auto all = bus.services()) {
+    near = closest(unit.name, std::vector<std::string_view>(all->begin(), all->end()));
+  }
+  return Error{owner + " has no " + unit.name +
+               (near.empty() ? "; systemctl list-unit-files says what it has"
+                             : "; did you mean " + near + "?")};
+}
+
+}  // namespace
+
+Units::Units(const RuleSet& rules, Inbox& inbox) : rules_(rules), inbox_(inbox) {
+  for (std::size_t c = 0; c < rules_.components.size(); ++c) {
+    if (rules_.components[c].unit) components_.push_back(ComponentId(c));
+  }
+  if (!components_.empty()) thread_ = std::thread([this] { run(); });
+}
+
+Units::~Units() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  something_came_.notify_all();
+  thread_.join();
+}
+
+void Units::found(ComponentId component, int pid) {
+  if (components_.empty()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    found_.push_back({component, pid, started_at(pid)});
+  }
+  something_came_.notify_all();
+}
+
+void Units::start(CommandId command, ComponentId component) {
+  add({command, component, Errand::Kind::kStart});
+}
+
+void Units::stop(CommandId command, ComponentId component, int pid, Ending ending) {
+  const auto kind = ending == Ending::kToStartAgain ? Errand::Kind::kReplace : Errand::Kind::kEnd;
+  add({command, component, kind, pid, started_at(pid)});
+}
+
+void Units::add(Errand errand) {
+  errand.until = later(live_now(), kStart);
+  {
+    const std::lock_guard lock(mutex_);
+    errands_.push_back(std::move(errand));
+  }
+  something_came_.notify_all();
+}
+
+// ---- the thread
+
+void Units::run() {
+  std::vector<Errand> under_way;
+  Time next_look = kLongAgo;
+  std::unique_lock lock(mutex_);
+  while (!is_ending_) {
+    std::vector<Found> found = std::exchange(found_, {});
+    std::move(errands_.begin(), errands_.end(), std::back_inserter(under_way));
+    errands_.clear();
+    lock.unlock();
+    for (const Found& each : found) note(each);
+    std::erase_if(under_way, [&](Errand& each) { return advance(each); });
+    if (live_now() >= next_look) {
+      look_at_all();
+      next_look = later(live_now(), kIdlePeriod);
+    }
+    lock.lock();
+    const auto has_news = [&] { return is_ending_ || !errands_.empty() || !found_.empty(); };
+    const Duration wait = under_way.empty() ? next_look - live_now() : Duration(kPeriod);
+    something_came_.wait_for(lock, std::max(wait, Duration::zero()), has_news);
+  }
+}
+
+// What failed is proven to be dead, also if its node was never seen; what is inactive only if it was
+// active before: it may have been stopped on purpose before anybody looked.
+void Units::look_at_all() {
+  for (const ComponentId component : components_) {
+    const std::string& name = unit_of(component).name;
+    const auto state = bus_of(component).state_of(name);
+    if (!state || !state->is_loaded) continue;
+    const auto before = before_.find(component);
+    const bool is_first = before == before_.end();
+    const bool has_ended =
+        !is_first && before->second != Activity::kInactive && before->second != Activity::kFailed;
+    const bool has_failed =
+        state->activity == Activity::kFailed && (is_first || before->second != Activity::kFailed);
+    before_.insert_or_assign(component, state->activity);
+    if (state->is_over() && (has_failed || has_ended) && state->last_main_pid != 0) {
+      inbox_.put(ProcessSeen{component, ProcessState::kGone, state->last_main_pid,
+                             in_words(*state, name)});
+    }
+  }
+}
+
+void Units::note(const Found& found) {
+  last_found_[found.component] = found;
+  if (!rules_[found.component].unit) return;
+  const auto state = bus_of(found.component).state_of(unit_of(found.component).name);
+  if (state && state->main_pid != 0 && is_running(found.pid, found.began))
+    found_with_[found.component] = {found.pid, state->main_pid};
+}
+
+bool Units::answer(const Errand& errand, Outcome outcome, std::string text, int pid) {
+  Reply reply{errand.command, outcome, {}, std::move(text)};
+  if (pid != 0) reply.value = Value(std::int64_t{pid});
+  inbox_.put(std::move(reply));
+  return true;
+}
+
+bool Units::advance(Errand& errand) {
+  const SystemdUnit& unit = unit_of(errand.component);
+  SystemdBus& bus = bus_of(errand.component);
+  const auto state = bus.state_of(unit.name);
+  if (!state) {
+    if (errand.was_asked && live_now() < errand.until) return false;
+    return answer(errand, errand.was_asked ? Outcome::kTimedOut : Outcome::kRefused, state.error());
+  }
+  if (!state->is_loaded)
+    return answer(errand, Outcome::kRefused, not_loaded(unit, *state, bus).message);
+  const bool is_start = errand.kind == Errand::Kind::kStart;
+  if (!errand.was_asked) return is_start ? begin_start(errand, *state) : begin_end(errand, *state);
+  return is_start ? watch_start(errand, *state) : watch_end(errand, *state);
+}
+
+// ---- starting
+
+bool Units::begin_start(Errand& errand, const UnitState& state) {
+  const std::string& name = unit_of(errand.component).name;
+  // systemd has not noticed yet.
+  if (state.main_pid != 0 && has_ended(state.main_pid) && live_now() < errand.until) return false;
+  if (!state.is_over() && state.activity != Activity::kDeactivating)
+    return answer(errand, Outcome::kDone, "systemd has started " + name, state.main_pid);
+  if (state.has_job) return answer(errand, Outcome::kDone, "systemd is about to start " + name);
+  if (const auto asked = bus_of(errand.component).start(name); !asked)
+    return answer(errand, Outcome::kRefused, asked.error());
+  errand.was_asked = true;
+  errand.until = later(live_now(), kStart);
+  return false;
+}
+
+bool Units::watch_start(Errand& errand, const UnitState& state) {
+  const std::string& name = unit_of(errand.component).name;
+  if (state.main_pid != 0) return answer(errand, Outcome::kDone, "", state.main_pid);
+  if (!state.has_job && state.is_over())
+    return answer(
+        errand, Outcome::kRefused,
+        "systemd could not start it: " + in_words(state, name) + "; journalctl -u says why");
+  // What it does before its main process may take long.
+  return live_now() >= errand.until &&
+         answer(errand, Outcome::kDone, "systemd is starting " + name);
+}
+
+// ---- ending
+
+// Errors of systemd are for the request itself to find.
+std::optional<std::string> Units::who_else_would_end(ComponentId component) {
+  for (const auto& [other, found] : last_found_) {
+    if (other == component || !is_running(found.pid, found.began)) continue;
+    const auto is_its = bus_of(component).runs(unit_of(component).name, found.pid);
+    if (is_its && *is_its) return rules_[other].name;
+  }
+  return std::nullopt;
+}
+
+bool Units::begin_end(Errand& errand, const UnitState& state) {
+  const std::string& name = unit_of(errand.component).name;
+  SystemdBus& bus = bus_of(errand.component);
+  const bool runs = is_running(errand.pid, errand.began);
+  if (runs) {
+    const auto is_its = bus.runs(name, errand.pid);
+    if (!is_its) return answer(errand, Outcome::kRefused, is_its.error());
+    if (!*is_its)
+      return answer(errand, Outcome::kRefused,
+                    "process " + std::to_string(errand.pid) + " is not ended: it is not of " +
+                        name +
+                        ", which was not asked to end either; end it by hand, or correct "
+                        "the UNIT of " +
+                        rules_[errand.component].name);
+  }
+  // systemd has not noticed yet.
+  if (!runs && errand.pid != 0 && state.main_pid == errand.pid && live_now() < errand.until)
+    return false;
+  const bool is_to_replace = errand.kind == Errand::Kind::kReplace;
+  if (!runs && state.is_over() && !state.has_job) return answer(errand, Outcome::kDone, "");
+  if (is_to_replace && errand.pid != 0 && !runs) {
+    // systemd started it again, or will; but not where what has ended was a child of the main
+    // process, which does not know.
+    const auto found = found_with_.find(errand.component);
+    const bool is_left = found != found_with_.end() && state.main_pid != 0 &&
+                         found->second == std::pair(errand.pid, state.main_pid);
+    if (!is_left) return answer(errand, Outcome::kDone, "systemd starts it again");
+  }
+  if (const auto other = who_else_would_end(errand.component))
+    return answer(errand, Outcome::kRefused,
+                  name + " runs " + *other + ", too, and would end it; give " +
+                      rules_[errand.component].name + " a unit of its own");
+  const auto asked = is_to_replace ? bus.restart(name) : bus.stop(name);
+  if (!asked) return answer(errand, Outcome::kRefused, asked.error());
+  errand.was_asked = true;
+  errand.main_pid = state.main_pid;
+  const bool acts = !is_stopped(errand.pid) && !is_stopped(errand.main_pid);
+  errand.escalate = acts ? later(live_now(), kPolite) : live_now();
+  errand.until = later(live_now(), kEnd);
+  return false;
+}
+
+bool Units::watch_end(Errand& errand, const UnitState& state) {
+  const std::string& name = unit_of(errand.component).name;
+  const bool is_left_by_systemd = errand.kind == Errand::Kind::kEnd
+                                      ? state.is_over() && !state.has_job
+                                      : state.main_pid != errand.main_pid || state.is_over();
+  const bool runs = is_running(errand.pid, errand.began);
+  if (is_left_by_systemd && !runs) return answer(errand, Outcome::kDone, "");
+  const Time now = live_now();
+  if (now >= errand.until) {
+    return answer(errand, Outcome::kTimedOut,
+                  runs && is_left_by_systemd
+                      ? "process " + std::to_string(errand.pid) +
+                            " goes on although systemd ended " + name + "; what is its KillMode=?"
+                      : "systemd did not end " + name + " in time");
+  }
+  // Never the successor: only while the process is still the one that is to end.
+  if (now >= errand.escalate && !is_left_by_systemd && errand.main_pid != 0 &&
+      state.main_pid == errand.main_pid) {
+    errand.escalate = later(now, kPolite);
+    if (const auto killed = bus_of(errand.component).kill(name); !killed)
+      inbox_.put(LinkTrouble{killed.error()});
+  }
+  return false;
+}
+
+// ---- before anything breaks
+
+Expected<void> could_manage(const SystemdUnit& unit) {
+  SystemdBus bus(unit.is_of_user ? SystemdBus::Whose::kUser : SystemdBus::Whose::kSystem);
+  const auto state = bus.state_of(unit.name);
+  if (!state) return Error{state.error()};
+  if (!state->is_loaded) return not_loaded(unit, *state, bus);
+  return bus.may_manage(unit.name);
+}
+
+}  // namespace culprit::owners

@@ -1,0 +1,120 @@
+// Components that systemd runs (UNIT): systemd is asked to start and to end them, and what it says
+// of them is proof.
+//
+// To redeploy is RestartUnit: systemd starts the unit again by itself, also if culprit ends in
+// between. A unit that systemd started again already (Restart=), or is about to, is not ended and
+// not started a second time. systemd ends a process politely; a process that is stopped, or is still
+// there after kPolite, gets SIGKILL, through systemd too.
+//
+// Proof before harm: a process that is not of the unit is not ended by ending the unit, so nothing
+// is ended then. Where systemd cannot be asked, or refuses, that is the answer, and nothing was
+// ended.
+//
+// Everything is asked on a thread of its own: nobody waits here for a bus that does not answer.
+#pragma once
+
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "owners/supervisor.h"
+#include "owners/systemd_bus.h"
+#include "robot/command.h"
+#include "robot/inbox.h"
+
+namespace culprit::owners {
+
+// All members may be called from any thread. Observations (ProcessSeen, Reply) go to the inbox.
+class Units {
+ public:
+  static constexpr Duration kPolite = std::chrono::seconds(3);
+  // Until when an end is answered, one way or the other: less than a StopProcess may take.
+  static constexpr Duration kEnd = std::chrono::seconds(10);
+  static constexpr Duration kStart = std::chrono::seconds(4);
+  // How often it is looked: while something is asked for, and else.
+  static constexpr Duration kPeriod = std::chrono::milliseconds(50);
+  static constexpr Duration kIdlePeriod = std::chrono::seconds(1);
+
+  // `rules` and `inbox` must outlive this. Nothing is asked, and no thread is started, if no
+  // component has a UNIT.
+  Units(const RuleSet& rules, Inbox& inbox);
+  ~Units();
+
+  // The component's node runs in this process now; of components without a UNIT, too: a unit that
+  // runs several is not ended for one of them.
+  void found(ComponentId component, int pid);
+
+  // Starts the component's unit and replies when systemd has started it, or does so by itself.
+  void start(CommandId command, ComponentId component);
+
+  // Ends the process `pid` of the component's unit, and the unit; 0: whichever it runs. Replies when
+  // systemd and the kernel say that it is gone.
+  void stop(CommandId command, ComponentId component, int pid, Ending ending);
+
+ private:
+  struct Errand {
+    enum class Kind : std::uint8_t { kStart, kReplace, kEnd };
+    CommandId command;
+    ComponentId component;
+    Kind kind = Kind::kStart;
+    int pid = 0;                  // that is to end; 0: not known
+    std::optional<Time> began{};  // of it
+    bool was_asked = false;       // systemd was
+    int main_pid = 0;             // when it was
+    Time escalate = kNever;
+    Time until = kNever;
+  };
+  struct Found {
+    ComponentId component;
+    int pid = 0;
+    std::optional<Time> began{};
+  };
+
+  void add(Errand errand);
+  void run();
+  void look_at_all();
+  void note(const Found& found);
+
+  // Gives whether the errand is done.
+  bool advance(Errand& errand);
+  bool begin_start(Errand& errand, const UnitState& state);
+  bool begin_end(Errand& errand, const UnitState& state);
+  bool watch_start(Errand& errand, const UnitState& state);
+  bool watch_end(Errand& errand, const UnitState& state);
+  std::optional<std::string> who_else_would_end(ComponentId component);
+  bool answer(const Errand& errand, Outcome outcome, std::string text, int pid = 0);
+
+  const SystemdUnit& unit_of(ComponentId component) const { return *rules_[component].unit; }
+  SystemdBus& bus_of(ComponentId component) {
+    return unit_of(component).is_of_user ? user_ : system_;
+  }
+
+  const RuleSet& rules_;
+  Inbox& inbox_;
+  std::vector<ComponentId> components_;  // those with a unit
+
+  // Of the thread.
+  SystemdBus system_{SystemdBus::Whose::kSystem};
+  SystemdBus user_{SystemdBus::Whose::kUser};
+  std::map<ComponentId, UnitState::Activity> before_;
+  // The node's process, and the main process of the unit then: `ros2 run` is another one.
+  std::map<ComponentId, std::pair<int, int>> found_with_;
+  std::map<ComponentId, Found> last_found_;
+
+  std::mutex mutex_;
+  std::condition_variable something_came_;
+  std::vector<Errand> errands_;  // that are new
+  std::vector<Found> found_;     // likewise
+  bool is_ending_ = false;
+  std::thread thread_;
+};
+
+// Whether culprit could start and end this unit. Errors: systemd cannot be asked, has no such unit,
+// or refuses. Waits for systemd, SystemdBus::kPatience for each of a few calls.
+Expected<void> could_manage(const SystemdUnit& unit);
+
+}  // namespace culprit::owners

@@ -1,0 +1,257 @@
+// What is asked of systemd, and what its answers are taken for. The server is a stand-in that
+// speaks systemd's published interface on a real dbus-daemon and really runs a process for each
+// unit; units_live_test.cpp asks systemd itself.
+#include "owners/units.h"
+
+#include <csignal>
+#include <optional>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+#include "owners/proc.h"
+#include "owners/test_systemd.h"
+
+namespace culprit::owners {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr Duration kPatience = 20s;
+constexpr ComponentId kLidar{0};
+
+bool runs(int pid) { return pid != 0 && state_letter(pid).value_or('Z') != 'Z'; }
+
+struct UnitsOnAStandInForSystemd : testing::Test {
+  void SetUp() override {
+    systemd.add("lidar.service");
+    ask();
+  }
+  void ask(const std::string& clauses = "UNIT lidar.service") {
+    units.reset();
+    rules = *check(Source("test.rules", "COMPONENT lidar NODE /lidar " + clauses +
+                                            "\nCOMPONENT camera NODE /camera\n"))
+                 .rules;
+    units.emplace(rules, inbox);
+  }
+
+  // What `wanted` finds in an observation.
+  template <class What, class Fits>
+  std::optional<What> wait_for(Fits fits) {
+    for (const Time end = later(live_now(), kPatience); live_now() < end;) {
+      std::vector<Observation> seen;
+      inbox.take(std::min(end, later(live_now(), 1s)), seen);
+      for (const Observation& each : seen) {
+        const auto* what = std::get_if<What>(&each.what);
+        if (what != nullptr && fits(*what)) return *what;
+      }
+    }
+    return std::nullopt;
+  }
+  Reply answer() {
+    const auto reply =
+        wait_for<Reply>([&](const Reply& each) { return each.command == CommandId{count}; });
+    return reply ? *reply : Reply{{}, Outcome::kTimedOut, {}, "nothing was answered"};
+  }
+  Reply start() {
+    units->start(CommandId{++count}, kLidar);
+    return answer();
+  }
+  Reply stop(int pid, Ending ending = Ending::kToStartAgain) {
+    units->stop(CommandId{++count}, kLidar, pid, ending);
+    return answer();
+  }
+  int running() { return systemd.start("lidar.service"); }
+  int now_running() { return systemd.pid_of("lidar.service"); }
+
+  TestBus bus;
+  TestSystemd systemd{bus};
+  Inbox inbox;
+  RuleSet rules;
+  std::optional<Units> units;
+  std::uint64_t count = 0;
+};
+
+TEST_F(UnitsOnAStandInForSystemd, AreStartedAndSayWhichProcess) {
+  const Reply reply = start();
+  EXPECT_EQ(reply.outcome, Outcome::kDone) << reply.text;
+  EXPECT_EQ(reply.value, decltype(Reply::value)(Value(std::int64_t{now_running()})));
+  EXPECT_TRUE(runs(now_running()));
+  EXPECT_EQ(start().outcome, Outcome::kDone) << "it runs already";
+  EXPECT_THAT(systemd.asked(), ElementsAre("StartUnit lidar.service"));
+}
+
+TEST_F(UnitsOnAStandInForSystemd, AreReplacedByOneRequest) {
+  const int old = running();
+  const Reply reply = stop(old);
+  EXPECT_EQ(reply.outcome, Outcome::kDone) << reply.text;
+  EXPECT_FALSE(runs(old));
+  EXPECT_EQ(start().outcome, Outcome::kDone);
+  EXPECT_TRUE(runs(now_running()));
+  EXPECT_NE(now_running(), old);
+  EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service"));
+}
+
+TEST_F(UnitsOnAStandInForSystemd, ThatSystemdStartedAgainAreNotEndedNorDoubled) {
+  systemd.add("lidar.service", {.restarts = true});
+  const int old = running();
+  kill(old, SIGKILL);
+  EXPECT_EQ(stop(old).outcome, Outcome::kDone);
+  EXPECT_EQ(start().outcome, Outcome::kDone);
+  EXPECT_TRUE(runs(now_running()));
+  EXPECT_THAT(systemd.asked(), IsEmpty());
+}
+
+TEST_F(UnitsOnAStandInForSystemd, ThatAreDeadAreStartedOnce) {
+  const int old = running();
+  kill(old, SIGKILL);
+  EXPECT_EQ(stop(old).outcome, Outcome::kDone);
+  EXPECT_EQ(start().outcome, Outcome::kDone);
+  EXPECT_TRUE(runs(now_running()));
+  EXPECT_THAT(systemd.asked(), ElementsAre("StartUnit lidar.service"));
+}
+
+TEST_F(UnitsOnAStandInForSystemd, ThatDoNotEndPolitelyAreKilled) {
+  systemd.add("lidar.service", {.heeds_signals = false});
+  const int old = running();
+  EXPECT_EQ(stop(old).outcome, Outcome::kDone);
+  EXPECT_TRUE(start().outcome == Outcome::kDone && now_running() != old);
+  EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service", "KillUnit lidar.service"));
+}
+
+TEST_F(UnitsOnAStandInForSystemd, ThatAreStoppedAreKilledAtOnce) {
+  const int old = running();
+  kill(old, SIGSTOP);
+  while (state_letter(old) != 'T') std::this_thread::sleep_for(5ms);
+  const Time before = live_now();
+  EXPECT_EQ(stop(old).outcome, Outcome::kDone);
+  EXPECT_LT(live_now() - before, Units::kPolite);
+  EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service", "KillUnit lidar.service"));
+}
+
+TEST_F(UnitsOnAStandInForSystemd, AreEndedForGood) {
+  systemd.add("lidar.service", {.restarts = true});
+  const int old = running();
+  EXPECT_EQ(stop(old, Ending::kForGood).outcome, Outcome::kDone);
+  EXPECT_FALSE(runs(old));
+  EXPECT_EQ(now_running(), 0);
+  EXPECT_THAT(systemd.asked(), ElementsAre("StopUnit lidar.service"));
+}
+
+// `ros2 run` is the unit's main process, and the node a child of it that it may outlive.
+TEST_F(UnitsOnAStandInForSystemd, OfWhichAChildWasTheNodeAreRestartedIfOnlyThatEnded) {
+  const int main = running();
+  const int node = fork();
+  if (node == 0) {
+    pause();
+    _exit(0);
+  }
+  units->found(kLidar, node);
+  start();  // what was found before is known by now
+  kill(node, SIGKILL);
+  waitpid(node, nullptr, 0);
+  EXPECT_EQ(stop(node).outcome, Outcome::kDone);
+  EXPECT_FALSE(runs(main));
+  EXPECT_EQ(start().outcome, Outcome::kDone);
+  EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service"));
+}
+
+TEST_F(UnitsOnAStandInForSystemd, DoNotEndWhatIsNotTheirs) {
+  const int main = running();
+  const int other = fork();
+  if (other == 0) {
+    pause();
+    _exit(0);
+  }
+  const Reply reply = stop(other);
+  EXPECT_EQ(reply.outcome, Outcome::kRefused);
+  EXPECT_THAT(reply.text, HasSubstr("is not of lidar.service"));
+  EXPECT_TRUE(runs(main));
+  EXPECT_TRUE(runs(other));
+  EXPECT_THAT(systemd.asked(), IsEmpty());
+  kill(other, SIGKILL);
+  waitpid(other, nullptr, 0);
+}
+
+TEST_F(UnitsOnAStandInForSystemd, ThatRunAnotherComponentTooAreNotEndedForOne) {
+  const int main = running();
+  units->found(ComponentId(1), main);
+  const Reply reply = stop(main);
+  EXPECT_EQ(reply.outcome, Outcome::kRefused);
+  EXPECT_THAT(reply.text, HasSubstr("lidar.service runs camera, too"));
+  EXPECT_TRUE(runs(main));
+  EXPECT_THAT(systemd.asked(), IsEmpty());
+}
+
+TEST_F(UnitsOnAStandInForSystemd, ThatSystemdRefusesAreLeftAsTheyAre) {
+  const int old = running();
+  for (const char* error : {"org.freedesktop.DBus.Error.AccessDenied",
+                            "org.freedesktop.DBus.Error.InteractiveAuthorizationRequired"}) {
+    systemd.refuse(error);
+    const Reply reply = stop(old);
+    EXPECT_EQ(reply.outcome, Outcome::kRefused);
+    EXPECT_THAT(reply.text, HasSubstr("culprit may not: not you; give its user the right"));
+    EXPECT_TRUE(runs(old));
+  }
+  EXPECT_EQ(stop(old, Ending::kForGood).outcome, Outcome::kRefused);
+  EXPECT_TRUE(runs(old));
+  EXPECT_THAT(could_manage({"lidar.service", false}).error(), HasSubstr("culprit may not"));
+}
+
+TEST_F(UnitsOnAStandInForSystemd, ThatDoNotExistAreToldWithTheNameThatWasMeant) {
+  ask("UNIT lydar.service");
+  EXPECT_THAT(start().text, HasSubstr("systemd has no lydar.service; did you mean lidar.service?"));
+  EXPECT_THAT(stop(0).text, HasSubstr("has no lydar.service"));
+  EXPECT_THAT(could_manage({"lydar.service", false}).error(), HasSubstr("did you mean"));
+  EXPECT_TRUE(could_manage({"lidar.service", true}));
+}
+
+TEST_F(UnitsOnAStandInForSystemd, ThatCannotBeStartedSayWhatSystemdSays) {
+  systemd.add("lidar.service", {.is_broken = true});
+  running();
+  const auto seen = wait_for<ProcessSeen>([](const auto&) { return true; });
+  ASSERT_TRUE(seen) << "what failed is dead, though its node was never seen";
+  EXPECT_EQ(seen->state, ProcessState::kGone);
+  EXPECT_EQ(seen->remark, "lidar.service failed: exit-code");
+}
+
+// Somebody may have stopped it on purpose.
+TEST_F(UnitsOnAStandInForSystemd, ThatWereInactiveFromTheBeginningProveNothing) {
+  EXPECT_EQ(stop(0).outcome, Outcome::kDone);
+  std::vector<Observation> seen;
+  inbox.take(later(live_now(), 2 * Units::kIdlePeriod), seen);
+  EXPECT_TRUE(seen.empty());
+}
+
+TEST_F(UnitsOnAStandInForSystemd, AreNotEndedOnWordsThatMakeNoSense) {
+  const int old = running();
+  systemd.say("sleepy", 7);
+  EXPECT_THAT(stop(old).text, HasSubstr("says that lidar.service is 'sleepy'"));
+  systemd.say("active", 4'000'000'000u);
+  EXPECT_EQ(stop(old).outcome, Outcome::kRefused);
+  EXPECT_TRUE(runs(old));
+  EXPECT_THAT(systemd.asked(), IsEmpty());
+}
+
+TEST_F(UnitsOnAStandInForSystemd, AreRefusedInTimeIfTheBusHangsOrIsGone) {
+  const int old = running();
+  bus.signal(SIGSTOP);
+  const Time before = live_now();
+  EXPECT_EQ(stop(old).outcome, Outcome::kRefused);
+  EXPECT_LT(live_now() - before, Units::kEnd);
+  bus.signal(SIGCONT);
+  EXPECT_EQ(start().outcome, Outcome::kDone) << "it is asked again";
+  bus.signal(SIGKILL);
+  EXPECT_THAT(stop(old).text, HasSubstr("is it running"));
+  EXPECT_TRUE(runs(old));
+}
+
+}  // namespace
+}  // namespace culprit::owners

@@ -1,0 +1,130 @@
+// Who starts and ends a component is asked, and never fought: nodes that a real systemd runs, and
+// culprit as users run it.
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/environment.h"
+#include "owners/proc.h"
+#include "owners/test_systemd.h"
+#include "ros2/options.h"
+#include "terminal/test_program.h"
+
+namespace culprit::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kRules = R"(
+COMPONENT lidar NODE /lidar UNIT lidar.service USER
+RULE LidarGone
+  POLICIES ERROR
+  TRIGGER alive(lidar) == false
+    STRATEGY lidar_redeploy 90 10
+      ADAPTATION lidar redeploy 5
+)";
+
+struct NodesOfARealSystemd : testing::Test {
+  void SetUp() override {
+    systemd = owners::UserSystemd::begin();
+    if (!systemd) GTEST_SKIP() << "this machine lets nobody run an instance of systemd";
+  }
+  void start(const std::string& settings) { start(node(), settings); }
+  void start(const std::string& command, const std::string& settings) {
+    systemd->start("lidar.service", command, settings);
+  }
+  std::string node() const {
+    return (own_folder() / "ros2_peer_node").string() + " " +
+           std::to_string(ros2::options_from_environment()->domain) + " /lidar";
+  }
+  TestProgram run() {
+    return TestProgram(world, {"culprit", "run", world.write("units.rules", kRules), "--state-dir",
+                               (world.folder() / "state").string()});
+  }
+  // Waits until another process than `old` is there; 0: none came.
+  static int another(const TestProgram& culprit, int old) {
+    for (const Time end = later(live_now(), TestProgram::kPatience); live_now() < end;) {
+      const int now = pid_in(culprit.output(), "lidar");
+      if (now != 0 && now != old) return now;
+      std::this_thread::sleep_for(20ms);
+    }
+    return 0;
+  }
+  // What was broken works again, by the same owner and started once.
+  void expect_healed(const TestProgram& culprit, int old) {
+    EXPECT_TRUE(culprit.prints("LidarGone resolved")) << culprit.output();
+    const int now = another(culprit, old);
+    ASSERT_NE(now, 0) << culprit.output();
+    EXPECT_EQ(owners::state_letter(old).value_or('Z'), 'Z');
+    owners::SystemdBus bus(owners::SystemdBus::Whose::kUser);
+    const auto is_its = bus.runs("lidar.service", now);
+    EXPECT_TRUE(is_its && *is_its) << now << " is not of the unit";
+    EXPECT_EQ(systemd->starts_of("lidar.service"), 2);
+    EXPECT_THAT(culprit.output(), Not(HasSubstr("several nodes")));
+  }
+
+  TestWorld world;
+  std::unique_ptr<owners::UserSystemd> systemd;
+};
+
+TEST_F(NodesOfARealSystemd, ThatAreKilledAreStartedOnce) {
+  start("");
+  const auto culprit = run();
+  const int old = another(culprit, 0);
+  ASSERT_NE(old, 0) << culprit.output();
+  kill(old, SIGKILL);
+  expect_healed(culprit, old);
+}
+
+TEST_F(NodesOfARealSystemd, ThatItStartsAgainItselfAreNotDoubled) {
+  start("Restart=always\nRestartSec=500ms\n");
+  const auto culprit = run();
+  const int old = another(culprit, 0);
+  ASSERT_NE(old, 0) << culprit.output();
+  kill(old, SIGKILL);
+  expect_healed(culprit, old);
+}
+
+TEST_F(NodesOfARealSystemd, ThatHangAreReplaced) {
+  start("Restart=always\n");
+  const auto culprit = run();
+  const int old = another(culprit, 0);
+  ASSERT_NE(old, 0) << culprit.output();
+  kill(old, SIGSTOP);
+  expect_healed(culprit, old);
+}
+
+TEST_F(NodesOfARealSystemd, ThatFailedBeforeAnybodyLookedAreStarted) {
+  const std::string can = (systemd->folder() / "can").string();
+  start("/bin/sh -c 'test -e " + can + " && exec " + node() + "'", "");
+  owners::SystemdBus bus(owners::SystemdBus::Whose::kUser);
+  for (const Time end = later(live_now(), TestProgram::kPatience); live_now() < end;) {
+    const auto state = bus.state_of("lidar.service");
+    ASSERT_TRUE(state) << state.error();
+    if (state->activity == owners::UnitState::Activity::kFailed) break;
+    std::this_thread::sleep_for(20ms);
+  }
+  std::ofstream(can) << "now";
+  const auto culprit = run();
+  EXPECT_TRUE(culprit.prints("lidar.service failed: exit-code")) << culprit.output();
+  EXPECT_NE(another(culprit, 0), 0) << culprit.output();
+  EXPECT_EQ(systemd->starts_of("lidar.service"), 2);
+}
+
+TEST_F(NodesOfARealSystemd, ThatItHasNotAreToldBeforeAnythingBreaks) {
+  start("");
+  const auto rules =
+      world.write("typo.rules", "COMPONENT lidar NODE /lidar UNIT lydar.service USER\n");
+  TestProgram check(world, {"culprit", "check", "--robot", rules});
+  EXPECT_EQ(check.wait(), 0);
+  EXPECT_THAT(check.output(),
+              HasSubstr("the user's systemd has no lydar.service; did you mean lidar.service?"));
+}
+
+}  // namespace
+}  // namespace culprit::cli
