@@ -14,7 +14,7 @@
 namespace culprit::owners {
 
 struct BusError {
-  sd_bus_error it = SD_BUS_ERROR_NULL;
+  sd_bus_error it{};
   BusError() = default;
   BusError(const BusError&) = delete;
   BusError& operator=(const BusError&) = delete;
