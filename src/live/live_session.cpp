@@ -136,7 +136,7 @@ Past waiting_verdicts(const Knowledge& knowledge, const RuleSet& next, Time firs
   for (const PendingOutcome& outcome : knowledge.outcomes.open) {
     const Strategy& strategy = rules[outcome.strategy];
     const auto same = journal::find_strategy(next, rules[strategy.rule].name, strategy.name);
-    if (!same || outcome.is_void || outcome.has_second_fault) continue;
+    if (!same || outcome.is_void) continue;
     waiting.push_back({outcome.judged, OutcomePending{*same, outcome.has_helped && !outcome.is_back,
                                                       std::max(outcome.due, first)}});
   }

@@ -144,7 +144,29 @@ Time CouplingWatch::next_deadline() const {
 
 // When `change` has had its effect on the failure of `rule`, if it has one.
 Time CouplingWatch::shown(const Change& change, RuleId rule) const {
-  return later(change.end, delay(knowledge_.rules[change.strategy].rule, rule));
+  const RuleId cause = knowledge_.rules[change.strategy].rule;
+  const Time came = knowledge_.states[rule].first_detected();
+  if (came < change.begin || !may_hide(knowledge_, cause, rule))
+    return later(change.end, delay(cause, rule));
+  // It came to light with the change, which let it through: how late says nothing of how long it
+  // takes to go. A fresh reading tells.
+  const Duration usual = held(rule) + duration_of(kUsualDelay, knowledge_.rules);
+  return std::max(later(change.end, usual),
+                  later(std::min(change.effective, change.end), knowledge_.signals.latency(rule)));
+}
+
+// The same, where what was tried for that failure took down what would have shown it: it begins to
+// show once that is up again.
+Time CouplingWatch::shown_after_all(const Change& change, RuleId rule) const {
+  Time at = shown(change, rule);
+  const Duration delay = at - change.end;
+  for (const Change& own : changes_) {
+    const bool is_own = knowledge_.rules[own.strategy].rule == rule;
+    if (is_own && own.begin >= change.begin && own.begin < at &&
+        begins_anew(knowledge_.rules[own.strategy]))
+      at = std::max(at, later(std::min(own.effective, own.end), delay));
+  }
+  return at;
 }
 
 // Can nothing but `strategy` have changed `effect` since then?
@@ -182,7 +204,7 @@ bool CouplingWatch::is_echo(const Attempt& attempt) const {
     // What was seen only after the change cannot be about to go away with it.
     return knowledge_.rules[change.strategy].rule != rule &&
            detected < later(change.effective, latency) &&
-           shown(change, rule) > attempt.first_change &&
+           shown_after_all(change, rule) > attempt.first_change &&
            is_rival(knowledge_, change.strategy, sources, rule);
   });
 }

@@ -75,6 +75,7 @@ class CouplingWatch {
   Time last_change_for(RuleId cleared, Time now) const;
   Duration delay(RuleId cause, RuleId effect) const;
   Time shown(const Change& change, RuleId rule) const;
+  Time shown_after_all(const Change& change, RuleId rule) const;
   bool is_only_cause(StrategyId strategy, RuleId effect, Time since) const;
   void forget_what_is_settled(Time now);
 

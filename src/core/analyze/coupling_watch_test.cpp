@@ -14,13 +14,13 @@ constexpr RuleId kEffect{std::size_t{1}};
 
 // b depends on a; both fail, the effect so long after its cause.
 struct Two {
-  Two(const std::string& policies, Duration later)
+  Two(const std::string& policies, Duration later, const std::string& level = "ERROR")
       : rules(*check(Source("x.rules",
                             "CYCLE 200ms\nCOMPONENT a NODE /a\nCOMPONENT b NODE /b\n"
                             "DEPENDENCY b ON a\nRULE Cause\nPOLICIES ERROR\n"
                             "TRIGGER x > 1\nSTRATEGY s 90 10\nADAPTATION a restart 5\n"
-                            "RULE Effect\nPOLICIES ERROR " +
-                                policies +
+                            "RULE Effect\nPOLICIES " +
+                                level + " " + policies +
                                 "\nTRIGGER y > 1\nSTRATEGY t 90 10\n"
                                 "ADAPTATION b restart 5\n"))
                    .rules) {
@@ -56,6 +56,19 @@ struct Two {
     return settling ? settling->since - (kCame + 4s) : -1s;
   }
 
+  // What the effect's rule reads may be five seconds old.
+  void read_seldom() {
+    for (const InputId id : rules[kEffect].inputs) knowledge.signals.set_latency(id, 5s);
+  }
+  // A strategy of `rule` that began at `begin` and took effect a second later.
+  Attempt attempt(RuleId rule, Time begin) const {
+    Attempt attempt;
+    attempt.strategy = rules[rule].strategies.front();
+    attempt.first_change = begin;
+    attempt.effective = begin + 1s;
+    return attempt;
+  }
+
   static constexpr Time kCame{100s};
   static constexpr Time kResolved{125s};
   RuleSet rules;
@@ -77,6 +90,55 @@ TEST(CouplingWatch, TakesWhatCameSoonAfterItsCauseForOnItsWayWhateverHasChangedS
   EXPECT_EQ(Two("", 1500ms).settles_after_clearing(), 2250ms);
   EXPECT_EQ(Two("", 2500ms).settles_after_clearing(), -1s) << "later than ten cycles";
   EXPECT_EQ(Two("HOLD 3/5", 2500ms).settles_after_clearing(), 4750ms) << "and its window";
+}
+
+// The effect came 2 s after its cause; that was mended between 1 s and 3 s, so that it may take
+// until 6 s to go.
+TEST(CouplingWatch, TakesAnAttemptForAnEchoWhileTheEffectMayStillGoWithItsCause) {
+  Two two("", 2s);
+  two.read_seldom();
+  CouplingWatch watch(two.knowledge);
+  watch.ended(two.attempt(kCause, Two::kCame + 1s), Two::kCame + 3s);
+  EXPECT_TRUE(watch.is_echo(two.attempt(kEffect, Two::kCame + 5900ms)));
+  EXPECT_FALSE(watch.is_echo(two.attempt(kEffect, Two::kCame + 6s)));
+  EXPECT_FALSE(watch.is_echo(two.attempt(kCause, Two::kCame + 4s))) << "its own does not echo";
+}
+
+TEST(CouplingWatch, TakesNothingForAnEchoThatWasSeenOnlyAfterTheChange) {
+  for (const Duration came : {4900ms, 5000ms}) {
+    Two two("", came);
+    two.read_seldom();
+    CouplingWatch watch(two.knowledge);
+    watch.ended(two.attempt(kCause, Two::kCame - 1s), Two::kCame + 5s);
+    EXPECT_EQ(watch.is_echo(two.attempt(kEffect, Two::kCame + 6s)), came < 5s);
+  }
+}
+
+// It can only show that it is well once it is up again.
+TEST(CouplingWatch, WaitsLongerForAnEffectThatWasItselfRestartedMeanwhile) {
+  Two two("", 2s);
+  two.read_seldom();
+  CouplingWatch watch(two.knowledge);
+  watch.ended(two.attempt(kCause, Two::kCame + 1s), Two::kCame + 3s);
+  watch.ended(two.attempt(kEffect, Two::kCame + 5s), Two::kCame + 7s);
+  EXPECT_TRUE(watch.is_echo(two.attempt(kEffect, Two::kCame + 8900ms)));
+  EXPECT_FALSE(watch.is_echo(two.attempt(kEffect, Two::kCame + 9s)));
+  watch.ended(two.attempt(kEffect, Two::kCame + 9s), Two::kCame + 10s);
+  EXPECT_FALSE(watch.is_echo(two.attempt(kEffect, Two::kCame + 10s))) << "that was too late";
+}
+
+// When an outage let a lesser failure through says nothing of how long that takes to go.
+TEST(CouplingWatch, TakesWhatCameToLightWithTheRepairForNoLateEffect) {
+  for (const char* level : {"WARNING", "ERROR"}) {
+    Two two("", 4s, level);
+    two.read_seldom();
+    CouplingWatch watch(two.knowledge);
+    watch.ended(two.attempt(kCause, Two::kCame + 2s), Two::kCame + 5s);
+    const bool is_lesser = std::string(level) == "WARNING";
+    EXPECT_EQ(watch.is_echo(two.attempt(kEffect, Two::kCame + 8500ms)), !is_lesser);
+    EXPECT_TRUE(watch.is_echo(two.attempt(kEffect, Two::kCame + 7900ms)))
+        << "a reading from before may still be believed";
+  }
 }
 
 }  // namespace

@@ -13,16 +13,19 @@ void OutcomeWatch::judged(const Attempt& attempt, bool has_helped, Time now) {
   // A rule with ON_CHANGE expects its condition to last: there is nothing to wait for.
   const bool is_at_once = knowledge_.rules[rule].policies.on_change;
   const Time decided = attempt.deadline == kNever ? now : std::max(now, attempt.deadline);
-  const auto& active = knowledge_.states.active();
-  const bool is_hidden = std::any_of(active.begin(), active.end(), [&](RuleId other) {
-    return may_hide(knowledge_, other, rule);
-  });
-  const PendingOutcome outcome{attempt.strategy, has_helped, now,
-                               is_at_once ? now : later(decided, knowledge_.outcomes.healthy),
-                               attempt.is_ambiguous || changed_nothing || is_hidden};
+  PendingOutcome outcome{attempt.strategy, has_helped, now,
+                         is_at_once ? now : later(decided, knowledge_.outcomes.healthy),
+                         attempt.is_ambiguous || changed_nothing};
+  if (is_at_once || decided <= now) look_at(outcome);
   if (outcome.is_void || outcome.due <= now) return count(outcome, now);
   knowledge_.outcomes.open.push_back(outcome);
   knowledge_.tell(now, OutcomePending{attempt.strategy, has_helped, outcome.due});
+}
+
+// Not when the verdict comes: one that helped is judged earlier than one that did not.
+void OutcomeWatch::look_at(PendingOutcome& outcome) {
+  outcome.was_looked_at = true;
+  outcome.is_void |= is_hidden(knowledge_, knowledge_.rules[outcome.strategy].rule);
 }
 
 void OutcomeWatch::detected(RuleId rule, Time now) {
@@ -30,8 +33,9 @@ void OutcomeWatch::detected(RuleId rule, Time now) {
     const RuleId own = knowledge_.rules[outcome.strategy].rule;
     outcome.is_back |= own == rule;
     if (own == rule || outcome.judged == now) continue;
-    outcome.is_void |= may_hide(knowledge_, rule, own);
-    outcome.has_second_fault |= may_bring_back(knowledge_, rule, own);
+    if (outcome.was_looked_at) outcome.is_void |= may_hide(knowledge_, rule, own);
+    // Whether it brings it back or not: that can be seen only where the strategy had helped.
+    outcome.is_void |= may_bring_back(knowledge_, rule, own);
   }
 }
 
@@ -50,12 +54,15 @@ void OutcomeWatch::remember(const Event& event) {
     if (oldest != open.end()) open.erase(oldest);
   } else if (const auto* detected = std::get_if<FailureDetected>(&event.what)) {
     this->detected(detected->rule, event.at);
+  } else if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
+    if (!chosen->dry_run) void_verdicts_beside(knowledge_, chosen->strategy, event.at);
   }
 }
 
 void OutcomeWatch::advance(Time now) {
   auto& open = knowledge_.outcomes.open;
-  for (const PendingOutcome& outcome : open) {
+  for (PendingOutcome& outcome : open) {
+    if (!outcome.was_looked_at && knowledge_.outcomes.deadline(outcome) <= now) look_at(outcome);
     if (outcome.due <= now) count(outcome, now);
   }
   std::erase_if(open, [&](const PendingOutcome& outcome) { return outcome.due <= now; });
@@ -63,8 +70,7 @@ void OutcomeWatch::advance(Time now) {
 
 void OutcomeWatch::count(const PendingOutcome& outcome, Time now) {
   const RuleId rule = knowledge_.rules[outcome.strategy].rule;
-  const bool blames_nobody = outcome.has_helped && outcome.is_back && outcome.has_second_fault;
-  if (outcome.is_void || blames_nobody || !knowledge_.states[rule].trigger.known) {
+  if (outcome.is_void || !knowledge_.states[rule].trigger.known) {
     knowledge_.tell(now, OutcomeCounted{outcome.strategy, OutcomeCounted::As::kNothing});
   } else if (outcome.has_helped && !outcome.is_back) {
     knowledge_.beliefs.helped(outcome.strategy);
@@ -77,7 +83,9 @@ void OutcomeWatch::count(const PendingOutcome& outcome, Time now) {
 
 Time OutcomeWatch::next_deadline() const {
   Time next = kNever;
-  for (const PendingOutcome& outcome : knowledge_.outcomes.open) next = std::min(next, outcome.due);
+  const PendingOutcomes& outcomes = knowledge_.outcomes;
+  for (const PendingOutcome& outcome : outcomes.open)
+    next = std::min(next, outcome.was_looked_at ? outcome.due : outcomes.deadline(outcome));
   return next;
 }
 

@@ -1,13 +1,13 @@
 // From verdicts to beliefs: an outcome counts once it stood for long enough (knowledge/outcomes.h).
 //
 // An outcome counts for nothing if
-//   - while the strategy was under way something else could have had the same effect
-//   (is_ambiguous),
-//   - a more critical failure that it is connected with is there, or comes before it is due: nobody
-//     sees through that,
-//   - the failure is back, and one upstream came as well: a second fault blames nobody,
+//   - before the strategy's deadline something else could have had the same effect,
+//   - at the deadline a more critical failure that it is connected with is there, or one comes
+//     before it is due: nobody sees through that,
+//   - one upstream comes before it is due: a second fault blames nobody, and thanks nobody,
 //   - nobody watched for a while before it was due (culprit slept, or was deaf),
 //   - when it is due nobody can see whether the failure is there.
+// All of that is asked in the same way of what helped and of what did not, and of the same time.
 // If the failure is back by itself, the strategy did not help.
 #pragma once
 
@@ -33,6 +33,7 @@ class OutcomeWatch {
   Time next_deadline() const;
 
  private:
+  void look_at(PendingOutcome& outcome);
   void count(const PendingOutcome& outcome, Time now);
 
   Knowledge& knowledge_;

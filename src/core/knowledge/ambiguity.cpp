@@ -23,18 +23,21 @@ bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& ada
   return Sources(knowledge, rule).have(adapted);
 }
 
+bool begins_anew(const Strategy& strategy) {
+  return std::any_of(strategy.adaptations.begin(), strategy.adaptations.end(),
+                     [](const Adaptation& adaptation) {
+                       using enum AdaptationType;
+                       return adaptation.type == kRestart || adaptation.type == kRedeploy ||
+                              adaptation.type == kStart || adaptation.type == kStop;
+                     });
+}
+
 bool is_rival(const Knowledge& knowledge, StrategyId strategy, const Sources& sources,
               RuleId rule) {
   const Strategy& other = knowledge.rules[strategy];
-  const bool begins_anew = std::any_of(
-      other.adaptations.begin(), other.adaptations.end(), [](const Adaptation& adaptation) {
-        using enum AdaptationType;
-        return adaptation.type == kRestart || adaptation.type == kRedeploy ||
-               adaptation.type == kStart || adaptation.type == kStop;
-      });
   const bool is_lesser =
       knowledge.rules[other.rule].policies.criticality < knowledge.rules[rule].policies.criticality;
-  return (begins_anew || !is_lesser) && sources.have(other.components);
+  return (begins_anew(other) || !is_lesser) && sources.have(other.components);
 }
 
 bool may_bring_back(const Knowledge& knowledge, RuleId other, RuleId rule) {
@@ -56,8 +59,23 @@ bool may_hide(const Knowledge& knowledge, RuleId other, RuleId rule) {
           can_resolve(knowledge, ours.components, other));
 }
 
+bool is_hidden(const Knowledge& knowledge, RuleId rule) {
+  const auto& active = knowledge.states.active();
+  return std::any_of(active.begin(), active.end(),
+                     [&](RuleId other) { return may_hide(knowledge, other, rule); });
+}
+
+void void_verdicts_beside(Knowledge& knowledge, StrategyId strategy, Time at) {
+  for (PendingOutcome& outcome : knowledge.outcomes.open) {
+    const RuleId rule = knowledge.rules[outcome.strategy].rule;
+    if (rule != knowledge.rules[strategy].rule && at < knowledge.outcomes.deadline(outcome))
+      outcome.is_void |= is_rival(knowledge, strategy, Sources(knowledge, rule), rule);
+  }
+}
+
 void mark_ambiguous(Knowledge& knowledge, RuleId changed) {
   Attempt& own = *knowledge.states.state(changed).attempt;
+  void_verdicts_beside(knowledge, own.strategy, own.first_change);
   const Sources sources(knowledge, changed);
   for (const RuleId id : knowledge.states.active()) {
     auto& other = knowledge.states.state(id).attempt;

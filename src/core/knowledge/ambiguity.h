@@ -22,6 +22,9 @@ class Sources {
 // Can adapting these components make the failure of `rule` go away?
 bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& adapted, RuleId rule);
 
+// Does the strategy restart, replace, start or stop anything?
+bool begins_anew(const Strategy& strategy);
+
 // Can `strategy`, which is of another rule, do so? It adapts a place from where that failure may
 // come, and does more there than reconfigure it for the sake of something less critical.
 bool is_rival(const Knowledge& knowledge, StrategyId strategy, const Sources& sources, RuleId rule);
@@ -34,9 +37,17 @@ bool may_bring_back(const Knowledge& knowledge, RuleId other, RuleId rule);
 // one of them is upstream of the other.
 bool may_hide(const Knowledge& knowledge, RuleId other, RuleId rule);
 
+// Is there a failure now that may hide that of `rule`?
+bool is_hidden(const Knowledge& knowledge, RuleId rule);
+
 // The strategy under way for `changed` begins to change the system. Marks every attempt whose
 // outcome it can cause, and its own if another one's changes can cause that: those that touch the
 // same components or are upstream of them.
 void mark_ambiguous(Knowledge& knowledge, RuleId changed);
+
+// `strategy` begins to change the system `at` that time. Voids the verdicts on strategies of other
+// rules whose deadline is yet to come and whose outcome it can cause: had one of these not helped
+// so soon, it would still be under way, and ambiguous.
+void void_verdicts_beside(Knowledge& knowledge, StrategyId strategy, Time at);
 
 }  // namespace culprit

@@ -18,16 +18,19 @@ struct PendingOutcome {
   StrategyId strategy;
   bool has_helped = false;  // as the verdict says
   Time judged;              // when the verdict came
-  Time due;                 // when it counts
+  Time due;                 // when it counts: `healthy` after the strategy's deadline
   // Something else can have had the same effect, or hidden it: it proves nothing.
   bool is_void = false;
-  bool is_back = false;           // the failure came back
-  bool has_second_fault = false;  // and another one that may have brought it
+  bool is_back = false;        // the failure came back
+  bool was_looked_at = false;  // at the deadline: is anything there that hides it?
 };
 
 struct PendingOutcomes {
   std::vector<PendingOutcome> open;  // oldest first
   Duration healthy{};  // how long a failure has to stay away until it is proven to be gone
+
+  // Of the strategy: until then it would have been given time to help.
+  Time deadline(const PendingOutcome& outcome) const { return outcome.due - healthy; }
 };
 
 }  // namespace culprit

@@ -115,6 +115,18 @@ TEST(ProvenHealth, ASecondFaultUpstreamBlamesNobody) {
   EXPECT_EQ(belief(robot, "restart"), (Belief{6, 5})) << transcript(robot);
 }
 
+// What is credited must not depend on how it came out.
+TEST(ProvenHealth, ASecondFaultUpstreamIsAskedForWhateverCameOut) {
+  TestRobot robot = robot_that_is_well(20s);
+  robot["fusion"].fault = "a person";
+  robot.run_for(5s);
+  EXPECT_GE(robot.count("fusion_restart did not resolve FusionSilent"), 1u) << transcript(robot);
+  robot["camera"].fault = "restart";
+  robot.run_for(20s);
+  EXPECT_EQ(belief(robot, "restart").beta, 5) << transcript(robot);
+  EXPECT_EQ(belief(robot, "fusion_restart"), (Belief{5, 5})) << transcript(robot);
+}
+
 TEST(ProvenHealth, AFailureIsLearnedAsLateAsASuccess) {
   TestRobot robot = robot_that_is_well(20s);
   robot["camera"].fault = "redeploy";

@@ -23,9 +23,11 @@
 //     "learning": [{"failure": "F1", "rule": "RGBDead", "strategy": "redeploy", "executed": 27.4,
 //                   "initial": 0.48, "truth": 0.6, "truth_of_all": 0.6,
 //                   "believed": 0.55, "error": 0.05,
+//                   "error_of_prior": 0.04, "standard_error": 0.1,
 //                   "learned": [{"mean": 0.5, "sd": 0}, ...]}]
 //
 // "executed" is a mean over the series; "believed" is what the last of "learned" has.
+// "error_of_prior" is what is left in it of "initial"; "standard_error" is that of one series.
 #pragma once
 
 #include <string>

@@ -25,10 +25,21 @@ struct LearningCurve {
   // judged: beside an outage that hides whether it helped, other faults are there than without one.
   // What is learned can be held only against what could be seen.
   double truth_of_all = 0;
+  double confidence = 0;  // how many outcomes the designer's belief is worth
 
   // What is believed at the end, and how far that is from the truth.
   double believed() const { return learned.empty() ? initial : learned.back().mean(); }
   double error() const { return std::abs(believed() - truth); }
+  // The part of that which is what the designer believed: it weighs as much as `confidence`
+  // outcomes, so that after few a wrong one is still there.
+  double error_of_prior() const {
+    const double weight = confidence + counted;
+    return weight == 0 ? 0 : confidence * std::abs(initial - truth) / weight;
+  }
+  // By which the outcomes of one series miss the truth by chance.
+  double standard_error() const {
+    return counted == 0 ? 0 : std::sqrt(truth * (1 - truth) / counted);
+  }
 };
 
 }  // namespace culprit::study

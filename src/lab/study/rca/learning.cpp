@@ -155,11 +155,13 @@ class Learner {
         if (effect == resolved->rule || state.attempt ||
             !plant.passes(resolved->rule.index, effect.index))
           continue;
-        // Kappa is of a cause that is alone (plan/bayes/responsibility.h).
+        // Kappa is of a cause that is alone (plan/bayes/responsibility.h). What has no fault of its
+        // own stands in a chain from it, or goes away by itself.
         const auto& active = knowledge.states.active();
         const bool is_alone = std::none_of(active.begin(), active.end(), [&](RuleId other) {
           return other != effect && other != resolved->rule &&
-                 plant.passes(other.index, effect.index);
+                 plant.passes(other.index, effect.index) &&
+                 (plant.fault(other.index) || knowledge.states[other].attempt);
         });
         if (!is_alone) continue;
         const bool stays = plant.fault(effect.index).has_value();

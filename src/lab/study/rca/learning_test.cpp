@@ -67,11 +67,10 @@ TEST_P(LearningWith, FindsTheTrueRatesWhateverWasBelievedAtFirst) {
   }
 }
 
-// Not the paper's planner with several faults: it repairs causes and effects side by side, and takes
-// some of what another strategy did for the success of its own (docs/planning.md).
+// With several faults the paper's planner repairs causes and effects side by side.
 INSTANTIATE_TEST_SUITE_P(EachPlanner, LearningWith,
                          testing::Values(std::pair(false, 1), std::pair(false, 2),
-                                         std::pair(true, 1)),
+                                         std::pair(true, 1), std::pair(true, 2)),
                          [](const auto& each) {
                            return (each.param.first ? "paper_" : "bayes_") +
                                   std::to_string(each.param.second);

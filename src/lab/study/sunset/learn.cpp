@@ -87,6 +87,7 @@ std::vector<Learner> learners(const RuleSet& rules, std::uint32_t experiments) {
     learner.strategy = StrategyId(s);
     learner.curve = {failure, rule, strategy.name, strategy.success.value, 0, {}, 0, 0, 0};
     learner.curve.learned.resize(experiments);
+    learner.curve.confidence = strategy.confidence;
     all.push_back(std::move(learner));
   }
   return all;

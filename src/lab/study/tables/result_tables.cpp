@@ -121,6 +121,8 @@ Table learning_table(const std::vector<LearningCurve>& curves) {
                {"", "learned P", "", "Learned $P_s$"},
                {"", "true rate"},
                {"", "error"},
+               {"", "of it the prior"},
+               {"", "standard error"},
                {"", "true rate of all executed"}},
               {},
               {}};
@@ -140,6 +142,8 @@ Table learning_table(const std::vector<LearningCurve>& curves) {
                           {learned},
                           {number(curve.truth)},
                           {last.count() == 0 ? "–" : number(curve.error())},
+                          {last.count() == 0 ? "–" : number(curve.error_of_prior())},
+                          {curve.counted == 0 ? "–" : number(curve.standard_error())},
                           {number(curve.truth_of_all)}});
   }
   table.notes.push_back(fmt::format(
@@ -148,8 +152,9 @@ Table learning_table(const std::vector<LearningCurve>& curves) {
       curves.front().learned.size(), published::kLearning.confidence));
   table.notes.push_back(
       "The true rate is how often a strategy ends the fault, of the times that it was learned "
-      "from; "
-      "beside it, of all.");
+      "from; last, of all. Of the error, what is left of the initial P, which weighs as much as "
+      "c_p "
+      "outcomes; and the standard error of as many outcomes as one series learns from.");
   return table;
 }
 
