@@ -73,5 +73,14 @@ TEST(Clearing, TakesSoManyCyclesThatTheRestOfTheWindowCannotHoldIt) {
   EXPECT_EQ(w.told<FailureResolved>(), 1);
 }
 
+// However often what it reads changes: a window of five is five cycles.
+TEST(Detecting, CountsAReadingForEachCycleWithHold) {
+  Watched w("HOLD 3/5");
+  for (const double value : {2, 3, 2, 3, 2, 3}) w.be(value, 50ms);
+  EXPECT_EQ(w.told<FailureDetected>(), 0) << "two cycles";
+  for (const double value : {2, 3, 2, 3}) w.be(value, 50ms);
+  EXPECT_EQ(w.told<FailureDetected>(), 1);
+}
+
 }  // namespace
 }  // namespace culprit

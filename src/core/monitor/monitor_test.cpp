@@ -403,6 +403,19 @@ TEST(Monitor, ALocalNodeOfWhichNothingElseIsHeardHangsIfItDoesNotAnswerForLong) 
   EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, false);
 }
 
+TEST(Monitor, ALocalNodeThatWasHeardOnceIsGivenAsLongAsOneThatNeverWas) {
+  Watched watched(rule(kHeard));
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, EndpointAppeared{"/c", EndpointKind::kPublisher, "/t"});
+  watched.observe(1s, SampleArrived{TopicId(0), 1});
+  watched.observe(1s, Probed{ComponentId(0), true});
+  for (Duration at = 3s; at < 4600ms; at += 400ms)
+    watched.observe(at, Probed{ComponentId(0), false});
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, true) << "it has no rhythm yet";
+  watched.observe(4600ms, Probed{ComponentId(0), false});
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, false);
+}
+
 TEST(Monitor, EndsStayWhileANodeIsBroughtUp) {
   Watched watched(
       "COMPONENT c NODE /c\nCOMPONENT d NODE /d\nRULE R\nPOLICIES ERROR\n"

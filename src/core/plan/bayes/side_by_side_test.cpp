@@ -53,6 +53,11 @@ TEST(SideBySide, ReplacesTwoAtOnce) {
   EXPECT_THAT(side_by_side(sides), ElementsAre(1, 1));
 }
 
+TEST(SideBySide, OfEquallyGoodOnesIsTheUsual) {
+  const Side either{{kQuick, kQuick}, {0, 1}};
+  EXPECT_THAT(side_by_side(std::vector<Side>(2, either)), ElementsAre(0, 0));
+}
+
 TEST(SideBySide, BeginsOnlyWithWhatItMay) {
   const std::vector<Side> sides = {{{kQuick, kThorough}, {0}}, {{kThorough}, {0}}};
   EXPECT_THAT(side_by_side(sides), ElementsAre(0, 0));
