@@ -43,8 +43,8 @@ struct NodesOfARealSystemd : testing::Test {
            std::to_string(ros2::options_from_environment()->domain) + " /lidar";
   }
   TestProgram run() {
-    return TestProgram(world, {"culprit", "run", world.write("units.rules", kRules), "--state-dir",
-                               (world.folder() / "state").string()});
+    return TestProgram(world, {"culprit", "run", world.write("units.rules", kRules), "--settle",
+                               "0.2", "--state-dir", (world.folder() / "state").string()});
   }
   // Waits until another process than `old` is there; 0: none came.
   static int another(const TestProgram& culprit, int old) {
@@ -57,7 +57,7 @@ struct NodesOfARealSystemd : testing::Test {
   }
   // What was broken works again, by the same owner and started once.
   void expect_healed(const TestProgram& culprit, int old) {
-    EXPECT_TRUE(culprit.prints("LidarGone resolved")) << culprit.output();
+    EXPECT_TRUE(culprit.prints("LidarGone resolved by lidar_redeploy")) << culprit.output();
     const int now = another(culprit, old);
     ASSERT_NE(now, 0) << culprit.output();
     EXPECT_EQ(owners::state_letter(old).value_or('Z'), 'Z');
@@ -82,7 +82,7 @@ TEST_F(NodesOfARealSystemd, ThatAreKilledAreStartedOnce) {
 }
 
 TEST_F(NodesOfARealSystemd, ThatItStartsAgainItselfAreNotDoubled) {
-  start("Restart=always\nRestartSec=500ms\n");
+  start("Restart=always\nRestartSec=3\n");  // culprit decides before that
   const auto culprit = run();
   const int old = another(culprit, 0);
   ASSERT_NE(old, 0) << culprit.output();
@@ -113,6 +113,33 @@ TEST_F(NodesOfARealSystemd, ThatFailedBeforeAnybodyLookedAreStarted) {
   const auto culprit = run();
   EXPECT_TRUE(culprit.prints("lidar.service failed: exit-code")) << culprit.output();
   EXPECT_NE(another(culprit, 0), 0) << culprit.output();
+  EXPECT_EQ(systemd->starts_of("lidar.service"), 2);
+}
+
+TEST_F(NodesOfARealSystemd, ThatHaveALaunchInTheRulesAreToldToBeUnits) {
+  start("");
+  const auto rules =
+      world.write("launch.rules", "COMPONENT lidar NODE /lidar LAUNCH \"" + node() + "\"\n");
+  const TestProgram culprit(
+      world, {"culprit", "run", rules, "--state-dir", (world.folder() / "state").string()});
+  EXPECT_TRUE(
+      culprit.prints("systemd runs it as lidar.service, and may start it beside culprit: "
+                     "declare UNIT lidar.service USER instead"))
+      << culprit.output();
+}
+
+// systemd was asked for both, the end and the start.
+TEST_F(NodesOfARealSystemd, ComeBackAlsoIfCulpritIsKilledInBetween) {
+  start("");
+  auto culprit = run();
+  const int old = another(culprit, 0);
+  ASSERT_NE(old, 0) << culprit.output();
+  kill(old, SIGSTOP);
+  ASSERT_TRUE(culprit.prints("redeploy lidar")) << culprit.output();
+  culprit.signal(SIGKILL);
+  culprit.wait();
+  const auto second = run();
+  EXPECT_NE(another(second, old), 0) << second.output();
   EXPECT_EQ(systemd->starts_of("lidar.service"), 2);
 }
 

@@ -106,6 +106,22 @@ std::optional<int> parent_of(int pid) {
   return rest >> state >> parent ? std::optional(parent) : std::nullopt;
 }
 
+std::optional<SystemdUnit> unit_started_as(int pid) {
+  constexpr int kInit = 1;
+  const int parent = parent_of(pid).value_or(0);
+  std::string command;
+  std::getline(std::ifstream("/proc/" + std::to_string(parent) + "/comm") >> std::ws, command);
+  if (command != "systemd") return std::nullopt;
+  std::ifstream groups("/proc/" + std::to_string(pid) + "/cgroup");
+  for (std::string line; std::getline(groups, line);) {
+    // cgroups(7): of version 2, or of the hierarchy that systemd has beside version 1.
+    if (!line.starts_with("0::") && line.find(":name=systemd:") == std::string::npos) continue;
+    std::string unit = line.substr(line.rfind('/') + 1);
+    if (unit.ends_with(".service")) return SystemdUnit{std::move(unit), parent != kInit};
+  }
+  return std::nullopt;
+}
+
 std::optional<Time> started_at(int pid) {
   std::istringstream rest(stat_after_command(pid));
   std::string skipped;

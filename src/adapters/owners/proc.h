@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/time.h"
+#include "language/rule_set.h"
 
 namespace culprit::owners {
 
@@ -40,6 +41,10 @@ struct Identity {
 std::optional<Identity> identity_of(int pid);
 // "/usr/bin/python3 /opt/ros/bin/ros2 of user 1000"
 std::string to_string(const Identity& identity);
+
+// The unit of systemd that has started it, by its parent and its control group: "lidar.service". A
+// process that such a one started has none, nor has what a person started.
+std::optional<SystemdUnit> unit_started_as(int pid);
 
 struct Relative {
   int pid = 0;

@@ -187,12 +187,24 @@ void Supervisor::watch(ComponentId component, int pid, Relation relation) {
     return;
   }
   const bool is_others = relation == Relation::kAdopted && !carries_mark(pid, marked_as(component));
-  if (const auto identity = is_others ? identity_of(pid) : std::nullopt)
-    identities_.try_emplace(component, *identity);
+  if (const auto identity = is_others ? identity_of(pid) : std::nullopt) {
+    const bool is_first = identities_.try_emplace(component, *identity).second;
+    if (is_first) tell_of_unit(component, pid);
+  }
   note_launcher(component, pid, is_others);
   members_.push_back({component, std::move(*process)});
   inbox_.put(ProcessSeen{component, ProcessState::kRunning, pid, ""});
   wake();
+}
+
+// Both systemd (Restart=) and culprit would start it.
+void Supervisor::tell_of_unit(ComponentId component, int pid) const {
+  const Component& what = rules_[component];
+  const auto unit = what.launch.empty() || what.is_respawned ? std::nullopt : unit_started_as(pid);
+  if (unit)
+    inbox_.put(LinkTrouble{what.name + " has a LAUNCH, but systemd runs it as " + unit->name +
+                           ", and may start it beside culprit: declare UNIT " + unit->name +
+                           (unit->is_of_user ? " USER" : "") + " instead"});
 }
 
 // ---- ending

@@ -133,6 +133,7 @@ class Supervisor {
   void watch(ComponentId component, int pid, Relation relation);
   Expected<void> begin_start(CommandId command, ComponentId component);
   std::optional<std::string> doubt(const Member& member) const;
+  void tell_of_unit(ComponentId component, int pid) const;
   void note_launcher(ComponentId component, int pid, bool is_others);
   bool is_left_to_launcher(ComponentId component) const;
   std::optional<std::string> why_not_end(ComponentId component, Ending ending) const;

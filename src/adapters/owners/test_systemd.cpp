@@ -50,7 +50,10 @@ TestBus::TestBus() {
   address_ = "unix:path=" + (folder_ / "bus").string();
   pid_ = program({"dbus-daemon", "--session", "--nofork", "--nopidfile", "--address=" + address_},
                  folder_ / "log");
-  while (!std::filesystem::exists(folder_ / "bus")) std::this_thread::sleep_for(10ms);
+  for (const Time end = later(live_now(), 20s); !std::filesystem::exists(folder_ / "bus");) {
+    if (live_now() > end) throw std::runtime_error("dbus-daemon does not begin");
+    std::this_thread::sleep_for(10ms);
+  }
   setenv("DBUS_SESSION_BUS_ADDRESS", address_.c_str(), 1);
   setenv("DBUS_SYSTEM_BUS_ADDRESS", address_.c_str(), 1);
 }
