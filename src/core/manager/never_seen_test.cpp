@@ -228,5 +228,25 @@ TEST(Storm, ProcessesThatAreKnownToBeDeadAreNone) {
     EXPECT_TRUE(five.robot.works(c)) << c << transcript(five.robot);
 }
 
+// c0 dies before it ever spoke, so its silence can be judged only once the robot had time to show
+// itself. It is known to be dead, and c1 is not replaced for it meanwhile.
+TEST(NeverSeen, WhoDiesBeforeItsFirstWordIsNotTakenOutOnItsEffects) {
+  TestRobot robot(
+      "COMPONENT c0 NODE /c0 LAUNCH \"c0\"\nCOMPONENT c1 NODE /c1 LAUNCH \"c1\"\n"
+      "RULE Silent0\nPOLICIES ERROR\nTRIGGER age(/c0) > 2500ms\nSTRATEGY redeploy 90 10\n"
+      "ADAPTATION c0 redeploy 10\n"
+      "RULE Silent1\nPOLICIES ERROR\nTRIGGER age(/c1) > 350ms\nSTRATEGY restart 50 10\n"
+      "ADAPTATION c1 restart 3\nSTRATEGY redeploy 90 10\nADAPTATION c1 redeploy 10\n");
+  robot.add("c0", {}, "/c0", 1s);
+  robot.add("c1", {"c0"}, "/c1");
+  robot.discover();
+  robot.run_for(500ms);
+  robot.kill("c0");
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.works("c1")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("c0: start process"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("c1:")) << transcript(robot);
+}
+
 }  // namespace
 }  // namespace culprit::test

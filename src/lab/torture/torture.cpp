@@ -308,10 +308,8 @@ class Run {
     for (const StrategyId asked : manager_->governor().asked()) {
       if (is_about(rules_[asked].rule) || is_joined(ComponentId(part), rules_[asked])) return true;
     }
-    if (std::any_of(refused_.begin(), refused_.end(), is_about)) return true;
-    for (const auto& [rule, word] : waits_) {
-      if (is_about(rule) && waits_for_person(word)) return true;
-    }
+    const std::set<RuleId> left = left_to_person();
+    if (std::any_of(left.begin(), left.end(), is_about)) return true;
     if (std::any_of(needed.begin(), needed.end(), [&](std::size_t p) { return is_never_seen(p); }))
       return true;
     for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
@@ -328,16 +326,29 @@ class Run {
     });
   }
 
-  // The last word on the failure was that another one may be its cause, and that one is left to a
-  // person. The part may only seem to need that cause: topics that all share join what does not.
-  bool waits_for_person(const FailureHeldBack& word) const {
+  // Failures that are left to a person, and those whose last word was that they wait for such a one:
+  // it may be their cause, or they would be in its way. A part may only seem to need another:
+  // topics that all share join what does not.
+  std::set<RuleId> left_to_person() const {
     const RuleStates& states = manager_->knowledge().states;
-    if (states[word.rule].phase != RulePhase::kFailing) return false;
-    return std::any_of(word.candidates.begin(), word.candidates.end(),
-                       [&](const Candidate& candidate) {
-                         return candidate.because && (states.awaits_person(*candidate.because) ||
-                                                      refused_.contains(*candidate.because));
-                       });
+    std::set<RuleId> left = refused_;
+    for (const StrategyId asked : manager_->governor().asked()) left.insert(rules_[asked].rule);
+    for (const RuleId id : states.exhausted()) {
+      if (states.awaits_person(id)) left.insert(id);
+    }
+    const auto waits = [&](const FailureHeldBack& word) {
+      return states[word.rule].phase == RulePhase::kFailing &&
+             std::any_of(word.candidates.begin(), word.candidates.end(), [&](const Candidate& c) {
+               return c.because && left.contains(*c.because);
+             });
+    };
+    for (std::size_t before = 0; before != left.size();) {
+      before = left.size();
+      for (const auto& [rule, word] : waits_) {
+        if (waits(word)) left.insert(rule);
+      }
+    }
+    return left;
   }
 
   // It never spoke, and that was told.

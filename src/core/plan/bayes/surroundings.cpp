@@ -36,8 +36,9 @@ Duration longest_wait(RuleId suspicious, const Knowledge& knowledge) {
                          kLongestWaitLatencies * knowledge.signals.latency(suspicious));
   // What is known to be dead will not turn out to be well.
   if (!is_seen_down(suspicious, knowledge)) return usual;
-  return std::max<Duration>(usual,
-                            knowledge.rules[suspicious].policies.hold_for + knowledge.rules.cycle);
+  return std::max<Duration>(usual, silence_to_tell(suspicious, knowledge) +
+                                       knowledge.rules[suspicious].policies.hold_for +
+                                       knowledge.rules.cycle);
 }
 
 std::vector<RuleId> suspicious_rules(std::span<const RuleId> failures, const Knowledge& knowledge) {

@@ -65,6 +65,19 @@ Symptom symptom_of(RuleId rule, const Knowledge& knowledge) {
   return reads_values ? Symptom::kValue : Symptom::kOutage;
 }
 
+Duration silence_to_tell(RuleId rule, const Knowledge& knowledge) {
+  Duration longest{};
+  for (const InputId id : knowledge.rules[rule].inputs) {
+    const Input& input = knowledge.rules[id];
+    if (!watches_a_topic(input)) continue;
+    if (input.kind == Input::Kind::kRate) longest = std::max(longest, input.window);
+    if (input.kind == Input::Kind::kAge && !input.thresholds.empty())
+      longest = std::max(longest, from_seconds(input.thresholds.back()));
+    if (!knowledge.signals[id].known) longest = kLongestSilence;
+  }
+  return std::min(longest, kLongestSilence);
+}
+
 bool looks_well(RuleId rule, const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[rule];
   if (state.phase != RulePhase::kQuiet) return false;

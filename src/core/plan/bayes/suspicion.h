@@ -36,6 +36,12 @@ enum class Symptom : std::uint8_t {
 };
 Symptom symptom_of(RuleId rule, const Knowledge& knowledge);
 
+// How long a topic of the dead must be silent until the rule's trigger tells: as long as the
+// trigger says, or, while nobody can judge the silence yet, and otherwise at most,
+// kLongestSilence. Zero if it reads no topic's silence.
+Duration silence_to_tell(RuleId rule, const Knowledge& knowledge);
+inline constexpr Duration kLongestSilence = std::chrono::seconds(10);
+
 // It is quiet and not suspicious, or nobody knows.
 bool looks_well(RuleId rule, const Knowledge& knowledge);
 
