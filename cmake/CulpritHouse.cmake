@@ -38,8 +38,10 @@ target_compile_options(culprit_test_options INTERFACE -O0)
 if(CULPRIT_TESTS)
   add_custom_target(offline_tests) # those that start no processes of a robot
   add_custom_target(thread_tests) # those that the thread sanitizer is for
-  add_library(culprit_test_main OBJECT ${CMAKE_CURRENT_LIST_DIR}/test_main.cpp
-                                       $<$<STREQUAL:${CULPRIT_SANITIZE},thread>:${CMAKE_CURRENT_LIST_DIR}/tsan_clocklock.cpp>)
+  add_library(culprit_test_main OBJECT ${CMAKE_CURRENT_LIST_DIR}/test_main.cpp)
+  if(CULPRIT_SANITIZE STREQUAL "thread")
+    target_sources(culprit_test_main PRIVATE ${CMAKE_CURRENT_LIST_DIR}/tsan_clocklock.cpp)
+  endif()
   target_precompile_headers(culprit_test_main PRIVATE <algorithm> <chrono> <filesystem> <fstream> <functional> <map>
                                                          <memory> <optional> <set> <span> <string> <variant> <vector>
                                                          <gmock/gmock.h> <gtest/gtest.h> <rapidcheck/gtest.h>)
