@@ -116,6 +116,17 @@ TEST_F(NodesOfARealSystemd, ThatFailedBeforeAnybodyLookedAreStarted) {
   EXPECT_EQ(systemd->starts_of("lidar.service"), 2);
 }
 
+TEST_F(NodesOfARealSystemd, ThatItStartsNoMoreAreLeftToItWithTheReason) {
+  start("[Unit]\nStartLimitBurst=1\nStartLimitIntervalSec=1000\n");
+  const auto culprit = run();
+  const int old = another(culprit, 0);
+  ASSERT_NE(old, 0) << culprit.output();
+  kill(old, SIGKILL);
+  EXPECT_TRUE(culprit.prints("systemd could not start it: lidar.service failed"))
+      << culprit.output();
+  EXPECT_EQ(systemd->starts_of("lidar.service"), 1);
+}
+
 TEST_F(NodesOfARealSystemd, ThatHaveALaunchInTheRulesAreToldToBeUnits) {
   start("");
   const auto rules =

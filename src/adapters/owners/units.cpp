@@ -188,9 +188,10 @@ bool Units::watch_start(Errand& errand, const UnitState& state) {
   const std::string& name = unit_of(errand.component).name;
   if (state.main_pid != 0) return answer(errand, Outcome::kDone, "", state.main_pid);
   if (!state.has_job && state.is_over())
-    return answer(
-        errand, Outcome::kRefused,
-        "systemd could not start it: " + in_words(state, name) + "; journalctl -u says why");
+    return answer(errand, Outcome::kRefused,
+                  "systemd could not start it: " + in_words(state, name) + "; journalctl " +
+                      (unit_of(errand.component).is_of_user ? "--user -u " : "-u ") + name +
+                      " says why");
   // What it does before its main process may take long.
   return live_now() >= errand.until &&
          answer(errand, Outcome::kDone, "systemd is starting " + name);
