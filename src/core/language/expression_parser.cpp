@@ -125,15 +125,31 @@ class ExpressionParser {
         return scanner_.peek().is("(") ? call(std::move(e), depth) : std::optional(std::move(e));
       case Token::Kind::kSymbol:
         if (token.is("(")) return parenthesis(token, depth);
+        if (token.is("/")) return topic_for_value(token);
         break;
       case Token::Kind::kBad:
         return fail(Code::kBadToken, token.span, token.text, "", token.fix);
       case Token::Kind::kEnd:
         break;
     }
+    return value_is_missing(token);
+  }
+
+  std::nullopt_t value_is_missing(const Token& token) {
     return fail(
         Code::kSyntax, token.span, "a value is missing here",
         "write a number, true or false, a \"text\", a signal, a constant or a function call");
+  }
+
+  // A topic has no value by itself.
+  std::nullopt_t topic_for_value(const Token& slash) {
+    const syntax::Name rest = scanner_.next_name();
+    if (rest.text.empty() || rest.span.begin != slash.span.end) return value_is_missing(slash);
+    const std::string topic = "/" + rest.text;
+    return fail(Code::kSyntax, {slash.span.begin, rest.span.end}, "'" + topic + "' is no value",
+                "of a topic there are age(" + topic + "), rate(" + topic + ") and phi(" + topic +
+                    "); what its messages say is a SIGNAL: SIGNAL name TOPIC " + topic +
+                    " FIELD field");
   }
 
   // Whether a value begins here, where none may stand behind a name.
