@@ -150,7 +150,7 @@ class Learner {
         ++cleared;
       }
       early_.erase(resolved->rule);
-      for (const RuleId effect : knowledge.states.active()) {
+      for (const RuleId effect : there_until(events, knowledge)) {
         const RuleState& state = knowledge.states[effect];
         if (effect == resolved->rule || state.attempt ||
             !plant.passes(resolved->rule.index, effect.index))
@@ -170,6 +170,18 @@ class Learner {
         cleared += stays ? 0 : 1;
       }
     }
+  }
+
+  // What is there after these events, and what went away by itself with them: that went with its
+  // cause.
+  static std::vector<RuleId> there_until(std::span<const Event> events,
+                                         const Knowledge& knowledge) {
+    std::vector<RuleId> there = knowledge.states.active();
+    for (const Event& event : events) {
+      const auto* resolved = std::get_if<FailureResolved>(&event.what);
+      if (resolved != nullptr && !resolved->strategy) there.push_back(resolved->rule);
+    }
+    return there;
   }
 
   // A verdict is of the last execution, and says when it will count; one that never will counts, as

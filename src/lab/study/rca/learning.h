@@ -58,8 +58,8 @@ struct LearnedRate {
 };
 
 // kappa(cause -> effect): learned, and in truth (docs/planning.md). The truth is known from the plant:
-// an effect has no other source if no other failure that is there passes on to it, and goes away if it
-// has no fault of its own.
+// an effect has no other source if no other failure that is there, and has a fault of its own or is
+// being repaired, passes on to it; and it goes away if it has no fault of its own.
 struct LearnedCoupling {
   std::string cause;
   std::string effect;

@@ -41,6 +41,9 @@ double standard_error(double rate, double outcomes) {
   return std::sqrt(rate * (1 - rate) / std::max(1.0, outcomes));
 }
 
+// A rate that was measured to be 0 or 1 may be a little off that.
+double cautious(double rate, double outcomes) { return (rate * outcomes + 2) / (outcomes + 4); }
+
 // Does the paper's planner learn, and how many faults come at once?
 class LearningWith : public testing::TestWithParam<std::pair<bool, std::size_t>> {};
 
@@ -76,22 +79,29 @@ INSTANTIATE_TEST_SUITE_P(EachPlanner, LearningWith,
                                   std::to_string(each.param.second);
                          });
 
-TEST(Learning, FindsHowSurelyAFailureGoesWithItsCause) {
-  for (const std::uint64_t seed : {1u, 3u}) {
+TEST_P(LearningWith, FindsHowSurelyAFailureGoesWithItsCause) {
+  const auto [uses_paper_planner, faults] = GetParam();
+  int coupled = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     LearningCampaign campaign;
-    campaign.setting = {4, 2, 0, false};
-    campaign.faults = 400;
+    campaign.setting = {4, faults, 0, false};
+    campaign.uses_paper_planner = uses_paper_planner;
+    campaign.faults = 200;
     campaign.seed = seed;
     const LearningResult result = *learn(campaign, nullptr);
-    ASSERT_FALSE(result.couplings.empty());
     for (const LearnedCoupling& coupling : result.couplings) {
       const double truth = coupling.truth();
+      if (std::min<double>(coupling.asked, coupling.counted) < 20) continue;
+      ++coupled;
+      const double rate = cautious(truth, coupling.asked);
       EXPECT_NEAR(coupling.learned(), truth,
-                  3 * std::hypot(standard_error(truth, coupling.asked),
-                                 standard_error(truth, coupling.counted)))
-          << coupling.cause << " -> " << coupling.effect;
+                  3 * std::hypot(standard_error(rate, coupling.asked),
+                                 standard_error(rate, coupling.counted)))
+          << "seed " << seed << ", " << coupling.cause << " -> " << coupling.effect << ": asked "
+          << coupling.asked << " times, counted " << coupling.counted;
     }
   }
+  EXPECT_GE(coupled, 4);
 }
 
 TEST(Learning, FollowsADriftWithForgettingOnly) {
