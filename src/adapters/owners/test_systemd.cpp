@@ -4,11 +4,14 @@
 #include <csignal>
 #include <fstream>
 #include <stdexcept>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <systemd/sd-bus.h>
 
+#include "owners/file_descriptor.h"
 #include "owners/spawn.h"
 
 namespace culprit::owners {
@@ -39,6 +42,15 @@ std::string name_of(const char* path) {
   return name == nullptr ? "" : name;
 }
 
+// The file is there before anybody listens.
+bool accepts(const std::filesystem::path& socket_file) {
+  const FileDescriptor end(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  socket_file.native().copy(address.sun_path, sizeof address.sun_path - 1);
+  return connect(end.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+}
+
 }  // namespace
 
 // ---- the bus
@@ -50,7 +62,7 @@ TestBus::TestBus() {
   address_ = "unix:path=" + (folder_ / "bus").string();
   pid_ = program({"dbus-daemon", "--session", "--nofork", "--nopidfile", "--address=" + address_},
                  folder_ / "log");
-  for (const Time end = later(live_now(), 20s); !std::filesystem::exists(folder_ / "bus");) {
+  for (const Time end = later(live_now(), 20s); !accepts(folder_ / "bus");) {
     if (live_now() > end) throw std::runtime_error("dbus-daemon does not begin");
     std::this_thread::sleep_for(10ms);
   }

@@ -29,6 +29,11 @@ constexpr ComponentId kLidar{0};
 
 bool runs(int pid) { return pid != 0 && state_letter(pid).value_or('Z') != 'Z'; }
 
+void end(int pid) {
+  kill(pid, SIGKILL);
+  while (runs(pid)) std::this_thread::sleep_for(1ms);
+}
+
 struct UnitsOnAStandInForSystemd : testing::Test {
   void SetUp() override {
     systemd.add("lidar.service");
@@ -102,7 +107,7 @@ TEST_F(UnitsOnAStandInForSystemd, AreReplacedByOneRequest) {
 TEST_F(UnitsOnAStandInForSystemd, ThatSystemdStartedAgainAreNotEndedNorDoubled) {
   systemd.add("lidar.service", {.restarts = true});
   const int old = running();
-  kill(old, SIGKILL);
+  end(old);
   EXPECT_EQ(stop(old).outcome, Outcome::kDone);
   EXPECT_EQ(start().outcome, Outcome::kDone);
   EXPECT_TRUE(runs(now_running()));
@@ -111,7 +116,7 @@ TEST_F(UnitsOnAStandInForSystemd, ThatSystemdStartedAgainAreNotEndedNorDoubled) 
 
 TEST_F(UnitsOnAStandInForSystemd, ThatAreDeadAreStartedOnce) {
   const int old = running();
-  kill(old, SIGKILL);
+  end(old);
   EXPECT_EQ(stop(old).outcome, Outcome::kDone);
   EXPECT_EQ(start().outcome, Outcome::kDone);
   EXPECT_TRUE(runs(now_running()));
