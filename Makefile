@@ -1,11 +1,16 @@
 # The two commands of this project are `make demo` and `make test`. Each installs what is missing first.
-.PHONY: build demo test soak bench format clean
+.PHONY: build install demo test soak bench format clean
 
 # The programs that the README runs; `make test` builds the tests.
 build:
 	@scripts/install-dependencies --studies
 	cmake --preset release -DCULPRIT_TESTS=OFF
 	cmake --build --preset release --target culprit culprit-lab sunset-node suave-node
+
+# Programs, rules, documents, the manual page, and culprit::core for programs of others.
+PREFIX ?= /usr/local
+install: build
+	cmake --install build/release --prefix $(PREFIX)
 
 demo:
 	@scripts/install-dependencies
