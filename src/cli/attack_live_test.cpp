@@ -143,16 +143,10 @@ class Deafness {
  private:
   void hold(int pid) {
     std::vector<int> threads;
-    const std::string tasks = "/proc/" + std::to_string(pid) + "/task";
-    for (const auto& task : std::filesystem::directory_iterator(tasks)) {
-      std::string where;
-      std::ifstream(task.path() / "wchan") >> where;
-      if (where.find("wait_for_more_packets") == std::string::npos) continue;
-      const int thread = std::stoi(task.path().filename().string());
-      if (ptrace(PTRACE_SEIZE, thread, nullptr, nullptr) != 0) continue;
-      ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr);
-      waitpid(thread, nullptr, __WALL);
-      threads.push_back(thread);
+    // One that is busy just now receives again in a moment.
+    for (const Time end = later(live_now(), 500ms); live_now() < end;) {
+      hold_who_receives(pid, threads);
+      std::this_thread::sleep_for(10ms);
     }
     held_ = threads.empty() ? -1 : static_cast<int>(threads.size());
     // Who is traced and dies has to be waited for, or its process cannot become another program.
@@ -161,6 +155,20 @@ class Deafness {
       std::this_thread::sleep_for(10ms);
     }
     for (const int thread : threads) ptrace(PTRACE_DETACH, thread, nullptr, nullptr);
+  }
+
+  static void hold_who_receives(int pid, std::vector<int>& held) {
+    const std::string tasks = "/proc/" + std::to_string(pid) + "/task";
+    for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+      std::string where;
+      std::ifstream(task.path() / "wchan") >> where;
+      if (where.find("wait_for_more_packets") == std::string::npos) continue;
+      const int thread = std::stoi(task.path().filename().string());
+      if (ptrace(PTRACE_SEIZE, thread, nullptr, nullptr) != 0) continue;  // also if it is held
+      ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr);
+      waitpid(thread, nullptr, __WALL);
+      held.push_back(thread);
+    }
   }
 
   std::atomic<int> held_ = 0;

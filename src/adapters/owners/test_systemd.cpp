@@ -303,11 +303,12 @@ namespace {
 
 // It looks for a system that systemd runs, and makes control groups.
 constexpr const char* kBegin = R"(
-group=/sys/fs/cgroup/culprit-test-$$
 umount -R /sys/fs/cgroup || true
 mount -t cgroup2 none /sys/fs/cgroup
+# Not by a process number: tests that run side by side have the same ones.
+group=$(mktemp -d /sys/fs/cgroup/culprit-test-XXXXXX)
 mount -t tmpfs none /run
-mkdir -p /run/systemd/system "$group"
+mkdir -p /run/systemd/system
 end() {
   echo 1 > "$group/cgroup.kill" || true
   wait

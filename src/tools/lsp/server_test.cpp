@@ -153,11 +153,11 @@ TEST(LspServer, ProposesWhatFitsThePlace) {
   EXPECT_THAT(labels(session.ask("completion", 11, 0)), Contains("RULE"));
   EXPECT_THAT(labels(session.ask("completion", 12, 10)), Contains("entropy"));
   EXPECT_THAT(labels(session.ask("completion", 12, 10)), Contains("phi"));
-  EXPECT_THAT(labels(session.ask("completion", 13, 17)), testing::ElementsAre("camera"));
+  EXPECT_THAT(labels(session.ask("completion", 13, 17)), testing::ElementsAre("camera", "a"));
   EXPECT_THAT(labels(session.ask("completion", 14, 24)), Contains("redeploy"));
   EXPECT_THAT(labels(session.ask("completion", 15, 11)), Contains("WARNING"));
   EXPECT_THAT(labels(session.ask("completion", 16, 14)), testing::ElementsAre("/image"));
-  EXPECT_THAT(labels(session.ask("completion", 17, 16)), testing::ElementsAre("camera"));
+  EXPECT_THAT(labels(session.ask("completion", 17, 16)), testing::ElementsAre("camera", "a"));
 }
 
 TEST(LspServer, LaysOutTheFile) {

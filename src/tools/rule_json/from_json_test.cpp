@@ -120,7 +120,7 @@ TEST(FromJson, LetsNothingBeSlippedIntoAnotherPart) {
       R"({"statement": "COMPONENT", "name": "a", "launch": "\"a\" NODE /x"})",
       R"({"statement": "COMPONENT", "name": "a", "launch": "\"a\nb\""})",
       R"({"statement": "COMPONENT", "name": "a", "node": "\"/a\" LAUNCH"})",
-      R"({"statement": "COMPONENT", "name": "a", "unit": "a.service REQUIRED"})",
+      R"({"statement": "COMPONENT", "name": "a", "unit": "\"a.service\" REQUIRED"})",
       R"({"statement": "COMPONENT", "name": "a", "user": true})",
       R"({"statement": "IGNORE", "topics": ["/a /b"]})",
   };
