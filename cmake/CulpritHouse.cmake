@@ -20,8 +20,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_UNITY_BUILD)
   target_compile_options(culprit_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
 endif()
 if(CULPRIT_SANITIZE)
-  target_compile_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE} -fno-omit-frame-pointer
-                                                   -fno-sanitize-recover=all)
+  # Not what the address sanitizer or the processor finds as well: that takes a quarter of the time of compiling.
+  target_compile_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE} -fno-sanitize=null,object-size,vptr
+                                                   -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE})
 endif()
 
