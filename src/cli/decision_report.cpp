@@ -6,6 +6,7 @@
 
 #include "cli/journal_file.h"
 #include "journal/json.h"
+#include "knowledge/event_words.h"
 
 namespace culprit::cli {
 namespace {
@@ -17,7 +18,7 @@ using journal::text_of;
 bool is_decision(const Entry& entry, const Json& body) {
   const std::string type = text_of(body, "type");
   return entry.kind == journal::kind::kEvent &&
-         (type == "strategy_chosen" || type == "failure_held_back");
+         (type == words_of<StrategyChosen>().name || type == words_of<FailureHeldBack>().name);
 }
 
 // The latest decision of the rule that row `id` is about, not after it.
@@ -37,7 +38,7 @@ Expected<std::optional<Entry>> decision_at(const journal::Reader& journal, std::
     auto row = journal.newest(journal::kind::kEvent, before);
     if (!row || !*row) return row;
     const Json body = journal::from_text((*row)->body);
-    const bool fits = id == 0 ? text_of(body, "type") == "strategy_chosen"
+    const bool fits = id == 0 ? text_of(body, "type") == words_of<StrategyChosen>().name
                               : is_decision(**row, body) && text_of(body, "rule") == rule;
     if (fits) return row;
     before = (*row)->id;
@@ -72,7 +73,7 @@ std::string candidates_of(const Json& body) {
 }
 
 bool is_over(const std::string& type) {
-  return type == "failure_resolved" || type == "failure_lost";
+  return type == words_of<FailureResolved>().name || type == words_of<FailureLost>().name;
 }
 
 // What followed for the same rule, up to the end of the strategy; the other rows in between are of

@@ -88,7 +88,7 @@ TEST_F(Plan, GivesTheSameAsData) {
   EXPECT_EQ(redeploy["flips"][0]["impact"], 7);
   const auto& segmentation = json["failures"][2];
   EXPECT_TRUE(segmentation["chosen"].is_null());
-  EXPECT_EQ(segmentation["candidates"][0]["excluded"]["because"], "SensorFusionDead");
+  EXPECT_EQ(segmentation["candidates"][0]["excluded"]["failure"], "SensorFusionDead");
   EXPECT_EQ(segmentation["candidates"][0]["flips"][0]["rules"],
             nlohmann::json({"SensorFusionDead", "RGBDead"}));
 }

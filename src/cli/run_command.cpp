@@ -44,8 +44,8 @@ class ConsoleListener : public Listener {
     const std::string text = line(event, rules, start, colour_of(STDOUT_FILENO));
     if (!text.empty()) say(stdout, "{}\n", text);
   }
-  void on_announcement(Duration after, const std::string& kind, const std::string& text) override {
-    say(stdout, "{:8.3f}  {:<10}  {}\n", seconds(after), kind, text);
+  void on_announcement(Duration after, const EventWords& words, const std::string& text) override {
+    say(stdout, "{}\n", line(words, after, text, colour_of(STDOUT_FILENO)));
   }
   void on_remark(const std::string& lines) override { say_text(stdout, lines); }
   void on_trouble(const std::string& text) override { fail(text); }

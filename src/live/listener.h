@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "knowledge/event.h"
+#include "knowledge/event_words.h"
 
 namespace culprit {
 
@@ -14,8 +14,8 @@ class Listener {
 
   // Something happened. `start`: from when people count times.
   virtual void on_event(const Event& /*event*/, const RuleSet& /*rules*/, Time /*start*/) {}
-  // Something about culprit itself, which no event tells. `after`: since the start.
-  virtual void on_announcement(Duration /*after*/, const std::string& /*kind*/,
+  // Something about culprit itself (announcements.h). `after`: since the start.
+  virtual void on_announcement(Duration /*after*/, const EventWords& /*words*/,
                                const std::string& /*text*/) {}
   // Whole lines, of what it finds and begins. From any thread.
   virtual void on_remark(const std::string& /*lines*/) {}

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "live/announcements.h"
 #include "live/begin_anew.h"
 
 namespace culprit {
@@ -116,7 +117,7 @@ void LiveRun::look_at_neighbours() {
   const auto elsewhere = role_.managed_elsewhere(nodes, session_->link());
   if (!frame_.advises) session_->leave_alone(elsewhere);
   for (const std::string& warning : role_.warnings(session_->link()))
-    session_->announce("neighbour", warning);
+    session_->announce(announcements::kNeighbour, warning);
   // One that was slow, or cut off, and is about to step back.
   const auto told = role_.told_orders(session_->link());
   if (frame_.advises || !told || !*told) return;
@@ -139,7 +140,7 @@ Expected<void> LiveRun::change_role(OrderTaker& desk, const std::atomic<bool>& s
   if (auto joined = join(std::move(rules)); !joined) return joined;
   frame_.manager_before.reset();  // the sessions that come next follow this one
   session_->begin(stopped, known);
-  session_->announce("role", role_.reason());
+  session_->announce(announcements::kRole, role_.reason());
   open(desk);
   return {};
 }
@@ -148,13 +149,14 @@ Expected<void> LiveRun::change_role(OrderTaker& desk, const std::atomic<bool>& s
 void LiveRun::change_rules(Next next, OrderTaker& desk) {
   auto opened = LiveSession::open(frame_, std::move(next.rules));
   if (!opened)
-    return session_->announce("trouble", "the rules are not reloaded: " + opened.error());
+    return session_->announce(announcements::kNotReloaded,
+                              "the rules are not reloaded: " + opened.error());
   close(desk);
   LiveSession::Handover handover =
       session_->hand_over((*opened)->rules(), "reloaded by " + next.author);
   session_ = std::move(*opened);
   session_->begin(std::move(handover));
-  session_->announce("reloaded",
+  session_->announce(announcements::kReloaded,
                      fmt::format("{}: {} is reloaded, with {} rules", next.author,
                                  options_.session.rules_file, session_->rules().rules.size()));
   open(desk);
@@ -166,7 +168,8 @@ void LiveRun::watch_hearing(OrderTaker& desk) {
   if (!deaf_since) return systemd_.feed(session_->now());
   if (session_->now() < later(*deaf_since, kDeafAtMost)) return;
   session_->announce(
-      "deaf", "the robot was not heard for " + to_string(kDeafAtMost) + "; culprit begins anew");
+      announcements::kBeginsAnew,
+      "the robot was not heard for " + to_string(kDeafAtMost) + "; culprit begins anew");
   close(desk);
   session_->end();
   frame_.listener.on_trouble(begin_anew());
@@ -184,7 +187,7 @@ Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) 
     }
     look_at_neighbours();
     if (frame_.orders.is_kept_again())
-      session_->announce("kept", "what people have ordered was not kept, and is now");
+      session_->announce(announcements::kKept, "what people have ordered was not kept, and is now");
     watch_hearing(desk);
     // Without a journal nobody would know what is under way: then the new rules wait for its end.
     const bool has_to_wait = next && !frame_.records && session_->is_adapting();

@@ -15,37 +15,16 @@
 namespace culprit {
 namespace {
 
-bool is_required(const ComponentId* component, const RuleSet& rules) {
-  return component != nullptr && rules[*component].is_required;
-}
-
-// A REQUIRED component that is not there.
-bool misses_what_is_required(const Event& event, const RuleSet& rules) {
-  if (const auto* lost = std::get_if<ComponentLost>(&event.what))
-    return is_required(&lost->component, rules);
-  const auto* unseen = std::get_if<NeverSeen>(&event.what);
-  return unseen != nullptr && is_required(std::get_if<ComponentId>(&unseen->what), rules);
-}
-
-ros2::Severity severity_of(const Event& event, const RuleSet& rules) {
-  if (misses_what_is_required(event, rules) || std::holds_alternative<RuleExhausted>(event.what) ||
-      std::holds_alternative<LastResortReached>(event.what) ||
-      std::holds_alternative<FailureFlaps>(event.what) ||
-      std::holds_alternative<StormBegan>(event.what) ||
-      std::holds_alternative<JudgementSuspended>(event.what))
-    return ros2::Severity::kError;
-  const bool is_bad = std::holds_alternative<FailureDetected>(event.what) ||
-                      std::holds_alternative<NeverSeen>(event.what) ||
-                      std::holds_alternative<StrategyFailed>(event.what) ||
-                      std::holds_alternative<ComponentLost>(event.what) ||
-                      std::holds_alternative<AdaptationFailed>(event.what) ||
-                      std::holds_alternative<ActionHeldBack>(event.what) ||
-                      std::holds_alternative<ApprovalAsked>(event.what) ||
-                      std::holds_alternative<StrategyAbandoned>(event.what) ||
-                      std::holds_alternative<RivalSeen>(event.what) ||
-                      std::holds_alternative<SleepNoticed>(event.what) ||
-                      std::holds_alternative<Trouble>(event.what);
-  return is_bad ? ros2::Severity::kWarn : ros2::Severity::kInfo;
+ros2::Severity severity_in_rosout(EventSeverity severity) {
+  switch (severity) {
+    case EventSeverity::kInfo:
+      break;
+    case EventSeverity::kWarning:
+      return ros2::Severity::kWarn;
+    case EventSeverity::kError:
+      return ros2::Severity::kError;
+  }
+  return ros2::Severity::kInfo;
 }
 
 // That no other culprit is to manage, whatever its robot is called.
@@ -314,16 +293,16 @@ void LiveSession::tell(std::span<const Event> events) {
   for (const Event& event : events) {
     frame_.listener.on_event(event, rules_, frame_.start);
     const std::string text = describe(event, rules_);
-    if (!text.empty()) robot_->link().log(severity_of(event, rules_), text);
+    if (!text.empty()) robot_->link().log(severity_in_rosout(severity_of(event, rules_)), text);
   }
   robot_->link().publish(health(manager_->knowledge()));
 }
 
-void LiveSession::announce(const std::string& kind, const std::string& text) {
+void LiveSession::announce(const EventWords& words, const std::string& text) {
   const Time now = robot_->now();
-  frame_.listener.on_announcement(now - frame_.start, kind, text);
-  if (frame_.observer != nullptr) frame_.observer->announced(now, kind, text);
-  robot_->link().log(ros2::Severity::kInfo, text);
+  frame_.listener.on_announcement(now - frame_.start, words, text);
+  if (frame_.observer != nullptr) frame_.observer->announced(now, words, text);
+  robot_->link().log(severity_in_rosout(words.severity), text);
 }
 
 std::set<std::string> LiveSession::adapted_nodes() const {

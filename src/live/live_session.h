@@ -88,8 +88,8 @@ class LiveSession {
   // What was seen of the robot.
   KnownRobot known_robot() const { return manager_->knowledge().known_robot(); }
 
-  // Says it to people, wherever they look.
-  void announce(const std::string& kind, const std::string& text);
+  // Says it to people, wherever they look (announcements.h).
+  void announce(const EventWords& words, const std::string& text);
 
   // The nodes of components that strategies adapt, as far as they are known.
   std::set<std::string> adapted_nodes() const;

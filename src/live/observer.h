@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "knowledge/event_words.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
 
@@ -26,8 +27,8 @@ class Observer {
   virtual void stepped(const Runtime::Step& step) = 0;
   // When it wants to be told of a step even if nothing happens.
   virtual Time next_look() const = 0;
-  // Something about culprit itself, which no event tells.
-  virtual void announced(Time at, const std::string& kind, const std::string& text) = 0;
+  // Something about culprit itself (announcements.h).
+  virtual void announced(Time at, const EventWords& words, const std::string& text) = 0;
 };
 
 }  // namespace culprit

@@ -13,49 +13,21 @@
 namespace culprit {
 namespace {
 
-struct Label {
-  std::string_view text;
-  std::string_view colour;
-};
-
-struct Labels {
-  Label operator()(const FailureDetected&) const { return {"detected", "\033[1;31m"}; }
-  Label operator()(const FailureResolved&) const { return {"resolved", "\033[1;32m"}; }
-  Label operator()(const FailureLost&) const { return {"lost sight", "\033[33m"}; }
-  Label operator()(const StrategyChosen&) const { return {"decided", "\033[1;36m"}; }
-  Label operator()(const FailureHeldBack&) const { return {"waiting", "\033[2m"}; }
-  Label operator()(const AdaptationDone&) const { return {"done", "\033[36m"}; }
-  Label operator()(const AdaptationFailed&) const { return {"failed", "\033[33m"}; }
-  Label operator()(const StrategyFailed&) const { return {"no help", "\033[33m"}; }
-  Label operator()(const StrategyResumed&) const { return {"resumed", "\033[36m"}; }
-  Label operator()(const Undone&) const { return {"undone", "\033[36m"}; }
-  Label operator()(const RoundSpent&) const { return {"pause", "\033[33m"}; }
-  Label operator()(const RuleExhausted&) const { return {"EXHAUSTED", "\033[1;31m"}; }
-  Label operator()(const LastResortReached&) const { return {"LAST", "\033[1;31m"}; }
-  Label operator()(const ComponentLost&) const { return {"lost", "\033[31m"}; }
-  Label operator()(const ComponentFound&) const { return {"found", "\033[32m"}; }
-  Label operator()(const NeverSeen&) const { return {"never seen", "\033[33m"}; }
-  Label operator()(const LifecycleIntended&) const { return {"lifecycle", ""}; }
-  Label operator()(const CameUp&) const { return {"came up", ""}; }
-  Label operator()(const RivalSeen&) const { return {"RIVAL", "\033[1;33m"}; }
-  Label operator()(const Trouble&) const { return {"trouble", "\033[33m"}; }
-  Label operator()(const OrderAccepted&) const { return {"order", "\033[1;35m"}; }
-  Label operator()(const OrderRefused&) const { return {"refused", "\033[35m"}; }
-  Label operator()(const ActionHeldBack&) const { return {"held back", "\033[33m"}; }
-  Label operator()(const ApprovalAsked&) const { return {"APPROVE?", "\033[1;35m"}; }
-  Label operator()(const ApprovalLapsed&) const { return {"lapsed", "\033[35m"}; }
-  Label operator()(const StrategyAbandoned&) const { return {"abandoned", "\033[33m"}; }
-  Label operator()(const OrderCarriedOut&) const { return {"done", "\033[36m"}; }
-  Label operator()(const OutcomePending&) const { return {"pending", ""}; }
-  Label operator()(const OutcomeCounted&) const { return {"learned", ""}; }
-  Label operator()(const FailureFlaps&) const { return {"FLAPPING", "\033[1;31m"}; }
-  Label operator()(const SilenceEnded&) const { return {"silence", "\033[35m"}; }
-  Label operator()(const StormBegan&) const { return {"STORM", "\033[1;31m"}; }
-  Label operator()(const StormEnded&) const { return {"calm", "\033[32m"}; }
-  Label operator()(const JudgementSuspended&) const { return {"DEAF", "\033[1;31m"}; }
-  Label operator()(const JudgementResumed&) const { return {"hears", "\033[32m"}; }
-  Label operator()(const SleepNoticed&) const { return {"slept", "\033[33m"}; }
-};
+std::string colour_code(const EventWords& words) {
+  constexpr std::string_view kDim = "2";
+  constexpr std::string_view kRed = "31";
+  constexpr std::string_view kGreen = "32";
+  constexpr std::string_view kYellow = "33";
+  constexpr std::string_view kMagenta = "35";
+  constexpr std::string_view kCyan = "36";
+  const std::string_view colour = words.tone == Tone::kAlarm     ? kRed
+                                  : words.tone == Tone::kRelief  ? kGreen
+                                  : words.tone == Tone::kWarning ? kYellow
+                                  : words.tone == Tone::kPerson  ? kMagenta
+                                  : words.tone == Tone::kAction  ? kCyan
+                                                                 : kDim;
+  return fmt::format("\033[{}{}m", words.weight == Weight::kStrong ? "1;" : "", colour);
+}
 
 sigset_t awaited(Hangup hangup) {
   sigset_t signals;
@@ -74,12 +46,14 @@ Colour colour_of(int descriptor) {
 
 std::string line(const Event& event, const RuleSet& rules, Time start, Colour colour) {
   const std::string text = describe(event, rules);
-  if (text.empty()) return "";
-  const Label label = std::visit(Labels{}, event.what);
+  return text.empty() ? "" : line(words_of(event), event.at - start, text, colour);
+}
+
+std::string line(const EventWords& words, Duration after, const std::string& text, Colour colour) {
   const bool is_coloured = colour == Colour::kOn;
-  return fmt::format("{:8.3f}  {}{:<10}{}  {}", seconds(event.at - start),
-                     is_coloured ? label.colour : "", label.text, is_coloured ? "\033[0m" : "",
-                     text);
+  return fmt::format("{:8.3f}  {}{:<10}{}  {}", seconds(after),
+                     is_coloured ? colour_code(words) : "", words.label,
+                     is_coloured ? "\033[0m" : "", text);
 }
 
 void say_text(std::FILE* stream, const std::string& text) {

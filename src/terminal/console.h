@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-#include "knowledge/event.h"
+#include "knowledge/event_words.h"
 #include "language/diagnostic.h"
 
 namespace culprit {
@@ -22,6 +22,8 @@ Colour colour_of(int descriptor);
 // One event as a line with its time since `start`: "   3.214  detected   RGBDead (ERROR)". Empty
 // for events that are not worth one.
 std::string line(const Event& event, const RuleSet& rules, Time start, Colour colour);
+// Likewise, of anything that has such words.
+std::string line(const EventWords& words, Duration after, const std::string& text, Colour colour);
 
 // Prints at once. A reader who is gone, or a full disk, keeps nobody from managing a robot: what
 // cannot be said is left out.

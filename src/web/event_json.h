@@ -1,10 +1,10 @@
-// What the manager did, as JSON (docs/web.md): the sentence that culprit run prints, and all that
-// it is made of.
+// What the manager did, as JSON (docs/web.md): a row of the journal (journal/event_json.h), and
+// what the page needs to show it without a table of its own.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
-#include "knowledge/event.h"
+#include "knowledge/event_words.h"
 
 namespace culprit::web {
 
@@ -21,8 +21,8 @@ Json names_of(const auto& ids, const RuleSet& rules) {
 }
 
 Json to_json(const Event& event, const RuleSet& rules, Time start);
-Json to_json(const Candidate& candidate, const RuleSet& rules);
-Json to_json(const Suspect& suspect, const RuleSet& rules);
+// {"type": ..., "label": ..., "severity": ..., "tone": ...}
+Json to_json(const EventWords& words);
 
 // On one line; what is no UTF-8 is replaced, for robots name things as they like.
 std::string to_line(const Json& json);

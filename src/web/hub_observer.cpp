@@ -36,9 +36,11 @@ void HubObserver::stepped(const Runtime::Step& step) {
   if (hub_.has_readers() && step.now >= next_tell_) tell_state(step.now);
 }
 
-void HubObserver::announced(Time at, const std::string& kind, const std::string& text) {
-  hub_.publish(Kind::kEvent,
-               to_line({{"t", time_to_json(at, start_)}, {"kind", kind}, {"text", text}}));
+void HubObserver::announced(Time at, const EventWords& words, const std::string& text) {
+  Json json{{"t", time_to_json(at, start_)}};
+  json.update(to_json(words));
+  json["text"] = text;
+  hub_.publish(Kind::kEvent, to_line(json));
 }
 
 void HubObserver::tell_events(std::span<const Event> events) {

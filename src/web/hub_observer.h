@@ -28,7 +28,7 @@ class HubObserver : public Observer {
   void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) override;
   void stepped(const Runtime::Step& step) override;
   Time next_look() const override { return hub_.has_readers() ? next_tell_ : kNever; }
-  void announced(Time at, const std::string& kind, const std::string& text) override;
+  void announced(Time at, const EventWords& words, const std::string& text) override;
 
  private:
   void tell_events(std::span<const Event> events);

@@ -200,7 +200,7 @@ TEST_F(WebServer, StreamsWhatIsPublished) {
   const Raw raw(server->port());
   raw.send("GET /api/stream HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_THAT(raw.receive("hello"), HasSubstr("text/event-stream"));
-  hub.publish(Kind::kEvent, "{\"kind\": \"detected\"}");
+  hub.publish(Kind::kEvent, "{\"label\": \"detected\"}");
   EXPECT_THAT(raw.receive("detected"), HasSubstr("event: event"));
 }
 

@@ -68,16 +68,16 @@ function Density({ entry }: { entry: Entry }) {
 }
 
 const kOutcomes: Record<string, string> = {
-  resolved: '✓ helped',
-  no_help: '✕ did not help',
-  failed: '✕ could not be carried out',
-  abandoned: '– was abandoned, which proves nothing',
+  failure_resolved: '✓ helped',
+  strategy_failed: '✕ did not help',
+  adaptation_failed: '✕ could not be carried out',
+  strategy_abandoned: '– was abandoned, which proves nothing',
 }
 const kMostOutcomes = 50
 
 // What came of it each time, newest first.
 function Outcomes({ entry }: { entry: Entry }) {
-  const mine = (e: ManagerEvent) => e.rule === entry.rule && e.strategy === entry.strategy.name && !!kOutcomes[e.kind]
+  const mine = (e: ManagerEvent) => e.rule === entry.rule && e.strategy === entry.strategy.name && !!kOutcomes[e.type]
   const list = events.value.filter(mine).slice(-kMostOutcomes).reverse()
   return (
     <section aria-label="Outcomes">
@@ -86,7 +86,7 @@ function Outcomes({ entry }: { entry: Entry }) {
       <ol>
         {list.map((e) => (
           <li key={e.number}>
-            <span class="number">{e.t.toFixed(2)} s</span> {kOutcomes[e.kind]}
+            <span class="number">{e.t.toFixed(2)} s</span> {kOutcomes[e.type]}
           </li>
         ))}
       </ol>

@@ -150,7 +150,7 @@ function FailureCard({ failure, view }: { failure: Failure; view: View }) {
       <Suspects failure={failure} />
       <Candidates
         list={decision?.candidates ?? []}
-        chosen={decision?.kind === 'decided' ? decision.strategy : null}
+        chosen={decision?.type === 'strategy_chosen' ? decision.strategy : null}
       />
     </article>
   )

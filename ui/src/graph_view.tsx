@@ -64,7 +64,7 @@ function waitingFor(cause: string): string[] {
   const found = [cause]
   for (const rule of found) {
     for (const failure of situation.value.failures) {
-      const waits = failure.decision?.candidates?.some((c) => c.excluded?.because === rule)
+      const waits = failure.decision?.candidates?.some((c) => c.excluded?.failure === rule)
       if (waits && !found.includes(failure.rule)) found.push(failure.rule)
     }
   }

@@ -8,7 +8,7 @@ export interface Failure {
   criticality: Criticality
   phase: 'failing' | 'attempting' | 'exhausted'
   since: number
-  decision?: ManagerEvent // the last about it: "decided" or "waiting"
+  decision?: ManagerEvent // the last about it: a strategy was chosen, or it waits
   tried: string[]
   retryAt?: number
 }
@@ -30,8 +30,8 @@ export function situationAt(history: ManagerEvent[], t: number): Situation {
   for (const event of history) {
     if (event.t > t) break
     const failure = event.rule ? failures.get(event.rule) : undefined
-    switch (event.kind) {
-      case 'detected':
+    switch (event.type) {
+      case 'failure_detected':
         failures.set(event.rule!, {
           rule: event.rule!,
           criticality: event.criticality!,
@@ -40,43 +40,43 @@ export function situationAt(history: ManagerEvent[], t: number): Situation {
           tried: [],
         })
         break
-      case 'resolved':
-      case 'lost_sight':
+      case 'failure_resolved':
+      case 'failure_lost':
         failures.delete(event.rule!)
         break
-      case 'decided':
+      case 'strategy_chosen':
         if (!failure) break
         failure.decision = event
         failure.phase = event.dry_run ? 'failing' : 'attempting'
         break
-      case 'waiting':
+      case 'failure_held_back':
       case 'approval_asked':
         if (failure) failure.decision = event
         break
-      case 'abandoned':
+      case 'strategy_abandoned':
         if (failure) failure.phase = 'failing'
         break
-      case 'no_help':
+      case 'strategy_failed':
         if (!failure) break
         failure.phase = 'failing'
         failure.tried.push(event.strategy!)
         break
-      case 'pause':
+      case 'round_spent':
         if (!failure) break
         failure.retryAt = event.retry_at ?? undefined
         failure.tried = []
         break
-      case 'exhausted':
+      case 'rule_exhausted':
         if (failure) failure.phase = 'exhausted'
         break
       case 'reloaded': // what is still there is detected anew
         failures.clear()
         gone.clear()
         break
-      case 'lost':
+      case 'component_lost':
         gone.add(event.component!)
         break
-      case 'found':
+      case 'component_found':
         gone.delete(event.component!)
         break
     }
@@ -111,7 +111,7 @@ export function viewOf(
   const culprits = computed(() => {
     const blamed = new Map<string, Failure>()
     for (const failure of situation.value.failures) {
-      if (failure.decision?.kind !== 'decided' || failure.phase === 'exhausted') continue
+      if (failure.decision?.type !== 'strategy_chosen' || failure.phase === 'exhausted') continue
       for (const component of failure.decision.components ?? []) {
         if (!blamed.has(component)) blamed.set(component, failure)
       }

@@ -23,25 +23,32 @@ interface Lane {
   marks: ManagerEvent[]
 }
 
-const kMarks: Record<string, string> = { decided: '▼', no_help: '✕', pause: 'Ⅱ', exhausted: '✖', fault: '⚡', note: '•' }
+const kMarks: Record<string, string> = {
+  strategy_chosen: '▼',
+  strategy_failed: '✕',
+  round_spent: 'Ⅱ',
+  rule_exhausted: '✖',
+  fault: '⚡',
+  note: '•',
+}
 
 // What is about no rule, above the rules: only of runs that are over is it known.
 const kOwnLanes: Record<string, string> = { fault: 'faults', note: 'the robot' }
 
 function lanesOf(events: ManagerEvent[]): Lane[] {
   const own = Object.entries(kOwnLanes)
-    .map(([kind, name]): Lane => ({ name, bars: [], marks: events.filter((e) => e.kind === kind) }))
+    .map(([type, name]): Lane => ({ name, bars: [], marks: events.filter((e) => e.type === type) }))
     .filter((lane) => lane.marks.length > 0)
   const byRule = new Map<string, Lane>()
   for (const event of events) {
-    if (event.kind === 'reloaded') {
+    if (event.type === 'reloaded') {
       for (const { bars } of byRule.values()) {
         const last = bars[bars.length - 1]
         last.to ??= event.t
       }
     }
     if (!event.rule) continue
-    if (event.kind === 'detected') {
+    if (event.type === 'failure_detected') {
       const lane = byRule.get(event.rule) ?? { name: event.rule, bars: [], marks: [] }
       lane.bars.push({ from: event.t, to: null, criticality: event.criticality!, outcome: 'open' })
       byRule.set(event.rule, lane)
@@ -50,10 +57,10 @@ function lanesOf(events: ManagerEvent[]): Lane[] {
     const lane = byRule.get(event.rule)
     const bar = lane?.bars[lane.bars.length - 1]
     if (!lane || !bar) continue
-    if (event.kind === 'resolved' || event.kind === 'lost_sight') {
+    if (event.type === 'failure_resolved' || event.type === 'failure_lost') {
       bar.to = event.t
       bar.outcome = event.text
-    } else if (kMarks[event.kind]) {
+    } else if (kMarks[event.type]) {
       lane.marks.push(event)
     }
   }
@@ -132,9 +139,9 @@ export function Timeline({ view }: { view: View }) {
                     x={percent(m.t)}
                     y={row * kRow + 18}
                     class="mark"
-                    text-anchor={m.kind === 'no_help' ? 'end' : 'middle' /* the next strategy may begin there */}
+                    text-anchor={m.type === 'strategy_failed' ? 'end' : 'middle' /* the next strategy may begin there */}
                   >
-                    {kMarks[m.kind]}
+                    {kMarks[m.type]}
                     <title>{m.text}</title>
                   </text>
                 ))}
@@ -176,7 +183,7 @@ export function EventLog({ view }: { view: View }) {
             <button type="button" onClick={() => (moment.value = event.t)} title="Look at this moment">
               {event.t.toFixed(2)}
             </button>
-            <span class={`kind kind-${event.kind}`}>{event.kind.replace('_', ' ')}</span>
+            <span class={`label tone-${event.tone}`}>{event.label}</span>
             <span>{event.text}</span>
           </li>
         ))}

@@ -76,7 +76,7 @@ export interface Candidate {
   cost: number
   value: number
   resolves: number
-  excluded: { condition: string; text: string; because?: string } | null
+  excluded: { condition: string; text: string; component?: string; failure?: string } | null
 }
 export interface Suspect {
   component: string
@@ -86,7 +86,10 @@ export interface Suspect {
 export interface ManagerEvent {
   number: number // of this page's counting
   t: number
-  kind: string
+  type: string // the name that the journal has for it, too
+  label: string // for people
+  severity: 'info' | 'warning' | 'error'
+  tone: string // the colour of the label
   text: string
   rule?: string
   strategy?: string | null

@@ -74,7 +74,7 @@ const kEvilStream = {
   robot: { robot: kEvil, cycle_s: 0.2, components: [{ name: kEvil, can_start: false }], topics: [kEvil], inputs: [], rules: [] },
   graph: { nodes: [{ node: kEvil, present: true, component: kEvil }], edges: [[kEvil, `${kEvil}2`, kEvil]] },
   state: { t: 1, rules: [], components: [{ health: 'OK', present: true, alive: true, remark: kEvil }], topics: [{ rate: 1, age: 0 }], inputs: [], beliefs: [], couplings: [] },
-  event: { t: 1, kind: 'trouble', text: kEvil },
+  event: { t: 1, type: 'trouble', label: kEvil, severity: 'warning', tone: kEvil, text: kEvil },
 }
 
 async function isHarmless(page) {

@@ -90,7 +90,7 @@ function largeRobot() {
           const t = ++step / 30
           send('state', state(t))
           const rule = `Rule${step % kNodes}`
-          send('event', step % 2 ? { t, kind: 'detected', text: `${rule} detected`, rule, criticality: 'ERROR' } : { t, kind: 'resolved', text: `${rule} resolved`, rule: `Rule${(step - 1) % kNodes}` })
+          send('event', step % 2 ? { t, type: 'failure_detected', label: 'detected', severity: 'warning', tone: 'alarm', text: `${rule} detected`, rule, criticality: 'ERROR' } : { t, type: 'failure_resolved', label: 'resolved', severity: 'info', tone: 'relief', text: `${rule} resolved`, rule: `Rule${(step - 1) % kNodes}` })
         }, 1000 / 30)
       },
     })

@@ -1,5 +1,5 @@
 // What the rows of the journal hold, as JSON (docs/journal.md): named, so that it can be read
-// without the rule file, and after the rule file has changed.
+// without the rule file, and after the rule file has changed. Events: event_json.h.
 #pragma once
 
 #include <string>
@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/expected.h"
-#include "knowledge/event.h"
 #include "robot/command.h"
 
 namespace culprit::journal {
@@ -26,8 +25,6 @@ std::string text_of(const Json& json, const char* key);
 double number_of(const Json& json, const char* key, double otherwise = 0);
 std::int64_t integer_of(const Json& json, const char* key, std::int64_t otherwise = 0);
 bool flag_of(const Json& json, const char* key);
-
-Json to_json(const Event& event, const RuleSet& rules);
 
 // What a command asks for: {"set_parameter": {"name": "gain", "value": 0.5}}
 Json to_json(const decltype(Command::what)& request);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "journal/requests.h"
+#include "journal/event_json.h"
 
 namespace culprit::journal {
 namespace {
@@ -16,93 +16,6 @@ template <class What>
 const What* order_of(const Event& event) {
   const auto* accepted = std::get_if<OrderAccepted>(&event.what);
   return accepted == nullptr ? nullptr : std::get_if<What>(&accepted->order.what);
-}
-
-std::optional<decltype(Event::what)> about_rule(const std::string& type, RuleId rule) {
-  if (type == "failure_detected") return FailureDetected{rule};
-  if (type == "failure_lost") return FailureLost{rule};
-  if (type == "round_spent") return RoundSpent{rule, {}};
-  if (type == "last_resort_reached") return LastResortReached{rule};
-  if (type == "rule_exhausted") return RuleExhausted{rule};
-  return std::nullopt;
-}
-
-std::optional<decltype(Event::what)> about_strategy(const std::string& type, const Json& body,
-                                                    StrategyId strategy, const RuleSet& rules) {
-  if (type == "strategy_chosen" && !flag_of(body, "dry_run"))
-    return StrategyChosen{strategy, {}, {}, false};
-  if (type == "strategy_resumed") return StrategyResumed{strategy};
-  if (type == "outcome_pending")
-    return OutcomePending{strategy, flag_of(body, "helped"),
-                          Time(Duration(integer_of(body, "due")))};
-  if (type == "outcome_counted") return OutcomeCounted{strategy, {}};
-  if (type == "strategy_failed") return StrategyFailed{strategy, ""};
-  const std::int64_t adaptation = integer_of(body, "adaptation", -1);
-  const auto count = static_cast<std::int64_t>(rules[strategy].adaptations.size());
-  if (type == "adaptation_done" && adaptation >= 0 && adaptation < count)
-    return AdaptationDone{strategy, static_cast<std::size_t>(adaptation), ""};
-  return std::nullopt;
-}
-
-// Whose strategy resolved it may be one that is no longer there.
-std::optional<decltype(Event::what)> about_resolution(const std::string& type, RuleId rule,
-                                                      std::optional<StrategyId> strategy) {
-  if (type != "failure_resolved") return std::nullopt;
-  using How = FailureResolved::How;
-  return FailureResolved{rule, strategy ? How::kByStrategy : How::kWithoutStrategy, strategy, {}};
-}
-
-std::optional<decltype(Event::what)> about_order(const Json& body, const RuleSet& rules) {
-  const std::string word = text_of(body, "order");
-  Order order{0, text_of(body, "author"), text_of(body, "reason"), Pause{}};
-  const auto rule = find_rule(rules, text_of(body, "rule"));
-  const auto component = find_component(rules, text_of(body, "component"));
-  if (word == "run_strategy") {
-    const auto strategy = find_strategy(rules, text_of(body, "rule"), text_of(body, "strategy"));
-    if (!strategy) return std::nullopt;
-    order.what = RunStrategy{*strategy};
-    return OrderAccepted{std::move(order)};
-  }
-  if ((!rule && !component) || (word != "silence" && word != "lift_silence")) return std::nullopt;
-  const Silenceable target = rule ? Silenceable(*rule) : Silenceable(*component);
-  if (word == "lift_silence") {
-    order.what = LiftSilence{target};
-    return OrderAccepted{std::move(order)};
-  }
-  Silence silence{target, {}};
-  if (body.contains("lasts_ns"))
-    silence.lasts = Duration(std::max<std::int64_t>(0, integer_of(body, "lasts_ns")));
-  order.what = silence;
-  return OrderAccepted{std::move(order)};
-}
-
-std::optional<decltype(Event::what)> about_process(const Json& body, const RuleSet& rules) {
-  const auto component = find_component(rules, text_of(body, "component"));
-  const std::int64_t pid = integer_of(body, "pid");
-  if (!component || pid <= 0 || pid > INT32_MAX) return std::nullopt;
-  return ComponentFound{*component, static_cast<int>(pid)};
-}
-
-std::optional<decltype(Event::what)> about_lifecycle(const Json& body, const RuleSet& rules) {
-  const auto component = find_component(rules, text_of(body, "component"));
-  const auto reading = reading_from_json(body);
-  const auto* state = std::get_if<Lifecycle>(&reading);
-  if (!component || state == nullptr) return std::nullopt;
-  return LifecycleIntended{*component, *state};
-}
-
-std::optional<decltype(Event::what)> about_coming_up(const Json& body, const RuleSet& rules) {
-  const auto component = find_component(rules, text_of(body, "component"));
-  if (!component) return std::nullopt;
-  const std::string driver = text_of(body, "driver");
-  const auto measured = [&](const char* key) {
-    return Duration(std::max<std::int64_t>(0, integer_of(body, key)));
-  };
-  return CameUp{*component,
-                {driver == "other"     ? ComingUp::Driver::kOther
-                 : driver == "culprit" ? ComingUp::Driver::kCulprit
-                                       : ComingUp::Driver::kUnknown,
-                 measured("joining_ns"), measured("rising_ns")}};
 }
 
 // Of each component only the last event of this kind counts.
@@ -178,20 +91,13 @@ bool is_said_again(const Event& event, const Past& kept, const RuleSet& rules) {
 
 }  // namespace
 
-std::optional<Event> past_event(const Json& body, const RuleSet& rules) {
-  const std::string type = text_of(body, "type");
-  const auto rule = find_rule(rules, text_of(body, "rule"));
-  const auto strategy = find_strategy(rules, text_of(body, "rule"), text_of(body, "strategy"));
-  std::optional<decltype(Event::what)> what;
-  if (type == "order_accepted") what = about_order(body, rules);
-  if (type == "component_found") what = about_process(body, rules);
-  if (type == "lifecycle_intended") what = about_lifecycle(body, rules);
-  if (type == "came_up") what = about_coming_up(body, rules);
-  if (!what && rule) what = about_rule(type, *rule);
-  if (!what && rule) what = about_resolution(type, *rule, strategy);
-  if (!what && strategy) what = about_strategy(type, body, *strategy, rules);
-  if (!what) return std::nullopt;
-  return Event{Time(Duration(integer_of(body, "time"))), std::move(*what)};
+bool is_remembered(const Event& event) {
+  if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) return !chosen->dry_run;
+  return is_any_of<FailureDetected, FailureResolved, FailureLost, RoundSpent, LastResortReached,
+                   RuleExhausted, StrategyFailed, StrategyResumed, AdaptationDone, OutcomePending,
+                   OutcomeCounted, ComponentFound, LifecycleIntended, CameUp>(event) ||
+         order_of<RunStrategy>(event) != nullptr || order_of<Silence>(event) != nullptr ||
+         order_of<LiftSilence>(event) != nullptr;
 }
 
 Past still_counting(const Past& past, Time now, const RuleSet& rules) {
@@ -255,7 +161,8 @@ Past past_from_json(const Json& json, const RuleSet& rules) {
   Past past;
   if (!json.is_array()) return past;
   for (const Json& each : json) {
-    if (auto event = past_event(each, rules)) past.push_back(std::move(*event));
+    auto event = event_from_json(each, rules);
+    if (event && is_remembered(*event)) past.push_back(std::move(*event));
   }
   return past;
 }

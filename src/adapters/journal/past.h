@@ -11,9 +11,8 @@ namespace culprit::journal {
 // and of each component its last process and its intended lifecycle.
 inline constexpr Duration kPastCounts = std::chrono::hours(1);
 
-// Of the body of an `event` row; nothing if it is of another kind, or about what `rules` does not
-// have.
-std::optional<Event> past_event(const Json& body, const RuleSet& rules);
+// Is it one that the next run is told of (knowledge/past.h)?
+bool is_remembered(const Event& event);
 
 // Leaves out what does not count at `now` any more.
 Past still_counting(const Past& past, Time now, const RuleSet& rules);

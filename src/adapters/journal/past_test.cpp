@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "journal/requests.h"
+#include "journal/event_json.h"
 #include "language/checker.h"
 
 namespace culprit::journal {
@@ -69,8 +69,8 @@ TEST(Past, OfEachComponentHowItCameUpLastIsReadBack) {
 // Journals of before outcomes waited.
 TEST(Past, OldRowsAreStillRead) {
   const RuleSet r = rules();
-  const auto resolved =
-      past_event(from_text(R"({"type":"failure_resolved","rule":"R","reaction_s":1,"time":5})"), r);
+  const auto resolved = event_from_json(
+      from_text(R"({"type":"failure_resolved","rule":"R","reaction_s":1,"time":5})"), r);
   ASSERT_TRUE(resolved);
   EXPECT_FALSE(std::get<FailureResolved>(resolved->what).strategy);
 }

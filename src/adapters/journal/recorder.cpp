@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "journal/event_json.h"
 #include "journal/recovery.h"
 #include "journal/requests.h"
 

@@ -4,7 +4,9 @@
 #include <array>
 
 #include "journal/bytes.h"
+#include "journal/event_json.h"
 #include "journal/requests.h"
+#include "knowledge/event_words.h"
 
 namespace culprit::journal {
 namespace {
@@ -42,7 +44,6 @@ class Trail {
     if (entry.kind == kind::kEvent) {
       latest_ = std::max(latest_, Time(Duration(integer_of(body, "time"))));
       event(body);
-      if (auto event = past_event(body, rules_)) past_.push_back(std::move(*event));
     }
     if (entry.kind == kind::kIntent) intent(body);
     if (entry.kind == kind::kOutcome) outcome(body);
@@ -78,49 +79,59 @@ class Trail {
   static std::int64_t first_step(const Entry& steps) { return ByteReader(steps.body).integer(); }
 
   void event(const Json& body) {
-    const std::string type = text_of(body, "type");
-    if (type == "order_accepted") order(text_of(body, "order"));
+    // What ends a strategy does so even if the rules no longer have it. A failure is held back
+    // only while no strategy of its own is under way.
+    constexpr std::array kEnds = {kKindOf<FailureResolved>, kKindOf<FailureLost>,
+                                  kKindOf<FailureHeldBack>, kKindOf<RoundSpent>,
+                                  kKindOf<RuleExhausted>,   kKindOf<StrategyAbandoned>,
+                                  kKindOf<OrderCarriedOut>};
+    const auto kind = kind_named(text_of(body, "type"));
     const auto rule = find_rule(rules_, text_of(body, "rule"));
-    if (!rule) return;
-    const auto strategy = find_strategy(rules_, text_of(body, "rule"), text_of(body, "strategy"));
-    // A failure is held back only while no strategy of its own is under way.
-    constexpr std::array kEnds = {"failure_resolved", "failure_lost",   "failure_held_back",
-                                  "round_spent",      "rule_exhausted", "strategy_abandoned",
-                                  "order_carried_out"};
-    if (std::find(kEnds.begin(), kEnds.end(), type) != kEnds.end()) return close(*rule);
-    if (!strategy) return;
-    if (type == "strategy_chosen" && !flag_of(body, "dry_run")) {
-      close(*rule);
-      open_.emplace_back();
-      open_.back().strategy = *strategy;
+    if (kind && rule && std::find(kEnds.begin(), kEnds.end(), *kind) != kEnds.end()) close(*rule);
+    auto event = event_from_json(body, rules_);
+    if (!event) return;
+    if (const auto* order = std::get_if<OrderAccepted>(&event->what)) heed(order->order);
+    if (const auto* chosen = std::get_if<StrategyChosen>(&event->what)) begin(*chosen);
+    if (const auto* done = std::get_if<AdaptationDone>(&event->what)) {
+      Interrupted* interrupted = find(done->strategy);
+      // Rows may be damaged: no more can be done than there is.
+      if (interrupted != nullptr &&
+          interrupted->adaptations_done < rules_[done->strategy].adaptations.size())
+        ++interrupted->adaptations_done;
     }
-    const auto found = std::find_if(open_.begin(), open_.end(), [&](const Interrupted& each) {
-      return each.strategy == *strategy;
-    });
-    if (found == open_.end()) return;
-    if (type == "adaptation_done") ++found->adaptations_done;
-    if (type == "strategy_failed") found->has_failed = true;
-    // Rows may be damaged: no more can be done than there is.
-    found->adaptations_done =
-        std::min(found->adaptations_done, rules_[*strategy].adaptations.size());
+    if (const auto* failed = std::get_if<StrategyFailed>(&event->what)) {
+      if (Interrupted* interrupted = find(failed->strategy)) interrupted->has_failed = true;
+    }
+    if (is_remembered(*event)) past_.push_back(std::move(*event));
   }
 
-  void order(const std::string& word) {
-    if (word == "pause") is_paused_ = true;
-    if (word == "resume") is_paused_ = false;
-    if (word == "dry_run") is_dry_run_ = true;
-    if (word == "act") is_dry_run_ = false;
+  void heed(const Order& order) {
+    if (std::holds_alternative<Pause>(order.what)) is_paused_ = true;
+    if (std::holds_alternative<Resume>(order.what)) is_paused_ = false;
+    if (const auto* dry_run = std::get_if<SetDryRun>(&order.what)) is_dry_run_ = dry_run->is_on;
+  }
+
+  void begin(const StrategyChosen& chosen) {
+    if (chosen.dry_run) return;
+    close(rules_[chosen.strategy].rule);
+    open_.emplace_back();
+    open_.back().strategy = chosen.strategy;
+  }
+
+  Interrupted* find(StrategyId strategy) {
+    const auto found = std::find_if(open_.begin(), open_.end(), [&](const Interrupted& each) {
+      return each.strategy == strategy;
+    });
+    return found == open_.end() ? nullptr : &*found;
   }
 
   void intent(const Json& body) {
     const auto command = command_from_json(body, rules_);
     if (!command) return give_up(body, command.error());
-    auto found = std::find_if(open_.begin(), open_.end(), [&](const Interrupted& each) {
-      return each.strategy == command->purpose.strategy;
-    });
+    Interrupted* found = find(command->purpose.strategy);
     // A person may have ordered it without a failure: then nobody chose it.
-    if (found == open_.end()) {
-      found = open_.emplace(open_.end());
+    if (found == nullptr) {
+      found = &open_.emplace_back();
       found->strategy = command->purpose.strategy;
     }
     found->requests.emplace_back();

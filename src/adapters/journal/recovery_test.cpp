@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "journal/json.h"
+#include "journal/event_json.h"
 #include "journal/test_folder.h"
 #include "journal/writer.h"
 #include "language/checker.h"

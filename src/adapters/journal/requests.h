@@ -4,6 +4,7 @@
 
 #include "journal/json.h"
 #include "knowledge/interrupted.h"
+#include "language/rule_set.h"
 
 namespace culprit::journal {
 

@@ -15,10 +15,14 @@ namespace {
 using web::Json;
 
 Json to_json(const study::TimelineEntry& incident) {
-  return {{"t", std::round(incident.time_s * 1000) / 1000},
-          {"kind", study::name(incident.kind)},
-          {"component", incident.component},
-          {"text", incident.text}};
+  const std::string_view name = study::name(incident.kind);
+  const bool is_fault = incident.kind == study::Happening::kFault;
+  Json json{{"t", std::round(incident.time_s * 1000) / 1000}};
+  json.update(web::to_json(
+      EventWords{name, name, EventSeverity::kInfo, is_fault ? Tone::kAlarm : Tone::kAside}));
+  json["component"] = incident.component;
+  json["text"] = incident.text;
+  return json;
 }
 
 // As the live stream has them. What nobody has words for is left out, as there.

@@ -25,10 +25,10 @@ Json example() {
                  ["example"];
 }
 
-std::set<std::string> kinds(const Json& events) {
-  std::set<std::string> kinds;
-  for (const Json& event : events) kinds.insert(event["kind"].get<std::string>());
-  return kinds;
+std::set<std::string> types(const Json& events) {
+  std::set<std::string> types;
+  for (const Json& event : events) types.insert(event["type"].get<std::string>());
+  return types;
 }
 
 bool is_in_order(const Json& events) {
@@ -50,10 +50,12 @@ TEST(SingleRunRoute, PlaysTheExampleOfTheOpenApiDocumentAsTheCampaignDid) {
 
   const Json& events = answer.body["events"];
   EXPECT_TRUE(is_in_order(events));
-  EXPECT_THAT(kinds(events), testing::IsSupersetOf({"fault", "detected", "decided", "resolved"}));
+  EXPECT_THAT(types(events), testing::IsSupersetOf({"fault", "failure_detected", "strategy_chosen",
+                                                    "failure_resolved"}));
   std::vector<double> resolved_s;
   for (const Json& event : events) {
-    if (event["kind"] == "resolved") resolved_s.push_back(event["reaction_s"].get<double>());
+    if (event["type"] == "failure_resolved")
+      resolved_s.push_back(event["reaction_s"].get<double>());
     EXPECT_LE(event["t"].get<double>(), answer.body["end"].get<double>());
   }
   EXPECT_EQ(resolved_s, study->run(id).reactions_s);
@@ -67,7 +69,7 @@ TEST(SingleRunRoute, PlaysOtherStudiesToo) {
   const web::Answer episode =
       ask({{"study", "rca"}, {"campaign", study::rca::to_json(rca)}, {"row", 1u}, {"run", 2u}});
   ASSERT_EQ(episode.status, 200) << episode.body;
-  EXPECT_THAT(kinds(episode.body["events"]), testing::IsSupersetOf({"fault", "decided"}));
+  EXPECT_THAT(types(episode.body["events"]), testing::IsSupersetOf({"fault", "strategy_chosen"}));
   EXPECT_TRUE(is_in_order(episode.body["events"]));
 
   study::SuaveCampaign suave;
@@ -79,12 +81,13 @@ TEST(SingleRunRoute, PlaysOtherStudiesToo) {
   const web::Answer other = ask(body);
   ASSERT_EQ(other.status, 200) << other.body;
   EXPECT_EQ(other.body["is_told"], false);
-  EXPECT_THAT(kinds(other.body["events"]), testing::ElementsAre("fault", "note"));
+  EXPECT_THAT(types(other.body["events"]), testing::ElementsAre("fault", "note"));
   body["row"] = 1u;
   const web::Answer ours = ask(body);
   EXPECT_EQ(ours.body["is_told"], true);
-  EXPECT_THAT(kinds(ours.body["events"]),
-              testing::IsSupersetOf({"fault", "note", "detected", "decided", "resolved"}));
+  EXPECT_THAT(types(ours.body["events"]),
+              testing::IsSupersetOf(
+                  {"fault", "note", "failure_detected", "strategy_chosen", "failure_resolved"}));
   EXPECT_TRUE(is_in_order(ours.body["events"]));
 }
 

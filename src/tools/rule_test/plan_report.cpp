@@ -160,17 +160,6 @@ struct AsJson {
   }
 };
 
-Json exclusion_as_json(const Candidate& candidate, const RuleSet& rules) {
-  if (!candidate.excluded) return nullptr;
-  Json json{{"condition", to_string(*candidate.excluded)}};
-  const bool is_about_component =
-      *candidate.excluded != Condition::kTried && *candidate.excluded != Condition::kOneEach;
-  if (is_about_component) json["component"] = rules[candidate.component].name;
-  if (candidate.because) json["because"] = rules[*candidate.because].name;
-  json["text"] = describe_exclusion(candidate, rules);
-  return json;
-}
-
 Json candidate_as_json(const plan::Decision& decision, std::size_t place,
                        const Knowledge& knowledge) {
   const Candidate& candidate = decision.verdict.candidates[place];
@@ -212,6 +201,17 @@ Json decision_as_json(const plan::Decision& decision, const PlanReport& report) 
 }
 
 }  // namespace
+
+Json exclusion_as_json(const Candidate& candidate, const RuleSet& rules) {
+  if (!candidate.excluded) return nullptr;
+  Json json{{"condition", to_string(*candidate.excluded)}};
+  const bool is_about_component =
+      *candidate.excluded != Condition::kTried && *candidate.excluded != Condition::kOneEach;
+  if (is_about_component) json["component"] = rules[candidate.component].name;
+  if (candidate.because) json["failure"] = rules[*candidate.because].name;
+  json["text"] = describe_exclusion(candidate, rules);
+  return json;
+}
 
 PlanReport::PlanReport(const Planner& planner, std::vector<RuleId> failures,
                        const Knowledge& plan_knowledge, const std::optional<std::string>& held_back)

@@ -25,4 +25,7 @@ struct PlanReport {
 std::string plan_as_text(const PlanReport& report);
 nlohmann::ordered_json plan_as_json(const PlanReport& report);
 
+// Why a strategy was not chosen; null for the one that was.
+nlohmann::ordered_json exclusion_as_json(const Candidate& candidate, const RuleSet& rules);
+
 }  // namespace culprit

@@ -1,0 +1,389 @@
+#include "journal/event_json.h"
+
+#include <algorithm>
+
+#include "journal/requests.h"
+#include "knowledge/component_states.h"
+#include "knowledge/describe.h"
+#include "knowledge/event_words.h"
+
+namespace culprit::journal {
+namespace {
+
+using What = decltype(Event::what);
+
+constexpr std::string_view word_of(ComingUp::Driver driver) {
+  switch (driver) {
+    case ComingUp::Driver::kOther:
+      return "other";
+    case ComingUp::Driver::kCulprit:
+      return "culprit";
+    case ComingUp::Driver::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+struct WordOfOrder {
+  const char* operator()(const Pause&) const { return "pause"; }
+  const char* operator()(const Resume&) const { return "resume"; }
+  const char* operator()(const SetDryRun& o) const { return o.is_on ? "dry_run" : "act"; }
+  const char* operator()(const Approve&) const { return "approve"; }
+  const char* operator()(const Refuse&) const { return "refuse"; }
+  const char* operator()(const Silence&) const { return "silence"; }
+  const char* operator()(const LiftSilence&) const { return "lift_silence"; }
+  const char* operator()(const RunStrategy&) const { return "run_strategy"; }
+  const char* operator()(const Forget&) const { return "forget"; }
+};
+
+// Adds to {"type": ...} what the event is about.
+class EventWriter {
+ public:
+  EventWriter(const RuleSet& rules, Json& json) : rules_(rules), json_(json) {}
+
+  void operator()(const FailureDetected& e) const {
+    about(e.rule);
+    json_["criticality"] = culprit::to_string(rules_[e.rule].policies.criticality);
+  }
+  void operator()(const FailureResolved& e) const {
+    about(e.rule);
+    if (e.strategy) json_["strategy"] = name(*e.strategy);
+    json_["reaction_s"] = seconds(e.reaction);
+  }
+  void operator()(const FailureLost& e) const { about(e.rule); }
+  void operator()(const StrategyChosen& e) const {
+    about(e.strategy);
+    json_["dry_run"] = e.dry_run;
+    json_["components"] = Json::array();
+    for (const ComponentId component : rules_[e.strategy].components)
+      json_["components"].push_back(name(component));
+    json_["explains"] = Json::array();
+    for (const RuleId rule : e.explains) json_["explains"].push_back(name(rule));
+    add_reasons(e.suspects, e.candidates);
+  }
+  void operator()(const FailureHeldBack& e) const {
+    about(e.rule);
+    add_reasons(e.suspects, e.candidates);
+  }
+  void operator()(const AdaptationDone& e) const {
+    about(e.strategy);
+    json_["adaptation"] = e.adaptation;
+    if (!e.remark.empty()) json_["remark"] = e.remark;
+  }
+  void operator()(const AdaptationFailed& e) const {
+    about(e.strategy);
+    json_["adaptation"] = e.adaptation;
+    json_["reason"] = e.reason;
+  }
+  void operator()(const StrategyFailed& e) const {
+    about(e.strategy);
+    json_["reason"] = e.reason;
+  }
+  void operator()(const StrategyResumed& e) const { about(e.strategy); }
+  void operator()(const Undone& e) const {
+    about(e.strategy);
+    json_["what"] = e.what;
+    json_["succeeded"] = e.succeeded;
+  }
+  void operator()(const RoundSpent& e) const { about(e.rule); }
+  void operator()(const RuleExhausted& e) const { about(e.rule); }
+  void operator()(const LastResortReached& e) const { about(e.rule); }
+  void operator()(const ComponentLost& e) const {
+    about(e.component);
+    json_["remark"] = e.remark;
+  }
+  void operator()(const ComponentFound& e) const {
+    about(e.component);
+    json_["pid"] = e.pid;
+  }
+  void operator()(const NeverSeen& e) const {
+    const Json type = json_["type"];
+    json_.erase("type");  // it stands behind the names, on disk
+    std::visit([this](auto id) { about(id); }, e.what);
+    json_["type"] = type;
+    if (!e.near.empty()) json_["near"] = e.near;
+  }
+  void operator()(const LifecycleIntended& e) const {
+    about(e.component);
+    json_["lifecycle"] = culprit::to_string(e.state);
+  }
+  void operator()(const CameUp& e) const {
+    about(e.component);
+    json_["driver"] = word_of(e.how.driver);
+    json_["joining_ns"] = e.how.joining.count();
+    json_["rising_ns"] = e.how.rising.count();
+  }
+  void operator()(const RivalSeen& e) const { about(e.component); }
+  void operator()(const Trouble& e) const { json_["what"] = e.text; }
+  void operator()(const OrderAccepted& e) const { add(e.order); }
+  void operator()(const OrderRefused& e) const {
+    add(e.order);
+    json_["refused_because"] = e.reason;
+  }
+  void operator()(const ActionHeldBack& e) const {
+    about(e.strategy);
+    json_["reason"] = e.reason;
+  }
+  void operator()(const ApprovalAsked& e) const {
+    about(e.strategy);
+    add_reasons(e.suspects, e.candidates);
+  }
+  void operator()(const ApprovalLapsed& e) const { about(e.strategy); }
+  void operator()(const StrategyAbandoned& e) const {
+    about(e.strategy);
+    json_["reason"] = e.reason;
+  }
+  void operator()(const OrderCarriedOut& e) const { about(e.strategy); }
+  void operator()(const SilenceEnded&) const {}
+  void operator()(const StormBegan& e) const { json_["reason"] = e.reason; }
+  void operator()(const StormEnded&) const {}
+  void operator()(const OutcomePending& e) const {
+    about(e.strategy);
+    json_["helped"] = e.has_helped;
+    json_["due"] = e.due.time_since_epoch().count();
+  }
+  void operator()(const OutcomeCounted& e) const {
+    about(e.strategy);
+    json_["as"] = culprit::to_string(e.as);
+  }
+  void operator()(const FailureFlaps& e) const {
+    about(e.rule);
+    json_["times"] = e.times;
+  }
+  void operator()(const JudgementSuspended& e) const { json_["reason"] = e.reason; }
+  void operator()(const JudgementResumed&) const {}
+  void operator()(const SleepNoticed& e) const { json_["time_ns"] = e.time.count(); }
+
+ private:
+  void about(RuleId id) const { json_["rule"] = name(id); }
+  void about(StrategyId id) const {
+    about(rules_[id].rule);
+    json_["strategy"] = name(id);
+  }
+  void about(ComponentId id) const { json_["component"] = name(id); }
+  void about(TopicId id) const { json_["topic"] = name(id); }
+  void about(SignalId id) const { json_["signal"] = name(id); }
+  void about(ParameterId id) const {
+    about(rules_[id].component);
+    json_["parameter"] = name(id);
+  }
+  void about(DiagnosticId id) const { json_["diagnostic"] = rules_.diagnostics[id.index].name; }
+  void add(const Order& order) const {
+    json_["order"] = std::visit(WordOfOrder{}, order.what);
+    json_["number"] = order.number;
+    json_["author"] = order.author;
+    json_["reason"] = order.reason;
+    if (const auto* silence = std::get_if<Silence>(&order.what)) {
+      add_target(silence->what);
+      if (silence->lasts) json_["lasts_ns"] = silence->lasts->count();
+    } else if (const auto* lift = std::get_if<LiftSilence>(&order.what)) {
+      add_target(lift->what);
+    } else if (const auto* run = std::get_if<RunStrategy>(&order.what)) {
+      // An order that is refused may be about what does not exist.
+      if (run->strategy.index < rules_.strategies.size()) about(run->strategy);
+    }
+  }
+  void add_target(const Silenceable& what) const {
+    const auto* rule = std::get_if<RuleId>(&what);
+    const auto* component = std::get_if<ComponentId>(&what);
+    if (rule != nullptr && rule->index < rules_.rules.size()) about(*rule);
+    if (component != nullptr && component->index < rules_.components.size()) about(*component);
+  }
+  void add_reasons(const std::vector<Suspect>& suspects,
+                   const std::vector<Candidate>& candidates) const {
+    Json& all_suspects = json_["suspects"] = Json::array();
+    for (const Suspect& suspect : suspects)
+      all_suspects.push_back({{"component", name(suspect.component)},
+                              {"failure", name(suspect.failure)},
+                              {"probability", suspect.probability}});
+    Json& all_candidates = json_["candidates"] = Json::array();
+    for (const Candidate& candidate : candidates) {
+      Json entry = {{"strategy", name(candidate.strategy)}, {"cost", candidate.cost}};
+      if (candidate.resolves > 0) entry["resolves"] = candidate.resolves;
+      if (candidate.value > 0) entry["value"] = candidate.value;
+      if (candidate.excluded) {
+        entry["excluded"] = culprit::to_string(*candidate.excluded);
+        entry["because"] = describe_exclusion(candidate, rules_);
+      }
+      all_candidates.push_back(std::move(entry));
+    }
+  }
+  template <class Id>
+  const std::string& name(Id id) const {
+    return rules_[id].name;
+  }
+
+  const RuleSet& rules_;
+  Json& json_;
+};
+
+class EventReader {
+ public:
+  EventReader(const Json& json, const RuleSet& rules)
+      : json_(json),
+        rules_(rules),
+        rule_(find_rule(rules, text_of(json, "rule"))),
+        strategy_(find_strategy(rules, text_of(json, "rule"), text_of(json, "strategy"))),
+        component_(find_component(rules, text_of(json, "component"))) {}
+
+  std::optional<What> read(EventKind kind) const {
+    return read(kind, std::make_index_sequence<std::variant_size_v<What>>());
+  }
+
+ private:
+  template <std::size_t... kKinds>
+  std::optional<What> read(EventKind kind, std::index_sequence<kKinds...>) const {
+    std::optional<What> what;
+    (void)((kKinds == kind && (what = read<std::variant_alternative_t<kKinds, What>>(), true)) ||
+           ...);
+    return what;
+  }
+
+  // Whom it is about has the same name in every event.
+  template <class T>
+  std::optional<What> read() const {
+    T event{};
+    if constexpr (requires { event.rule; }) {
+      if (!rule_) return std::nullopt;
+      event.rule = *rule_;
+    }
+    if constexpr (requires { event.strategy.index; }) {
+      if (!strategy_) return std::nullopt;
+      event.strategy = *strategy_;
+    }
+    if constexpr (requires { event.component; }) {
+      if (!component_) return std::nullopt;
+      event.component = *component_;
+    }
+    if (!complete(event)) return std::nullopt;
+    return event;
+  }
+
+  // What else the row tells; false if the event is nothing without what is missing.
+  template <class T>
+  bool complete(T& event) const {
+    if constexpr (requires { event.adaptation; }) {
+      const std::int64_t adaptation = integer_of(json_, "adaptation", -1);
+      const auto count = static_cast<std::int64_t>(rules_[event.strategy].adaptations.size());
+      if (adaptation < 0 || adaptation >= count) return false;
+      event.adaptation = static_cast<std::size_t>(adaptation);
+    }
+    return true;
+  }
+  // By which strategy may be one that is no longer there.
+  bool complete(FailureResolved& event) const {
+    using How = FailureResolved::How;
+    event.how = strategy_ ? How::kByStrategy : How::kWithoutStrategy;
+    event.strategy = strategy_;
+    return true;
+  }
+  bool complete(StrategyChosen& event) const {
+    event.dry_run = flag_of(json_, "dry_run");
+    return true;
+  }
+  bool complete(Undone& event) const {
+    event.succeeded = flag_of(json_, "succeeded");
+    return true;
+  }
+  bool complete(ComponentFound& event) const {
+    const std::int64_t pid = integer_of(json_, "pid");
+    event.pid = static_cast<int>(pid);
+    return pid > 0 && pid <= INT32_MAX;
+  }
+  bool complete(LifecycleIntended& event) const {
+    const auto reading = reading_from_json(json_);
+    const auto* state = std::get_if<Lifecycle>(&reading);
+    if (state != nullptr) event.state = *state;
+    return state != nullptr;
+  }
+  bool complete(CameUp& event) const {
+    using Driver = ComingUp::Driver;
+    const std::string driver = text_of(json_, "driver");
+    for (const Driver each : {Driver::kOther, Driver::kCulprit}) {
+      if (driver == word_of(each)) event.how.driver = each;
+    }
+    event.how.joining = duration("joining_ns");
+    event.how.rising = duration("rising_ns");
+    return true;
+  }
+  bool complete(OutcomePending& event) const {
+    event.has_helped = flag_of(json_, "helped");
+    event.due = Time(Duration(integer_of(json_, "due")));
+    return true;
+  }
+  bool complete(OutcomeCounted& event) const {
+    using As = OutcomeCounted::As;
+    for (const As as : {As::kSuccess, As::kFailure}) {
+      if (text_of(json_, "as") == culprit::to_string(as)) event.as = as;
+    }
+    return true;
+  }
+  bool complete(FailureFlaps& event) const {
+    event.times =
+        static_cast<int>(std::clamp<std::int64_t>(integer_of(json_, "times"), 0, INT32_MAX));
+    return true;
+  }
+  bool complete(SleepNoticed& event) const {
+    event.time = duration("time_ns");
+    return true;
+  }
+  bool complete(OrderAccepted& event) const { return complete(event.order); }
+  bool complete(OrderRefused& event) const { return complete(event.order); }
+  bool complete(ActionHeldBack&) const { return false; }  // by which restraint?
+  bool complete(SilenceEnded&) const { return false; }    // of what?
+  bool complete(NeverSeen&) const { return false; }       // each run finds out anew
+
+  bool complete(Order& order) const {
+    order.author = text_of(json_, "author");
+    order.reason = text_of(json_, "reason");
+    Silence silence;
+    if (rule_) {
+      silence.what = *rule_;
+    } else if (component_) {
+      silence.what = *component_;
+    }
+    if (json_.contains("lasts_ns")) silence.lasts = duration("lasts_ns");
+    std::vector<decltype(Order::what)> all = {Pause{}, Resume{}, SetDryRun{true}, SetDryRun{false}};
+    if (rule_ || component_) {
+      all.emplace_back(silence);
+      all.emplace_back(LiftSilence{silence.what});
+    }
+    if (strategy_) all.emplace_back(RunStrategy{*strategy_});
+    const std::string word = text_of(json_, "order");
+    const auto meant = std::find_if(all.begin(), all.end(), [&](const auto& each) {
+      return word == std::visit(WordOfOrder{}, each);
+    });
+    if (meant != all.end()) order.what = *meant;
+    return meant != all.end();
+  }
+
+  Duration duration(const char* key) const {
+    return Duration(std::max<std::int64_t>(0, integer_of(json_, key)));
+  }
+
+  const Json& json_;
+  const RuleSet& rules_;
+  const std::optional<RuleId> rule_;
+  const std::optional<StrategyId> strategy_;
+  const std::optional<ComponentId> component_;
+};
+
+}  // namespace
+
+Json to_json(const Event& event, const RuleSet& rules) {
+  Json json = {{"type", words_of(event).name}};
+  std::visit(EventWriter(rules, json), event.what);
+  json["text"] = describe(event, rules);
+  json["time"] = event.at.time_since_epoch().count();
+  return json;
+}
+
+std::optional<Event> event_from_json(const Json& json, const RuleSet& rules) {
+  const auto kind = kind_named(text_of(json, "type"));
+  if (!kind) return std::nullopt;
+  auto what = EventReader(json, rules).read(*kind);
+  if (!what) return std::nullopt;
+  return Event{Time(Duration(integer_of(json, "time"))), std::move(*what)};
+}
+
+}  // namespace culprit::journal

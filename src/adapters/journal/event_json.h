@@ -1,0 +1,21 @@
+// Events as JSON, by name (knowledge/event_words.h): the rows of the journal, and what the page is
+// told of them (web/event_json.h).
+//
+// It is here because rows outlive the program: a replay compares hashes of them, so neither their
+// words nor their order may change. Whoever tells people more adds to it.
+#pragma once
+
+#include "journal/json.h"
+#include "knowledge/event.h"
+
+namespace culprit::journal {
+
+// {"type": "failure_detected", "rule": "RGBDead", ..., "text": "...", "time": nanoseconds}
+Json to_json(const Event& event, const RuleSet& rules);
+
+// Whom the event is about, and how it ended; reasons, remarks, candidates and suspects were for
+// people, and are left out. Nothing if `json` is no event, is about what `rules` does not have, or
+// is of a kind whose rows do not tell enough (ActionHeldBack, SilenceEnded, NeverSeen, some orders).
+std::optional<Event> event_from_json(const Json& json, const RuleSet& rules);
+
+}  // namespace culprit::journal

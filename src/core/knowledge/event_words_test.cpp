@@ -1,0 +1,36 @@
+#include "knowledge/event_words.h"
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+
+namespace culprit {
+namespace {
+
+// That each event has words, and a name of its own, is checked where the table is compiled.
+TEST(EventWords, AreFoundByEventByTypeAndByName) {
+  const Event event{{}, StrategyChosen{}};
+  EXPECT_EQ(words_of(event).name, "strategy_chosen");
+  EXPECT_EQ(&words_of(event), &words_of<StrategyChosen>());
+  EXPECT_EQ(kind_named("strategy_chosen"), kKindOf<StrategyChosen>);
+  EXPECT_EQ(kind_named("decided"), std::nullopt) << "a label is no name";
+  EXPECT_EQ(kind_named(""), std::nullopt);
+}
+
+TEST(EventWords, WhatIsRequiredAndNotThereIsAnError) {
+  const RuleSet rules = *check(Source("test",
+                                      "COMPONENT base NODE /base REQUIRED\n"
+                                      "COMPONENT camera NODE /camera\n"))
+                             .rules;
+  const ComponentId base(0);
+  const ComponentId camera(1);
+  EXPECT_EQ(severity_of({{}, ComponentLost{base, ""}}, rules), EventSeverity::kError);
+  EXPECT_EQ(severity_of({{}, ComponentLost{camera, ""}}, rules), EventSeverity::kWarning);
+  EXPECT_EQ(severity_of({{}, NeverSeen{base, ""}}, rules), EventSeverity::kError);
+  EXPECT_EQ(severity_of({{}, NeverSeen{camera, ""}}, rules), EventSeverity::kWarning);
+  EXPECT_EQ(severity_of({{}, StormBegan{}}, rules), EventSeverity::kError);
+  EXPECT_EQ(severity_of({{}, ComponentFound{base, 1}}, rules), EventSeverity::kInfo);
+}
+
+}  // namespace
+}  // namespace culprit

@@ -1,0 +1,29 @@
+#include "terminal/console.h"
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+
+namespace culprit {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(Line, HasTheTimeTheLabelAndTheSentence) {
+  const RuleSet rules = *check(Source("test",
+                                      "COMPONENT camera NODE /camera\n"
+                                      "RULE R\nPOLICIES ERROR\nTRIGGER alive(camera) == false\n"
+                                      "STRATEGY s 50 10\nADAPTATION camera restart 3\n"))
+                             .rules;
+  const Event detected{Time(4s), FailureDetected{RuleId(0)}};
+  EXPECT_EQ(line(detected, rules, Time(1s), Colour::kOff),
+            "   3.000  detected    R detected (ERROR)");
+  EXPECT_EQ(line(detected, rules, Time(1s), Colour::kOn),
+            "   3.000  \033[1;31mdetected  \033[0m  R detected (ERROR)");
+  EXPECT_EQ(line({Time(4s), ComponentFound{ComponentId(0), 7}}, rules, Time(1s), Colour::kOn),
+            "   3.000  \033[32mfound     \033[0m  camera is there (process 7)");
+  EXPECT_EQ(line({Time(4s), CameUp{}}, rules, Time(1s), Colour::kOn), "") << "of no interest";
+}
+
+}  // namespace
+}  // namespace culprit
