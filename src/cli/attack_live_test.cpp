@@ -130,8 +130,12 @@ class Notifications {
 // hangs. A thread of our own holds them, for whoever traces has to be one and the same.
 class Deafness {
  public:
-  explicit Deafness(int pid) : holder_([this, pid] { hold(pid); }) {
-    eventually([this] { return held_ != 0; });
+  explicit Deafness(int pid) : holder_([this, pid] { hold_all(pid); }) { wait_for_holder(); }
+  struct Thread {
+    int number;
+  };
+  explicit Deafness(Thread only) : holder_([this, only] { hold_one(only.number); }) {
+    wait_for_holder();
   }
   ~Deafness() {
     is_over_ = true;
@@ -140,14 +144,42 @@ class Deafness {
   Deafness(const Deafness&) = delete;
   int held() const { return held_; }
 
+  // The threads on which datagrams arrive. One that is busy just now receives again in a moment.
+  static std::set<int> receivers_of(int pid) {
+    std::set<int> threads;
+    for (const Time end = later(live_now(), 500ms); live_now() < end;) {
+      find_who_receives(pid, [&](int thread) { threads.insert(thread); });
+      std::this_thread::sleep_for(10ms);
+    }
+    return threads;
+  }
+
  private:
-  void hold(int pid) {
+  void wait_for_holder() {
+    eventually([this] { return held_ != 0; });
+  }
+  void hold_all(int pid) {
     std::vector<int> threads;
     // One that is busy just now receives again in a moment.
     for (const Time end = later(live_now(), 500ms); live_now() < end;) {
-      hold_who_receives(pid, threads);
+      find_who_receives(pid, [&](int thread) { hold(thread, threads); });
       std::this_thread::sleep_for(10ms);
     }
+    keep(threads);
+  }
+  void hold_one(int thread) {
+    std::vector<int> threads;
+    hold(thread, threads);
+    keep(threads);
+  }
+
+  static void hold(int thread, std::vector<int>& held) {
+    if (ptrace(PTRACE_SEIZE, thread, nullptr, nullptr) != 0) return;  // also if it is held
+    ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr);
+    waitpid(thread, nullptr, __WALL);
+    held.push_back(thread);
+  }
+  void keep(const std::vector<int>& threads) {
     held_ = threads.empty() ? -1 : static_cast<int>(threads.size());
     // Who is traced and dies has to be waited for, or its process cannot become another program.
     while (!is_over_) {
@@ -157,17 +189,13 @@ class Deafness {
     for (const int thread : threads) ptrace(PTRACE_DETACH, thread, nullptr, nullptr);
   }
 
-  static void hold_who_receives(int pid, std::vector<int>& held) {
+  static void find_who_receives(int pid, const std::function<void(int thread)>& found) {
     const std::string tasks = "/proc/" + std::to_string(pid) + "/task";
     for (const auto& task : std::filesystem::directory_iterator(tasks)) {
       std::string where;
       std::ifstream(task.path() / "wchan") >> where;
       if (where.find("wait_for_more_packets") == std::string::npos) continue;
-      const int thread = std::stoi(task.path().filename().string());
-      if (ptrace(PTRACE_SEIZE, thread, nullptr, nullptr) != 0) continue;  // also if it is held
-      ptrace(PTRACE_INTERRUPT, thread, nullptr, nullptr);
-      waitpid(thread, nullptr, __WALL);
-      held.push_back(thread);
+      found(std::stoi(task.path().filename().string()));
     }
   }
 
@@ -318,6 +346,50 @@ TEST_F(Attack, ThatMakesItDeafDoesNotKeepItFromEnding) {
   run.signal(SIGINT);
   EXPECT_TRUE(run.wait().has_value()) << run.output();
   EXPECT_EQ(cameras().size(), 1u);
+}
+
+// Whether a datagram waits in a socket of the domain's ports.
+bool lies_something_unread(std::uint32_t domain) {
+  const auto first = 7400 + 250 * domain;
+  std::ifstream table("/proc/net/udp");
+  std::string line, slot, local, remote, state, queues;
+  for (std::getline(table, line); std::getline(table, line);) {
+    std::istringstream(line) >> slot >> local >> remote >> state >> queues;
+    const auto port = std::stoul(local.substr(local.find(':') + 1), nullptr, 16);
+    const auto unread = std::stoul(queues.substr(queues.find(':') + 1), nullptr, 16);
+    if (port >= first && port < first + 250 && unread > 0) return true;
+  }
+  return false;
+}
+
+// Each hears what no other one does: discovery by multicast, what is said to this process about
+// endpoints, and samples. On this machine only, there may be one more, to which nobody speaks.
+TEST_F(Attack, ThatHoldsAnyOneThreadThatReceivesIsNoticed) {
+  const std::uint32_t domain = ros2::options_from_environment()->domain;
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  const TestProgram run = culprit();
+  // The look before has a participant of its own, and is over then.
+  ASSERT_TRUE(run.prints("/managed_subsystem/rgb_camera from")) << run.output();
+  std::set<int> threads;
+  ASSERT_TRUE(eventually([&] {
+    threads = Deafness::receivers_of(run.pid());
+    return threads.size() <= 4;
+  })) << threads.size();
+  std::size_t noticed = 0;
+  for (const int thread : threads) {
+    {
+      const Deafness deafness(Deafness::Thread{thread});
+      if (deafness.held() <= 0) GTEST_SKIP() << "threads of another process cannot be held here";
+      const bool is_noticed =
+          eventually([&] { return count_of(run.output(), "DEAF") > noticed; }, 6s);
+      noticed += is_noticed ? 1 : 0;
+      EXPECT_TRUE(is_noticed || eventually([&] { return !lies_something_unread(domain); }))
+          << run.output();
+    }
+    EXPECT_TRUE(eventually([&] { return count_of(run.output(), "be heard again;") == noticed; }))
+        << run.output();
+  }
+  EXPECT_GE(noticed, 3u) << run.output();
 }
 
 TEST_F(Attack, ThatMakesItDeafStarvesItsWatchdogAndItBeginsAnewAndHeals) {

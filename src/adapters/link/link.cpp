@@ -311,7 +311,7 @@ std::string Link::doubt() const {
   const Time now = live_now();
   return lease_ && lease_->sure_until(now) <= now
              ? "culprit was away so long that another one may manage this robot by now; it listens"
-             : "what culprit says to itself over the network does not come back";
+             : hearing_->doubt(now);
 }
 
 Expected<void> Link::declare_parameters() {

@@ -6,7 +6,8 @@
 // void, and repeats itself only when a heartbeat comes round, 1 to 3 s later. So nothing is sent
 // before create_participant() has returned; the announcements that follow are the first ones heard.
 //
-// It passes on only what the filter lets through (datagram_filter.h).
+// It passes on only what the filter lets through (datagram_filter.h), and tells on which ports
+// threads receive (receive_watch.h).
 //
 // In a secured domain it hears one datagram at a time. A goodbye goes to a participant's unicast
 // and multicast ports, each of which has a thread; Fast DDS 2.9 frees what it knows of whoever
@@ -27,25 +28,37 @@
 #include "base/live_clock.h"
 #include "ros2/datagram_filter.h"
 #include "ros2/datagram_sources.h"
+#include "ros2/receive_watch.h"
 
 namespace culprit::ros2::fast_dds {
 
 // True once the participant's receivers listen. Shared by the participant and its transport.
 using Listens = std::shared_ptr<std::atomic<bool>>;
 
+// What a participant and its transport share.
+struct Reception {
+  Listens listens = std::make_shared<std::atomic<bool>>(false);
+  std::shared_ptr<DatagramSources> sources = std::make_shared<DatagramSources>();
+  std::shared_ptr<DatagramFilter> filter = std::make_shared<DatagramFilter>();
+  std::shared_ptr<ReceiveWatch> watch = std::make_shared<ReceiveWatch>();
+};
+
 class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport {
  public:
   CarefulTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
-                   Listens listens, std::shared_ptr<DatagramSources> sources,
-                   std::shared_ptr<DatagramFilter> filter, bool is_secured)
-      : ChainingTransport(descriptor),
-        listens_(std::move(listens)),
-        sources_(std::move(sources)),
-        filter_(std::move(filter)),
-        is_secured_(is_secured) {}
+                   Reception reception, bool is_secured)
+      : ChainingTransport(descriptor), reception_(std::move(reception)), is_secured_(is_secured) {}
 
   eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override {
     return low_level_transport_->get_configuration();
+  }
+
+  bool OpenInputChannel(const eprosima::fastrtps::rtps::Locator_t& locator,
+                        eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
+                        std::uint32_t largest) override {
+    if (!ChainingTransport::OpenInputChannel(locator, receiver, largest)) return false;
+    reception_.watch->opened(static_cast<std::uint16_t>(locator.port));
+    return true;
   }
 
   bool send(eprosima::fastrtps::rtps::SenderResource* sender,
@@ -53,24 +66,25 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
             eprosima::fastrtps::rtps::LocatorsIterator* begin,
             eprosima::fastrtps::rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
-    return !*listens_ || sender->send(bytes, size, begin, end, timeout);
+    return !*reception_.listens || sender->send(bytes, size, begin, end, timeout);
   }
 
   void receive(eprosima::fastdds::rtps::TransportReceiverInterface* next,
                const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
                const eprosima::fastrtps::rtps::Locator_t& local,
                const eprosima::fastrtps::rtps::Locator_t& remote) override {
-    sources_->heard({bytes, size}, address_of(remote));
+    reception_.sources->heard({bytes, size}, address_of(remote));
     std::unique_lock lock(one_at_a_time_, std::defer_lock);
     if (is_secured_) lock.lock();
     thread_local Bytes scratch;
-    const ByteView passed = filter_->pass({bytes, size}, scratch, DatagramFilter::Clock::now());
+    const ByteView passed =
+        reception_.filter->pass({bytes, size}, scratch, DatagramFilter::Clock::now());
     if (passed.empty()) return;
     next->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local, remote);
     // Not what comes by multicast: it goes away with a network interface, and nothing is wrong.
     const bool is_multicast = local.address[12] >= 224 && local.address[12] < 240;
     if (!is_multicast)
-      sources_->came_through(passed, static_cast<std::uint16_t>(local.port), live_now());
+      reception_.sources->came_through(passed, static_cast<std::uint16_t>(local.port), live_now());
   }
 
  private:
@@ -81,9 +95,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return address;
   }
 
-  const Listens listens_;
-  const std::shared_ptr<DatagramSources> sources_;
-  const std::shared_ptr<DatagramFilter> filter_;
+  const Reception reception_;
   const bool is_secured_;
   std::mutex one_at_a_time_;
 };
@@ -91,21 +103,16 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
 struct CarefulTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   CarefulTransportDescriptor(
       std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> transport,
-      Listens flag, std::shared_ptr<DatagramSources> origins,
-      std::shared_ptr<DatagramFilter> datagrams, bool secured)
+      Reception shared, bool secured)
       : ChainingTransportDescriptor(std::move(transport)),
-        listens(std::move(flag)),
-        sources(std::move(origins)),
-        filter(std::move(datagrams)),
+        reception(std::move(shared)),
         is_secured(secured) {}
 
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override {
-    return new CarefulTransport(*this, listens, sources, filter, is_secured);
+    return new CarefulTransport(*this, reception, is_secured);
   }
 
-  const Listens listens;
-  const std::shared_ptr<DatagramSources> sources;
-  const std::shared_ptr<DatagramFilter> filter;
+  const Reception reception;
   const bool is_secured;
 };
 

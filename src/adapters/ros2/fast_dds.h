@@ -224,13 +224,10 @@ inline void speak_through_sockets() {
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
 }
 
-// `peers` are IPv4 addresses. Nothing is sent before `listens`. Where datagrams come from is
-// written into `sources`; what they bring goes through `filter`.
+// `peers` are IPv4 addresses. What is received goes through `reception` (careful_transport.h).
 inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& options,
                                                  const std::vector<std::string>& peers,
-                                                 Listens listens,
-                                                 std::shared_ptr<DatagramSources> sources,
-                                                 std::shared_ptr<DatagramFilter> filter) {
+                                                 const Reception& reception) {
   dds::DomainParticipantQos out;
   out.name(options.enclave);
   const std::string user_data = "enclave=" + options.enclave + ";";
@@ -266,8 +263,7 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
       32;  // participants of one machine that are announced to, as ROS 2 Iron and newer
   out.transport().use_builtin_transports = false;
   out.transport().user_transports.push_back(std::make_shared<CarefulTransportDescriptor>(
-      std::move(udp), std::move(listens), std::move(sources), std::move(filter),
-      options.security.has_value()));
+      std::move(udp), reception, options.security.has_value()));
   return out;
 }
 

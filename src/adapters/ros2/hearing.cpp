@@ -40,7 +40,15 @@ Expected<std::unique_ptr<Hearing>> Hearing::begin(Participant& participant, Exec
   hearing->writer_ = std::move(*writer);
   hearing->timer_ =
       std::make_unique<Timer>(executor, kPeriod, [raw = hearing.get()] { raw->say(); });
+  hearing->look_ = std::make_unique<Timer>(
+      executor, kLookPeriod, [&participant] { participant.look_at_receivers(live_now()); });
   return hearing;
+}
+
+const char* Hearing::doubt(Time now) const {
+  const bool hangs = later(participant_.receivers_attended(), kReceivePatience) <= now;
+  return hangs ? "datagrams lie unread, since a thread that receives them hangs"
+               : "what culprit says to itself over the network does not come back";
 }
 
 void Hearing::say() { writer_->write(payload_of(secret_)); }

@@ -3,7 +3,9 @@
 //
 // It is said on the executor's thread and heard on a receive thread, so that it also tells of these
 // threads, and of the network interfaces. Discovery has a port and a thread of its own: what the
-// participant announces of itself has to come through there.
+// participant announces of itself has to come through there. What comes by multicast is no witness,
+// since it goes away with a network interface; of every thread that receives it is seen whether
+// datagrams lie unread (receive_watch.h).
 #pragma once
 
 #include <algorithm>
@@ -35,25 +37,34 @@ class Hearing {
   // What is announced to everybody comes to our port for discovery too, once a second.
   static constexpr Duration kDiscoveryPatience = std::chrono::seconds(5);
 
+  // A datagram that lies unread for so long has no thread that reads it. Looked at again and again.
+  static constexpr Duration kReceivePatience = std::chrono::seconds(2);
+  static constexpr Duration kLookPeriod = std::chrono::milliseconds(500);
+
   // When it came back last. From any thread.
   Time heard() const { return Time(Duration(heard_->load())); }
   // Until when it has to come back again, by each way.
   Time doubtful() const {
-    return std::min(later(heard(), kPatience),
-                    later(participant_.own_came_through(), kDiscoveryPatience));
+    return std::min({later(heard(), kPatience),
+                     later(participant_.own_came_through(), kDiscoveryPatience),
+                     later(participant_.receivers_attended(), kReceivePatience)});
   }
 
+  // What did not come back in time, when it is doubtful.
+  const char* doubt(Time now) const;
+
  private:
-  explicit Hearing(const Participant& participant) : participant_(participant) {}
+  explicit Hearing(Participant& participant) : participant_(participant) {}
   void say();
 
-  const Participant& participant_;
+  Participant& participant_;
   // Shared with the reader's callback, which runs before there is a Hearing.
   std::shared_ptr<std::atomic<std::int64_t>> heard_;
   std::uint64_t secret_ = 0;  // nobody else says it
   std::unique_ptr<Reader> reader_;
   std::unique_ptr<Writer> writer_;
   std::unique_ptr<Timer> timer_;
+  std::unique_ptr<Timer> look_;
 };
 
 }  // namespace culprit::ros2

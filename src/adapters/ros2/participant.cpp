@@ -278,12 +278,12 @@ class Participant::Impl {
   explicit Impl(DiscoveryCallback on_discovery)
       : listener_([this, callback = std::move(on_discovery)](DiscoveryEvent event) {
           if (const auto* there = std::get_if<ParticipantInfo>(&event)) {
-            sources_->keep(there->guid.prefix());
-            filter_->know(there->guid.prefix());
+            reception_.sources->keep(there->guid.prefix());
+            reception_.filter->know(there->guid.prefix());
           }
           if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
-            sources_->forget(gone->guid.prefix());
-            filter_->forget(gone->guid.prefix());
+            reception_.sources->forget(gone->guid.prefix());
+            reception_.filter->forget(gone->guid.prefix());
           }
           gate_.pass([&] { callback(std::move(event)); });
         }) {}
@@ -297,10 +297,9 @@ class Participant::Impl {
     }
     static std::once_flag is_set_up;
     std::call_once(is_set_up, fast_dds::speak_through_sockets);
-    const auto listens = std::make_shared<std::atomic<bool>>(false);
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
-        options.domain, fast_dds::participant_qos(options, peers, listens, sources_, filter_),
-        &listener_, dds::StatusMask::none());
+        options.domain, fast_dds::participant_qos(options, peers, reception_), &listener_,
+        dds::StatusMask::none());
     if (participant_ == nullptr) {
       return Error{"cannot join DDS domain " + std::to_string(options.domain) +
                    (options.security
@@ -308,10 +307,10 @@ class Participant::Impl {
                               "; are they of one keystore, signed and not expired?"
                         : "; is there a network interface, and a free UDP port for it?")};
     }
-    *listens = true;
+    *reception_.listens = true;
     likely_refusal_ = likely_refusal(options.security);
     guid_ = fast_dds::to_guid(participant_->guid());
-    sources_->begin(guid_.prefix());
+    reception_.sources->begin(guid_.prefix());
     publisher_ = participant_->create_publisher(dds::PublisherQos());
     subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
     topics_.emplace(*participant_);
@@ -327,7 +326,7 @@ class Participant::Impl {
   }
 
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample) {
-    auto reader = std::make_unique<Reader::Impl>(*subscriber_, *topics_, *filter_,
+    auto reader = std::make_unique<Reader::Impl>(*subscriber_, *topics_, *reception_.filter,
                                                  std::move(options), std::move(on_sample));
     if (auto opened = reader->open(likely_refusal_); !opened) return Error{opened.error()};
     return std::make_unique<Reader>(std::move(reader));
@@ -340,13 +339,13 @@ class Participant::Impl {
   }
 
   const Guid& guid() const { return guid_; }
-  const DatagramSources& sources() const { return *sources_; }
-  const DatagramFilter& filter() const { return *filter_; }
+  const DatagramSources& sources() const { return *reception_.sources; }
+  const DatagramFilter& filter() const { return *reception_.filter; }
+  ReceiveWatch& watch() const { return *reception_.watch; }
 
  private:
   Gate gate_;
-  const std::shared_ptr<DatagramSources> sources_ = std::make_shared<DatagramSources>();
-  const std::shared_ptr<DatagramFilter> filter_ = std::make_shared<DatagramFilter>();
+  const fast_dds::Reception reception_;
   fast_dds::DiscoveryListener listener_;
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;
@@ -363,6 +362,8 @@ DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) co
   return impl_->sources().of(participant);
 }
 Time Participant::own_came_through() const { return impl_->sources().own_came_through(); }
+void Participant::look_at_receivers(Time now) { impl_->watch().look(now); }
+Time Participant::receivers_attended() const { return impl_->watch().attended(); }
 DatagramFilter::Refused Participant::refused() const { return impl_->filter().refused(); }
 
 Expected<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,

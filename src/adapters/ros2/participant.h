@@ -153,6 +153,9 @@ class Participant {
   // Since when nothing of its own came through one of the threads that receive (DatagramSources).
   // Every second something should.
   Time own_came_through() const;
+  // Whether the threads that receive are at work (ReceiveWatch): looks, and until when they were.
+  void look_at_receivers(Time now);
+  Time receivers_attended() const;
   // What came and was kept from the middleware.
   DatagramFilter::Refused refused() const;
 

@@ -96,9 +96,7 @@ class Forger {
   Forger(const ParticipantOptions& options, std::uint16_t victims_port,
          const std::string& address = "127.0.0.1") {
     const std::uint16_t decoy = free_port();
-    fast_dds::dds::DomainParticipantQos qos = fast_dds::participant_qos(
-        options, {}, std::make_shared<std::atomic<bool>>(true), std::make_shared<DatagramSources>(),
-        std::make_shared<DatagramFilter>());
+    fast_dds::dds::DomainParticipantQos qos = fast_dds::participant_qos(options, {}, {});
     auto udp = std::make_shared<fast_dds::transport::UDPv4TransportDescriptor>();
     udp->interfaceWhiteList.push_back(address);
     udp->maxInitialPeersRange = 32;

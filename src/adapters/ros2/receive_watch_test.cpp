@@ -1,0 +1,94 @@
+#include "ros2/receive_watch.h"
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+namespace culprit::ros2 {
+namespace {
+
+Time at(int seconds) { return Time(std::chrono::seconds(seconds)); }
+
+// A UDP socket at a port of its own, with which it also sends to itself.
+struct Socket {
+  Socket() {
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    EXPECT_EQ(bind(descriptor, reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  }
+  ~Socket() { close(descriptor); }
+  Socket(const Socket&) = delete;
+
+  std::uint16_t port() const { return ntohs(address.sin_port); }
+  void get(const char* text) const {
+    sendto(descriptor, text, 1, 0, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  }
+  void read() const {
+    char byte = 0;
+    EXPECT_EQ(recv(descriptor, &byte, 1, 0), 1);
+  }
+
+  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+};
+
+TEST(ReceiveWatch, TellsSinceWhenADatagramLiesUnread) {
+  const Socket socket;
+  ReceiveWatch watch;
+  watch.opened(socket.port());
+  EXPECT_EQ(watch.attended(), kNever) << "nobody looked yet";
+  watch.look(at(1));
+  EXPECT_EQ(watch.attended(), at(1));
+  socket.get("a");
+  watch.look(at(2));
+  EXPECT_EQ(watch.attended(), at(2)) << "it may have come this very moment";
+  watch.look(at(3));
+  watch.look(at(4));
+  EXPECT_EQ(watch.attended(), at(2));
+  socket.read();
+  watch.look(at(5));
+  EXPECT_EQ(watch.attended(), at(5));
+}
+
+TEST(ReceiveWatch, KnowsThatAThreadWorksThatAlwaysHasMoreToRead) {
+  const Socket socket;
+  ReceiveWatch watch;
+  watch.opened(socket.port());
+  socket.get("a");
+  watch.look(at(1));
+  socket.get("b");
+  socket.read();
+  watch.look(at(2));
+  EXPECT_EQ(watch.attended(), at(2));
+  watch.look(at(3));
+  EXPECT_EQ(watch.attended(), at(2));
+}
+
+TEST(ReceiveWatch, TellsOfTheThreadThatHangsForLongest) {
+  const Socket one, other;
+  ReceiveWatch watch;
+  for (const Socket* each : {&one, &other}) watch.opened(each->port());
+  one.get("a");
+  watch.look(at(1));
+  other.get("a");
+  watch.look(at(2));
+  watch.look(at(3));
+  EXPECT_EQ(watch.attended(), at(1));
+}
+
+TEST(ReceiveWatch, PassesOverSocketsFromWhichNobodyMeansToRead) {
+  const Socket one, other;
+  ReceiveWatch watch;
+  watch.opened(one.port());
+  other.get("a");
+  watch.look(at(1));
+  watch.look(at(9));
+  EXPECT_EQ(watch.attended(), at(9));
+}
+
+}  // namespace
+}  // namespace culprit::ros2
