@@ -1,8 +1,7 @@
 // Does one strategy take back what another has brought about?
 //
 //   - Who replaces or ends a process takes what was set and called in it; culprit brings its
-//   lifecycle
-//     back to where it was.
+//     lifecycle back to where it was.
 //   - Who changes a lifecycle takes back another change of it, and what was called may go with it.
 //   - Who sets a parameter, an input or a mode takes back what was set there.
 // That a process was replaced, or restarted, nobody takes back, but who ends it.

@@ -26,6 +26,12 @@ TEST(Undoes, WhatAProcessWasToldIsGoneWithIt) {
   EXPECT_FALSE(takes_back("a set_parameter rate 2", "a set_parameter gain 1"));
 }
 
+TEST(Undoes, NothingByACall) {
+  for (const char* before : {"a redeploy", "a activate", "a set_parameter gain 1"})
+    EXPECT_FALSE(takes_back("a call ~/recalibrate", before)) << before;
+  EXPECT_TRUE(takes_back("a deactivate", "a call ~/recalibrate"));
+}
+
 TEST(Undoes, NothingAtAnotherComponent) {
   EXPECT_FALSE(takes_back("b redeploy", "a set_parameter gain 1"));
   EXPECT_FALSE(takes_back("b set_parameter gain 2", "a set_parameter gain 1"));

@@ -188,6 +188,38 @@ TEST(ProvenHealth, WhatIsLeftToAPersonIsSoAcrossCrashesOfCulprit) {
   EXPECT_EQ(robot.count("CameraSilent is exhausted"), 2u) << "whoever looks now is told too";
 }
 
+TEST(ProvenHealth, WhatComesAndGoesIsToldAcrossCrashesOfCulprit) {
+  TestRobot robot = robot_that_is_well(20s);
+  for (int i = 0; i < Analyzer::kFlaps; ++i) {
+    robot["camera"].fault = "restart";
+    robot.run_for(4s);
+    EXPECT_EQ(robot.count("CameraSilent comes and goes"), i + 1 < Analyzer::kFlaps ? 0u : 1u)
+        << transcript(robot);
+    crash_and_go_on(robot, 20s);
+    robot.run_for(1s);
+  }
+}
+
+TEST(ProvenHealth, OnlyTheLastResortIsLeftAcrossACrashOfCulprit) {
+  TestRobot robot(std::string(kRules) +
+                      "    STRATEGY give_in 50 10 LASTRESORT\n"
+                      "      ADAPTATION fusion stop 50\n",
+                  std::make_unique<BayesPlanner>(), healthy_after(20s));
+  robot.add("camera", {}, "/image");
+  robot.add("fusion", {"camera"}, "/fused");
+  robot.discover();
+  robot.run_for(6s);
+  robot["fusion"].fault = "a person";
+  const Time end = robot.now + 60s;
+  while (robot.count("only the last resort is left") == 0 && robot.now < end) robot.run_for(100ms);
+  const std::size_t before = robot.count("(fusion_restart, ");
+  EXPECT_GE(before, 1u) << transcript(robot);
+  crash_and_go_on(robot, 20s);
+  robot.run_for(60s);
+  EXPECT_EQ(robot.count("(fusion_restart, "), before) << transcript(robot);
+  EXPECT_GE(robot.count("FusionSilent is exhausted"), 1u) << transcript(robot);
+}
+
 // As the paper has it; what its studies are run with.
 TEST(ProvenHealth, WithNoneAskedForEachVerdictCountsByItself) {
   TestRobot robot = robot_that_is_well(0s);
