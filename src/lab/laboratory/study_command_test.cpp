@@ -62,7 +62,9 @@ class StudyCommand : public testing::Test {
 };
 
 TEST_F(StudyCommand, GivesTheRowsOfAllThreeTables) {
-  ASSERT_EQ(run({"sunset", "--runs", "4", "--repetitions", "1", "--json"}), kOk) << complaint;
+  ASSERT_EQ(run({"sunset", "--runs", "4", "--experiments", "4", "--repetitions", "1", "--json"}),
+            kOk)
+      << complaint;
   const auto document = nlohmann::json::parse(said);
   EXPECT_EQ(document["rows"].size(), 9);  // eight of the ablation, and the misspecified one
   const auto& row = document["rows"][7];
