@@ -160,16 +160,22 @@ void Graph::forget_process(int pid) {
 }
 
 void Graph::forget_ended_namesakes() {
-  if (!options_.is_running) return;
-  std::set<int> ended;
+  std::set<int> processes;
+  std::set<GuidPrefix> unproven;
   for (const auto& [name, node] : nodes_) {
     if (node.claimants.size() < 2) continue;
     for (const GuidPrefix& claimant : node.claimants) {
-      const int pid = peers_.at(claimant).pid;
-      if (pid != 0 && !options_.is_running(pid)) ended.insert(pid);
+      const Peer& peer = peers_.at(claimant);
+      if (!has_ended(peer)) continue;
+      if (peer.pid != 0) {
+        processes.insert(peer.pid);
+      } else {
+        unproven.insert(claimant);
+      }
     }
   }
-  for (const int pid : ended) forget_process(pid);
+  for (const int pid : processes) forget_process(pid);
+  for (const GuidPrefix& prefix : unproven) remove_participant(prefix);
 }
 
 void Graph::remove_endpoint(const Guid& guid) {
@@ -265,11 +271,15 @@ int Graph::pid_of(Peer& peer) {
   return peer.pid;
 }
 
+bool Graph::has_ended(const Peer& peer) const {
+  if (peer.pid != 0) return options_.is_running && !options_.is_running(peer.pid);
+  return options_.find_process && options_.find_process(peer.info).has_ended;
+}
+
 // For a node that it comes to hold. Of an ended process nothing can be proven any more: what was
 // known of it stays known.
 void Graph::look_for_process(const std::string& name, Peer& peer) {
-  const bool has_ended = peer.pid != 0 && options_.is_running && !options_.is_running(peer.pid);
-  if (!options_.find_process || has_ended) return;
+  if (!options_.find_process || (peer.pid != 0 && has_ended(peer))) return;
   FoundProcess found = options_.find_process(peer.info);
   peer.pid = found.pid;
   peer.pid_is_known = true;
@@ -286,8 +296,8 @@ GraphNode Graph::describe(const std::string& name, const Peer& peer) const {
 void Graph::warn_of_duplicate(const std::string& name, const Node& node) {
   Peer& older = peers_.at(node.claimants[node.claimants.size() - 2]);
   Peer& newer = peers_.at(node.claimants.back());
-  const int pid = pid_of(older);
-  if (pid != 0 && options_.is_running && !options_.is_running(pid)) return;  // a restart
+  pid_of(older);
+  if (has_ended(older)) return;  // a restart
   pid_of(newer);
   tell(GraphTrouble{"two nodes have the name " + name + ": one in " + where(describe(name, older)) +
                     ", one in " + where(describe(name, newer)) + "; the latter counts"});
@@ -298,8 +308,8 @@ void Graph::count_namesakes(const std::string& name, Node& node) {
   std::vector<GraphNode> all;
   for (const GuidPrefix& claimant : node.claimants) {
     Peer& peer = peers_.at(claimant);
-    const int pid = claimant == node.told ? 0 : pid_of(peer);
-    const bool is_gone = pid != 0 && options_.is_running && !options_.is_running(pid);
+    if (claimant != node.told) pid_of(peer);
+    const bool is_gone = claimant != node.told && has_ended(peer);
     if (!is_gone) all.push_back(describe(name, peer));
   }
   const int others = static_cast<int>(all.size()) - 1;

@@ -54,6 +54,8 @@ struct FoundProcess {
   int pid = 0;  // on this machine; 0: it is elsewhere, or not proven
   // What is missing for a proof, in words: "nobody here has ...". Empty where nothing is claimed.
   std::string missing;
+  // It was on this machine, and sockets that it had are nobody's any more.
+  bool has_ended = false;
 };
 
 struct NodeJoined {
@@ -110,7 +112,8 @@ class Graph {
   void apply(const DiscoveryInfo& info);
   // A process of this machine has ended: whoever it was is gone, though leases may still run.
   void forget_process(int pid);
-  // Likewise all processes that claim a name that others claim too, and have ended by now.
+  // Likewise all that claim a name that others claim too, and have ended by now, as far as the
+  // operating system can tell: by their processes, or by their sockets where those are not proven.
   void forget_ended_namesakes();
 
   // Null when they are not known (any more).
@@ -170,6 +173,7 @@ class Graph {
 
   const Endpoint* find(const Guid& guid) const;
   int pid_of(Peer& peer);
+  bool has_ended(const Peer& peer) const;
   void look_for_process(const std::string& name, Peer& peer);
   GraphNode describe(const std::string& name, const Peer& peer) const;
   void warn_of_duplicate(const std::string& name, const Node& node);

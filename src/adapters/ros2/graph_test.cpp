@@ -295,6 +295,25 @@ TEST(Graph, ANamesakeIsForgottenWhenItsProcessHasEnded) {
   EXPECT_THAT(watched.told(), IsEmpty()) << "alone, it is told of by who watches its process";
 }
 
+TEST(Graph, AnUnprovenNamesakeIsForgottenWhenItsSocketsAreGone) {
+  std::set<int> ended;
+  Graph::Options options;
+  options.find_process = [&](const ParticipantInfo& info) {
+    return FoundProcess{0, "", ended.contains(info.pid)};
+  };
+  options.is_running = [](int) { return true; };
+  Watched watched(options);
+  watched.joins(1, 10).says(1, {node("/", "a")}).joins(2, 20).says(2, {node("/", "a")}).told();
+  watched.looks_for_ended_namesakes();
+  EXPECT_THAT(watched.told(), IsEmpty());
+  ended.insert(10);
+  watched.looks_for_ended_namesakes();
+  EXPECT_THAT(watched.told(), ElementsAre("=/a has 0 namesakes"));
+  ended.insert(20);
+  watched.joins(3, 30).says(3, {node("/", "a")});
+  EXPECT_THAT(watched.told(), ElementsAre("-/a", "+/a")) << "a restart";
+}
+
 TEST(Graph, AnEndedProcessIsGoneAtOnce) {
   Graph::Options options;
   options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };

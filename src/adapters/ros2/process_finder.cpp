@@ -83,6 +83,12 @@ void add_sockets(const fs::path& table, std::vector<BoundSocket>& sockets) {
   }
 }
 
+std::vector<BoundSocket> all_sockets(const fs::path& proc) {
+  std::vector<BoundSocket> sockets;
+  for (const char* table : {"net/udp", "net/udp6"}) add_sockets(proc / table, sockets);
+  return sockets;
+}
+
 // The sockets that one address may belong to: several where they share a port.
 using Candidates = std::vector<BoundSocket>;
 
@@ -173,6 +179,27 @@ FoundProcess ProcessFinder::find(const ParticipantInfo& participant) const {
     }
   }
   if (addresses.empty()) return {};
+  FoundProcess found = prove(participant, addresses, may_be_elsewhere);
+  if (found.pid == 0 && !may_be_elsewhere) found.has_ended = has_ended(participant);
+  return found;
+}
+
+// A participant keeps the sockets where it listens as long as it lives, and one that it sends from.
+// A new process may get the first ones.
+bool ProcessFinder::has_ended(const ParticipantInfo& participant) const {
+  const std::vector<UdpAddress>& from = participant.origin.addresses;
+  const auto is_here = [](const UdpAddress& each) { return is_local(each.ip); };
+  if (!std::all_of(from.begin(), from.end(), is_here)) return false;
+  const std::vector<BoundSocket> sockets = all_sockets(proc_);
+  if (sockets.empty()) return false;  // there is at least the one that this was heard by
+  const auto is_nobodys = [&](const UdpAddress& each) { return bound_to(each, sockets).empty(); };
+  return std::any_of(participant.metatraffic.begin(), participant.metatraffic.end(), is_nobodys) ||
+         (participant.origin.is_complete && !from.empty() &&
+          std::all_of(from.begin(), from.end(), is_nobodys));
+}
+
+FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
+                                  std::vector<UdpAddress> addresses, bool may_be_elsewhere) const {
   if (!participant.origin.is_complete)
     return {0, participant.origin.addresses.empty()
                    ? "nothing is known of where its datagrams come from"
@@ -186,8 +213,7 @@ FoundProcess ProcessFinder::find(const ParticipantInfo& participant) const {
     addresses.push_back(each);
   }
 
-  std::vector<BoundSocket> sockets;
-  for (const char* table : {"net/udp", "net/udp6"}) add_sockets(proc_ / table, sockets);
+  const std::vector<BoundSocket> sockets = all_sockets(proc_);
   std::vector<Candidates> needed;
   for (const UdpAddress& each : addresses) {
     needed.push_back(bound_to(each, sockets));

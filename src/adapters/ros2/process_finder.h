@@ -11,7 +11,8 @@
 // Somebody on the network has no socket here, so whatever he says leads to no process. The kernel
 // knows which socket is bound to which address (/proc/net/udp), and which process holds that socket
 // (/proc/<pid>/fd). Files of other users' processes cannot be seen without the right to: those are
-// not proven.
+// not proven. But all sockets are known: one that nobody has any more proves that whoever had it on
+// this machine is gone.
 #pragma once
 
 #include <filesystem>
@@ -34,6 +35,10 @@ class ProcessFinder {
   bool is_running(int pid) const;
 
  private:
+  FoundProcess prove(const ParticipantInfo& participant, std::vector<UdpAddress> addresses,
+                     bool may_be_elsewhere) const;
+  bool has_ended(const ParticipantInfo& participant) const;
+
   std::filesystem::path proc_;
 };
 

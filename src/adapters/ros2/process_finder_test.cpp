@@ -181,6 +181,33 @@ TEST(ProcessFinder, KnowsNothingOfAClosedPort) {
               HasSubstr("no process of this machine has the socket"));
 }
 
+// Whose process is not proven: another user's, or one of which no datagram came.
+TEST(ProcessFinder, WhoseSocketsAreNobodysAnyMoreHasEnded) {
+  auto gone = std::make_unique<Sockets>();
+  const Sockets lives;
+  ParticipantInfo unproven = gone->participant();
+  unproven.origin = {};
+  ParticipantInfo replaced = participant(lives.listens.address(), gone->sends.address());
+  EXPECT_FALSE(ProcessFinder().find(unproven).has_ended);
+  EXPECT_FALSE(ProcessFinder().find(replaced).has_ended);
+  gone.reset();
+  EXPECT_TRUE(ProcessFinder().find(unproven).has_ended);
+  EXPECT_TRUE(ProcessFinder().find(replaced).has_ended) << "another has its port";
+}
+
+TEST(ProcessFinder, WhoMayBeElsewhereIsNotKnownToHaveEnded) {
+  UdpAddress closed;
+  closed = Socket().address();
+  const Socket sends;
+  ParticipantInfo info = participant(closed, sends.address());
+  info.metatraffic.push_back({kElsewhere, 7410});
+  EXPECT_FALSE(ProcessFinder().find(info).has_ended);
+  info = participant(closed, {kElsewhere, 4321});
+  EXPECT_FALSE(ProcessFinder().find(info).has_ended);
+  EXPECT_FALSE(
+      ProcessFinder("/does/not/exist").find(participant(closed, sends.address())).has_ended);
+}
+
 // A proc file system with a socket on port 0x1CF2 and one on 0x1CF4, both made by user 1000, and
 // one process that holds them.
 class FakeProc {
