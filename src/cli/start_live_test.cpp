@@ -166,6 +166,33 @@ TEST_F(Start, LaunchBringsUpWhatNobodyElseDrives) {
     kill(pid_in(run.output(), name), SIGKILL);
 }
 
+// The first time it was seen to come up, and how long that takes is known.
+TEST_F(Start, WhatHangsWhileItIsActivatedIsReplacedSoon) {
+  const std::string hang = (world.folder() / "hang").string();
+  auto run = culprit(
+      {"run",
+       world.write("hang.rules", R"(
+ROBOT hang
+COMPONENT lidar NODE /lidar LAUNCH "ros2_peer_node )" +
+                                     std::to_string(domain()) + " --hangs-if " + hang + R"( /lidar"
+RULE LidarDown
+  POLICIES ERROR
+  TRIGGER alive(lidar) == false || lifecycle(lidar) != "active"
+    STRATEGY lidar_redeploy 90 10
+      ADAPTATION lidar redeploy 5
+)"),
+       "--launch", "--quiet", "0", "--backoff", "0", "--state-dir", state()});
+  ASSERT_TRUE(run.prints("lidar is there (process ")) << run.output();
+  ASSERT_TRUE(run.prints("watching hang")) << run.output();
+  std::ofstream(hang) << "once";
+  const Time killed = live_now();
+  kill(pid_in(run.output(), "lidar"), SIGKILL);
+  EXPECT_TRUE(run.prints("LidarDown resolved by lidar_redeploy")) << run.output();
+  EXPECT_LT(live_now() - killed, 10s) << run.output();
+  EXPECT_FALSE(std::filesystem::exists(hang)) << "it did not hang";
+  kill(pid_in(run.output(), "lidar"), SIGKILL);
+}
+
 TEST_F(Start, NoContainerIsEndedForOneOfItsNodes) {
   const std::string peer = "ros2_peer_node " + std::to_string(domain());
   TestProgram box(world,

@@ -105,10 +105,11 @@ void LiveRobot::stop_process(const Command& command) {
   const Adaptation& what = rules_[command.purpose.strategy].adaptations[command.purpose.adaptation];
   const bool is_replaced = what.type == AdaptationType::kRedeploy;
   const auto ending = is_replaced ? owners::Ending::kToStartAgain : owners::Ending::kForGood;
+  const StopProcess& stop = std::get<StopProcess>(command.what);
   if (rules_[command.component].unit)
-    return units_.stop(command.id, command.component, std::get<StopProcess>(command.what).pid,
-                       ending);
-  supervisor_->stop(command.id, command.component, ending);
+    return units_.stop(command.id, command.component, stop.pid, ending);
+  supervisor_->stop(command.id, command.component, ending,
+                    stop.hangs ? owners::Hangs::kYes : owners::Hangs::kNo);
 }
 
 }  // namespace culprit

@@ -24,7 +24,8 @@ enum class Tag : std::uint8_t {
   kHearingRegained = 17,
   kOverslept = 18,
   kStatusHeard = 19,
-  kParametersListed = 20
+  kParametersListed = 20,
+  kProcessWorked = 21
 };
 
 enum class OrderTag : std::uint8_t {
@@ -124,6 +125,11 @@ class Encoder {
     word(o.state);
     out_.integer(o.pid);
     out_.text(o.remark);
+  }
+  void write(const ProcessWorked& o, Duration age) {
+    head(Tag::kProcessWorked, age);
+    out_.natural(o.component.index);
+    out_.integer(o.pid);
   }
   void write(const Probed& o, Duration age) {
     head(Tag::kProbed, age);
@@ -307,6 +313,10 @@ class Decoder {
         seen.pid = pid();
         seen.remark = in_.text();
         return seen;
+      }
+      case Tag::kProcessWorked: {
+        const auto component = id<ComponentId>(rules_.components.size());
+        return ProcessWorked{component, pid()};
       }
       case Tag::kProbed: {
         const auto component = id<ComponentId>(rules_.components.size());

@@ -69,7 +69,7 @@ decltype(Order::what) any_order() {
 decltype(Observation::what) anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 19)) {
+  switch (*rc::gen::inRange(0, 20)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -110,6 +110,8 @@ decltype(Observation::what) anything() {
       return StatusHeard{text, "id", *rc::gen::arbitrary<std::vector<std::string>>()};
     case 17:
       return ParametersListed{component, *rc::gen::arbitrary<std::vector<std::string>>()};
+    case 18:
+      return ProcessWorked{component, *rc::gen::inRange(0, 100000)};
     default:
       return LinkTrouble{text};
   }

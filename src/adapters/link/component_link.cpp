@@ -141,12 +141,13 @@ ServiceClient* ComponentLink::routine(const std::string& service, const std::str
 
 // ---- what is read without being commanded
 
+bool ComponentLink::has_lifecycle() {
+  const std::lock_guard lock(mutex_);
+  return lifecycle_ || lifecycle_reader_;
+}
+
 void ComponentLink::check_lifecycle() {
-  {
-    const std::lock_guard lock(mutex_);
-    if (!lifecycle_ && !lifecycle_reader_) return;
-  }
-  read_lifecycle(kProbe, Told::kIfNew);
+  if (has_lifecycle()) read_lifecycle(kProbe, Told::kIfNew);
 }
 
 void ComponentLink::read_lifecycle(Duration patience, Told told) {
@@ -155,6 +156,7 @@ void ComponentLink::read_lifecycle(Duration patience, Told told) {
   client->call(encode(srv::GetState::Request{}), Repeat::kUntilAnswered, patience,
                [this, told](const CallResult& result) {
                  if (result.outcome != CallOutcome::kAnswered) return;
+                 inbox_.put(Probed{component_, true});
                  const auto response = decode<srv::GetState::Response>(result.reply);
                  if (response) tell(to_lifecycle(response->current_state.id), told);
                });
@@ -225,13 +227,22 @@ void ComponentLink::check_parameters() {
 }
 
 void ComponentLink::probe(int pid) {
-  ServiceClient* client = parameter_reader();
+  const auto tell_of = [this, pid](const CallResult& result) {
+    const bool answered = result.outcome == CallOutcome::kAnswered;
+    if (answered || pid == 0 || !is_traced(pid)) inbox_.put(Probed{component_, answered});
+  };
+  const bool is_managed = has_lifecycle();
+  ServiceClient* client = is_managed ? lifecycle_reader() : parameter_reader();
   if (client == nullptr) return;
-  client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kProbe,
-               [this, pid](const CallResult& result) {
-                 const bool answered = result.outcome == CallOutcome::kAnswered;
-                 if (answered || pid == 0 || !is_traced(pid))
-                   inbox_.put(Probed{component_, answered});
+  if (!is_managed)
+    return client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kProbe,
+                        tell_of);
+  client->call(encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kProbe,
+               [this, tell_of](const CallResult& result) {
+                 tell_of(result);
+                 if (result.outcome != CallOutcome::kAnswered) return;
+                 const auto response = decode<srv::GetState::Response>(result.reply);
+                 if (response) tell(to_lifecycle(response->current_state.id), Told::kIfNew);
                });
 }
 

@@ -35,8 +35,9 @@ class ComponentLink {
   // The node was seen to offer a service: readies the client, reads the present state.
   void service_seen(const std::string& service, const std::string& type);
 
-  // A cheap read that proves that the node answers. `pid` is its process; 0: it is not known. That
-  // a traced one does not answer is not told.
+  // A cheap read that proves that the node answers: of its lifecycle, which is told as by
+  // check_lifecycle(), or of no parameter. `pid` is its process; 0: it is not known. That a traced
+  // one does not answer is not told.
   void probe(int pid);
 
   // Reads the state of a node that was seen to have a lifecycle, and tells it if it is another than
@@ -73,6 +74,7 @@ class ComponentLink {
            const Command& command, Understand understand);
   void reply(const Command& command, Answer answer);
 
+  bool has_lifecycle();
   enum class Told : std::uint8_t { kAlways, kIfNew };
   void read_lifecycle(Duration patience, Told told);
   void tell(Lifecycle state, Told told);

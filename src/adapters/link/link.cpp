@@ -8,6 +8,7 @@
 #include <ifaddrs.h>
 #include <iterator>
 #include <netinet/in.h>
+#include <set>
 #include <unistd.h>
 
 #include "ros2/process_finder.h"
@@ -462,12 +463,16 @@ void Link::on_parameter_event(const msg::ParameterEvent& event) {
 
 void Link::probe() {
   context_->forget_ended_namesakes();
-  for (const auto& [node, each] : probed_) make_link(each.component, node)->probe(each.pid);
+  std::set<ComponentId> are_probed;
+  for (const auto& [node, each] : probed_) {
+    are_probed.insert(each.component);
+    make_link(each.component, node)->probe(each.pid);
+  }
   for (const Parameter& parameter : rules_.parameters) {
     if (ComponentLink* link = link_of(parameter.component)) link->check_parameters();
   }
   for (const Input& input : rules_.inputs) {
-    if (input.kind != Input::Kind::kLifecycle) continue;
+    if (input.kind != Input::Kind::kLifecycle || are_probed.contains(input.component)) continue;
     if (ComponentLink* link = link_of(input.component)) link->check_lifecycle();
   }
 }

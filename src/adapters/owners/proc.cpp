@@ -6,6 +6,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <system_error>
 #include <unistd.h>
@@ -221,6 +222,27 @@ std::vector<int> members_of_group(int leader) {
     return family.group != leader || family.session != leader || family.state == 'Z';
   });
   return pids;
+}
+
+bool Work::is_more_than(const Work& before) const {
+  constexpr std::int64_t kMebibyte = 1 << 20;
+  return processor - before.processor >= std::chrono::milliseconds(50) ||
+         bytes - before.bytes >= kMebibyte;
+}
+
+Work work_of_group(int leader) {
+  Work work;
+  for (const int pid : members_of_group(leader)) {
+    // proc(5): utime and stime are the 14th and 15th field, rss the 24th; the state is the third.
+    std::istringstream rest(stat_after_command(pid));
+    std::vector<std::string> fields{std::istream_iterator<std::string>(rest), {}};
+    if (fields.size() < 22) continue;
+    const auto number = [&](std::size_t field) { return std::atoll(fields[field - 3].c_str()); };
+    work.processor += std::chrono::nanoseconds(std::chrono::seconds(number(14) + number(15))) /
+                      sysconf(_SC_CLK_TCK);
+    work.bytes += number(24) * sysconf(_SC_PAGESIZE);
+  }
+  return work;
 }
 
 }  // namespace culprit::owners

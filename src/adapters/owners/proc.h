@@ -55,4 +55,13 @@ std::vector<Relative> descendants_of(int pid);
 // Those in the process group and in the session that `leader` made, itself included.
 std::vector<int> members_of_group(int leader);
 
+// What processes have done and have.
+struct Work {
+  Duration processor{};
+  std::int64_t bytes = 0;  // of memory
+  // By more than what a process does that only waits.
+  bool is_more_than(const Work& before) const;
+};
+Work work_of_group(int leader);
+
 }  // namespace culprit::owners

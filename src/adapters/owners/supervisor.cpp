@@ -146,6 +146,7 @@ void Supervisor::finish_starts() {
     const auto runs = member.launch->outcome();
     member.launch.reset();
     member.lock = FileDescriptor();
+    member.awaited = live_now();
     if (!runs) {
       answer(member.command, Outcome::kUnreachable, runs.error());
       member.state = ProcessState::kGone;  // it is reaped, and was never the component
@@ -162,6 +163,9 @@ void Supervisor::finish_starts() {
 
 void Supervisor::adopt(ComponentId component, int pid, Time known) {
   const std::lock_guard lock(mutex_);
+  for (Member& member : members_) {
+    if (member.component == component) member.awaited.reset();
+  }
   if (is_known(component, pid)) return;
   if (!was_there(pid, known)) {
     inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, "ended"});
@@ -265,18 +269,18 @@ std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending
   return std::nullopt;
 }
 
-void Supervisor::stop(CommandId command, ComponentId component, Ending ending) {
+void Supervisor::stop(CommandId command, ComponentId component, Ending ending, Hangs hangs) {
   const std::lock_guard lock(mutex_);
   if (auto why = why_not_end(component, ending))
     return answer(command, Outcome::kRefused, std::move(*why));
   if (ending == Ending::kForGood || is_gone(component) || is_left_to_launcher(component)) {
-    begin_shutdown(command, component);
+    begin_shutdown(command, component, hangs);
   } else {
     const auto lock_of_start = lock_start_of(component);
     if (!lock_of_start) return answer(command, Outcome::kRefused, lock_of_start.error());
     auto launch = Launch::begin(program_of(component), Until::kItCouldRun);
     if (!launch) return answer(command, Outcome::kRefused, launch.error());
-    trials_.push_back({command, component, std::move(*launch), later(live_now(), kTrial)});
+    trials_.push_back({command, component, std::move(*launch), later(live_now(), kTrial), hangs});
   }
   wake();
 }
@@ -292,7 +296,7 @@ void Supervisor::finish_trials(Time now) {
                                        culprit::to_string(kTrial) +
                                        "; does the file system of its program answer?"});
     if (could_run) {
-      begin_shutdown(trial.command, trial.component);
+      begin_shutdown(trial.command, trial.component, trial.hangs);
     } else {
       answer(trial.command, Outcome::kRefused,
              name + " is not ended, for it could not be started again: " + could_run.error());
@@ -302,13 +306,13 @@ void Supervisor::finish_trials(Time now) {
   std::erase_if(trials_, [](const Trial& t) { return t.until == kLongAgo; });
 }
 
-void Supervisor::begin_shutdown(CommandId command, ComponentId component) {
+void Supervisor::begin_shutdown(CommandId command, ComponentId component, Hangs hangs) {
   for (Member& member : members_) {
     if (member.component != component || member.process.relation() != Relation::kAdopted) continue;
     member.left = descendants_of(member.process.pid());
     member.left_at = live_now();
   }
-  shutdowns_.push_back({command, component, 0, live_now()});
+  shutdowns_.push_back({command, component, hangs, 0, live_now()});
 }
 
 void Supervisor::stop_all() {
@@ -317,7 +321,7 @@ void Supervisor::stop_all() {
   for (const Member& member : members_) {
     if (member.process.relation() == Relation::kChild) started.insert(member.component);
   }
-  for (const ComponentId component : started) begin_shutdown({}, component);
+  for (const ComponentId component : started) begin_shutdown({}, component, Hangs::kNo);
   wake();
   something_ended_.wait(lock, [&] {
     return std::all_of(started.begin(), started.end(), [&](ComponentId c) { return is_gone(c); });
@@ -426,11 +430,25 @@ void Supervisor::look(Time now) {
       inbox_.put(ProcessSeen{member.component, state, member.process.pid(), ""});
     }
     member.state = state;
+    look_for_work(member, now);
   }
   std::erase_if(members_, [](const Member& m) { return m.state == ProcessState::kGone; });
   finish_trials(now);
   finish_shutdowns(now);
   something_ended_.notify_all();
+}
+
+// Of all that it started: the node may be a child of the tool that runs it.
+void Supervisor::look_for_work(Member& member, Time now) {
+  if (!member.awaited || member.state != ProcessState::kRunning ||
+      now < later(member.worked_at, kWorkPeriod))
+    return;
+  if (now >= later(*member.awaited, kComingUp)) return member.awaited.reset();
+  const Work work = work_of_group(member.process.pid());
+  if (member.work && work.is_more_than(*member.work))
+    inbox_.put(ProcessWorked{member.component, member.process.pid()});
+  member.work = work;
+  member.worked_at = now;
 }
 
 void Supervisor::finish_shutdowns(Time now) {
@@ -448,7 +466,8 @@ void Supervisor::escalate(Shutdown& shutdown, Time now) {
   const bool is_stopped = std::any_of(members_.begin(), members_.end(), [&](const Member& m) {
     return m.component == shutdown.component && m.state == ProcessState::kStopped;
   });
-  if (is_stopped || shutdown.signal == SIGTERM || shutdown.signal == SIGKILL) {
+  const bool hangs = shutdown.hangs == Hangs::kYes && shutdown.signal == SIGINT;
+  if (is_stopped || hangs || shutdown.signal == SIGTERM || shutdown.signal == SIGKILL) {
     shutdown.signal = SIGKILL;
     shutdown.escalate = later(now, kFirm);
   } else if (shutdown.signal == SIGINT) {
@@ -456,7 +475,7 @@ void Supervisor::escalate(Shutdown& shutdown, Time now) {
     shutdown.escalate = later(now, kFirm);
   } else {
     shutdown.signal = SIGINT;
-    shutdown.escalate = later(now, kPolite);
+    shutdown.escalate = later(now, shutdown.hangs == Hangs::kYes ? kHung : kPolite);
   }
   for (const Member& member : members_) {
     if (member.component == shutdown.component) member.process.signal(shutdown.signal);

@@ -1,7 +1,8 @@
 // Starts, stops and watches the processes of components.
 //
 // In the words of Erlang/OTP: the supervisor starts a child from its launch command, shuts it down
-// by escalation (SIGINT, after kPolite SIGTERM, after kFirm SIGKILL), and tells what becomes of it.
+// by escalation (SIGINT, after kPolite SIGTERM, after kFirm SIGKILL; SIGINT, after kHung SIGKILL,
+// if it hangs), and tells what becomes of it, and until its node is there whether it works.
 // It decides nothing: restarting is up to the manager. A stopped process cannot act on a polite
 // signal and must not wake up to do so late: it is killed at once.
 //
@@ -42,12 +43,20 @@
 namespace culprit::owners {
 
 enum class Ending : std::uint8_t { kForGood, kToStartAgain };
+// What hangs is not expected to act on a polite signal, and is waited for only as long as one that
+// needs no thread of its own to end.
+enum class Hangs : bool { kNo, kYes };
 
 // All members may be called from any thread. Observations (ProcessSeen, Reply) go to the inbox.
 class Supervisor {
  public:
   static constexpr Duration kPolite = std::chrono::seconds(2);
   static constexpr Duration kFirm = std::chrono::seconds(1);
+  static constexpr Duration kHung = std::chrono::milliseconds(300);
+  // Of what was started and whose node is not there yet it is looked this often whether it works,
+  // for so long.
+  static constexpr Duration kWorkPeriod = std::chrono::seconds(1);
+  static constexpr Duration kComingUp = std::chrono::minutes(5);
   // How often it is looked whether a process was stopped; its end is known at once.
   static constexpr Duration kStatePeriod = std::chrono::milliseconds(200);
   // How long the trial of a start may take.
@@ -73,10 +82,10 @@ class Supervisor {
   // Ends all processes of the component that are watched, and no others, whatever their numbers;
   // replies when they are gone. Refuses if one of them is not proven to be the component's, or if
   // it could not be started again: then none is ended.
-  void stop(CommandId command, ComponentId component, Ending ending);
+  void stop(CommandId command, ComponentId component, Ending ending, Hangs hangs = Hangs::kNo);
 
-  // Watches the process that had this number at `known` as the component's; one that began later is
-  // another. Tells that it is gone if it is. Does nothing if it is watched already.
+  // Watches the process that had this number at `known` as the component's, for its node is there;
+  // one that began later is another. Tells that it is gone if it is. Does nothing if it is watched already.
   void adopt(ComponentId component, int pid, Time known);
 
   // Likewise, of a process that an earlier run of culprit knew, if it is not a zombie now. Says
@@ -99,6 +108,10 @@ class Supervisor {
     std::optional<Launch> launch{};
     CommandId command{};
     FileDescriptor lock{};
+    // While its node is awaited: since when, and what it had done when that was looked at last.
+    std::optional<Time> awaited{};
+    Time worked_at{};
+    std::optional<Work> work{};
     std::vector<Relative> left{};  // what somebody else's had started when its end was ordered
     Time left_at{};
   };
@@ -108,11 +121,13 @@ class Supervisor {
     ComponentId component;
     Launch launch;
     Time until;
+    Hangs hangs;
   };
   // A shutdown under way.
   struct Shutdown {
     CommandId command;  // number 0: nobody waits for a reply
     ComponentId component;
+    Hangs hangs = Hangs::kNo;
     int signal = 0;          // sent last
     Time escalate = kNever;  // when the next one is due
   };
@@ -144,10 +159,11 @@ class Supervisor {
 
   void run();
   void look(Time now);
+  void look_for_work(Member& member, Time now);
   void escalate(Shutdown& shutdown, Time now);
   bool is_known(ComponentId component, int pid) const;
   bool is_gone(ComponentId component) const;
-  void begin_shutdown(CommandId command, ComponentId component);
+  void begin_shutdown(CommandId command, ComponentId component, Hangs hangs);
   void end_member(Member& member);
   Time next_deadline() const;
   void wake();

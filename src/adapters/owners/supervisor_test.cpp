@@ -82,6 +82,18 @@ class Supervised {
   ProcessSeen state(ProcessState state) {
     return wait<ProcessSeen>([&](const ProcessSeen& s) { return s.state == state; });
   }
+  int worked() {
+    return wait<ProcessWorked>([](const ProcessWorked&) { return true; }).pid;
+  }
+  bool hears_of_no_work_for(Duration time) {
+    std::vector<Observation> seen;
+    inbox.take(live_now(), seen);
+    seen.clear();
+    for (const Time end = later(live_now(), time); live_now() < end;) inbox.take(end, seen);
+    return std::none_of(seen.begin(), seen.end(), [](const Observation& o) {
+      return std::holds_alternative<ProcessWorked>(o.what);
+    });
+  }
   std::string log_when(const std::string& part) {
     std::string text;
     for (int tries = 0; tries < 1000 && text.find(part) == std::string::npos; ++tries) {
@@ -244,6 +256,36 @@ TEST(Supervisor, KillsWhatDoesNotListen) {
   c.stop();
   EXPECT_FALSE(exists(pid));
   EXPECT_GE(live_now() - begin, Supervisor::kPolite + Supervisor::kFirm) << "it had its chances";
+}
+
+TEST(Supervisor, KillsWhatHangsSoon) {
+  Supervised c("sh -c 'trap \\\"\\\" INT TERM; echo ready; while true; do sleep 0.1; done'");
+  const int pid = c.start();
+  c.log_when("ready");
+  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood, Hangs::kYes);
+  EXPECT_EQ(c.state(ProcessState::kGone).remark, "killed by signal 9") << "not by SIGTERM";
+  EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
+  EXPECT_FALSE(exists(pid));
+}
+
+// As `ros2 run` starts a node: what works is a child.
+TEST(Supervisor, TellsThatWhatItStartedWorksUntilItsNodeIsThere) {
+  Supervised c("sh -c 'while :; do :; done & wait'");
+  const int pid = c.start();
+  EXPECT_EQ(c.worked(), pid);
+  EXPECT_EQ(c.worked(), pid) << "again";
+  c.supervisor->adopt(ComponentId(0), pid, live_now());
+  EXPECT_TRUE(c.hears_of_no_work_for(2 * Supervisor::kWorkPeriod));
+  c.stop();
+}
+
+TEST(Proc, WhoOnlyWaitsDoesNotWork) {
+  using namespace std::chrono_literals;
+  const Work before{1s, 10 << 20};
+  EXPECT_FALSE((Work{1s + 49ms, 10 << 20}.is_more_than(before)));
+  EXPECT_FALSE((Work{900ms, 5 << 20}.is_more_than(before))) << "one of its processes has ended";
+  EXPECT_TRUE((Work{1s + 50ms, 10 << 20}.is_more_than(before)));
+  EXPECT_TRUE((Work{1s, 11 << 20}.is_more_than(before)));
 }
 
 TEST(Supervisor, KillsAStoppedProcessAtOnce) {

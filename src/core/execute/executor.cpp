@@ -106,8 +106,9 @@ void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
         run.pending = {++last_command_};
         if (std::holds_alternative<StopProcess>(*request))
           knowledge_.components[run.pursuit->component()].culprit_raised = kLongAgo;
+        note_transition(*run.pursuit, *request, now);
         commands.push_back({run.pending, run.pursuit->component(), *request,
-                            Pursuit::timeout(*request), purpose_of(run)});
+                            run.pursuit->timeout(*request), purpose_of(run)});
       }
     }
     if (!had_changed && run.pursuit->has_changed_anything()) note_change(run, now);
@@ -171,16 +172,17 @@ void Executor::finish_goal(Run& run, Time now) {
       run.undo.push_back({pursuit.component(), std::move(*goal)});
     }
   }
+  const bool launches = type == AdaptationType::kRedeploy || type == AdaptationType::kStart;
   if (pursuit.is_reached()) {
     // Where it was brought last counts; a restart takes it through another state.
     if (run.goal + 1 == run.goals.size()) note_lifecycle(pursuit, now);
-    const bool launches = type == AdaptationType::kRedeploy || type == AdaptationType::kStart;
     if (launches) note_coming_up(pursuit, now);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
     note_mode(pursuit, now);
     ++run.goal;
   } else {
     if (pursuit.met_rival()) note_rival(run, now);
+    if (launches && pursuit.took_too_long()) note_too_long(pursuit, now);
     attempt_of(run)->obstacle =
         knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark();
     knowledge_.tell(now, AdaptationFailed{run.strategy, run.adaptation, pursuit.remark()});
@@ -248,6 +250,26 @@ void Executor::note_coming_up(const Pursuit& pursuit, Time now) {
     if (is_ours) state.culprit_raised = now;
   }
   knowledge_.note_coming_up(pursuit.component(), how, now);
+}
+
+// What takes too long once is given more time when it is started the next time.
+void Executor::note_too_long(const Pursuit& pursuit, Time now) {
+  const ComponentState& state = knowledge_.components[pursuit.component()];
+  ComingUp how = state.coming_up;
+  if (std::holds_alternative<execute::PresentGoal>(pursuit.goal())) {
+    how.joining = std::max(how.joining, now - pursuit.changed());
+  } else if (std::holds_alternative<execute::LifecycleGoal>(pursuit.goal())) {
+    how.rising = std::max(how.rising, now - state.node_seen);
+  }
+  knowledge_.note_coming_up(pursuit.component(), how, now);
+}
+
+// A node may tell nothing of a transition before it is over.
+void Executor::note_transition(const Pursuit& pursuit, const Pursuit::Request& request, Time now) {
+  if (!std::holds_alternative<ChangeLifecycle>(request)) return;
+  ComponentState& state = knowledge_.components[pursuit.component()];
+  if (state.changing_since == kNever) state.changing_since = now;
+  state.transition_patience = patience(pursuit.goal());
 }
 
 // Which mode was set, and from which: something else may set it back.

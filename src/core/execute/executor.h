@@ -69,6 +69,9 @@ class Executor {
   void note_rival(const Run& run, Time now);
   void note_lifecycle(const execute::Pursuit& pursuit, Time now);
   void note_coming_up(const execute::Pursuit& pursuit, Time now);
+  void note_too_long(const execute::Pursuit& pursuit, Time now);
+  void note_transition(const execute::Pursuit& pursuit, const execute::Pursuit::Request& request,
+                       Time now);
   Attempt* attempt_of(const Run& run);
   void enter(Run& run, Attempt::Stage stage);
 

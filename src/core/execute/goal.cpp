@@ -52,12 +52,13 @@ std::optional<Lifecycle> demanded(ComponentId component, const Knowledge& knowle
   return std::nullopt;
 }
 
-PresentGoal present(ComponentId component, const Knowledge& knowledge) {
+PresentGoal present(const Adaptation& adaptation, const Knowledge& knowledge) {
   PresentGoal goal;
-  const Duration joining = knowledge.components[component].coming_up.joining;
-  if (joining <= Duration::zero()) return goal;
-  goal.patience = std::max<Duration>(goal.patience, 4 * joining);
-  goal.longest = goal.patience;
+  const Duration joining = knowledge.components[adaptation.component].coming_up.joining;
+  const Duration impact = duration_of(adaptation.impact, knowledge.rules);
+  goal.patience = std::max<Duration>(
+      {goal.patience, impact, std::min<Duration>(4 * joining, PresentGoal::kMost)});
+  goal.longest = joining > Duration::zero() ? goal.patience : std::max(goal.longest, goal.patience);
   return goal;
 }
 
@@ -90,7 +91,8 @@ LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
   const ComingUp& before = knowledge.components[adaptation.component].coming_up;
   const Duration impact = duration_of(adaptation.impact, knowledge.rules);
   LifecycleGoal goal{target};
-  goal.patience = std::max<Duration>({goal.patience, impact, 4 * before.rising});
+  goal.patience = longest_transition(before);
+  if (before.rising <= Duration::zero()) goal.patience = std::max(goal.patience, impact);
   switch (knowledge.rules[adaptation.component].lifecycle) {
     case LifecycleDriver::kManaged:
       return goal;
@@ -141,7 +143,7 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
                                LifecycleGoal{Lifecycle::kActive, {}}};
     case AdaptationType::kRedeploy: {
       GoneGoal gone;
-      PresentGoal back = present(adaptation.component, knowledge);
+      PresentGoal back = present(adaptation, knowledge);
       // systemd may be faster than the news of the end.
       if (knowledge.rules[adaptation.component].unit) {
         gone.pid = state.known_pid();
@@ -158,7 +160,7 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       return goals;
     }
     case AdaptationType::kStart: {
-      std::vector<Goal> goals{present(adaptation.component, knowledge)};
+      std::vector<Goal> goals{present(adaptation, knowledge)};
       if (state.intended_lifecycle != Lifecycle::kUnknown)
         goals.push_back(bringing_up(adaptation, Lifecycle::kActive, knowledge));
       return goals;

@@ -28,8 +28,8 @@ struct LifecycleGoal {
   Lifecycle target = Lifecycle::kActive;
   // A node that was just started may bring itself up: it gets this long before it is told to.
   Duration grace{};
-  bool is_left_to_others = false;                // it is never told to
-  Duration patience = std::chrono::seconds(10);  // beyond the grace, for each transition
+  bool is_left_to_others = false;              // it is never told to
+  Duration patience = longest_transition({});  // beyond the grace, for each transition
 };
 struct ModeGoal {
   std::string mode;
@@ -46,10 +46,14 @@ struct GoneGoal {
 // `instead_of`: set if the process may have been started already. Then one with another pid will
 // do; otherwise one that appears from now on is wanted.
 struct PresentGoal {
+  static constexpr Duration kMost = std::chrono::minutes(5);
+
   std::optional<int> instead_of{};
+  // From the start; and, while the process works (ProcessWorked), from when it did last, kMost in
+  // all.
   Duration patience = std::chrono::seconds(20);
-  Duration longest =
-      std::chrono::seconds(60);  // while the process that was started is known to run
+  // While the process that was started is known to run, also if it only waits for something.
+  Duration longest = std::chrono::seconds(60);
 };
 
 using Goal =

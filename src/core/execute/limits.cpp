@@ -139,17 +139,19 @@ std::optional<Limits::Limit> Limits::backoff(ComponentId component, RuleId rule,
 }
 
 std::optional<Limits::Limit> Limits::quiet(ComponentId component, Time now) const {
-  const auto is_quiet = [&](ComponentId c) {
-    const Time launched = components_[c.index].launched;
-    return launched != kLongAgo && later(launched, options_.quiet_after_launch) > now;
-  };
-  const auto limit = [&](ComponentId c) {
+  const auto limit = [&](ComponentId c, Time since) -> std::optional<Limit> {
+    const Time until = later(since, options_.quiet_after_launch);
+    if (components_[c.index].launched == kLongAgo || until <= now) return std::nullopt;
     return Limit{Restraint::kQuietPeriod, knowledge_.rules[c].name + " was launched a moment ago",
-                 later(components_[c.index].launched, options_.quiet_after_launch)};
+                 until};
   };
-  if (is_quiet(component)) return limit(component);
+  if (auto own = limit(component, components_[component.index].launched)) return own;
   for (const ComponentId upstream : knowledge_.graph.upstream(component)) {
-    if (is_quiet(upstream)) return limit(upstream);
+    // For those that it feeds, it is back when what it publishes is there.
+    const ComponentState& state = knowledge_.components[upstream];
+    const Time since =
+        std::max({components_[upstream.index].launched, state.ends_back, state.awaits_ends_until});
+    if (auto of_upstream = limit(upstream, since)) return of_upstream;
   }
   return std::nullopt;
 }

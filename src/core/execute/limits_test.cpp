@@ -57,6 +57,23 @@ TEST(Limits, LetALaunchSettleBeforeTheComponentOrWhatDependsOnItIsTouched) {
   EXPECT_FALSE(limits.on(two.strategy("other_again"), kStart)) << "it has nothing to do with it";
 }
 
+TEST(Limits, LeaveWhatDependsOnALaunchAloneUntilItPublishesAgain) {
+  Two two;
+  Limits::Options options;
+  options.quiet_after_launch = 1s;
+  Limits limits(two.knowledge, options);
+  limits.note({kStart, AdaptationDone{two.strategy("up_again"), 0, ""}});
+  ComponentState& up = two.knowledge.components[ComponentId(0)];
+  up.awaits_ends_until = kStart + 10s;
+  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kStart + 3s)), Restraint::kQuietPeriod);
+  EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart + 3s)) << "it may be what is broken";
+  up.awaits_ends_until = kLongAgo;
+  up.ends_back = kStart + 4s;
+  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kStart + 4999ms)),
+            Restraint::kQuietPeriod);
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 5s));
+}
+
 TEST(Limits, AreQuietOnlyAfterALaunch) {
   Two two;
   Limits::Options options;

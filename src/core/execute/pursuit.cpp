@@ -76,10 +76,11 @@ Pursuit::Pursuit(Goal goal, ComponentId component, Time now)
       deadline_(later(now, patience(goal_))),
       held_until_(later(now, grace(goal_))) {}
 
-Duration Pursuit::timeout(const Request& request) {
+Duration Pursuit::timeout(const Request& request) const {
   if (std::holds_alternative<StopProcess>(request)) return 12s;
-  const bool is_slow = std::holds_alternative<ChangeLifecycle>(request) ||
-                       std::holds_alternative<CallService>(request) ||
+  if (std::holds_alternative<ChangeLifecycle>(request))
+    return std::min<Duration>(5s, patience(goal_));
+  const bool is_slow = std::holds_alternative<CallService>(request) ||
                        std::holds_alternative<ChangeMode>(request) ||
                        std::holds_alternative<StartProcess>(request);
   return is_slow ? 5s : 1s;
@@ -116,12 +117,16 @@ bool Pursuit::is_lost(const Knowledge& knowledge) const {
   const bool is_of_process =
       std::holds_alternative<GoneGoal>(goal_) || std::holds_alternative<PresentGoal>(goal_);
   const ComponentState& state = knowledge.components[component_];
-  return !is_of_process && !state.in_graph && state.alive == false;
+  return !is_of_process && state.alive == false;
 }
 
 std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Time now) {
   if (is_lost(knowledge)) {
-    const std::string& how = knowledge.components[component_].process_remark;
+    const ComponentState& state = knowledge.components[component_];
+    took_too_long_ = state.hangs() && has_changed_anything();
+    if (state.hangs()) return give_up("it does not answer any more");
+    if (state.in_graph) return give_up("its process is stopped");
+    const std::string& how = state.process_remark;
     return give_up("it is not there any more" + (how.empty() ? "" : ": " + how));
   }
   // An adapter that never answers must not hold a component for ever.
@@ -259,7 +264,7 @@ std::optional<Pursuit::Request> Pursuit::pursue(const GoneGoal& goal, const Know
   if (state.in_graph && state.known_pid() == 0 && !knowledge.rules[component_].unit)
     return give_up("its process is not known; is it on another machine?");
   if (!has_changed_anything())
-    return change(StopProcess{goal.pid != 0 ? goal.pid : state.known_pid()}, now);
+    return change(StopProcess{goal.pid != 0 ? goal.pid : state.known_pid(), state.hangs()}, now);
   const bool is_gone = !state.in_graph && state.process == ProcessState::kGone;
   // Where the operating system is asked, its word is needed too: a new process must not begin
   // beside the old one because of a wrong answer.
@@ -287,6 +292,9 @@ std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal,
   const bool is_it = pid != nullptr && *pid == Value(std::int64_t{state.pid});
   if (is_it && state.process == ProcessState::kRunning)
     deadline_ = std::max(deadline_, later(changed_, goal.longest));
+  if (is_it && state.worked >= changed_)
+    deadline_ = std::max(deadline_, std::min(later(state.worked, goal.patience),
+                                             later(changed_, PresentGoal::kMost)));
   const bool has_ended = state.process == ProcessState::kGone && is_it;
   if (has_ended) return give_up("it ended at once: " + state.process_remark);
   return look_again(now);
@@ -303,6 +311,7 @@ std::optional<Pursuit::Request> Pursuit::change(Request request, Time now) {
 
 std::optional<Pursuit::Request> Pursuit::look_again(Time now) {
   if (now >= deadline_) {
+    took_too_long_ = has_changed_anything();
     const bool was_accepted = answer_ && answer_->outcome == Outcome::kDone;
     return give_up((was_accepted ? "it accepted and did nothing: not " : "not ") + describe(goal_) +
                    " after " + to_string(now - (sent_.empty() ? begun_ : changed_)) +

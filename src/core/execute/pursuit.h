@@ -39,11 +39,14 @@ class Pursuit {
   // Why the goal was given up; or what was odd about reaching it; or empty.
   const std::string& remark() const { return remark_; }
 
-  // Its component is not there any more, so that there is nothing to look at or to change.
+  // Its component is not there any more, or hangs, so that there is nothing to look at or to change.
   bool is_lost(const Knowledge& knowledge) const;
 
   // Somebody else has changed, meanwhile, what it changes.
   bool met_driver() const { return driver_seen_; }
+
+  // It was given up although nothing had gone wrong but that it took too long.
+  bool took_too_long() const { return took_too_long_; }
 
   // It was given up because something else sets back what it sets.
   bool met_rival() const { return met_rival_; }
@@ -53,7 +56,7 @@ class Pursuit {
   bool has_changed_anything() const { return !sent_.empty(); }
 
   // How long the answer to `request` may take.
-  static Duration timeout(const Request& request);
+  Duration timeout(const Request& request) const;
   // When to advance even if nothing was observed.
   Time next_deadline() const;
 
@@ -97,6 +100,7 @@ class Pursuit {
   std::optional<Value> wanted_;  // ParameterGoal, once the present value is known
   std::string remark_;
   bool met_rival_ = false;
+  bool took_too_long_ = false;
   Lifecycle last_ = Lifecycle::kUnknown;       // LifecycleGoal: the last primary state seen
   Lifecycle asked_for_ = Lifecycle::kUnknown;  // where the last transition leads
   bool driver_seen_ = false;

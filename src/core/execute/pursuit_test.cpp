@@ -80,6 +80,65 @@ TEST(PursuitOfAProcess, StartsOneWhereTheOldOneIsGone) {
   EXPECT_TRUE(is<StartProcess>(pursuit.advance(one.knowledge, kStart)));
 }
 
+// ---- how long it is waited for
+
+// Until when it is waited for a process that was started and whose node does not come.
+Duration waits(Duration works_until) {
+  One one;
+  Pursuit pursuit(PresentGoal{}, one.c, kStart);
+  EXPECT_TRUE(is<StartProcess>(pursuit.advance(one.knowledge, kStart)));
+  one.runs(7, false);
+  pursuit.answered(done(Value(std::int64_t{7})), kStart);
+  Duration at{};
+  for (; pursuit.is_under_way() && at < 1h; at += 100ms) {
+    if (at <= works_until) one.state().worked = kStart + at;
+    pursuit.advance(one.knowledge, kStart + at);
+  }
+  EXPECT_EQ(pursuit.is_under_way(), false);
+  EXPECT_TRUE(pursuit.took_too_long());
+  return at - 100ms;
+}
+
+TEST(PursuitOfAProcess, WaitsLongerForOneThatWorks) {
+  EXPECT_EQ(waits(-1s), 60s) << "it runs and may wait for something";
+  EXPECT_EQ(waits(30s), 60s);
+  EXPECT_EQ(waits(90s), 110s);
+  EXPECT_EQ(waits(1h), 300s) << "for good is too long";
+}
+
+TEST(PursuitOfAProcess, GivesMoreTimeToWhatTookTooLongBefore) {
+  One one;
+  const Adaptation& redeploy = one.rules.strategies[0].adaptations[0];
+  const auto patience_of_start = [&] { return patience((*goals_of(redeploy, one.knowledge))[1]); };
+  EXPECT_EQ(patience_of_start(), 20s);
+  one.state().coming_up.joining = 60s;
+  EXPECT_EQ(patience_of_start(), 240s);
+}
+
+TEST(PursuitOfAProcess, SaysOfWhatHangsThatItDoes) {
+  One one;
+  one.runs(7, true);
+  one.state().alive = false;
+  Pursuit pursuit(GoneGoal{}, one.c, kStart);
+  const auto request = pursuit.advance(one.knowledge, kStart);
+  ASSERT_TRUE(is<StopProcess>(request));
+  EXPECT_TRUE(std::get<StopProcess>(*request).hangs);
+}
+
+TEST(PursuitOfALifecycle, EndsWhenTheNodeHangs) {
+  One one;
+  one.runs(7, true);
+  one.state().alive = true;
+  Pursuit pursuit(LifecycleGoal{}, one.c, kStart);
+  ASSERT_TRUE(is<ReadLifecycle>(pursuit.advance(one.knowledge, kStart)));
+  pursuit.answered(done(Lifecycle::kInactive), kStart);
+  ASSERT_TRUE(is<ChangeLifecycle>(pursuit.advance(one.knowledge, kStart)));
+  one.state().alive = false;
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart + 2s));
+  EXPECT_EQ(pursuit.remark(), "it does not answer any more");
+  EXPECT_TRUE(pursuit.took_too_long());
+}
+
 TEST(PursuitOfAProcess, EndsNoneThatHasTakenTheOldOnesPlace) {
   One one;
   one.runs(8, true);

@@ -1,6 +1,7 @@
 // How a component came up when a process of it began: what the next start is waited for by.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "base/time.h"
@@ -11,10 +12,19 @@ struct ComingUp {
   // Who took it through its lifecycle. kOther: itself, its launcher, a lifecycle manager.
   enum class Driver : std::uint8_t { kUnknown, kOther, kCulprit };
   Driver driver = Driver::kUnknown;
-  Duration joining{};  // from the order to start it until its node was there; 0: not measured
-  Duration rising{};   // from then until its lifecycle was where it should be; 0: likewise
+  // From the order to start it until its node was there; 0: not measured. What was given up because
+  // it took too long counts with that time: the next start is given more.
+  Duration joining{};
+  Duration rising{};  // from then until its lifecycle was where it should be; likewise
 
   bool operator==(const ComingUp&) const = default;
 };
+
+// Beyond this, a transition of its lifecycle hangs.
+inline Duration longest_transition(const ComingUp& how) {
+  using namespace std::chrono_literals;
+  if (how.rising <= Duration::zero()) return 10s;
+  return std::clamp<Duration>(4 * how.rising, 2s, 2min);
+}
 
 }  // namespace culprit

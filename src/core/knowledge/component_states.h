@@ -17,6 +17,9 @@ std::string_view to_string(Lifecycle state);
 struct ComponentState {
   bool in_graph = false;      // its node is there, and its process is not known to be gone
   Time node_seen = kLongAgo;  // when the node joined the graph last
+  // Ends that it had before its process began anew and has not made again are waited for until then.
+  Time awaits_ends_until = kLongAgo;
+  Time ends_back = kLongAgo;  // when the last of them was there again, or was given up
   int node_pid = 0;           // the process that the node runs in; 0 = not known
   int namesakes = 0;          // other nodes of its name
   ProcessState process = ProcessState::kRunning;  // meaningful if pid is set
@@ -25,6 +28,8 @@ struct ComponentState {
   int missed_probes = 0;        // in a row, since it answered last
   bool answers_probes = false;  // it did, since its process began
   Lifecycle lifecycle = Lifecycle::kUnknown;
+  Time changing_since = kNever;    // its lifecycle; kNever: no transition is known to be under way
+  Duration transition_patience{};  // that culprit has with each, if more than it needed before
   // Where its lifecycle should be: where it was last while no strategy was at it, or where one
   // brought it on purpose. A process that takes the place of another is brought there; the state
   // that it comes up in is nobody's intention.
@@ -32,11 +37,15 @@ struct ComponentState {
   ComingUp coming_up;              // of the last process that was seen to come up, or as told
   bool is_rising = false;          // it was seen unconfigured, and is not active yet
   Time culprit_raised = kLongAgo;  // when culprit took it through its lifecycle last
+  Time worked = kLongAgo;          // when its process was said to work last (ProcessWorked)
   bool took_place = false;  // its process took another's place, and its lifecycle was not read yet
 
   // Does it work as a process and as a node? Nothing until something is known of it.
   std::optional<bool> alive;
   bool is_missed = false;  // it was never seen, and had its time to show itself
+
+  // Its process runs, or is somewhere else, and it does nothing more.
+  bool hangs() const { return in_graph && process == ProcessState::kRunning && alive == false; }
 
   // The process to stop: the node's own, or else the one that was started or adopted.
   int known_pid() const { return node_pid != 0 ? node_pid : pid; }

@@ -101,6 +101,20 @@ void DependencyGraph::keep_ends(ComponentId component, bool is_kept) {
   note_channels_of(*node);
 }
 
+bool DependencyGraph::has_all_ends(ComponentId component) const {
+  const auto node = nodes_of_components_[component.index];
+  if (!node) return true;
+  const auto is_there = [&](const std::vector<End>& ends) {
+    return std::none_of(ends.begin(), ends.end(),
+                        [&](const End& e) { return e.node == *node && e.count == 0; });
+  };
+  const Node& here = nodes_[node->index];
+  return std::all_of(here.produces.begin(), here.produces.end(),
+                     [&](ChannelId id) { return is_there(channels_[id.index].producers); }) &&
+         std::all_of(here.consumes.begin(), here.consumes.end(),
+                     [&](ChannelId id) { return is_there(channels_[id.index].consumers); });
+}
+
 // What a node's presence decides: whether its ends count that are only remembered.
 void DependencyGraph::note_channels_of(NodeId node) {
   for (const ChannelId channel : nodes_[node.index].consumes) condensation_.note(channel.index);

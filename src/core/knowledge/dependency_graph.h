@@ -62,6 +62,9 @@ class DependencyGraph {
   // being brought up, and makes them again later.
   void keep_ends(ComponentId component, bool is_kept);
 
+  // Whether the component's node has all ends that count.
+  bool has_all_ends(ComponentId component) const;
+
   // How many nodes publish `topic`, as far as was seen and is not ignored, and whether the
   // component is among them.
   std::size_t publisher_count(const std::string& topic) const;

@@ -34,7 +34,7 @@ Monitor::Monitor(Knowledge& knowledge, Time start, Time settled)
       parameter_inputs_(knowledge.rules.parameters.size()),
       parameter_signals_(knowledge.rules.parameters.size()),
       diagnostic_inputs_(knowledge.rules.diagnostics.size()),
-      deadlines_(knowledge.rules.inputs.size() + 2) {
+      deadlines_(knowledge.rules.inputs.size() + 2 + knowledge.rules.components.size()) {
   const RuleSet& rules = knowledge.rules;
   for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
     const Input& input = rules.inputs[i];
@@ -106,6 +106,10 @@ void Monitor::advance(Time now) {
   while (const auto due = deadlines_.pop_due(now)) {
     if (*due < knowledge_.rules.inputs.size()) {
       update(InputId(*due), now);
+      continue;
+    }
+    if (*due > knowledge_.rules.inputs.size() + 1) {
+      await_ends_no_more(ComponentId(*due - knowledge_.rules.inputs.size() - 2), now);
       continue;
     }
     for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {

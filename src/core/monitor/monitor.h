@@ -33,6 +33,8 @@ class Monitor {
   // What a signal usually is: its last readings, once there are enough.
   static constexpr std::size_t kReadings = 32;
   static constexpr std::size_t kLeastReadings = 4;
+  // A node that began anew may take so long to make the publishers and subscribers it had.
+  static constexpr Duration kEndsAwaited = std::chrono::seconds(10);
   // Participants announce themselves every 3 s.
   static constexpr Duration kGrace = std::chrono::seconds(5);
 
@@ -98,6 +100,7 @@ class Monitor {
   void on(Time at, const LifecycleRead& seen);
   void on(Time at, const ProcessSeen& seen);
   void on(Time at, const Probed& seen);
+  void on(Time at, const ProcessWorked& seen);
   void on(Time at, const StatusHeard& seen);
   void on(Time at, const ParametersListed& seen);
   void on(Time, const Reply&) {}  // the executor's
@@ -127,9 +130,15 @@ class Monitor {
   Time silent_from(TopicId topic) const;
   void tell_never_seen(Time at);
 
+  void await_ends(ComponentId component, Time at);
+  void note_ends(ComponentId component, Time at);
+  void await_ends_no_more(ComponentId component, Time at);
+  void keep_ends(ComponentId component);
   void forget_process(ComponentId component, Time at);
   void note_rise(ComponentId component, Lifecycle state, Time at);
   void note_end_of_start(ComponentId component, Time at);
+  bool hangs_in_transition(ComponentId component, Time now) const;
+  void update_lifecycle_inputs(ComponentId component, Time now);
   bool does_not_answer(ComponentId component, Time now) const;
   bool is_silent(ComponentId component, Time now) const;
   void update_alive(ComponentId component, Time at, const std::string& remark);
@@ -152,7 +161,8 @@ class Monitor {
   std::vector<std::vector<InputId>> parameter_inputs_;
   std::vector<std::vector<SignalId>> parameter_signals_;
   std::vector<std::vector<InputId>> diagnostic_inputs_;
-  Deadlines deadlines_;  // by InputId; then `settled_`, then `graced_`
+  // By InputId; then `settled_`, then `graced_`; then ComponentState::awaits_ends_until by component.
+  Deadlines deadlines_;
 };
 
 }  // namespace culprit

@@ -30,6 +30,12 @@ bool is_heard_of(ComponentId component, const Knowledge& knowledge) {
   return false;
 }
 
+// A managed node makes its ends when it is configured.
+bool is_up(Lifecycle state) {
+  return state == Lifecycle::kActive || state == Lifecycle::kInactive ||
+         state == Lifecycle::kFinalized;
+}
+
 }  // namespace
 
 void Monitor::on(Time at, const NodeAppeared& seen) {
@@ -46,7 +52,38 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
   state.node_pid = seen.pid;
   state.missed_probes = 0;
   if (seen.pid != state.pid) state.process = ProcessState::kRunning;
+  if (!same_process) await_ends(*component, at);
   update_alive(*component, at, "");
+}
+
+// Who reads what it published goes on depending on it until then.
+void Monitor::await_ends(ComponentId component, Time at) {
+  knowledge_.components[component].awaits_ends_until = later(at, kEndsAwaited);
+  deadlines_.set(knowledge_.rules.inputs.size() + 2 + component.index, later(at, kEndsAwaited));
+  keep_ends(component);
+  note_ends(component, at);
+}
+
+void Monitor::note_ends(ComponentId component, Time at) {
+  const ComponentState& state = knowledge_.components[component];
+  if (state.awaits_ends_until != kLongAgo && knowledge_.graph.has_all_ends(component))
+    await_ends_no_more(component, at);
+}
+
+void Monitor::await_ends_no_more(ComponentId component, Time at) {
+  ComponentState& state = knowledge_.components[component];
+  state.awaits_ends_until = kLongAgo;
+  state.ends_back = at;
+  deadlines_.clear(knowledge_.rules.inputs.size() + 2 + component.index);
+  keep_ends(component);
+}
+
+void Monitor::keep_ends(ComponentId component) {
+  const ComponentState& state = knowledge_.components[component];
+  const bool is_wanted = state.intended_lifecycle == Lifecycle::kActive ||
+                         state.intended_lifecycle == Lifecycle::kInactive;
+  knowledge_.graph.keep_ends(
+      component, (is_wanted && !is_up(state.lifecycle)) || state.awaits_ends_until != kLongAgo);
 }
 
 void Monitor::on(Time at, const NodeVanished& seen) {
@@ -64,6 +101,7 @@ void Monitor::on(Time, const NamesakesSeen& seen) {
 
 void Monitor::on(Time at, const EndpointAppeared& seen) {
   knowledge_.graph.endpoint_appeared(seen.node, seen.kind, seen.name);
+  if (const auto component = knowledge_.graph.component_of(seen.node)) note_ends(*component, at);
   if (seen.kind != EndpointKind::kPublisher) return;
   const auto topic = topic_ids_.find(seen.name);
   if (topic != topic_ids_.end()) see(topic->second, at);
@@ -86,19 +124,29 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
   ComponentState& state = knowledge_.components[seen.component];
   state.lifecycle = seen.state;
   const bool is_primary = seen.state != Lifecycle::kUnknown && seen.state != Lifecycle::kTransition;
+  if (seen.state != Lifecycle::kTransition) {
+    state.changing_since = kNever;
+  } else if (state.changing_since == kNever) {
+    state.changing_since = at;
+  }
   if (is_primary && !state.took_place && knowledge_.states.reservation(seen.component) == nullptr)
     knowledge_.intend_lifecycle(seen.component, seen.state, at);
   if (seen.state != Lifecycle::kUnknown) state.took_place = false;
   note_rise(seen.component, seen.state, at);
-  // A managed node makes its ends when it is configured.
-  const bool is_wanted = state.intended_lifecycle == Lifecycle::kActive ||
-                         state.intended_lifecycle == Lifecycle::kInactive;
-  const bool is_up = seen.state == Lifecycle::kActive || seen.state == Lifecycle::kInactive ||
-                     seen.state == Lifecycle::kFinalized;
-  knowledge_.graph.keep_ends(seen.component, is_wanted && !is_up);
-  for (const InputId id : component_inputs_[seen.component.index]) {
-    if (knowledge_.rules[id].kind != Kind::kLifecycle) continue;
-    knowledge_.signals.set(id, is_primary ? Slot::of(to_string(seen.state)) : Slot());
+  if (is_up(seen.state) && state.awaits_ends_until != kLongAgo)
+    await_ends_no_more(seen.component, at);
+  keep_ends(seen.component);
+  update_lifecycle_inputs(seen.component, at);
+}
+
+// During a transition it is in no state, and that is unknown until the transition takes too long.
+void Monitor::update_lifecycle_inputs(ComponentId component, Time now) {
+  const Lifecycle state = knowledge_.components[component].lifecycle;
+  const bool is_unknown = state == Lifecycle::kUnknown ||
+                          (state == Lifecycle::kTransition && !hangs_in_transition(component, now));
+  for (const InputId id : component_inputs_[component.index]) {
+    if (knowledge_.rules[id].kind == Kind::kLifecycle)
+      knowledge_.signals.set(id, is_unknown ? Slot() : Slot::of(to_string(state)));
   }
 }
 
@@ -153,9 +201,17 @@ void Monitor::on(Time at, const Probed& seen) {
   ComponentState& state = knowledge_.components[seen.component];
   state.missed_probes = seen.answered ? 0 : state.missed_probes + 1;
   state.answers_probes |= seen.answered;
+  const bool is_changing = hangs_in_transition(seen.component, at);
+  if (is_changing) update_lifecycle_inputs(seen.component, at);
   update_alive(seen.component, at,
-               state.known_pid() == 0 ? "it does not answer"
-                                      : "its process runs, but it does not answer and is silent");
+               is_changing ? "a transition of its lifecycle hangs, and it does not answer"
+               : state.known_pid() == 0 ? "it does not answer"
+                                        : "its process runs, but it does not answer and is silent");
+}
+
+void Monitor::on(Time at, const ProcessWorked& seen) {
+  ComponentState& state = knowledge_.components[seen.component];
+  if (seen.pid == state.pid && state.process == ProcessState::kRunning) state.worked = at;
 }
 
 void Monitor::on(Time at, const LinkTrouble& seen) { knowledge_.tell(at, Trouble{seen.text}); }
@@ -167,6 +223,7 @@ void Monitor::forget_process(ComponentId component, Time at) {
   state.node_pid = 0;
   state.is_rising = false;
   state.answers_probes = false;
+  state.transition_patience = {};
   if (state.lifecycle != Lifecycle::kUnknown) state.took_place = true;
   on(at, LifecycleRead{component, Lifecycle::kUnknown});
   for (std::size_t p = 0; p < knowledge_.rules.parameters.size(); ++p) {
@@ -176,13 +233,23 @@ void Monitor::forget_process(ComponentId component, Time at) {
   }
 }
 
+bool Monitor::hangs_in_transition(ComponentId component, Time now) const {
+  const ComponentState& state = knowledge_.components[component];
+  if (state.changing_since == kNever) return false;
+  const Duration longest = std::max(longest_transition(state.coming_up), state.transition_patience);
+  return now >= later(heard_since(state.changing_since), longest);
+}
+
+// A node may have one thread, which answers nothing while it changes its lifecycle.
 // Of a node whose process is known to run, only one that answered before can cease to; and while
 // what it publishes comes, or pauses as it did when it was well, it is at work.
 bool Monitor::does_not_answer(ComponentId component, Time now) const {
   const ComponentState& state = knowledge_.components[component];
   if (state.missed_probes < kMissedProbes) return false;
+  if (state.changing_since != kNever && !hangs_in_transition(component, now)) return false;
   if (state.known_pid() == 0) return true;
   if (!state.answers_probes) return false;
+  if (state.changing_since != kNever) return true;
   return is_heard_of(component, knowledge_) ? is_silent(component, now)
                                             : state.missed_probes >= kMissedAlone;
 }

@@ -416,6 +416,66 @@ TEST(Monitor, ALocalNodeThatWasHeardOnceIsGivenAsLongAsOneThatNeverWas) {
   EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, false);
 }
 
+TEST(Monitor, EndsOfANodeThatBeganAnewAreAwaitedForAWhile) {
+  Watched watched(
+      "COMPONENT c NODE /c\nCOMPONENT d NODE /d\nRULE R\nPOLICIES ERROR\n"
+      "TRIGGER !alive(c) || !alive(d)\nSTRATEGY s 50 10\nADAPTATION c activate 1\n");
+  const auto depends = [&] { return !watched.knowledge.graph.upstream(ComponentId(0)).empty(); };
+  const auto& c = watched.knowledge.components[ComponentId(0)];
+  const EndpointAppeared end{"/c", EndpointKind::kSubscriber, "/from_d"};
+  watched.observe(1s, NodeAppeared{"/d", 6});
+  watched.observe(1s, EndpointAppeared{"/d", EndpointKind::kPublisher, "/from_d"});
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, end);
+  const auto begins_anew = [&](Duration at, int pid) {
+    watched.observe(at, EndpointVanished{"/c", EndpointKind::kSubscriber, "/from_d"});
+    watched.observe(at, NodeVanished{"/c"});
+    watched.observe(at, NodeAppeared{"/c", pid});
+  };
+  begins_anew(2s, 8);
+  EXPECT_TRUE(depends()) << "it opens its device first";
+  EXPECT_GT(c.awaits_ends_until, Time(2s));
+  watched.observe(5s, end);
+  EXPECT_TRUE(depends());
+  EXPECT_EQ(c.awaits_ends_until, kLongAgo);
+  EXPECT_EQ(c.ends_back, Time(5s));
+  begins_anew(6s, 9);
+  watched.monitor.advance(Time(15900ms));
+  EXPECT_TRUE(depends());
+  watched.monitor.advance(Time(16s));
+  EXPECT_FALSE(depends()) << "it does not have that end any more";
+}
+
+TEST(Monitor, AManagedNodeHangsWhoseTransitionTakesMuchLongerThanEver) {
+  Watched watched(rule("!alive(c) || lifecycle(c) != \"active\""));
+  const auto& c = watched.knowledge.components[ComponentId(0)];
+  watched.knowledge.components[ComponentId(0)].coming_up.rising = 1s;
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  watched.observe(1s, Probed{ComponentId(0), true});
+  watched.observe(2s, LifecycleRead{ComponentId(0), Lifecycle::kTransition});
+  for (Duration at = 2s; at < 6s; at += 400ms) watched.observe(at, Probed{ComponentId(0), false});
+  EXPECT_EQ(c.alive, true) << "it has one thread, and that one is at work";
+  watched.observe(6s, Probed{ComponentId(0), false});
+  EXPECT_EQ(c.alive, false);
+  EXPECT_TRUE(c.hangs());
+}
+
+TEST(Monitor, ATransitionThatTakesTooLongIsAStateAlsoWhereTheNodeAnswers) {
+  Watched watched(rule("lifecycle(c) != \"active\""));
+  const auto fires = [&] { return watched.knowledge.signals[InputId(0)]; };
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, LifecycleRead{ComponentId(0), Lifecycle::kTransition});
+  watched.observe(10s, Probed{ComponentId(0), true});
+  EXPECT_FALSE(fires().known);
+  watched.observe(11s, Probed{ComponentId(0), true});
+  EXPECT_TRUE(fires().known);
+  watched.observe(11s, LifecycleRead{ComponentId(0), Lifecycle::kTransition});
+  EXPECT_TRUE(fires().known) << "it is read again";
+  watched.observe(12s, LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  EXPECT_TRUE(fires().known);
+}
+
 TEST(Monitor, EndsStayWhileANodeIsBroughtUp) {
   Watched watched(
       "COMPONENT c NODE /c\nCOMPONENT d NODE /d\nRULE R\nPOLICIES ERROR\n"

@@ -45,7 +45,8 @@ inline constexpr const char* kUnknownMode = "unknown";
 // Ends the component's process: politely, then harder, until it is proven gone. Done when it is
 // gone, also if it was.
 struct StopProcess {
-  int pid = 0;  // which one is meant; 0 = the one that was started or adopted last
+  int pid = 0;         // which one is meant; 0 = the one that was started or adopted last
+  bool hangs = false;  // it is not expected to act on a polite signal
 };
 
 // Starts the component's LAUNCH command. Done when the process runs; that the node joins the graph

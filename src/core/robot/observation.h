@@ -108,6 +108,13 @@ struct ProcessSeen {
   std::string remark;  // how it ended ("killed by signal 9", "exit code 1"); empty while it lives
 };
 
+// A process whose node is still awaited did something since it was started, or since this was told
+// last: it used the processor, or its memory grew.
+struct ProcessWorked {
+  ComponentId component;
+  int pid = 0;
+};
+
 // A component whose process is not known (another machine, a container) was asked whether it is
 // there.
 struct Probed {
@@ -176,7 +183,7 @@ struct Observation {
   std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived,
                SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply,
                LinkTrouble, Order, NamesakesSeen, HearingLost, HearingRegained, Overslept,
-               StatusHeard, ParametersListed>
+               StatusHeard, ParametersListed, ProcessWorked>
       what;
 };
 

@@ -71,6 +71,8 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     is_known = renumber(lifecycle->component, components_);
   } else if (auto* process = std::get_if<ProcessSeen>(&out.what)) {
     is_known = renumber(process->component, components_);
+  } else if (auto* worked = std::get_if<ProcessWorked>(&out.what)) {
+    is_known = renumber(worked->component, components_);
   } else if (auto* probed = std::get_if<Probed>(&out.what)) {
     is_known = renumber(probed->component, components_);
   } else if (std::holds_alternative<Reply>(out.what) || std::holds_alternative<Order>(out.what)) {

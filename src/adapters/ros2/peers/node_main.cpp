@@ -1,6 +1,8 @@
 // A managed node in a process of its own, for tests to watch, steer and kill:
 //
-//     ros2_peer_node <domain> <full name>...
+//     ros2_peer_node <domain> [--hangs-if FILE] <full name>...
+//
+// If there is FILE when it is activated, it takes the file away and does nothing more.
 //
 // Each has the parameters gain (0..10), count (not negative), label and serial (read-only), the
 // service ~/trigger, ~/value at 10 Hz while it is active, and one status on /diagnostics each
@@ -10,10 +12,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "ros2/lifecycle_node.h"
@@ -29,7 +33,8 @@ using namespace std::chrono_literals;
 
 class PeerNode {
  public:
-  explicit PeerNode(Executor& executor) : executor_(executor) {}
+  PeerNode(Executor& executor, std::string hangs_if)
+      : executor_(executor), hangs_if_(std::move(hangs_if)) {}
 
   Expected<void> open(Context& context, NodeName name) {
     auto managed = LifecycleNode::create(context, std::move(name),
@@ -97,6 +102,7 @@ class PeerNode {
     return TransitionResult::kSuccess;
   }
   TransitionResult activate() {
+    if (std::filesystem::remove(hangs_if_)) std::this_thread::sleep_for(1h);
     tick_.emplace(executor_, 100ms, [this] {
       value_->publish({managed_->node().parameters().get<double>("gain") * ++ticks_});
     });
@@ -124,6 +130,7 @@ class PeerNode {
   }
 
   Executor& executor_;
+  const std::filesystem::path hangs_if_;
   int triggered_ = 0;
   int ticks_ = 0;
   std::unique_ptr<LifecycleNode> managed_;
@@ -143,7 +150,7 @@ int fail(const std::string& why) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) return fail("usage: ros2_peer_node <domain> <full name>...");
+  if (argc < 3) return fail("usage: ros2_peer_node <domain> [--hangs-if FILE] <full name>...");
   Executor executor;
   if (auto stops = executor.stop_on({SIGINT, SIGTERM}); !stops) return fail(stops.error());
   ParticipantOptions options;
@@ -154,10 +161,12 @@ int main(int argc, char** argv) {
   auto context = Context::create(executor, options);
   if (!context) return fail(context.error());
   std::vector<std::unique_ptr<PeerNode>> peers;
-  for (int i = 2; i < argc; ++i) {
+  const bool may_hang = std::string_view(argv[2]) == "--hangs-if" && argc > 4;
+  const std::string hangs_if = may_hang ? argv[3] : "";
+  for (int i = may_hang ? 4 : 2; i < argc; ++i) {
     auto name = parse_node_name(argv[i]);
     if (!name) return fail(name.error());
-    peers.push_back(std::make_unique<PeerNode>(executor));
+    peers.push_back(std::make_unique<PeerNode>(executor, hangs_if));
     if (auto opened = peers.back()->open(**context, *name); !opened) return fail(opened.error());
   }
   if (peers.size() > 1) {
