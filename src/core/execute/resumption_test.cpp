@@ -47,6 +47,17 @@ TEST(Resumption, BeginsWhenTheRobotHadTheTimeToShowItself) {
   EXPECT_EQ(executor.next_deadline(), Time(12s));
 }
 
+// Nobody saw what happened meanwhile, so nothing is learned of it; its failure is what it is for.
+TEST(Resumption, IsAnAttemptAtItsFailureOfWhichNothingIsLearned) {
+  Left left;
+  Executor executor(left.knowledge);
+  executor.resume(left.tuned(), Time(10s), Time(12s));
+  const auto& attempt = left.knowledge.states[left.rules[left.tune].rule].attempt;
+  ASSERT_TRUE(attempt);
+  EXPECT_FALSE(attempt->has_no_failure);
+  EXPECT_TRUE(attempt->is_ambiguous);
+}
+
 TEST(Resumption, BringsBackAllThatWasChangedIfTheStrategyDoesNotHelp) {
   Left left;
   const std::vector<Undo> undo = undo_of(left.tuned(), left.rules);

@@ -213,9 +213,19 @@ TEST(Storm, AnotherComputerThatDoesNotAnswerIsNotFiveDeadNodes) {
   for (std::size_t i = 0; i < 15; ++i) robot.tell(Probed{ComponentId(i % 5), false});
   robot["a"].fault = "redeploy";
   robot.run_for(20s);
-  EXPECT_EQ(robot.count("5 of 5 components are on another computer and do not answer"), 1u)
+  EXPECT_EQ(robot.count(": 5 of 5 components are on another computer and do not answer"), 1u)
       << transcript(robot);
   EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+}
+
+TEST(Storm, OneOfAnotherComputerThatDoesNotAnswerIsNone) {
+  TestRobot robot = five(true);
+  robot.tell(NodeAppeared{"/a", 0});
+  robot.tell(ProcessSeen{ComponentId(0), ProcessState::kRunning, 0, ""});
+  for (std::size_t i = 0; i < 3; ++i) robot.tell(Probed{ComponentId(0), false});
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("a is lost"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("a person must look"), 0u) << transcript(robot);
 }
 
 TEST(Storm, OneCauseUpstreamOfAllIsNone) {

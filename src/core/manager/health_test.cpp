@@ -138,6 +138,20 @@ TEST(ProvenHealth, AFailureIsLearnedAsLateAsASuccess) {
   EXPECT_EQ(belief(robot, "redeploy").alpha, 10) << transcript(robot);
 }
 
+TEST(ProvenHealth, WhatWaitsForItsProofIsForgottenWithWhatWasLearned) {
+  const RuleId camera(0), fusion(1);
+  for (const auto& [forgotten, alpha] :
+       {std::pair(Forget{fusion}, 6), {Forget{camera}, 5}, {Forget{}, 5}}) {
+    TestRobot robot = robot_that_is_well(20s);
+    robot["camera"].fault = "restart";
+    robot.run_for(5s);
+    robot.order({7, "Ann", "", forgotten});
+    robot.run_for(25s);
+    EXPECT_EQ(belief(robot, "restart"), (Belief{static_cast<double>(alpha), 5}))
+        << transcript(robot);
+  }
+}
+
 // The next process of culprit, which knows what the one before told, and nothing else.
 void crash_and_go_on(TestRobot& robot, Duration healthy) {
   Manager::Options options = healthy_after(healthy);

@@ -30,6 +30,29 @@ Scene chain() {
   return scene;
 }
 
+TEST(Reach, CountsWhoDependsOnAComponent) {
+  Scene scene = chain();
+  const Reach reach(*scene, {scene.component("a"), scene.component("b"), scene.component("c")});
+  EXPECT_EQ(reach.dependents(reach.place_of(scene.component("a"))), 2u);
+  EXPECT_EQ(reach.dependents(reach.place_of(scene.component("b"))), 1u);
+  EXPECT_EQ(reach.dependents(reach.place_of(scene.component("c"))), 0u);
+}
+
+// However many read it: what is ill of them speaks for the way, not against it.
+TEST(Ways, AManyReadTopicCarriesFailuresWhereAllOfItsReadersAreIll) {
+  std::string rules = failure_of("producer", "P") + failure_of("aside", "X");
+  for (char c = 'a'; c < 'k'; ++c) rules += failure_of({c}, "R" + std::string(1, c));
+  Scene scene(rules);
+  scene->states.state(scene.rule("X")).trigger = Slot::of(false);  // it is seen to be well
+  scene.fail("P", -1h);
+  for (char c = 'a'; c < 'k'; ++c) {
+    scene.link("producer", {c});
+    scene.fail("R" + std::string(1, c), -1h);
+  }
+  EXPECT_LT(responsibility(scene, "Ra"), 0.5);
+  EXPECT_GT(responsibility(scene, "P"), 0.5);
+}
+
 TEST(RootProbability, IsTheNoisyOrsPosterior) {
   EXPECT_DOUBLE_EQ(root_probability(0.05, 0), 1) << "nothing else explains it";
   EXPECT_DOUBLE_EQ(root_probability(0.05, 0.95), 0.05 / (0.05 + 0.95 * 0.95));

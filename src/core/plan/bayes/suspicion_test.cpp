@@ -16,5 +16,18 @@ TEST(Suspicion, ARuleIsSuspiciousIfOneOfItsComponentsIsDown) {
   EXPECT_TRUE(is_suspicious(scene.rule("A"), *scene));
 }
 
+TEST(Suspicion, ARuleHearsByWhicheverOfItsInputsIsReadFirst) {
+  Scene scene(
+      "COMPONENT a NODE /a\nRULE A\nPOLICIES ERROR\n"
+      "TRIGGER age(/x) > 1s && age(/y) > 1s\nSTRATEGY s 50 10\nADAPTATION a restart 2\n");
+  const Time now(std::chrono::seconds(90));
+  const auto inputs = scene.rules()[scene.rule("A")].inputs;
+  ASSERT_EQ(inputs.size(), 2u);
+  for (const InputId id : inputs) scene->signals.set_read_at(id, later(now, std::chrono::hours(1)));
+  EXPECT_FALSE(is_heard_by(now, scene.rule("A"), *scene));
+  scene->signals.set_read_at(inputs[1], now - std::chrono::minutes(1));
+  EXPECT_TRUE(is_heard_by(now, scene.rule("A"), *scene));
+}
+
 }  // namespace
 }  // namespace culprit::plan
