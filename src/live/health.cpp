@@ -35,7 +35,7 @@ ros2::Health of_rule(RuleId id, const Knowledge& knowledge) {
       health.message = "nothing helped; a person must look";
       break;
   }
-  health.values.emplace_back("attempts", std::to_string(state.attempts));
+  health.values.emplace_back("attempts", std::to_string(state.search.attempts));
   return health;
 }
 

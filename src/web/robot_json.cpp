@@ -57,8 +57,9 @@ Json rule_to_json(RuleId id, const Knowledge& knowledge, Time start) {
     return json;
   }
   json["since"] = time_to_json(state.failing_since, start);
-  json["attempts"] = state.attempts;
-  if (state.retry_at > knowledge.now) json["retry_at"] = time_to_json(state.retry_at, start);
+  json["attempts"] = state.search.attempts;
+  if (state.search.retry_at > knowledge.now)
+    json["retry_at"] = time_to_json(state.search.retry_at, start);
   if (state.settling) {
     json["settling"] = {{"with", knowledge.rules[state.settling->with].name},
                         {"until", time_to_json(state.settling->until, start)}};

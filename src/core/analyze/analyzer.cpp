@@ -28,14 +28,15 @@ Duration longest_detection(const RuleSet& rules) {
   return longest;
 }
 
-Analyzer::Analyzer(Knowledge& knowledge)
+Analyzer::Analyzer(const Knowledge& knowledge, Writes writes)
     : knowledge_(knowledge),
+      write_(writes),
       deadlines_(knowledge.rules.rules.size()),
-      couplings_(knowledge),
-      outcomes_(knowledge) {}
+      couplings_(knowledge, {writes.states, writes.couplings}),
+      outcomes_(knowledge, {writes.beliefs, writes.outcomes, writes.events}) {}
 
 void Analyzer::advance(Time now) {
-  for (const RuleId id : knowledge_.signals.take_touched()) look_at(id, now);
+  for (const RuleId id : write_.signals.take_touched()) look_at(id, now);
   while (const auto due = deadlines_.pop_due(now)) look_at(RuleId(*due), now);
   couplings_.advance(now);
   outcomes_.advance(now);
@@ -46,7 +47,7 @@ void Analyzer::restart(Time now) {
   outcomes_.restart();
   for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
     const RuleId id(r);
-    RuleState& state = knowledge_.states.state(id);
+    RuleState& state = write_.states.state(id);
     if (state.trigger_since != kLongAgo) state.trigger_since = now;
     state.history.assign(state.history.size(), false);
     state.true_in_history = 0;
@@ -63,7 +64,7 @@ std::vector<RuleId> Analyzer::plannable(Time now) const {
   for (const RuleId id : knowledge_.states.active()) {
     const RuleState& state = knowledge_.states[id];
     const bool wants_help = state.phase == RulePhase::kFailing && is_true(state.trigger);
-    if (wants_help && state.retry_at <= now && !state.is_advised) ids.push_back(id);
+    if (wants_help && state.search.retry_at <= now && !state.is_advised) ids.push_back(id);
   }
   return ids;
 }
@@ -74,56 +75,57 @@ void Analyzer::remember(const Past& past) {
 
 void Analyzer::remember(const Event& event) {
   outcomes_.remember(event);
-  const auto left_off = [&](RuleId id) -> std::optional<Search>& {
-    return knowledge_.states.state(id).left_off;
+  const auto left_off = [&](RuleId id) -> std::optional<LeftOff>& {
+    return write_.states.state(id).left_off;
   };
   const auto begin_anew = [](Search& search) { search.tried.assign(search.tried.size(), false); };
   if (const auto* detected = std::get_if<FailureDetected>(&event.what)) {
     remember_detected(detected->rule, event.at);
   } else if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) {
-    if (auto& search = left_off(resolved->rule); search && resolved->strategy) {
-      ++search->attempts;
-      search->tried[knowledge_.states.place_of(*resolved->strategy)] = true;
+    if (auto& left = left_off(resolved->rule); left && resolved->strategy) {
+      ++left->search.attempts;
+      left->search.tried[knowledge_.states.place_of(*resolved->strategy)] = true;
     }
     remember_gone(resolved->rule, event.at, knowledge_.rules[resolved->rule].policies.cooldown);
   } else if (const auto* lost = std::get_if<FailureLost>(&event.what)) {
     remember_gone(lost->rule, event.at, Duration::zero());
   } else if (const auto* failed = std::get_if<StrategyFailed>(&event.what)) {
     const RuleId rule = knowledge_.rules[failed->strategy].rule;
-    if (auto& search = left_off(rule)) {
-      ++search->attempts;
-      search->tried[knowledge_.states.place_of(failed->strategy)] = true;
+    if (auto& left = left_off(rule)) {
+      ++left->search.attempts;
+      left->search.tried[knowledge_.states.place_of(failed->strategy)] = true;
     }
   } else if (const auto* spent = std::get_if<RoundSpent>(&event.what)) {
-    if (auto& search = left_off(spent->rule)) {
-      begin_anew(*search);
-      search->retry_at = later(event.at, pause_after(++search->round));
+    if (auto& left = left_off(spent->rule)) {
+      begin_anew(left->search);
+      left->search.retry_at = later(event.at, pause_after(++left->search.round));
     }
   } else if (const auto* last = std::get_if<LastResortReached>(&event.what)) {
-    if (auto& search = left_off(last->rule)) {
-      begin_anew(*search);
-      search->is_at_last_resort = true;
+    if (auto& left = left_off(last->rule)) {
+      begin_anew(left->search);
+      left->search.is_at_last_resort = true;
     }
   } else if (const auto* exhausted = std::get_if<RuleExhausted>(&event.what)) {
-    if (auto& search = left_off(exhausted->rule)) search->is_exhausted = true;
+    if (auto& left = left_off(exhausted->rule)) left->search.is_exhausted = true;
   }
 }
 
 void Analyzer::remember_detected(RuleId id, Time at) {
-  auto& search = knowledge_.states.state(id).left_off;
-  if (search && search->gone && is_proven(*search->gone, at)) search.reset();
-  if (search) {
+  auto& left = write_.states.state(id).left_off;
+  if (left && left->gone && is_proven(*left->gone, at)) left.reset();
+  if (left) {
     // Without having gone it is what a process that took the search over detected anew.
-    if (search->gone) ++search->times;
-    search->gone.reset();
+    if (left->gone) ++left->search.times;
+    left->gone.reset();
     return;
   }
-  search.emplace().since = at;
-  search->tried.assign(knowledge_.rules[id].strategies.size(), false);
+  left.emplace().since = at;
+  left->search.times = 1;
+  left->search.tried.assign(knowledge_.rules[id].strategies.size(), false);
 }
 
 void Analyzer::remember_gone(RuleId id, Time at, Duration quiet) {
-  RuleState& state = knowledge_.states.state(id);
+  RuleState& state = write_.states.state(id);
   if (state.left_off) state.left_off->gone = at;
   state.quiet_until = later(at, quiet);
 }
@@ -150,7 +152,7 @@ void Analyzer::look_at(RuleId id, Time now) {
 }
 
 void Analyzer::evaluate_trigger(RuleId id, Time now) {
-  RuleState& state = knowledge_.states.state(id);
+  RuleState& state = write_.states.state(id);
   const Slot value = evaluate(knowledge_.rules[id].trigger, knowledge_.signals.slots());
   if (!same(value, state.trigger, Type::kBool) || state.trigger_since == kLongAgo) {
     state.trigger = value;
@@ -163,14 +165,14 @@ void Analyzer::evaluate_trigger(RuleId id, Time now) {
 
 // What an earlier process left off at went away while nobody looked on.
 void Analyzer::forget_left_off(RuleId id, Time now) {
-  Search& left_off = *knowledge_.states.state(id).left_off;
+  LeftOff& left_off = *write_.states.state(id).left_off;
   left_off.gone = now;
-  knowledge_.tell(
+  write_.events.tell(
       now, FailureResolved{id, FailureResolved::How::kWithoutStrategy, {}, now - left_off.since});
 }
 
 void Analyzer::sample_history(RuleId id, Time now) {
-  RuleState& state = knowledge_.states.state(id);
+  RuleState& state = write_.states.state(id);
   if (state.sampled != kLongAgo && now < later(state.sampled, knowledge_.rules.cycle)) return;
   state.sampled = now;
   state.newest = (state.newest + 1) % state.history.size();
@@ -199,35 +201,35 @@ bool Analyzer::is_gone(RuleId id, Time now) const {
 }
 
 void Analyzer::detect(RuleId id, Time now) {
-  RuleState& state = knowledge_.states.state(id);
+  RuleState& state = write_.states.state(id);
   const bool recurs = state.gone_since != kLongAgo && now < later(state.gone_since, kRecurs);
   // A rule with ON_CHANGE acts on each edge.
-  const bool is_same = state.times > 0 && !is_proven(state.gone_since, now) &&
+  const bool is_same = state.search.times > 0 && !is_proven(state.gone_since, now) &&
                        !knowledge_.rules[id].policies.on_change;
   if (state.left_off && state.left_off->gone) {
     if (is_proven(*state.left_off->gone, now)) {
       state.left_off.reset();
     } else {
-      ++state.left_off->times;
+      ++state.left_off->search.times;
     }
   }
-  const bool is_said_to_be_exhausted = is_same && state.is_exhausted;
+  const bool is_said_to_be_exhausted = is_same && state.search.is_exhausted;
   state.recurring_since = recurs ? state.first_detected() : kNever;
   state.armed = false;
   state.is_advised = false;
   state.settling.reset();
   if (is_same) {
-    knowledge_.states.go_on_searching(id, now);
+    write_.states.go_on_searching(id, now);
   } else {
-    knowledge_.states.begin_search(id, now);
+    write_.states.begin_search(id, now);
   }
-  knowledge_.states.enter(id, RulePhase::kFailing);
-  knowledge_.tell(now, FailureDetected{id});
+  write_.states.enter(id, RulePhase::kFailing);
+  write_.events.tell(now, FailureDetected{id});
   outcomes_.detected(id, now);
-  if (state.times == kFlaps) knowledge_.tell(now, FailureFlaps{id, state.times});
+  if (state.search.times == kFlaps) write_.events.tell(now, FailureFlaps{id, state.search.times});
   if (is_said_to_be_exhausted) {
-    knowledge_.states.enter(id, RulePhase::kExhausted);
-  } else if (state.is_exhausted) {
+    write_.states.enter(id, RulePhase::kExhausted);
+  } else if (state.search.is_exhausted) {
     exhaust(id, now);
   } else {
     exhaust_if_spent(id, now);
@@ -240,12 +242,12 @@ void Analyzer::watch_failing(RuleId id, Time now) {
     resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
   } else if (!state.trigger.known && now >= later(state.trigger_since, kLostAfter)) {
     leave(id, now);
-    knowledge_.tell(now, FailureLost{id});
+    write_.events.tell(now, FailureLost{id});
   }
 }
 
 void Analyzer::judge(RuleId id, Time now) {
-  RuleState& state = knowledge_.states.state(id);
+  RuleState& state = write_.states.state(id);
   Attempt& attempt = *state.attempt;
   switch (attempt.stage) {
     case Attempt::Stage::kAdapting:
@@ -270,7 +272,7 @@ void Analyzer::judge(RuleId id, Time now) {
     }
   }
   if (attempt.has_no_failure) {
-    knowledge_.tell(now, OrderCarriedOut{attempt.strategy});
+    write_.events.tell(now, OrderCarriedOut{attempt.strategy});
     end_attempt(id, now);
     return look_at(id, now);
   }
@@ -304,9 +306,9 @@ bool Analyzer::holds_up_more_critical(StrategyId strategy) const {
 }
 
 void Analyzer::end_attempt(RuleId id, Time now) {
-  const Attempt attempt = *std::exchange(knowledge_.states.state(id).attempt, std::nullopt);
+  const Attempt attempt = *std::exchange(write_.states.state(id).attempt, std::nullopt);
   couplings_.ended(attempt, now);
-  knowledge_.states.enter(id, attempt.has_no_failure ? RulePhase::kQuiet : RulePhase::kFailing);
+  write_.states.enter(id, attempt.has_no_failure ? RulePhase::kQuiet : RulePhase::kFailing);
 }
 
 void Analyzer::abandon(RuleId id, Time now) {
@@ -315,7 +317,7 @@ void Analyzer::abandon(RuleId id, Time now) {
 }
 
 void Analyzer::make_way(RuleId id, StrategyId other, Time now) {
-  Attempt& attempt = *knowledge_.states.state(id).attempt;
+  Attempt& attempt = *write_.states.state(id).attempt;
   const RuleSet& rules = knowledge_.rules;
   if (attempt.has_no_failure || undoes(rules[other], rules[attempt.strategy]))
     return abandon(id, now);
@@ -339,7 +341,7 @@ bool Analyzer::went_away_before(const Attempt& attempt) const {
 }
 
 void Analyzer::succeed(RuleId id, Time now) {
-  RuleState& state = knowledge_.states.state(id);
+  RuleState& state = write_.states.state(id);
   const Attempt attempt = *std::exchange(state.attempt, std::nullopt);
   // Whoever has its components meanwhile is as likely.
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
@@ -352,17 +354,17 @@ void Analyzer::succeed(RuleId id, Time now) {
     resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
   }
   // If the failure comes back, this one was tried.
-  ++state.attempts;
-  knowledge_.states.set_tried(attempt.strategy, true);
+  ++state.search.attempts;
+  write_.states.set_tried(attempt.strategy, true);
   if (caused) outcomes_.judged(attempt, true, now);
 }
 
 void Analyzer::fail(RuleId id, Time now) {
-  RuleState& state = knowledge_.states.state(id);
+  RuleState& state = write_.states.state(id);
   Attempt& attempt = *state.attempt;
   if (!attempt.has_no_failure) {
-    knowledge_.states.set_tried(attempt.strategy, true);
-    ++state.attempts;
+    write_.states.set_tried(attempt.strategy, true);
+    ++state.search.attempts;
     if (!went_away_before(attempt)) outcomes_.judged(attempt, false, now);
   }
   const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
@@ -370,69 +372,72 @@ void Analyzer::fail(RuleId id, Time now) {
                                  ? "the failure is still there"
                                  : "nobody can see whether the failure is still there";
   attempt.stage = Attempt::Stage::kUndoing;
-  knowledge_.tell(now, StrategyFailed{attempt.strategy, reason});
+  write_.events.tell(now, StrategyFailed{attempt.strategy, reason});
 }
 
 void Analyzer::resolve(RuleId id, FailureResolved how, Time now) {
-  RuleState& state = knowledge_.states.state(id);
+  RuleState& state = write_.states.state(id);
   how.reaction = now - state.failing_since;
   state.quiet_until = later(now, knowledge_.rules[id].policies.cooldown);
   leave(id, now);
-  if (!how.strategy && state.attempts == state.attempts_before) couplings_.cleared(id, now);
-  knowledge_.tell(now, std::move(how));
+  if (!how.strategy && state.search.attempts == state.search.attempts_before)
+    couplings_.cleared(id, now);
+  write_.events.tell(now, std::move(how));
 }
 
 void Analyzer::leave(RuleId id, Time now) {
-  knowledge_.states.state(id).gone_since = now;
-  knowledge_.states.enter(id, RulePhase::kQuiet);
+  write_.states.state(id).gone_since = now;
+  write_.states.enter(id, RulePhase::kQuiet);
 }
 
 void Analyzer::round_is_spent(RuleId id, Time now) {
-  RuleState& state = knowledge_.states.state(id);
-  ++state.round;
-  std::fill(state.tried.begin(), state.tried.end(), false);
-  state.retry_at = later(now, pause_after(state.round));
-  if (state.is_at_last_resort) {
+  RuleState& state = write_.states.state(id);
+  ++state.search.round;
+  std::fill(state.search.tried.begin(), state.search.tried.end(), false);
+  state.search.retry_at = later(now, pause_after(state.search.round));
+  if (state.search.is_at_last_resort) {
     give_up(id, now);
   } else {
     exhaust_if_spent(id, now);
   }
-  const bool goes_on = state.phase == RulePhase::kFailing && !state.is_at_last_resort;
-  if (goes_on) knowledge_.tell(now, RoundSpent{id, state.retry_at});
+  const bool goes_on = state.phase == RulePhase::kFailing && !state.search.is_at_last_resort;
+  if (goes_on) write_.events.tell(now, RoundSpent{id, state.search.retry_at});
   schedule(id, now);
 }
 
 void Analyzer::exhaust_if_spent(RuleId id, Time now) {
-  RuleState& state = knowledge_.states.state(id);
+  RuleState& state = write_.states.state(id);
   const int limit = knowledge_.rules[id].policies.attempts;
   // The last resorts end with their round.
-  if (state.is_at_last_resort || (state.attempts < limit && state.round < limit)) return;
+  if (state.search.is_at_last_resort ||
+      (state.search.attempts < limit && state.search.round < limit))
+    return;
   give_up(id, now);
 }
 
 void Analyzer::give_up(RuleId id, Time now) {
-  const bool had_last_resorts = knowledge_.states[id].is_at_last_resort;
+  const bool had_last_resorts = knowledge_.states[id].search.is_at_last_resort;
   turn_to_last_resort(id, now);
-  if (had_last_resorts || !knowledge_.states[id].is_at_last_resort) exhaust(id, now);
+  if (had_last_resorts || !knowledge_.states[id].search.is_at_last_resort) exhaust(id, now);
 }
 
 void Analyzer::turn_to_last_resort(RuleId id, Time now) {
-  RuleState& state = knowledge_.states.state(id);
+  RuleState& state = write_.states.state(id);
   const auto& strategies = knowledge_.rules[id].strategies;
   const bool has_last_resort = std::any_of(strategies.begin(), strategies.end(), [&](StrategyId s) {
     return knowledge_.rules[s].is_last_resort;
   });
-  if (!has_last_resort || state.is_at_last_resort) return;
-  state.is_at_last_resort = true;
-  state.retry_at = now;
-  std::fill(state.tried.begin(), state.tried.end(), false);
-  knowledge_.tell(now, LastResortReached{id});
+  if (!has_last_resort || state.search.is_at_last_resort) return;
+  state.search.is_at_last_resort = true;
+  state.search.retry_at = now;
+  std::fill(state.search.tried.begin(), state.search.tried.end(), false);
+  write_.events.tell(now, LastResortReached{id});
 }
 
 void Analyzer::exhaust(RuleId id, Time now) {
-  knowledge_.states.state(id).is_exhausted = true;
-  knowledge_.states.enter(id, RulePhase::kExhausted);
-  knowledge_.tell(now, RuleExhausted{id});
+  write_.states.state(id).search.is_exhausted = true;
+  write_.states.enter(id, RulePhase::kExhausted);
+  write_.events.tell(now, RuleExhausted{id});
 }
 
 // When the rule must be looked at next if nothing that it reads changes.
@@ -451,7 +456,7 @@ void Analyzer::schedule(RuleId id, Time now) {
     want(later(state.trigger_since, policies.hold_for));
     want(state.quiet_until);
   }
-  if (state.phase == RulePhase::kFailing) want(state.retry_at);
+  if (state.phase == RulePhase::kFailing) want(state.search.retry_at);
   if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
     want(state.attempt->deadline);
     // Until nobody waits any longer; a more critical failure may come before.

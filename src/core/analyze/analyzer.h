@@ -53,8 +53,18 @@ class Analyzer {
   // A failure that came so often, each time before it was proven gone, flaps.
   static constexpr int kFlaps = 3;
 
+  // What it writes; all else it only reads.
+  struct Writes {
+    RuleStates& states;
+    SignalStore& signals;  // takes the rules that were touched
+    Beliefs& beliefs;
+    Couplings& couplings;
+    PendingOutcomes& outcomes;
+    EventLog& events;
+  };
+
   // `knowledge` must outlive the analyzer.
-  explicit Analyzer(Knowledge& knowledge);
+  Analyzer(const Knowledge& knowledge, Writes writes);
 
   // What earlier processes tried. Before the first advance().
   void remember(const Past& past);
@@ -126,7 +136,8 @@ class Analyzer {
   }
   void schedule(RuleId id, Time now);
 
-  Knowledge& knowledge_;
+  const Knowledge& knowledge_;
+  Writes write_;
   Deadlines deadlines_;  // by RuleId
   CouplingWatch couplings_;
   OutcomeWatch outcomes_;

@@ -33,7 +33,9 @@ struct Watched {
 
   RuleSet rules;
   Knowledge knowledge{rules};
-  Analyzer analyzer{knowledge};
+  Analyzer analyzer{knowledge,
+                    {knowledge.states, knowledge.signals, knowledge.beliefs, knowledge.couplings,
+                     knowledge.outcomes, knowledge.events}};
   Time now{100s};
 };
 

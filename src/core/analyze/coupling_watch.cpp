@@ -13,7 +13,7 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
   for (const Clearing& clearing : clearings_) {
     if (is_proven && clearing.at >= attempt.first_change && clearing.rule != cause &&
         is_only_cause(strategy, clearing.rule, attempt.first_change))
-      knowledge_.couplings.cleared(cause, clearing.rule);
+      write_.couplings.cleared(cause, clearing.rule);
   }
   settle(knowledge_.rules[strategy].components, cause, attempt.effective, {}, now);
   for (const RuleId effect : knowledge_.states.active()) {
@@ -62,7 +62,7 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
   const Time begun = knowledge_.states[cause].first_detected();
   const auto criticality = knowledge_.rules[cause].policies.criticality;
   for (const RuleId effect : knowledge_.states.active()) {
-    RuleState& state = knowledge_.states.state(effect);
+    const RuleState& state = knowledge_.states[effect];
     if (effect == cause || state.attempt) continue;
     const bool may_be_on_its_way =
         on_its_way && state.first_detected() <=
@@ -78,7 +78,7 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
     const Duration latency = std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle);
     const Time since = later(now, delay(cause, effect));
     if (!state.settling || state.settling->until < later(since, latency))
-      state.settling = {cause, since, later(since, latency)};
+      write_.states.expect_to_settle(effect, {cause, since, later(since, latency)});
   }
 }
 
@@ -108,7 +108,7 @@ void CouplingWatch::cleared(RuleId rule, Time now) {
   std::erase_if(questions_, [&](const Question& q) {
     if (q.effect != rule) return false;
     if (is_only_cause(q.strategy, rule, q.since))
-      knowledge_.couplings.cleared(knowledge_.rules[q.strategy].rule, rule);
+      write_.couplings.cleared(knowledge_.rules[q.strategy].rule, rule);
     return true;
   });
 }
@@ -131,7 +131,7 @@ void CouplingWatch::advance(Time now) {
       return false;
     }
     if (is_only_cause(q.strategy, q.effect, q.since))
-      knowledge_.couplings.stayed(knowledge_.rules[q.strategy].rule, q.effect);
+      write_.couplings.stayed(knowledge_.rules[q.strategy].rule, q.effect);
     return true;
   });
 }

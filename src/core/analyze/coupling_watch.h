@@ -30,8 +30,15 @@ class CouplingWatch {
   // How late an effect usually comes; for one from the time before: how long it may take to go.
   static constexpr Cycles kUsualDelay{10};
 
+  // What it writes; all else it only reads.
+  struct Writes {
+    RuleStates& states;  // what is expected to settle
+    Couplings& couplings;
+  };
+
   // `knowledge` must outlive the watch.
-  explicit CouplingWatch(Knowledge& knowledge) : knowledge_(knowledge) {}
+  CouplingWatch(const Knowledge& knowledge, Writes writes)
+      : knowledge_(knowledge), write_(writes) {}
 
   // `attempt` resolved its failure, which nothing else can have done (`is_proven`), or it may have.
   void resolved(const Attempt& attempt, bool is_proven, Time now);
@@ -79,7 +86,8 @@ class CouplingWatch {
   bool is_only_cause(StrategyId strategy, RuleId effect, Time since) const;
   void forget_what_is_settled(Time now);
 
-  Knowledge& knowledge_;
+  const Knowledge& knowledge_;
+  Writes write_;
   std::vector<Question> questions_;
   std::vector<Change> changes_;      // that are over
   std::vector<Clearing> clearings_;  // of failures without a strategy of their own

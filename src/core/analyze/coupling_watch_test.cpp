@@ -38,7 +38,8 @@ struct Two {
     Attempt attempt;
     attempt.strategy = rules[kCause].strategies.front();
     attempt.first_change = attempt.effective = kCame + 20s;
-    CouplingWatch(knowledge).resolved(attempt, true, kResolved);
+    CouplingWatch(knowledge, {knowledge.states, knowledge.couplings})
+        .resolved(attempt, true, kResolved);
     const auto& settling = knowledge.states[kEffect].settling;
     return settling ? settling->since - kResolved : -1s;
   }
@@ -49,7 +50,7 @@ struct Two {
     Attempt attempt;
     attempt.strategy = rules[kCause].strategies.front();
     attempt.first_change = attempt.effective = kCame + 1s;
-    CouplingWatch watch(knowledge);
+    CouplingWatch watch(knowledge, {knowledge.states, knowledge.couplings});
     watch.ended(attempt, kCame + 3s);
     watch.cleared(kCause, kCame + 4s);
     const auto& settling = knowledge.states[kEffect].settling;
@@ -97,7 +98,7 @@ TEST(CouplingWatch, TakesWhatCameSoonAfterItsCauseForOnItsWayWhateverHasChangedS
 TEST(CouplingWatch, TakesAnAttemptForAnEchoWhileTheEffectMayStillGoWithItsCause) {
   Two two("", 2s);
   two.read_seldom();
-  CouplingWatch watch(two.knowledge);
+  CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
   watch.ended(two.attempt(kCause, Two::kCame + 1s), Two::kCame + 3s);
   EXPECT_TRUE(watch.is_echo(two.attempt(kEffect, Two::kCame + 5900ms)));
   EXPECT_FALSE(watch.is_echo(two.attempt(kEffect, Two::kCame + 6s)));
@@ -108,7 +109,7 @@ TEST(CouplingWatch, TakesNothingForAnEchoThatWasSeenOnlyAfterTheChange) {
   for (const Duration came : {4900ms, 5000ms}) {
     Two two("", came);
     two.read_seldom();
-    CouplingWatch watch(two.knowledge);
+    CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
     watch.ended(two.attempt(kCause, Two::kCame - 1s), Two::kCame + 5s);
     EXPECT_EQ(watch.is_echo(two.attempt(kEffect, Two::kCame + 6s)), came < 5s);
   }
@@ -118,7 +119,7 @@ TEST(CouplingWatch, TakesNothingForAnEchoThatWasSeenOnlyAfterTheChange) {
 TEST(CouplingWatch, WaitsLongerForAnEffectThatWasItselfRestartedMeanwhile) {
   Two two("", 2s);
   two.read_seldom();
-  CouplingWatch watch(two.knowledge);
+  CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
   watch.ended(two.attempt(kCause, Two::kCame + 1s), Two::kCame + 3s);
   watch.ended(two.attempt(kEffect, Two::kCame + 5s), Two::kCame + 7s);
   EXPECT_TRUE(watch.is_echo(two.attempt(kEffect, Two::kCame + 8900ms)));
@@ -132,7 +133,7 @@ TEST(CouplingWatch, TakesWhatCameToLightWithTheRepairForNoLateEffect) {
   for (const char* level : {"WARNING", "ERROR"}) {
     Two two("", 4s, level);
     two.read_seldom();
-    CouplingWatch watch(two.knowledge);
+    CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
     watch.ended(two.attempt(kCause, Two::kCame + 2s), Two::kCame + 5s);
     const bool is_lesser = std::string(level) == "WARNING";
     EXPECT_EQ(watch.is_echo(two.attempt(kEffect, Two::kCame + 8500ms)), !is_lesser);

@@ -18,8 +18,8 @@ void OutcomeWatch::judged(const Attempt& attempt, bool has_helped, Time now) {
                          attempt.is_ambiguous || changed_nothing};
   if (is_at_once || decided <= now) look_at(outcome);
   if (outcome.is_void || outcome.due <= now) return count(outcome, now);
-  knowledge_.outcomes.open.push_back(outcome);
-  knowledge_.tell(now, OutcomePending{attempt.strategy, has_helped, outcome.due});
+  write_.outcomes.open.push_back(outcome);
+  write_.events.tell(now, OutcomePending{attempt.strategy, has_helped, outcome.due});
 }
 
 // Not when the verdict comes: one that helped is judged earlier than one that did not.
@@ -29,7 +29,7 @@ void OutcomeWatch::look_at(PendingOutcome& outcome) {
 }
 
 void OutcomeWatch::detected(RuleId rule, Time now) {
-  for (PendingOutcome& outcome : knowledge_.outcomes.open) {
+  for (PendingOutcome& outcome : write_.outcomes.open) {
     const RuleId own = knowledge_.rules[outcome.strategy].rule;
     outcome.is_back |= own == rule;
     if (own == rule || outcome.judged == now) continue;
@@ -40,11 +40,11 @@ void OutcomeWatch::detected(RuleId rule, Time now) {
 }
 
 void OutcomeWatch::restart() {
-  for (PendingOutcome& outcome : knowledge_.outcomes.open) outcome.is_void = true;
+  for (PendingOutcome& outcome : write_.outcomes.open) outcome.is_void = true;
 }
 
 void OutcomeWatch::remember(const Event& event) {
-  auto& open = knowledge_.outcomes.open;
+  auto& open = write_.outcomes.open;
   if (const auto* pending = std::get_if<OutcomePending>(&event.what)) {
     open.push_back({pending->strategy, pending->has_helped, event.at, pending->due});
   } else if (const auto* counted = std::get_if<OutcomeCounted>(&event.what)) {
@@ -55,12 +55,13 @@ void OutcomeWatch::remember(const Event& event) {
   } else if (const auto* detected = std::get_if<FailureDetected>(&event.what)) {
     this->detected(detected->rule, event.at);
   } else if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
-    if (!chosen->dry_run) void_verdicts_beside(knowledge_, chosen->strategy, event.at);
+    if (!chosen->dry_run)
+      void_verdicts_beside(knowledge_, chosen->strategy, event.at, write_.outcomes);
   }
 }
 
 void OutcomeWatch::advance(Time now) {
-  auto& open = knowledge_.outcomes.open;
+  auto& open = write_.outcomes.open;
   for (PendingOutcome& outcome : open) {
     if (!outcome.was_looked_at && knowledge_.outcomes.deadline(outcome) <= now) look_at(outcome);
     if (outcome.due <= now) count(outcome, now);
@@ -71,13 +72,13 @@ void OutcomeWatch::advance(Time now) {
 void OutcomeWatch::count(const PendingOutcome& outcome, Time now) {
   const RuleId rule = knowledge_.rules[outcome.strategy].rule;
   if (outcome.is_void || !knowledge_.states[rule].trigger.known) {
-    knowledge_.tell(now, OutcomeCounted{outcome.strategy, OutcomeCounted::As::kNothing});
+    write_.events.tell(now, OutcomeCounted{outcome.strategy, OutcomeCounted::As::kNothing});
   } else if (outcome.has_helped && !outcome.is_back) {
-    knowledge_.beliefs.helped(outcome.strategy);
-    knowledge_.tell(now, OutcomeCounted{outcome.strategy, OutcomeCounted::As::kSuccess});
+    write_.beliefs.helped(outcome.strategy);
+    write_.events.tell(now, OutcomeCounted{outcome.strategy, OutcomeCounted::As::kSuccess});
   } else {
-    knowledge_.beliefs.did_not_help(outcome.strategy);
-    knowledge_.tell(now, OutcomeCounted{outcome.strategy, OutcomeCounted::As::kFailure});
+    write_.beliefs.did_not_help(outcome.strategy);
+    write_.events.tell(now, OutcomeCounted{outcome.strategy, OutcomeCounted::As::kFailure});
   }
 }
 

@@ -17,8 +17,15 @@ namespace culprit {
 
 class OutcomeWatch {
  public:
+  // What it writes; all else it only reads.
+  struct Writes {
+    Beliefs& beliefs;
+    PendingOutcomes& outcomes;
+    EventLog& events;
+  };
+
   // `knowledge` must outlive the watch.
-  explicit OutcomeWatch(Knowledge& knowledge) : knowledge_(knowledge) {}
+  OutcomeWatch(const Knowledge& knowledge, Writes writes) : knowledge_(knowledge), write_(writes) {}
 
   // The verdict on `attempt`, which began to change things before its failure went away by itself.
   void judged(const Attempt& attempt, bool has_helped, Time now);
@@ -36,7 +43,8 @@ class OutcomeWatch {
   void look_at(PendingOutcome& outcome);
   void count(const PendingOutcome& outcome, Time now);
 
-  Knowledge& knowledge_;
+  const Knowledge& knowledge_;
+  Writes write_;
 };
 
 }  // namespace culprit

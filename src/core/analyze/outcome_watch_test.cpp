@@ -49,7 +49,9 @@ struct Judged {
     knowledge.states.enter(rule, RulePhase::kFailing);
     watch.detected(rule, at);
   }
-  void adapt(RuleId rule, Time at) { void_verdicts_beside(knowledge, strategy(rule), at); }
+  void adapt(RuleId rule, Time at) {
+    void_verdicts_beside(knowledge, strategy(rule), at, knowledge.outcomes);
+  }
   // Is it learned from once its time has come?
   bool counts() {
     watch.advance(kDeadline);
@@ -70,7 +72,7 @@ struct Judged {
   static constexpr Time kDue{115s};
   RuleSet rules;
   Knowledge knowledge{rules};
-  OutcomeWatch watch{knowledge};
+  OutcomeWatch watch{knowledge, {knowledge.beliefs, knowledge.outcomes, knowledge.events}};
   bool helps;
 };
 
@@ -100,7 +102,8 @@ TEST_P(OutcomeWatchOf, WhatIsAdaptedUpstreamBeforeTheDeadlineMayHaveDoneIt) {
     j.knowledge.states.state(kEffect).attempt.emplace().strategy = j.strategy(kEffect);
     j.knowledge.states.enter(kEffect, RulePhase::kAttempting);
     j.knowledge.states.state(kCause).attempt.emplace().strategy = j.strategy(kCause);
-    mark_ambiguous(j.knowledge, kCause);
+    Attempts attempts(j.knowledge.states);
+    mark_ambiguous(j.knowledge, kCause, attempts, j.knowledge.outcomes);
     Attempt attempt = *j.knowledge.states[kEffect].attempt;
     attempt.first_change = attempt.effective = Judged::kBegun;
     attempt.deadline = Judged::kDeadline;

@@ -1,6 +1,7 @@
 #include "execute/executor.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "knowledge/ambiguity.h"
@@ -11,33 +12,28 @@ using execute::Goal;
 using execute::Pursuit;
 
 void Executor::begin(StrategyId strategy, Time now) {
+  [[maybe_unused]] const auto& components = knowledge_.rules[strategy].components;
+  assert(std::none_of(components.begin(), components.end(),
+                      [&](ComponentId c) { return knowledge_.states.reservation(c) != nullptr; }));
+  write_.attempts.begin(strategy, now);
+  add_run(strategy);
+}
+
+Executor::Run& Executor::add_run(StrategyId strategy) {
   const RuleId rule = knowledge_.rules[strategy].rule;
-  RuleState& state = knowledge_.states.state(rule);
-  state.attempt.emplace();
-  state.attempt->strategy = strategy;
-  state.attempt->chosen = now;
-  state.attempt->has_no_failure = state.phase == RulePhase::kQuiet;
-  knowledge_.states.enter(rule, RulePhase::kAttempting);
   std::erase_if(runs_, [&](const Run& old) { return old.rule == rule; });
-  Run run;
+  Run& run = runs_.emplace_back();
   run.rule = rule;
   run.strategy = strategy;
-  runs_.push_back(std::move(run));
+  return run;
 }
 
 void Executor::resume(Interrupted interrupted, Time now, Time from) {
-  const StrategyId strategy = interrupted.strategy;
-  const RuleId rule = knowledge_.rules[strategy].rule;
-  knowledge_.states.begin_search(rule, now);
-  begin(strategy, now);
-  Attempt& attempt = *knowledge_.states.state(rule).attempt;
-  attempt.first_change = now;
-  attempt.is_ambiguous = true;  // nobody saw what happened meanwhile
-  attempt.has_no_failure = false;
+  write_.attempts.resume(interrupted.strategy, now);
+  Run& run = add_run(interrupted.strategy);
   // An answer to a request of the earlier process must not be taken for one to ours.
   for (const Interrupted::Request& request : interrupted.requests)
     last_command_ = std::max(last_command_, request.command.id.number);
-  Run& run = runs_.back();
   run.interrupted = std::move(interrupted);
   run.from = from;
 }
@@ -47,20 +43,18 @@ bool Executor::take_up(Run& run, Time now) {
   if (!run.interrupted) return true;
   if (now < run.from) return false;
   const Interrupted interrupted = *std::exchange(run.interrupted, std::nullopt);
-  knowledge_.tell(now, StrategyResumed{run.strategy});
+  write_.events.tell(now, StrategyResumed{run.strategy});
   run.undo = execute::undo_of(interrupted, knowledge_.rules);
   if (interrupted.has_failed) {
-    knowledge_.states.set_tried(run.strategy, true);
-    enter(run, Attempt::Stage::kUndoing);
+    write_.attempts.undo(run.strategy);
+    write_.signals.touch(run.rule);
     return true;
   }
   execute::Resumption rest = execute::resumption_of(interrupted, knowledge_);
   run.adaptation = rest.adaptation;
   run.goals = std::move(rest.goals);
   if (rest.obstacle.empty()) return true;
-  attempt_of(run)->obstacle = rest.obstacle;
-  knowledge_.tell(now, AdaptationFailed{run.strategy, run.adaptation, rest.obstacle});
-  knowledge_.signals.touch(run.rule);
+  obstruct(run, rest.obstacle, rest.obstacle, now);
   return false;
 }
 
@@ -105,7 +99,7 @@ void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
       if (auto request = run.pursuit->advance(knowledge_, now)) {
         run.pending = {++last_command_};
         if (std::holds_alternative<StopProcess>(*request))
-          knowledge_.components[run.pursuit->component()].culprit_raised = kLongAgo;
+          write_.components[run.pursuit->component()].culprit_raised = kLongAgo;
         note_transition(*run.pursuit, *request, now);
         commands.push_back({run.pending, run.pursuit->component(), *request,
                             run.pursuit->timeout(*request), purpose_of(run)});
@@ -140,9 +134,7 @@ bool Executor::next_goal(Run& run, Time now) {
     if (run.goals.empty()) {
       auto goals = execute::goals_of(adaptation, knowledge_);
       if (!goals) {
-        attempt_of(run)->obstacle = goals.error();
-        knowledge_.tell(now, AdaptationFailed{run.strategy, run.adaptation, goals.error()});
-        knowledge_.signals.touch(run.rule);
+        obstruct(run, goals.error(), goals.error(), now);
         return false;
       }
       run.goals = std::move(*goals);
@@ -152,13 +144,13 @@ bool Executor::next_goal(Run& run, Time now) {
       run.pursuit.emplace(run.goals[run.goal], adaptation.component, now);
       return true;
     }
-    knowledge_.tell(now, AdaptationDone{run.strategy, run.adaptation, run.remark});
+    write_.events.tell(now, AdaptationDone{run.strategy, run.adaptation, run.remark});
     run.goals.clear();
     run.remark.clear();
     ++run.adaptation;
   }
-  attempt_of(run)->effective = now;
-  enter(run, Attempt::Stage::kWaiting);
+  write_.attempts.took_effect(run.strategy, now);
+  write_.signals.touch(run.rule);
   return false;
 }
 
@@ -183,10 +175,8 @@ void Executor::finish_goal(Run& run, Time now) {
   } else {
     if (pursuit.met_rival()) note_rival(run, now);
     if (launches && pursuit.took_too_long()) note_too_long(pursuit, now);
-    attempt_of(run)->obstacle =
-        knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark();
-    knowledge_.tell(now, AdaptationFailed{run.strategy, run.adaptation, pursuit.remark()});
-    knowledge_.signals.touch(run.rule);
+    obstruct(run, knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark(),
+             pursuit.remark(), now);
   }
   run.pursuit.reset();
 }
@@ -197,7 +187,8 @@ bool Executor::next_undo(Run& run, Time now) {
     return knowledge_.components[undo.component].process == ProcessState::kGone;
   });
   if (run.undo.empty()) {
-    enter(run, Attempt::Stage::kOver);
+    write_.attempts.undone(run.strategy);
+    write_.signals.touch(run.rule);
     return false;
   }
   run.pursuit.emplace(run.undo.back().goal, run.undo.back().component, now);
@@ -210,35 +201,34 @@ void Executor::finish_undo(Run& run, Time now) {
   if (reached) note_lifecycle(pursuit, now);
   // A mode that is back by itself was set back, and that is remembered.
   if (std::holds_alternative<execute::ModeGoal>(pursuit.goal()) && pursuit.has_changed_anything())
-    knowledge_.rivals.forget(pursuit.component());
+    write_.rivals.forget(pursuit.component());
   // What came back by itself was not undone.
   if (!reached || pursuit.has_changed_anything()) {
     const std::string what =
         knowledge_.rules[pursuit.component()].name + ": " + describe(pursuit.goal());
-    knowledge_.tell(now,
-                    Undone{run.strategy, reached ? what : what + ": " + pursuit.remark(), reached});
+    write_.events.tell(
+        now, Undone{run.strategy, reached ? what : what + ": " + pursuit.remark(), reached});
   }
   run.undo.pop_back();
   run.pursuit.reset();
 }
 
 void Executor::note_change(Run& run, Time now) {
-  Attempt& attempt = *attempt_of(run);
-  if (run.is_undoing || attempt.first_change != kNever) return;
-  attempt.first_change = now;
-  mark_ambiguous(knowledge_, run.rule);
+  if (run.is_undoing || attempt_of(run)->first_change != kNever) return;
+  write_.attempts.change_begins(run.strategy, now);
+  mark_ambiguous(knowledge_, run.rule, write_.attempts, write_.outcomes);
 }
 
 // The component's lifecycle is now where it was brought on purpose.
 void Executor::note_lifecycle(const Pursuit& pursuit, Time now) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
   if (lifecycle != nullptr)
-    knowledge_.intend_lifecycle(pursuit.component(), lifecycle->target, now);
+    write_.components.intend_lifecycle(pursuit.component(), lifecycle->target, now, write_.events);
 }
 
 // How long it took, and who brought it up.
 void Executor::note_coming_up(const Pursuit& pursuit, Time now) {
-  ComponentState& state = knowledge_.components[pursuit.component()];
+  ComponentState& state = write_.components[pursuit.component()];
   ComingUp how = state.coming_up;
   if (std::holds_alternative<execute::PresentGoal>(pursuit.goal()) &&
       pursuit.has_changed_anything()) {
@@ -249,7 +239,7 @@ void Executor::note_coming_up(const Pursuit& pursuit, Time now) {
     how.rising = now - state.node_seen;
     if (is_ours) state.culprit_raised = now;
   }
-  knowledge_.note_coming_up(pursuit.component(), how, now);
+  write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
 }
 
 // What takes too long once is given more time when it is started the next time.
@@ -261,13 +251,13 @@ void Executor::note_too_long(const Pursuit& pursuit, Time now) {
   } else if (std::holds_alternative<execute::LifecycleGoal>(pursuit.goal())) {
     how.rising = std::max(how.rising, now - state.node_seen);
   }
-  knowledge_.note_coming_up(pursuit.component(), how, now);
+  write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
 }
 
 // A node may tell nothing of a transition before it is over.
 void Executor::note_transition(const Pursuit& pursuit, const Pursuit::Request& request, Time now) {
   if (!std::holds_alternative<ChangeLifecycle>(request)) return;
-  ComponentState& state = knowledge_.components[pursuit.component()];
+  ComponentState& state = write_.components[pursuit.component()];
   if (state.changing_since == kNever) state.changing_since = now;
   state.transition_patience = patience(pursuit.goal());
 }
@@ -281,25 +271,27 @@ void Executor::note_mode(const Pursuit& pursuit, Time now) {
   if (mode == nullptr || before == nullptr || !pursuit.has_changed_anything() ||
       !pursuit.remark().empty())
     return;
-  knowledge_.rivals.changed(pursuit.component(), *before, mode->mode,
-                            knowledge_.began(pursuit.component()), now);
+  write_.rivals.changed(pursuit.component(), *before, mode->mode,
+                        knowledge_.began(pursuit.component()), now);
 }
 
 void Executor::note_rival(const Run& run, Time now) {
   const ComponentId system = run.pursuit->component();
-  knowledge_.rivals.leave_alone(system, now);
-  knowledge_.tell(now, RivalSeen{system});
-  attempt_of(run)->is_ambiguous = true;  // that nothing was tried proves nothing
+  write_.rivals.leave_alone(system, now);
+  write_.events.tell(now, RivalSeen{system});
+  write_.attempts.make_ambiguous(run.strategy);  // that nothing was tried proves nothing
 }
 
-Attempt* Executor::attempt_of(const Run& run) {
-  auto& attempt = knowledge_.states.state(run.rule).attempt;
+const Attempt* Executor::attempt_of(const Run& run) const {
+  const auto& attempt = knowledge_.states[run.rule].attempt;
   return attempt && attempt->strategy == run.strategy ? &*attempt : nullptr;
 }
 
-void Executor::enter(Run& run, Attempt::Stage stage) {
-  attempt_of(run)->stage = stage;
-  knowledge_.signals.touch(run.rule);
+// The adaptation could not be carried out; the analysis takes it from here.
+void Executor::obstruct(const Run& run, std::string obstacle, const std::string& reason, Time now) {
+  write_.attempts.obstruct(run.strategy, std::move(obstacle));
+  write_.events.tell(now, AdaptationFailed{run.strategy, run.adaptation, reason});
+  write_.signals.touch(run.rule);
 }
 
 Time Executor::next_deadline() const {

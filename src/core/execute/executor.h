@@ -11,14 +11,25 @@
 
 #include "execute/pursuit.h"
 #include "execute/resumption.h"
+#include "knowledge/attempts.h"
 #include "knowledge/knowledge.h"
 
 namespace culprit {
 
 class Executor {
  public:
+  // What it writes; all else it only reads.
+  struct Writes {
+    Attempts attempts;
+    ComponentStates& components;  // what it brought about: lifecycles, how they came up
+    SignalStore& signals;         // rules whose attempt came to another stage are to be looked at
+    PendingOutcomes& outcomes;    // those that a change voids
+    Rivals& rivals;
+    EventLog& events;
+  };
+
   // `knowledge` must outlive the executor.
-  explicit Executor(Knowledge& knowledge) : knowledge_(knowledge) {}
+  Executor(const Knowledge& knowledge, Writes writes) : knowledge_(knowledge), write_(writes) {}
 
   // The rule's attempt begins. @pre none of the rule is under way, none has its components
   void begin(StrategyId strategy, Time now);
@@ -57,6 +68,7 @@ class Executor {
     Time from = kLongAgo;
   };
 
+  Run& add_run(StrategyId strategy);
   void advance(Run& run, Time now, std::vector<Command>& commands);
   bool take_up(Run& run, Time now);
   Purpose purpose_of(const Run& run) const;
@@ -72,10 +84,11 @@ class Executor {
   void note_too_long(const execute::Pursuit& pursuit, Time now);
   void note_transition(const execute::Pursuit& pursuit, const execute::Pursuit::Request& request,
                        Time now);
-  Attempt* attempt_of(const Run& run);
-  void enter(Run& run, Attempt::Stage stage);
+  const Attempt* attempt_of(const Run& run) const;
+  void obstruct(const Run& run, std::string obstacle, const std::string& reason, Time now);
 
-  Knowledge& knowledge_;
+  const Knowledge& knowledge_;
+  Writes write_;
   std::vector<Run> runs_;
   std::uint64_t last_command_ = 0;
 };

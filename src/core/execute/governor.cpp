@@ -44,12 +44,13 @@ Governor::Options Governor::Options::recommended() {
   return options;
 }
 
-Governor::Governor(Knowledge& knowledge, Options options, Time start)
+Governor::Governor(const Knowledge& knowledge, Writes writes, Options options, Time start)
     : knowledge_(knowledge),
+      write_(writes),
       options_(options),
       start_(start),
       limits_(knowledge, options.limits),
-      storm_(knowledge, options.storm),
+      storm_(knowledge, writes.events, options.storm),
       refused_(knowledge.rules.strategies.size(), kNever),
       told_(knowledge.rules.strategies.size()) {}
 
@@ -172,14 +173,14 @@ Governor::Question* Governor::question_of(StrategyId strategy) {
 // ---- plans
 
 void Governor::begin_planning() {
-  std::fill(knowledge_.withheld.begin(), knowledge_.withheld.end(), Knowledge::Withheld{});
+  std::fill(write_.withheld.begin(), write_.withheld.end(), Knowledge::Withheld{});
 }
 
 bool Governor::withholds(StrategyId strategy, Time now) {
   const auto held = restraint_on(strategy, now);
   if (!held) return false;
-  knowledge_.withheld[strategy.index] = {held->reason, held->until,
-                                         held->restraint == Restraint::kRestarts};
+  write_.withheld[strategy.index] = {held->reason, held->until,
+                                     held->restraint == Restraint::kRestarts};
   tell(strategy, *held, now);
   return true;
 }
@@ -253,11 +254,11 @@ bool Governor::awaits_approval(const ApprovalAsked& choice, Time now) {
   // The question about another strategy of the same failure is no longer the question.
   std::erase_if(questions_, [&](const Question& question) {
     const bool is_old = knowledge_.rules[question.strategy].rule == rule;
-    if (is_old) knowledge_.tell(now, ApprovalLapsed{question.strategy});
+    if (is_old) write_.events.tell(now, ApprovalLapsed{question.strategy});
     return is_old;
   });
   questions_.push_back({choice.strategy, knowledge_.states[rule].failing_since, false});
-  knowledge_.tell(now, choice);
+  write_.events.tell(now, choice);
   return true;
 }
 
@@ -266,7 +267,7 @@ void Governor::tell(StrategyId strategy, const Held& held, Time now) {
   const Time since = knowledge_.states[knowledge_.rules[strategy].rule].failing_since;
   if (told.failing_since == since && told.restraint == held.restraint) return;
   told = {since, held.restraint};
-  knowledge_.tell(now, ActionHeldBack{strategy, held.restraint, held.reason, held.until});
+  write_.events.tell(now, ActionHeldBack{strategy, held.restraint, held.reason, held.until});
 }
 
 void Governor::began(StrategyId strategy, Time now) {
@@ -286,12 +287,12 @@ void Governor::advance(Time now) {
   storm_.advance(now);
   std::erase_if(silences_, [&](const ActiveSilence& silence) {
     if (silence.until > now) return false;
-    knowledge_.tell(now, SilenceEnded{silence.what});
+    write_.events.tell(now, SilenceEnded{silence.what});
     return true;
   });
   std::erase_if(questions_, [&](const Question& question) {
     if (is_open(question)) return false;
-    knowledge_.tell(now, ApprovalLapsed{question.strategy});
+    write_.events.tell(now, ApprovalLapsed{question.strategy});
     return true;
   });
 }

@@ -47,8 +47,14 @@ class Governor {
   };
   using Held = Limits::Limit;
 
+  // What it writes; all else it only reads.
+  struct Writes {
+    Knowledge::WithheldList& withheld;
+    EventLog& events;
+  };
+
   // `knowledge` must outlive the governor.
-  Governor(Knowledge& knowledge, Options options, Time start);
+  Governor(const Knowledge& knowledge, Writes writes, Options options, Time start);
 
   // What earlier processes spent, and what people told them. Before the first advance().
   void remember(const Past& past);
@@ -111,7 +117,8 @@ class Governor {
   const Question* question_of(StrategyId strategy) const;
   bool is_open(const Question& question) const;
 
-  Knowledge& knowledge_;
+  const Knowledge& knowledge_;
+  Writes write_;
   Options options_;
   Time start_;
   Limits limits_;

@@ -1,6 +1,7 @@
 #include "execute/pursuit.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace culprit::execute {
@@ -121,6 +122,7 @@ bool Pursuit::is_lost(const Knowledge& knowledge) const {
 }
 
 std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Time now) {
+  assert(is_under_way());
   if (is_lost(knowledge)) {
     const ComponentState& state = knowledge.components[component_];
     took_too_long_ = state.hangs() && has_changed_anything();

@@ -24,6 +24,12 @@ struct Left {
   StrategyId again{1};
   ComponentId c{0};
 
+  Executor executor() {
+    return {knowledge,
+            {Attempts(knowledge.states), knowledge.components, knowledge.signals,
+             knowledge.outcomes, knowledge.rivals, knowledge.events}};
+  }
+
   // A request that went out for an adaptation of `strategy`, and what it found before.
   Interrupted::Request request(StrategyId strategy, std::uint32_t adaptation,
                                decltype(Command::what) what, decltype(Purpose::before) before,
@@ -42,7 +48,7 @@ struct Left {
 
 TEST(Resumption, BeginsWhenTheRobotHadTheTimeToShowItself) {
   Left left;
-  Executor executor(left.knowledge);
+  Executor executor = left.executor();
   executor.resume(left.tuned(), Time(10s), Time(12s));
   EXPECT_EQ(executor.next_deadline(), Time(12s));
 }
@@ -50,7 +56,7 @@ TEST(Resumption, BeginsWhenTheRobotHadTheTimeToShowItself) {
 // Nobody saw what happened meanwhile, so nothing is learned of it; its failure is what it is for.
 TEST(Resumption, IsAnAttemptAtItsFailureOfWhichNothingIsLearned) {
   Left left;
-  Executor executor(left.knowledge);
+  Executor executor = left.executor();
   executor.resume(left.tuned(), Time(10s), Time(12s));
   const auto& attempt = left.knowledge.states[left.rules[left.tune].rule].attempt;
   ASSERT_TRUE(attempt);
@@ -105,7 +111,7 @@ int changes_of(Executor& executor, Time now) {
 
 TEST(Resumption, GoesOnUndoingAStrategyThatHadFailed) {
   Left left;
-  Executor executor(left.knowledge);
+  Executor executor = left.executor();
   Interrupted tuned = left.tuned();
   tuned.has_failed = true;
   tuned.adaptations_done = 2;

@@ -5,20 +5,23 @@
 
 namespace culprit {
 
-StormWatch::StormWatch(Knowledge& knowledge, Options options)
-    : knowledge_(knowledge), options_(options), is_dead_(knowledge.rules.components.size()) {}
+StormWatch::StormWatch(const Knowledge& knowledge, EventLog& events, Options options)
+    : knowledge_(knowledge),
+      events_(events),
+      options_(options),
+      is_dead_(knowledge.rules.components.size()) {}
 
 void StormWatch::advance(Time now) {
   if (options_.share <= 0) return;
   note(knowledge_.events);
   if (!std::exchange(has_news_, false) && !storm_) return;
   if (auto seen = look()) {
-    if (!storm_) knowledge_.tell(now, StormBegan{seen->restraint, seen->reason});
+    if (!storm_) events_.tell(now, StormBegan{seen->restraint, seen->reason});
     storm_ = std::move(seen);
     over_ = later(now, options_.calm);
   } else if (storm_ && over_ <= now) {
     storm_.reset();
-    knowledge_.tell(now, StormEnded{});
+    events_.tell(now, StormEnded{});
   }
 }
 

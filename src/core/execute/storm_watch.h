@@ -29,7 +29,7 @@ class StormWatch {
   };
 
   // `knowledge` must outlive the watch.
-  StormWatch(Knowledge& knowledge, Options options);
+  StormWatch(const Knowledge& knowledge, EventLog& events, Options options);
 
   // Tells StormBegan and StormEnded. Looks only when something has happened in this step or since
   // the last look: what makes a storm comes with events.
@@ -44,7 +44,8 @@ class StormWatch {
   std::size_t ill_roots() const;
   bool is_much(std::size_t components) const;
 
-  Knowledge& knowledge_;
+  const Knowledge& knowledge_;
+  EventLog& events_;
   Options options_;
   std::optional<Storm> storm_;
   Time over_ = kNever;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,6 +37,7 @@ class Adjacency {
 
   static void erase_one(std::vector<Index>& list, Index what) {
     const auto found = std::find(list.begin(), list.end(), what);
+    assert(found != list.end());
     *found = list.back();
     list.pop_back();
   }

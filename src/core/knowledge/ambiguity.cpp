@@ -65,25 +65,28 @@ bool is_hidden(const Knowledge& knowledge, RuleId rule) {
                      [&](RuleId other) { return may_hide(knowledge, other, rule); });
 }
 
-void void_verdicts_beside(Knowledge& knowledge, StrategyId strategy, Time at) {
-  for (PendingOutcome& outcome : knowledge.outcomes.open) {
+void void_verdicts_beside(const Knowledge& knowledge, StrategyId strategy, Time at,
+                          PendingOutcomes& outcomes) {
+  for (PendingOutcome& outcome : outcomes.open) {
     const RuleId rule = knowledge.rules[outcome.strategy].rule;
-    if (rule != knowledge.rules[strategy].rule && at < knowledge.outcomes.deadline(outcome))
+    if (rule != knowledge.rules[strategy].rule && at < outcomes.deadline(outcome))
       outcome.is_void |= is_rival(knowledge, strategy, Sources(knowledge, rule), rule);
   }
 }
 
-void mark_ambiguous(Knowledge& knowledge, RuleId changed) {
-  Attempt& own = *knowledge.states.state(changed).attempt;
-  void_verdicts_beside(knowledge, own.strategy, own.first_change);
+void mark_ambiguous(const Knowledge& knowledge, RuleId changed, Attempts& attempts,
+                    PendingOutcomes& outcomes) {
+  const Attempt& own = *knowledge.states[changed].attempt;
+  void_verdicts_beside(knowledge, own.strategy, own.first_change, outcomes);
   const Sources sources(knowledge, changed);
   for (const RuleId id : knowledge.states.active()) {
-    auto& other = knowledge.states.state(id).attempt;
+    const auto& other = knowledge.states[id].attempt;
     if (id == changed || !other) continue;
-    if (is_rival(knowledge, own.strategy, Sources(knowledge, id), id)) other->is_ambiguous = true;
+    if (is_rival(knowledge, own.strategy, Sources(knowledge, id), id))
+      attempts.make_ambiguous(other->strategy);
     const bool has_changed = other->first_change != kNever;
     if (has_changed && is_rival(knowledge, other->strategy, sources, changed))
-      own.is_ambiguous = true;
+      attempts.make_ambiguous(own.strategy);
   }
 }
 

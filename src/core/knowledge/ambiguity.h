@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "knowledge/attempts.h"
 #include "knowledge/knowledge.h"
 
 namespace culprit {
@@ -43,11 +44,13 @@ bool is_hidden(const Knowledge& knowledge, RuleId rule);
 // The strategy under way for `changed` begins to change the system. Marks every attempt whose
 // outcome it can cause, and its own if another one's changes can cause that: those that touch the
 // same components or are upstream of them.
-void mark_ambiguous(Knowledge& knowledge, RuleId changed);
+void mark_ambiguous(const Knowledge& knowledge, RuleId changed, Attempts& attempts,
+                    PendingOutcomes& outcomes);
 
 // `strategy` begins to change the system `at` that time. Voids the verdicts on strategies of other
 // rules whose deadline is yet to come and whose outcome it can cause: had one of these not helped
 // so soon, it would still be under way, and ambiguous.
-void void_verdicts_beside(Knowledge& knowledge, StrategyId strategy, Time at);
+void void_verdicts_beside(const Knowledge& knowledge, StrategyId strategy, Time at,
+                          PendingOutcomes& outcomes);
 
 }  // namespace culprit

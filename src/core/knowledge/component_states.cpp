@@ -20,4 +20,20 @@ std::string_view to_string(Lifecycle state) {
   return "";
 }
 
+void ComponentStates::intend_lifecycle(ComponentId component, Lifecycle state, Time at,
+                                       EventLog& events) {
+  Lifecycle& intended = components_[component.index].intended_lifecycle;
+  if (intended == state) return;
+  intended = state;
+  events.tell(at, LifecycleIntended{component, state});
+}
+
+void ComponentStates::note_coming_up(ComponentId component, const ComingUp& how, Time at,
+                                     EventLog& events) {
+  ComingUp& known = components_[component.index].coming_up;
+  if (known == how) return;
+  known = how;
+  events.tell(at, CameUp{component, how});
+}
+
 }  // namespace culprit

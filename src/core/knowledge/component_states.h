@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "knowledge/coming_up.h"
+#include "knowledge/event_log.h"
 #include "language/rule_set.h"
 #include "robot/observation.h"
 
@@ -58,6 +59,11 @@ class ComponentStates {
 
   ComponentState& operator[](ComponentId id) { return components_[id.index]; }
   const ComponentState& operator[](ComponentId id) const { return components_[id.index]; }
+
+  // Sets ComponentState::intended_lifecycle, and tells if it is another.
+  void intend_lifecycle(ComponentId component, Lifecycle state, Time at, EventLog& events);
+  // Sets ComponentState::coming_up, and tells if it is another.
+  void note_coming_up(ComponentId component, const ComingUp& how, Time at, EventLog& events);
 
   // The last value that was read of a parameter; nothing while none was, or since its process began
   // anew.

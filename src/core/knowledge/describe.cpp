@@ -387,7 +387,7 @@ std::string describe(const Event& event, const RuleSet& rules) {
 std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules) {
   const std::string& strategy = rules[candidate.strategy].name;
   const std::string& component = rules[candidate.component].name;
-  const std::string because = candidate.because ? " (" + rules[*candidate.because].name + ")" : "";
+  const std::string because = candidate.failure ? " (" + rules[*candidate.failure].name + ")" : "";
   if (!candidate.excluded) return strategy + " is chosen";
   switch (*candidate.excluded) {
     case Condition::kTried:
@@ -405,15 +405,15 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
     case Condition::kDownstream:
       return "it depends on " + component + ", which is being adapted" + because;
     case Condition::kSuspect:
-      if (candidate.because == rules[candidate.strategy].rule)
+      if (candidate.failure == rules[candidate.strategy].rule)
         return "what " + component + " depends on had no time yet to show whether it is ill";
       return "it depends on " + component + ", which looks ill" + because;
     case Condition::kSettling:
-      return "it is expected to go away now that " + rules[*candidate.because].name +
+      return "it is expected to go away now that " + rules[*candidate.failure].name +
              " is resolved";
     case Condition::kInTheWay:
       return strategy + " would be in the way of what is done about " +
-             rules[*candidate.because].name;
+             rules[*candidate.failure].name;
     case Condition::kWithheld:
       return strategy + " is withheld: " + candidate.remark;
   }

@@ -35,9 +35,9 @@ struct Candidate {
   double cost = 0;                    // paper, Eq. 1; bayes: expected (plan/bayes/value.h)
   std::optional<Condition> excluded;  // nothing: chosen
   ComponentId component;              // that the condition is about
-  std::optional<RuleId> because;  // kDependency: the failure that `component` may be the cause of;
-                                  // likewise kSuspect, kSettling, kInTheWay: the other failure
-  std::string remark;             // kInvalid, kWithheld: why
+  std::optional<RuleId> failure;      // kDependency: what `component` may be the cause of;
+                                      // likewise kSuspect, kSettling, kInTheWay: the other failure
+  std::string remark;                 // kInvalid, kWithheld: why
   // Of a planner that weighs them (bayes) and only if nothing excludes it beforehand.
   double resolves = 0;  // the probability that it resolves the failure
   double value = 0;     // what that is worth, before its cost

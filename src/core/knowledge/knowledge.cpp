@@ -4,20 +4,6 @@
 
 namespace culprit {
 
-void Knowledge::intend_lifecycle(ComponentId component, Lifecycle state, Time at) {
-  Lifecycle& intended = components[component].intended_lifecycle;
-  if (intended == state) return;
-  intended = state;
-  tell(at, LifecycleIntended{component, state});
-}
-
-void Knowledge::note_coming_up(ComponentId component, const ComingUp& how, Time at) {
-  ComingUp& known = components[component].coming_up;
-  if (known == how) return;
-  known = how;
-  tell(at, CameUp{component, how});
-}
-
 KnownRobot Knowledge::known_robot() const {
   KnownRobot known;
   for (std::size_t c = 0; c < rules.components.size(); ++c) {

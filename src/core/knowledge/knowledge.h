@@ -1,4 +1,5 @@
-// Everything that the manager knows. The stages share it; only the manager's step touches it.
+// Everything that the manager knows. Each stage reads all of it, and writes the parts that its
+// `Writes` names; only the manager's step touches it.
 #pragma once
 
 #include <vector>
@@ -7,7 +8,7 @@
 #include "knowledge/component_states.h"
 #include "knowledge/couplings.h"
 #include "knowledge/dependency_graph.h"
-#include "knowledge/event.h"
+#include "knowledge/event_log.h"
 #include "knowledge/heard_names.h"
 #include "knowledge/outcomes.h"
 #include "knowledge/rivals.h"
@@ -63,17 +64,12 @@ struct Knowledge {
     Time until = kNever;       // kNever: until somebody does something, or more is known
     bool is_given_up = false;  // was done too often: a person must look
   };
-  std::vector<Withheld> withheld;  // by strategy
+  using WithheldList = std::vector<Withheld>;  // by strategy
+  WithheldList withheld;
   PendingOutcomes outcomes;
   Rivals rivals;
-  Time now{};                 // of the step under way
-  std::vector<Event> events;  // of the step under way
-
-  // Sets ComponentState::intended_lifecycle, and tells if it is another.
-  void intend_lifecycle(ComponentId component, Lifecycle state, Time at);
-
-  // Sets ComponentState::coming_up, and tells if it is another.
-  void note_coming_up(ComponentId component, const ComingUp& how, Time at);
+  Time now{};  // of the step under way
+  EventLog events;
 
   // What the run that comes next should know. Changes only with the graph's changes and the count
   // of sightings.
@@ -81,11 +77,6 @@ struct Knowledge {
 
   // When the component, or something that it depends on, last joined the graph.
   Time began(ComponentId component) const;
-
-  template <class What>
-  void tell(Time at, What what) {
-    events.push_back({at, std::move(what)});
-  }
 };
 
 }  // namespace culprit

@@ -17,7 +17,7 @@ TEST(Knowledge, TellsWhatIsIntendedOnlyWhenThatIsNew) {
                              .rules;
   Knowledge knowledge(rules);
   for (const Lifecycle state : {Lifecycle::kActive, Lifecycle::kActive, Lifecycle::kInactive})
-    knowledge.intend_lifecycle(ComponentId(0), state, Time(1s));
+    knowledge.components.intend_lifecycle(ComponentId(0), state, Time(1s), knowledge.events);
   ASSERT_EQ(knowledge.events.size(), 2u);
   EXPECT_EQ(std::get<LifecycleIntended>(knowledge.events[0].what).state, Lifecycle::kActive);
   EXPECT_EQ(std::get<LifecycleIntended>(knowledge.events[1].what).state, Lifecycle::kInactive);

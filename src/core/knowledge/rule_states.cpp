@@ -8,7 +8,7 @@ namespace culprit {
 RuleStates::RuleStates(const RuleSet& rules)
     : rules_(rules), states_(rules.rules.size()), failing_(rules.components.size()) {
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
-    states_[r].tried.assign(rules.rules[r].strategies.size(), false);
+    states_[r].search.tried.assign(rules.rules[r].strategies.size(), false);
     const int window = rules.rules[r].policies.hold_window;
     if (window > 1) states_[r].history.assign(static_cast<std::size_t>(window), false);
   }
@@ -30,37 +30,37 @@ std::size_t RuleStates::place_of(StrategyId id) const {
 }
 
 bool RuleStates::is_tried(StrategyId id) const {
-  return states_[rules_[id].rule.index].tried[place_of(id)];
+  return states_[rules_[id].rule.index].search.tried[place_of(id)];
 }
 
 void RuleStates::set_tried(StrategyId id, bool tried) {
-  states_[rules_[id].rule.index].tried[place_of(id)] = tried;
+  states_[rules_[id].rule.index].search.tried[place_of(id)] = tried;
 }
 
 void RuleStates::begin_search(RuleId id, Time now) {
   RuleState& state = states_[id.index];
-  const auto left_off = std::exchange(state.left_off, std::nullopt);
   state.failing_since = now;
-  state.attempts = left_off ? left_off->attempts : 0;
-  state.attempts_before = state.attempts;
-  state.times = left_off ? left_off->times : 1;
-  state.is_exhausted = left_off && left_off->is_exhausted;
-  state.round = left_off ? left_off->round : 0;
-  state.retry_at = left_off ? std::max(now, left_off->retry_at) : now;
-  state.is_at_last_resort = left_off && left_off->is_at_last_resort;
-  if (left_off) {
+  if (const auto left_off = std::exchange(state.left_off, std::nullopt)) {
+    state.search = left_off->search;
     state.recurring_since = left_off->since;
-    state.tried = left_off->tried;
   } else {
-    std::fill(state.tried.begin(), state.tried.end(), false);
+    state.search = {};
+    state.search.times = 1;
+    state.search.tried.assign(rules_[id].strategies.size(), false);
   }
+  state.search.attempts_before = state.search.attempts;
+  state.search.retry_at = std::max(now, state.search.retry_at);
 }
 
 void RuleStates::go_on_searching(RuleId id, Time now) {
   RuleState& state = states_[id.index];
   state.failing_since = now;
-  state.attempts_before = state.attempts;
-  ++state.times;
+  state.search.attempts_before = state.search.attempts;
+  ++state.search.times;
+}
+
+void RuleStates::advise_anew() {
+  for (const RuleId id : active_) states_[id.index].is_advised = false;
 }
 
 namespace {

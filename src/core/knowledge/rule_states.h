@@ -34,14 +34,20 @@ struct Settling {
 
 // How far the search for a strategy that helps has come.
 struct Search {
-  Time since{};                    // when the failure was detected
-  int attempts = 0;                // strategies executed since then
+  int attempts = 0;                // strategies executed for the failure, also before it came back
+  int attempts_before = 0;         // those of before it came back
+  int times = 0;                   // the failure was detected, until it was proven gone
   int round = 0;                   // how often all strategies were gone through
   Time retry_at = kLongAgo;        // back-off after a round
   std::vector<bool> tried;         // in this round, by place in Rule::strategies
   bool is_at_last_resort = false;  // only the last resorts are left to try
-  bool is_exhausted = false;
-  int times = 1;             // it was detected
+  bool is_exhausted = false;       // nothing is left, until it is proven gone
+};
+
+// Where an earlier process of culprit came to.
+struct LeftOff {
+  Time since{};  // when the failure was detected
+  Search search;
   std::optional<Time> gone;  // it went away then, which is not proven yet
 };
 
@@ -61,20 +67,11 @@ struct RuleState {
   int true_in_history = 0;
   Time sampled = kLongAgo;
 
-  // The search for a strategy that helps.
-  int attempts = 0;          // strategies executed for the failure, also before it came back
-  int attempts_before = 0;   // those of before it came back
-  int times = 0;             // the failure was detected, until it was proven gone
-  int round = 0;             // how often all strategies were gone through
-  Time retry_at = kLongAgo;  // back-off after a round
-  std::vector<bool> tried;   // in this round, by place in Rule::strategies
+  Search search;
   std::optional<Attempt> attempt;
-  bool is_at_last_resort = false;  // only the last resorts are left to try
-  bool is_exhausted = false;       // nothing is left, until it is proven gone
-  bool is_advised = false;         // dry run: what would be done was said
+  bool is_advised = false;  // dry run: what would be done was said
   std::optional<Settling> settling;
-  // Where an earlier process of culprit came to with this failure. Nobody has seen it gone since.
-  std::optional<Search> left_off;
+  std::optional<LeftOff> left_off;  // nobody has seen the failure gone since
 
   // Since when the failure is there, with pauses or without.
   Time first_detected() const { return std::min(failing_since, recurring_since); }
@@ -86,8 +83,10 @@ class RuleStates {
   // As `other` is, for `rules`: the same rules at another address.
   RuleStates(const RuleSet& rules, const RuleStates& other);
 
+  const RuleSet& rules() const { return rules_; }
   const RuleState& operator[](RuleId id) const { return states_[id.index]; }
-  // For everything but `phase`, which enter() changes.
+  // For everything but `phase`, which enter() changes. The analysis writes it; execution has verbs
+  // for its part (attempts.h).
   RuleState& state(RuleId id) { return states_[id.index]; }
 
   // Where the strategy stands in Rule::strategies.
@@ -95,6 +94,11 @@ class RuleStates {
   // Was it tried in this round?
   bool is_tried(StrategyId id) const;
   void set_tried(StrategyId id, bool tried);
+  // Dry run: what would be done about the failure was said; or is to be said anew.
+  void advise(RuleId id) { states_[id.index].is_advised = true; }
+  void advise_anew();
+  // The failure is expected to go away with another one.
+  void expect_to_settle(RuleId id, Settling settling) { states_[id.index].settling = settling; }
   // The search for a strategy begins: anew, or where an earlier process left off.
   void begin_search(RuleId id, Time now);
   // The failure is back before it was proven gone: the search goes on where it was.

@@ -1,6 +1,7 @@
 #include "language/evaluate.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -56,6 +57,7 @@ Slot unary(Op op, const Slot& a) {
 
 // @pre both known
 Slot arithmetic(Op op, const Slot& a, const Slot& b) {
+  assert(a.known && b.known);
   switch (op) {
     case Op::kAddInt:
       return exact<add>(a.i, b.i);
@@ -100,6 +102,7 @@ Slot arithmetic(Op op, const Slot& a, const Slot& b) {
 
 // @pre both known
 Slot comparison(Op op, const Slot& a, const Slot& b) {
+  assert(a.known && b.known);
   switch (op) {
     case Op::kLessInt:
       return Slot::of(a.i < b.i);

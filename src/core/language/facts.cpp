@@ -1,6 +1,7 @@
 #include "language/facts.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace culprit {
 namespace {
@@ -97,6 +98,7 @@ const ValueSet* Facts::find(InputId input) const {
 }
 
 bool Facts::assume(const Typed& e, bool truth) {
+  assert(e.type == Type::kBool);
   const auto child = [&](std::size_t i, bool t) {
     return [&e, i, t](Facts& f) { return f.assume(e.children[i], t); };
   };

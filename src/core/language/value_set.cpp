@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace culprit {
@@ -149,11 +150,13 @@ bool is_empty(const ValueSet& set) {
 }
 
 ValueSet intersection(const ValueSet& a, const ValueSet& b) {
+  assert(a.index() == b.index());
   return std::visit([&]<class Set>(const Set& s) { return ValueSet(meet(s, std::get<Set>(b))); },
                     a);
 }
 
 ValueSet hull(const ValueSet& a, const ValueSet& b) {
+  assert(a.index() == b.index());
   return std::visit([&]<class Set>(const Set& s) { return ValueSet(join(s, std::get<Set>(b))); },
                     a);
 }

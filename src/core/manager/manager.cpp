@@ -14,7 +14,7 @@ bool same_reasons(const std::vector<Candidate>& a, const std::vector<Candidate>&
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const Candidate& x, const Candidate& y) {
                       return x.strategy == y.strategy && x.excluded == y.excluded &&
-                             x.component == y.component && x.because == y.because;
+                             x.component == y.component && x.failure == y.failure;
                     });
 }
 
@@ -45,11 +45,17 @@ bool is_news(const Observation& observation) {
 
 Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Options options)
     : knowledge_(rules),
-      monitor_(knowledge_, options.start, later(options.start, options.settling)),
-      analyzer_(knowledge_),
+      monitor_(knowledge_,
+               {knowledge_.signals, knowledge_.graph, knowledge_.components, knowledge_.sightings,
+                knowledge_.heard_names, knowledge_.events},
+               options.start, later(options.start, options.settling)),
+      analyzer_(knowledge_, {knowledge_.states, knowledge_.signals, knowledge_.beliefs,
+                             knowledge_.couplings, knowledge_.outcomes, knowledge_.events}),
       planner_(std::move(planner)),
-      executor_(knowledge_),
-      governor_(knowledge_, options.governor, options.start),
+      executor_(knowledge_, {Attempts(knowledge_.states), knowledge_.components, knowledge_.signals,
+                             knowledge_.outcomes, knowledge_.rivals, knowledge_.events}),
+      governor_(knowledge_, {knowledge_.withheld, knowledge_.events}, options.governor,
+                options.start),
       autonomy_(options.autonomy),
       settled_(later(options.start, options.settling)),
       now_(options.start),
@@ -93,14 +99,14 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
     // Late observations of an earlier time count for now: time does not go back.
     now_ = std::max(now_, std::min(observation.at, now));
     if (const auto* slept = std::get_if<Overslept>(&observation.what); slept && hears_) {
-      knowledge_.tell(now_, SleepNoticed{slept->by});
+      knowledge_.events.tell(now_, SleepNoticed{slept->by});
       restart(now_);
     } else if (const auto* lost = std::get_if<HearingLost>(&observation.what); lost && hears_) {
       hears_ = false;
-      knowledge_.tell(now_, JudgementSuspended{lost->reason});
+      knowledge_.events.tell(now_, JudgementSuspended{lost->reason});
     } else if (std::holds_alternative<HearingRegained>(observation.what) && !hears_) {
       hears_ = true;
-      knowledge_.tell(now_, JudgementResumed{});
+      knowledge_.events.tell(now_, JudgementResumed{});
       restart(now_);
     }
     monitor_.advance(now_);
@@ -145,17 +151,16 @@ void Manager::obey(const Order& order, Time now) {
   if (const auto* run = std::get_if<RunStrategy>(&order.what))
     refresh_conditions(run->strategy, now);
   if (!hears_ && std::holds_alternative<RunStrategy>(order.what))
-    return knowledge_.tell(now, OrderRefused{order, "the robot cannot be heard"});
+    return knowledge_.events.tell(now, OrderRefused{order, "the robot cannot be heard"});
   if (auto reason = governor_.objection(order, autonomy_))
-    return knowledge_.tell(now, OrderRefused{order, std::move(*reason)});
-  knowledge_.tell(now, OrderAccepted{order});
+    return knowledge_.events.tell(now, OrderRefused{order, std::move(*reason)});
+  knowledge_.events.tell(now, OrderAccepted{order});
   governor_.obey(order, now);
   if (std::holds_alternative<Pause>(order.what)) {
     abandon_all("paused by " + order.author, now);
   } else if (const auto* dry_run = std::get_if<SetDryRun>(&order.what)) {
     autonomy_ = dry_run->is_on ? Autonomy::kAdvise : Autonomy::kAct;
-    for (const RuleId id : knowledge_.states.active())
-      knowledge_.states.state(id).is_advised = false;
+    knowledge_.states.advise_anew();
   } else if (const auto* run = std::get_if<RunStrategy>(&order.what)) {
     begin(run->strategy, now);
   } else if (const auto* forgotten = std::get_if<Forget>(&order.what)) {
@@ -187,7 +192,7 @@ void Manager::abandon_all(const std::string& reason, Time now) {
   for (const RuleId id : active) {
     const auto& attempt = knowledge_.states[id].attempt;
     if (!attempt) continue;
-    knowledge_.tell(now, StrategyAbandoned{attempt->strategy, reason});
+    knowledge_.events.tell(now, StrategyAbandoned{attempt->strategy, reason});
     analyzer_.abandon(id, now);
   }
 }
@@ -200,7 +205,7 @@ void Manager::make_way_for(StrategyId strategy, Time now) {
     const Attempt* holder = knowledge_.states.reservation(component);
     if (holder == nullptr) continue;
     const StrategyId holding = holder->strategy;
-    knowledge_.tell(
+    knowledge_.events.tell(
         now, StrategyAbandoned{holding, knowledge_.rules[component].name + " is needed for " +
                                             knowledge_.rules[rule].name});
     analyzer_.make_way(knowledge_.rules[holding].rule, strategy, now);
@@ -255,7 +260,7 @@ Time Manager::next_planning(Time now) const {
     const RuleState& state = knowledge_.states[id];
     if (state.phase != RulePhase::kFailing || state.is_advised) continue;
     next = std::min(next, later(now, knowledge_.rules.cycle));
-    if (state.retry_at > now) next = std::min(next, state.retry_at);
+    if (state.search.retry_at > now) next = std::min(next, state.search.retry_at);
   }
   return next;
 }
@@ -267,11 +272,11 @@ void Manager::carry_out(const Verdict& verdict, Time now) {
   if (!is_dry && governor_.awaits_approval({strategy, verdict.candidates, verdict.suspects}, now))
     return;
   if (!is_dry) make_way_for(strategy, now);
-  knowledge_.tell(
+  knowledge_.events.tell(
       now, StrategyChosen{strategy, verdict.candidates, plan::explained_by(strategy, knowledge_),
                           is_dry, verdict.suspects});
   if (is_dry) {
-    knowledge_.states.state(verdict.rule).is_advised = true;
+    knowledge_.states.advise(verdict.rule);
     return;
   }
   begin(strategy, now);
@@ -289,7 +294,7 @@ void Manager::hold_back(const Verdict& verdict, Time now) {
   const Time since = knowledge_.states[verdict.rule].failing_since;
   if (said.failing_since == since && same_reasons(said.candidates, verdict.candidates)) return;
   said = {since, verdict.candidates};
-  knowledge_.tell(now, FailureHeldBack{verdict.rule, verdict.candidates, verdict.suspects});
+  knowledge_.events.tell(now, FailureHeldBack{verdict.rule, verdict.candidates, verdict.suspects});
 }
 
 std::optional<std::string> Manager::held_back() const {

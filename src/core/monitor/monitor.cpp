@@ -23,8 +23,9 @@ double as_number(const Slot& slot, Type type) {
 
 }  // namespace
 
-Monitor::Monitor(Knowledge& knowledge, Time start, Time settled)
+Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time settled)
     : knowledge_(knowledge),
+      write_(writes),
       start_(start),
       settled_(settled),
       topics_(knowledge.rules.topics.size()),
@@ -39,7 +40,7 @@ Monitor::Monitor(Knowledge& knowledge, Time start, Time settled)
   for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
     const Input& input = rules.inputs[i];
     const InputId id(i);
-    knowledge_.signals.set_latency(id, rules.cycle);
+    write_.signals.set_latency(id, rules.cycle);
     switch (input.kind) {
       case Kind::kRate:
       case Kind::kAge:
@@ -95,7 +96,7 @@ void Monitor::restart(Time now) {
   deadlines_.set(knowledge_.rules.inputs.size() + 1, graced_);
   for (Topic& topic : topics_) topic.phi.restart(now);
   for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c)
-    knowledge_.components[ComponentId(c)].missed_probes = 0;
+    write_.components[ComponentId(c)].missed_probes = 0;
   for (std::size_t i = 0; i < knowledge_.rules.inputs.size(); ++i) {
     const Kind kind = knowledge_.rules.inputs[i].kind;
     if (kind == Kind::kRate || kind == Kind::kAge || kind == Kind::kPhi) update(InputId(i), now);
@@ -137,8 +138,8 @@ void Monitor::remember(const KnownRobot& known) {
     const auto component = std::find_if(components.begin(), components.end(), fits);
     if (component == components.end()) continue;
     const ComponentId id(static_cast<std::size_t>(component - components.begin()));
-    knowledge_.sightings.note(id, start_);
-    knowledge_.graph.remember(id, part.ends);
+    write_.sightings.note(id, start_);
+    write_.graph.remember(id, part.ends);
   }
   for (const std::string& name : known.topics) {
     const auto topic = topic_ids_.find(name);
@@ -150,8 +151,8 @@ void Monitor::tell_never_seen(Time at) {
   for (const Named& named : named_by_rules(knowledge_)) {
     if (named.was_seen) continue;
     if (const auto* component = std::get_if<ComponentId>(&named.what))
-      knowledge_.components[*component].is_missed = true;
-    knowledge_.tell(at, NeverSeen{named.what, nearest_name(named.what, knowledge_)});
+      write_.components[*component].is_missed = true;
+    write_.events.tell(at, NeverSeen{named.what, nearest_name(named.what, knowledge_)});
   }
 }
 
@@ -175,7 +176,7 @@ void Monitor::update(InputId id, Time now) {
       value = phi(id, now);
       break;
     case Kind::kChanged:
-      return knowledge_.signals.set(id, Slot::of(false));
+      return write_.signals.set(id, Slot::of(false));
     case Kind::kMean:
     case Kind::kMin:
     case Kind::kMax:
@@ -185,7 +186,7 @@ void Monitor::update(InputId id, Time now) {
       // Its deadline is its staleness. A refresh comes earlier and changes nothing.
       const auto& signal = signals_[input.signal.index];
       const auto stale = knowledge_.rules[input.signal].stale;
-      if (stale && signal.last && later(*signal.last, *stale) <= now) knowledge_.signals.forget(id);
+      if (stale && signal.last && later(*signal.last, *stale) <= now) write_.signals.forget(id);
       return;
     }
     default:
@@ -196,9 +197,9 @@ void Monitor::update(InputId id, Time now) {
                           position(as_number(before, input.type), input.thresholds) ==
                               position(as_number(value, input.type), input.thresholds);
   if (same_place) {
-    knowledge_.signals.set_quietly(id, value);
+    write_.signals.set_quietly(id, value);
   } else {
-    knowledge_.signals.set(id, value);
+    write_.signals.set(id, value);
   }
   deadlines_.set(id.index, next_crossing(id, now));
 }

@@ -38,12 +38,22 @@ class Monitor {
   // Participants announce themselves every 3 s.
   static constexpr Duration kGrace = std::chrono::seconds(5);
 
+  // What it writes; all else it only reads.
+  struct Writes {
+    SignalStore& signals;
+    DependencyGraph& graph;
+    ComponentStates& components;
+    Sightings& sightings;
+    HeardNames& heard_names;
+    EventLog& events;
+  };
+
   // `knowledge` must outlive the monitor. Watching begins at `start`. What was never seen
   // (knowledge/sightings.h) is unknown; when `settled`, that is told. What an earlier run saw may
   // still be discovered until `settled`, from then on it is absent: a component that is not there
   // is not alive, a topic is silent. A topic that is seen later has as long to speak, from when its
   // publisher came.
-  Monitor(Knowledge& knowledge, Time start, Time settled);
+  Monitor(const Knowledge& knowledge, Writes writes, Time start, Time settled);
 
   // What earlier processes of culprit knew of lifecycles. Before the first observation.
   void remember(const Past& past);
@@ -144,7 +154,8 @@ class Monitor {
   void update_alive(ComponentId component, Time at, const std::string& remark);
   void update_alive_inputs(ComponentId component, const Slot& value);
 
-  Knowledge& knowledge_;
+  const Knowledge& knowledge_;
+  Writes write_;
   // Since when a silence counts that began at `since`.
   Time heard_since(Time since) const { return std::max(since, awake_); }
 

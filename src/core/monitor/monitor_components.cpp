@@ -39,11 +39,11 @@ bool is_up(Lifecycle state) {
 }  // namespace
 
 void Monitor::on(Time at, const NodeAppeared& seen) {
-  knowledge_.graph.node_appeared(seen.node);
+  write_.graph.node_appeared(seen.node);
   const auto component = knowledge_.graph.component_of(seen.node);
   if (!component) return;
-  knowledge_.sightings.note(*component, at);
-  ComponentState& state = knowledge_.components[*component];
+  write_.sightings.note(*component, at);
+  ComponentState& state = write_.components[*component];
   const bool same_process = seen.pid != 0 && seen.pid == state.node_pid && state.in_graph;
   if (!same_process) forget_process(*component, at);
   state.in_graph = true;
@@ -58,7 +58,7 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
 
 // Who reads what it published goes on depending on it until then.
 void Monitor::await_ends(ComponentId component, Time at) {
-  knowledge_.components[component].awaits_ends_until = later(at, kEndsAwaited);
+  write_.components[component].awaits_ends_until = later(at, kEndsAwaited);
   deadlines_.set(knowledge_.rules.inputs.size() + 2 + component.index, later(at, kEndsAwaited));
   keep_ends(component);
   note_ends(component, at);
@@ -71,7 +71,7 @@ void Monitor::note_ends(ComponentId component, Time at) {
 }
 
 void Monitor::await_ends_no_more(ComponentId component, Time at) {
-  ComponentState& state = knowledge_.components[component];
+  ComponentState& state = write_.components[component];
   state.awaits_ends_until = kLongAgo;
   state.ends_back = at;
   deadlines_.clear(knowledge_.rules.inputs.size() + 2 + component.index);
@@ -82,12 +82,12 @@ void Monitor::keep_ends(ComponentId component) {
   const ComponentState& state = knowledge_.components[component];
   const bool is_wanted = state.intended_lifecycle == Lifecycle::kActive ||
                          state.intended_lifecycle == Lifecycle::kInactive;
-  knowledge_.graph.keep_ends(
+  write_.graph.keep_ends(
       component, (is_wanted && !is_up(state.lifecycle)) || state.awaits_ends_until != kLongAgo);
 }
 
 void Monitor::on(Time at, const NodeVanished& seen) {
-  knowledge_.graph.node_vanished(seen.node);
+  write_.graph.node_vanished(seen.node);
   const auto component = knowledge_.graph.component_of(seen.node);
   if (!component) return;
   forget_process(*component, at);
@@ -96,11 +96,11 @@ void Monitor::on(Time at, const NodeVanished& seen) {
 
 void Monitor::on(Time, const NamesakesSeen& seen) {
   const auto component = knowledge_.graph.component_of(seen.node);
-  if (component) knowledge_.components[*component].namesakes = seen.others;
+  if (component) write_.components[*component].namesakes = seen.others;
 }
 
 void Monitor::on(Time at, const EndpointAppeared& seen) {
-  knowledge_.graph.endpoint_appeared(seen.node, seen.kind, seen.name);
+  write_.graph.endpoint_appeared(seen.node, seen.kind, seen.name);
   if (const auto component = knowledge_.graph.component_of(seen.node)) note_ends(*component, at);
   if (seen.kind != EndpointKind::kPublisher) return;
   const auto topic = topic_ids_.find(seen.name);
@@ -108,20 +108,20 @@ void Monitor::on(Time at, const EndpointAppeared& seen) {
 }
 
 void Monitor::on(Time, const EndpointVanished& seen) {
-  knowledge_.graph.endpoint_vanished(seen.node, seen.kind, seen.name);
+  write_.graph.endpoint_vanished(seen.node, seen.kind, seen.name);
 }
 
 void Monitor::remember(const Past& past) {
   for (const Event& event : past) {
     if (const auto* intended = std::get_if<LifecycleIntended>(&event.what))
-      knowledge_.components[intended->component].intended_lifecycle = intended->state;
+      write_.components[intended->component].intended_lifecycle = intended->state;
     if (const auto* came_up = std::get_if<CameUp>(&event.what))
-      knowledge_.components[came_up->component].coming_up = came_up->how;
+      write_.components[came_up->component].coming_up = came_up->how;
   }
 }
 
 void Monitor::on(Time at, const LifecycleRead& seen) {
-  ComponentState& state = knowledge_.components[seen.component];
+  ComponentState& state = write_.components[seen.component];
   state.lifecycle = seen.state;
   const bool is_primary = seen.state != Lifecycle::kUnknown && seen.state != Lifecycle::kTransition;
   if (seen.state != Lifecycle::kTransition) {
@@ -130,7 +130,7 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
     state.changing_since = at;
   }
   if (is_primary && !state.took_place && knowledge_.states.reservation(seen.component) == nullptr)
-    knowledge_.intend_lifecycle(seen.component, seen.state, at);
+    write_.components.intend_lifecycle(seen.component, seen.state, at, write_.events);
   if (seen.state != Lifecycle::kUnknown) state.took_place = false;
   note_rise(seen.component, seen.state, at);
   if (is_up(seen.state) && state.awaits_ends_until != kLongAgo)
@@ -146,13 +146,13 @@ void Monitor::update_lifecycle_inputs(ComponentId component, Time now) {
                           (state == Lifecycle::kTransition && !hangs_in_transition(component, now));
   for (const InputId id : component_inputs_[component.index]) {
     if (knowledge_.rules[id].kind == Kind::kLifecycle)
-      knowledge_.signals.set(id, is_unknown ? Slot() : Slot::of(to_string(state)));
+      write_.signals.set(id, is_unknown ? Slot() : Slot::of(to_string(state)));
   }
 }
 
 // Somebody brought it up who is not culprit: itself, its launcher, a lifecycle manager.
 void Monitor::note_rise(ComponentId component, Lifecycle now, Time at) {
-  ComponentState& state = knowledge_.components[component];
+  ComponentState& state = write_.components[component];
   if (now == Lifecycle::kUnconfigured) state.is_rising = true;
   if (now != Lifecycle::kActive || !std::exchange(state.is_rising, false)) return;
   const bool is_start = state.in_graph && at <= later(state.node_seen, kStart);
@@ -160,7 +160,7 @@ void Monitor::note_rise(ComponentId component, Lifecycle now, Time at) {
   ComingUp how = state.coming_up;
   how.driver = ComingUp::Driver::kOther;
   how.rising = at - state.node_seen;
-  knowledge_.note_coming_up(component, how, at);
+  write_.components.note_coming_up(component, how, at, write_.events);
 }
 
 // A node that activates itself and was activated before may end because of that. It is left more
@@ -173,13 +173,13 @@ void Monitor::note_end_of_start(ComponentId component, Time at) {
   ComingUp how = state.coming_up;
   how.driver = ComingUp::Driver::kOther;
   how.rising = at - state.node_seen;
-  knowledge_.note_coming_up(component, how, at);
+  write_.components.note_coming_up(component, how, at, write_.events);
 }
 
 void Monitor::on(Time at, const ProcessSeen& seen) {
-  ComponentState& state = knowledge_.components[seen.component];
+  ComponentState& state = write_.components[seen.component];
   // What systemd says of its unit is proof, also if its node was never seen.
-  if (knowledge_.rules[seen.component].unit) knowledge_.sightings.note(seen.component, at);
+  if (knowledge_.rules[seen.component].unit) write_.sightings.note(seen.component, at);
   // A word about a process that the node no longer runs in says nothing about the node.
   const int present = state.node_pid != 0 ? state.node_pid : state.pid;
   const bool is_other = seen.pid != 0 && seen.pid != present;
@@ -189,7 +189,7 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
   state.process_remark = seen.remark;
   if (seen.state == ProcessState::kGone) {
     if (has_crashed(seen.remark)) note_end_of_start(seen.component, at);
-    knowledge_.graph.node_vanished(knowledge_.graph.node_name(seen.component));
+    write_.graph.node_vanished(knowledge_.graph.node_name(seen.component));
     forget_process(seen.component, at);
   }
   update_alive(seen.component, at,
@@ -198,7 +198,7 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
 
 void Monitor::on(Time at, const Probed& seen) {
   if (is_deaf_ && !seen.answered) return;
-  ComponentState& state = knowledge_.components[seen.component];
+  ComponentState& state = write_.components[seen.component];
   state.missed_probes = seen.answered ? 0 : state.missed_probes + 1;
   state.answers_probes |= seen.answered;
   const bool is_changing = hangs_in_transition(seen.component, at);
@@ -210,15 +210,15 @@ void Monitor::on(Time at, const Probed& seen) {
 }
 
 void Monitor::on(Time at, const ProcessWorked& seen) {
-  ComponentState& state = knowledge_.components[seen.component];
+  ComponentState& state = write_.components[seen.component];
   if (seen.pid == state.pid && state.process == ProcessState::kRunning) state.worked = at;
 }
 
-void Monitor::on(Time at, const LinkTrouble& seen) { knowledge_.tell(at, Trouble{seen.text}); }
+void Monitor::on(Time at, const LinkTrouble& seen) { write_.events.tell(at, Trouble{seen.text}); }
 
 // The node or its process is gone or is another now: what was known of it does not hold any more.
 void Monitor::forget_process(ComponentId component, Time at) {
-  ComponentState& state = knowledge_.components[component];
+  ComponentState& state = write_.components[component];
   state.in_graph = false;
   state.node_pid = 0;
   state.is_rising = false;
@@ -228,8 +228,8 @@ void Monitor::forget_process(ComponentId component, Time at) {
   on(at, LifecycleRead{component, Lifecycle::kUnknown});
   for (std::size_t p = 0; p < knowledge_.rules.parameters.size(); ++p) {
     if (knowledge_.rules.parameters[p].component != component) continue;
-    knowledge_.components[ParameterId(p)].reset();
-    for (const InputId id : parameter_inputs_[p]) knowledge_.signals.forget(id);
+    write_.components[ParameterId(p)].reset();
+    for (const InputId id : parameter_inputs_[p]) write_.signals.forget(id);
   }
 }
 
@@ -271,7 +271,7 @@ bool Monitor::is_silent(ComponentId component, Time now) const {
 }
 
 void Monitor::update_alive(ComponentId component, Time at, const std::string& remark) {
-  ComponentState& state = knowledge_.components[component];
+  ComponentState& state = write_.components[component];
   const bool is_alive =
       state.in_graph && state.process == ProcessState::kRunning && !does_not_answer(component, at);
   if (!knowledge_.sightings.has(component)) return;        // it may be a name that nobody has
@@ -284,16 +284,16 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   if (state.alive == is_alive) return;
   state.alive = is_alive;
   if (is_alive) {
-    knowledge_.tell(at, ComponentFound{component, state.node_pid});
+    write_.events.tell(at, ComponentFound{component, state.node_pid});
   } else {
-    knowledge_.tell(at, ComponentLost{component, remark});
+    write_.events.tell(at, ComponentLost{component, remark});
   }
   update_alive_inputs(component, Slot::of(is_alive));
 }
 
 void Monitor::update_alive_inputs(ComponentId component, const Slot& value) {
   for (const InputId id : component_inputs_[component.index]) {
-    if (knowledge_.rules[id].kind == Kind::kAlive) knowledge_.signals.set(id, value);
+    if (knowledge_.rules[id].kind == Kind::kAlive) write_.signals.set(id, value);
   }
 }
 

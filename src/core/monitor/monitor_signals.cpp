@@ -30,19 +30,19 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
   const Slot slot = as_type(value, declared.type, text);
   for (const InputId id : state.inputs) {
     const Input& input = knowledge_.rules[id];
-    knowledge_.signals.set_latency(id, latency_of(signal) + input.window);
-    knowledge_.signals.set_read_at(id, at);
-    if (has_rhythm && !had_rhythm) knowledge_.signals.touch(id);
+    write_.signals.set_latency(id, latency_of(signal) + input.window);
+    write_.signals.set_read_at(id, at);
+    if (has_rhythm && !had_rhythm) write_.signals.touch(id);
     if (input.kind == Kind::kSignal) {
       note_reading(id, slot);
-      knowledge_.signals.set(id, slot);
+      write_.signals.set(id, slot);
       if (declared.stale) deadlines_.set(id.index, later(at, *declared.stale));
     } else if (input.kind == Kind::kChanged) {
       Derived& derived = derived_[id.index];
       const bool differs = !is_first && derived.last_value != value;
       derived.last_value = value;
       if (differs) deadlines_.set(id.index, later(at, knowledge_.rules.cycle));
-      if (differs || is_first) knowledge_.signals.set(id, Slot::of(differs));
+      if (differs || is_first) write_.signals.set(id, Slot::of(differs));
     } else if (slot.known) {
       derived_[id.index].values.add(at, slot.d);
       update_window(id, at);
@@ -78,7 +78,7 @@ void Monitor::note_reading(InputId id, const Slot& slot) {
     is_unusual = (value < least && input.thresholds.front() <= value) ||
                  (value > most && input.thresholds.back() >= value);
   }
-  knowledge_.signals.set_unusual(id, is_unusual);
+  write_.signals.set_unusual(id, is_unusual);
   if (usual.full()) usual.pop_front();
   usual.push_back(value);
 }
@@ -104,29 +104,29 @@ void Monitor::update_window(InputId id, Time now) {
         break;
     }
   }
-  knowledge_.signals.set(id, value);
+  write_.signals.set(id, value);
   deadlines_.set(id.index, derived.values.next_change());
 }
 
-void Monitor::on(Time, const StatusHeard& seen) { knowledge_.heard_names.statuses.push_back(seen); }
+void Monitor::on(Time, const StatusHeard& seen) { write_.heard_names.statuses.push_back(seen); }
 
 void Monitor::on(Time, const ParametersListed& seen) {
-  knowledge_.heard_names.parameters[seen.component] = seen.names;
+  write_.heard_names.parameters[seen.component] = seen.names;
 }
 
 void Monitor::on(Time, const DiagnosticRead& seen) {
   for (const InputId id : diagnostic_inputs_[seen.diagnostic.index]) {
-    knowledge_.signals.set(id, Slot::of(std::int64_t{seen.level}));
+    write_.signals.set(id, Slot::of(std::int64_t{seen.level}));
   }
 }
 
 void Monitor::on(Time at, const ParameterRead& seen) {
-  knowledge_.components[seen.parameter] = seen.value;
+  write_.components[seen.parameter] = seen.value;
   for (const SignalId signal : parameter_signals_[seen.parameter.index])
     read_signal(signal, seen.value, at);
   for (const InputId id : parameter_inputs_[seen.parameter.index]) {
     std::string text;
-    knowledge_.signals.set(id, as_type(seen.value, knowledge_.rules[id].type, text));
+    write_.signals.set(id, as_type(seen.value, knowledge_.rules[id].type, text));
   }
 }
 

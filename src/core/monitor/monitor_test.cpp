@@ -81,12 +81,17 @@ struct Oracle {
   }
 };
 
+Monitor::Writes writes(Knowledge& knowledge) {
+  return {knowledge.signals,   knowledge.graph,       knowledge.components,
+          knowledge.sightings, knowledge.heard_names, knowledge.events};
+}
+
 // Every comparison that the rules make must come out as it would with the true value, at every
 // moment, although the monitor is only woken by observations and by its own deadlines.
 RC_GTEST_PROP(Monitor, KeepsEveryComparisonTrueWithoutPolling, ()) {
   const Checked checked = check(Source("test.rules", kRules));
   Knowledge knowledge(*checked.rules);
-  Monitor monitor(knowledge, Time{}, Time(5s));
+  Monitor monitor(knowledge, writes(knowledge), Time{}, Time(5s));
   Oracle oracle;
   Time now{};
   for (int i = *rc::gen::inRange(5, 60); i > 0; --i) {
@@ -126,7 +131,7 @@ struct Watched {
   explicit Watched(const std::string& text)
       : rules(*check(Source("test.rules", text)).rules),
         knowledge(rules),
-        monitor(knowledge, Time{}, Time(5s)) {}
+        monitor(knowledge, writes(knowledge), Time{}, Time(5s)) {}
   template <class What>
   void observe(Duration at, What what) {
     const Time time(at);

@@ -18,7 +18,7 @@ using monitor::usual_latency;
 using monitor::usual_silence;
 
 void Monitor::on(Time at, const SampleArrived& seen) {
-  knowledge_.sightings.note(seen.topic, at);
+  write_.sightings.note(seen.topic, at);
   Topic& topic = topics_[seen.topic.index];
   if (!topic.first) topic.first = at;
   SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(seen.topic);
@@ -30,12 +30,12 @@ void Monitor::on(Time at, const SampleArrived& seen) {
       rhythm.longest = interval;
   }
   rhythm.last = topic.last = at;
-  knowledge_.signals.set_rhythm(seen.topic, rhythm);
+  write_.signals.set_rhythm(seen.topic, rhythm);
   if (topic.needs_phi) topic.phi.add(at, seen.published);
   for (const InputId id : topic.inputs) {
     const Input& input = knowledge_.rules[id];
     if (input.kind == Kind::kRate) derived_[id.index].count.add(at, seen.published);
-    knowledge_.signals.set_latency(
+    write_.signals.set_latency(
         id, input.kind == Kind::kRate ? input.window : usual_latency(rhythm.interval));
     update(id, at);
   }
@@ -53,7 +53,7 @@ bool Monitor::has_begun_since(Time before, TopicId topic) const {
 }
 
 void Monitor::see(TopicId topic, Time at) {
-  if (!knowledge_.sightings.note(topic, at)) return;
+  if (!write_.sightings.note(topic, at)) return;
   for (const InputId id : topics_[topic.index].inputs) deadlines_.set(id.index, silent_from(topic));
 }
 

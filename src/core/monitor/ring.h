@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -26,12 +27,14 @@ class Ring {
 
   // @pre !full()
   void push_back(const T& item) {
+    assert(!full());
     if (size_ == items_.size()) grow();
     ++size_;
     back() = item;
   }
   // @pre !empty()
   void pop_front() {
+    assert(!empty());
     first_ = (first_ + 1) % items_.size();
     --size_;
   }

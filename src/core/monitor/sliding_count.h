@@ -1,6 +1,7 @@
 // How many messages came within the last `window`, exactly.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 
 #include "base/time.h"
@@ -15,7 +16,7 @@ class SlidingCount {
   static constexpr std::size_t kMaxArrivals = 1 << 14;
 
   // @pre window > 0
-  explicit SlidingCount(Duration window) : window_(window) {}
+  explicit SlidingCount(Duration window) : window_(window) { assert(window > Duration::zero()); }
 
   // `count` messages came at `at`. Times never go back.
   void add(Time at, std::uint32_t count);

@@ -1,6 +1,7 @@
 // Mean, extremes and spread of a signal over the last `window`.
 #pragma once
 
+#include <cassert>
 #include <optional>
 
 #include "base/time.h"
@@ -14,7 +15,7 @@ class SlidingValues {
   static constexpr std::size_t kMaxValues = 4096;
 
   // @pre window > 0
-  explicit SlidingValues(Duration window) : window_(window) {}
+  explicit SlidingValues(Duration window) : window_(window) { assert(window > Duration::zero()); }
 
   void add(Time at, double value);
   // Forgets what is older than the window at `now`.

@@ -30,7 +30,7 @@ bool may_be_tried_beside_exhausted(StrategyId strategy, const Knowledge& knowled
   if (asked.is_last_resort) return true;
   const RuleState& state = knowledge.states[asked.rule];
   // A round is spent as well if nothing in it made sense, and nothing was tried.
-  const bool may_have_been_tried = state.round > 0 && state.attempts > 0;
+  const bool may_have_been_tried = state.search.round > 0 && state.search.attempts > 0;
   if (!reconfigures(asked) || may_have_been_tried) return false;
   const auto& all = knowledge.rules[asked.rule].strategies;
   return std::none_of(all.begin(), all.end(), [&](StrategyId other) {
@@ -43,8 +43,8 @@ bool waits_for_person(const Verdict& verdict, const Knowledge& knowledge) {
     return c.excluded == Condition::kTried || c.excluded == Condition::kInvalid;
   };
   const auto waits = [&](const Candidate& c) {
-    return c.excluded == Condition::kDependency && c.because &&
-           knowledge.states.awaits_person(*c.because);
+    return c.excluded == Condition::kDependency && c.failure &&
+           knowledge.states.awaits_person(*c.failure);
   };
   const auto& all = verdict.candidates;
   return std::any_of(all.begin(), all.end(), waits) &&

@@ -1,6 +1,7 @@
 #include "plan/flip.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "plan/ties.h"
@@ -40,6 +41,12 @@ FlipFinder::FlipFinder(const Planner& planner, std::vector<RuleId> failures,
       verdicts_(planner.plan(failures_, what_if_.knowledge())) {}
 
 std::vector<Change> FlipFinder::flips(StrategyId loser) {
+  assert(std::any_of(verdicts_.begin(), verdicts_.end(), [&](const Verdict& verdict) {
+    const auto& all = verdict.candidates;
+    return verdict.chosen != loser && std::any_of(all.begin(), all.end(), [&](const Candidate& c) {
+             return c.strategy == loser;
+           });
+  }));
   const Outcome now = outcome(verdicts_, loser);
   std::vector<Change> flips;
   const auto add = [&](std::optional<Change> flip) {
@@ -73,7 +80,7 @@ FlipFinder::Outcome FlipFinder::outcome(const std::vector<Verdict>& verdicts,
   outcome.rival = own->chosen;
   outcome.excluded = candidate->excluded;
   outcome.component = candidate->component;
-  if (candidate->excluded == Condition::kDependency) outcome.hindrance = candidate->because;
+  if (candidate->excluded == Condition::kDependency) outcome.hindrance = candidate->failure;
   if (candidate->excluded == Condition::kAdapting)
     outcome.hindrance = repaired_for(candidate->component, knowledge);
   if (candidate->excluded == Condition::kAffected) {

@@ -188,9 +188,9 @@ class Queue final : public Planner {
     verdict.rule = last;
     Candidate candidate;
     candidate.strategy = knowledge.rules[last].strategies.front();
-    if (is_there(0)) candidate.because = RuleId(0);
-    if (!is_there(0) && is_there(2)) candidate.because = RuleId(is_there(1) ? 1 : 2);
-    if (candidate.because) {
+    if (is_there(0)) candidate.failure = RuleId(0);
+    if (!is_there(0) && is_there(2)) candidate.failure = RuleId(is_there(1) ? 1 : 2);
+    if (candidate.failure) {
       candidate.excluded = Condition::kDependency;
     } else {
       verdict.chosen = candidate.strategy;

@@ -123,7 +123,7 @@ bool PaperPlanner::depends_on_cause(Candidate& candidate, Criticality level,
     for (const ComponentId upstream : knowledge.graph.upstream(component)) {
       if (!knowledge.states.is_sick(upstream, level, strategy.rule)) continue;
       candidate.component = upstream;
-      candidate.because = knowledge.states.sickness(upstream, level, strategy.rule);
+      candidate.failure = knowledge.states.sickness(upstream, level, strategy.rule);
       return true;
     }
   }
@@ -135,7 +135,7 @@ bool PaperPlanner::depends_on_cause(Candidate& candidate, Criticality level,
       const auto cause = knowledge.states.awaiting_person_at(upstream, level, strategy.rule);
       if (!cause) continue;
       candidate.component = upstream;
-      candidate.because = cause;
+      candidate.failure = cause;
       return true;
     }
   }

@@ -116,9 +116,9 @@ TEST_F(PaperPlannerTest, WithoutImpactTakesTheLikeliest) {
 }
 
 TEST_F(PaperPlannerTest, Condition1SkipsWhatWasTried) {
-  knowledge_.states.state(rule("A")).tried[0] = true;
+  knowledge_.states.state(rule("A")).search.tried[0] = true;
   EXPECT_EQ(plan({"A"}), "A.dear");
-  knowledge_.states.state(rule("A")).tried[1] = true;
+  knowledge_.states.state(rule("A")).search.tried[1] = true;
   EXPECT_EQ(plan({"A"}), "");
   EXPECT_TRUE(verdicts_[0].is_spent);
 }
@@ -128,7 +128,7 @@ TEST_F(PaperPlannerTest, Condition2SkipsWhatMakesNoSense) {
   EXPECT_EQ(plan({"A"}), "A.dear") << "a dead process cannot restart its node";
   EXPECT_EQ(candidate("A", "cheap").excluded, Condition::kInvalid);
   knowledge_.components[ComponentId(3)].lifecycle = Lifecycle::kActive;
-  knowledge_.states.state(rule("Bad")).tried[0] = true;
+  knowledge_.states.state(rule("Bad")).search.tried[0] = true;
   EXPECT_EQ(plan({"Bad"}), "A.dear") << "an active component cannot be activated";
 }
 
@@ -152,7 +152,7 @@ TEST_F(PaperPlannerTest, Condition4SkipsComponentsOfStrategiesChosenJustNow) {
 TEST_F(PaperPlannerTest, Condition5SkipsWhatDependsOnAPossibleCause) {
   EXPECT_EQ(plan({"A", "B", "C"}), "A.cheap");
   EXPECT_EQ(candidate("C", "cheap").excluded, Condition::kDependency);
-  EXPECT_EQ(*candidate("B", "cheap").because, rule("A"));
+  EXPECT_EQ(*candidate("B", "cheap").failure, rule("A"));
 }
 
 TEST_F(PaperPlannerTest, Condition5LooksThroughHealthyComponents) {
@@ -182,7 +182,7 @@ TEST_F(PaperPlannerTest, Condition5HoldsForAnExhaustedFailureWhileItIsThere) {
   knowledge_.states.state(rule("A")).trigger = Slot::of(true);
   EXPECT_EQ(plan({"B"}), "");
   EXPECT_EQ(candidate("B", "cheap").excluded, Condition::kDependency);
-  EXPECT_EQ(candidate("B", "cheap").because, rule("A"));
+  EXPECT_EQ(candidate("B", "cheap").failure, rule("A"));
   EXPECT_FALSE(verdicts_[0].is_spent) << "it waits for a person";
   EXPECT_EQ(plan({"B"}, {.dependencies = false}), "B.cheap") << "who knows no causes";
   knowledge_.states.state(rule("A")).trigger = Slot::of(false);
@@ -193,7 +193,7 @@ TEST_F(PaperPlannerTest, TriesOneReconfigurationBesideAnExhaustedCause) {
   knowledge_.states.enter(rule("A"), RulePhase::kExhausted);
   knowledge_.states.state(rule("A")).trigger = Slot::of(true);
   EXPECT_EQ(plan({"Bad"}), "Bad.first");
-  knowledge_.states.state(rule("Bad")).tried[0] = true;
+  knowledge_.states.state(rule("Bad")).search.tried[0] = true;
   EXPECT_EQ(plan({"Bad"}), "") << "once";
 }
 

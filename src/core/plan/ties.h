@@ -7,12 +7,16 @@
 // are none that a rounding error takes from one part to the next.
 #pragma once
 
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 
 namespace culprit::plan {
 
 // @pre |number| < 2^30
-inline std::int64_t parts(double number) { return std::llround(std::ldexp(number, 30)); }
+inline std::int64_t parts(double number) {
+  assert(std::abs(number) < std::ldexp(1.0, 30));
+  return std::llround(std::ldexp(number, 30));
+}
 
 }  // namespace culprit::plan

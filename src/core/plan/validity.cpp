@@ -55,7 +55,7 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
 }  // namespace
 
 std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge) {
-  const bool is_at_last_resort = knowledge.states[strategy.rule].is_at_last_resort;
+  const bool is_at_last_resort = knowledge.states[strategy.rule].search.is_at_last_resort;
   if (strategy.is_last_resort != is_at_last_resort) {
     return Invalid{strategy.adaptations.front().component,
                    is_at_last_resort ? "only the last resort is left" : "it is the last resort"};

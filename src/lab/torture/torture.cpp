@@ -339,7 +339,7 @@ class Run {
     const auto waits = [&](const FailureHeldBack& word) {
       return states[word.rule].phase == RulePhase::kFailing &&
              std::any_of(word.candidates.begin(), word.candidates.end(), [&](const Candidate& c) {
-               return c.because && left.contains(*c.because);
+               return c.failure && left.contains(*c.failure);
              });
     };
     for (std::size_t before = 0; before != left.size();) {

@@ -208,7 +208,7 @@ Json exclusion_as_json(const Candidate& candidate, const RuleSet& rules) {
   const bool is_about_component =
       *candidate.excluded != Condition::kTried && *candidate.excluded != Condition::kOneEach;
   if (is_about_component) json["component"] = rules[candidate.component].name;
-  if (candidate.because) json["failure"] = rules[*candidate.because].name;
+  if (candidate.failure) json["failure"] = rules[*candidate.failure].name;
   json["text"] = describe_exclusion(candidate, rules);
   return json;
 }

@@ -29,7 +29,7 @@ TEST(BayesPlanner, ActsOnTheRootCauseOnly) {
   scene.fail("A").fail("B").fail("C");
   EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart");
   EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kDependency);
-  EXPECT_EQ(scene.candidate("B.restart").because, scene.rule("A"));
+  EXPECT_EQ(scene.candidate("B.restart").failure, scene.rule("A"));
 }
 
 TEST(BayesPlanner, ActsOnIndependentFailuresAtOnce) {
@@ -85,7 +85,7 @@ TEST(BayesPlanner, ActsOnAComponentWhoseProcessIsGoneThoughOthersMayExplainIt) {
   Scene scene = robot();
   scene.fail("A").fail("B");
   scene.process("b", ProcessState::kGone);
-  scene->states.state(scene.rule("A")).retry_at = kNever;  // it is in its back-off
+  scene->states.state(scene.rule("A")).search.retry_at = kNever;  // it is in its back-off
   scene.plan(kFewRedeployments);
   EXPECT_NE(scene.candidate("B.redeploy").excluded, Condition::kDependency);
 }
@@ -107,7 +107,7 @@ TEST(BayesPlanner, WaitsWhileAnUpstreamComponentIsSuspect) {
   scene->signals.set_rhythm(TopicId(0), {scene->now - 250ms, 100ms, 100ms});
   EXPECT_EQ(scene.plan(kFewRedeployments), "");
   EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kSuspect);
-  EXPECT_EQ(scene.candidate("B.restart").because, scene.rule("A"));
+  EXPECT_EQ(scene.candidate("B.restart").failure, scene.rule("A"));
   EXPECT_FALSE(scene.verdict("B").is_spent);
   scene->signals.set_rhythm(TopicId(0), {scene->now - 50ms, 100ms, 100ms});
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "it spoke";
@@ -166,7 +166,7 @@ TEST(BayesPlanner, TreatsACauseAsTheWorstFailureThatItExplains) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "Camera.restart Other.restart");
   EXPECT_EQ(scene.verdicts().front().rule, scene.rule("Camera")) << "and first: it explains more";
   EXPECT_EQ(scene.candidate("Lost.restart").excluded, Condition::kDependency);
-  EXPECT_EQ(scene.candidate("Lost.restart").because, scene.rule("Camera"));
+  EXPECT_EQ(scene.candidate("Lost.restart").failure, scene.rule("Camera"));
 }
 
 TEST(BayesPlanner, WaitsForTheVerdictOnALesserCauseThatIsKnownToBeDead) {
@@ -249,7 +249,7 @@ TEST(BayesPlanner, SaysWhatIsChosenInsteadAtTheSameComponent) {
   scene.fail("A").fail("B");
   ASSERT_EQ(scene.plan(kBalanced), "A.restart");
   EXPECT_EQ(scene.candidate("B.tune").excluded, Condition::kAffected);
-  EXPECT_EQ(scene.candidate("B.tune").because, scene.rule("A"));
+  EXPECT_EQ(scene.candidate("B.tune").failure, scene.rule("A"));
 }
 
 TEST(BayesPlanner, PrefersTheStrategyThatClearsMore) {
@@ -271,7 +271,7 @@ TEST(BayesPlanner, RepairsNothingThatAnExhaustedFailureExplains) {
   scene.link("a", "b").link("b", "c").exhaust("A").fail("B").fail("C").fail("D");
   EXPECT_EQ(scene.plan(kFewRedeployments), "C.other D.restart");
   EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kDependency);
-  EXPECT_EQ(scene.candidate("B.restart").because, scene.rule("A"));
+  EXPECT_EQ(scene.candidate("B.restart").failure, scene.rule("A"));
   EXPECT_FALSE(scene.verdict("B").is_spent);
   scene.tried("C.other");
   EXPECT_EQ(scene.plan(kFewRedeployments), "D.restart") << "once";
@@ -288,7 +288,7 @@ TEST(BayesPlanner, RepairsNothingInACircleThatADeadMemberExplains) {
   scene.process("a", ProcessState::kGone);
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.other") << "it may lead round the dead one";
   EXPECT_EQ(scene.candidate("C.restart").excluded, Condition::kDependency);
-  EXPECT_EQ(scene.candidate("C.restart").because, scene.rule("A"));
+  EXPECT_EQ(scene.candidate("C.restart").failure, scene.rule("A"));
   scene.tried("B.other");
   EXPECT_EQ(scene.plan(kFewRedeployments), "");
   scene.process("c", ProcessState::kGone);
@@ -320,7 +320,7 @@ TEST(BayesPlanner, StopsSafelyThoughAnExhaustedFailureExplainsIt) {
   scene.link("a", "b").exhaust("A").fail("B");
   EXPECT_EQ(scene.plan(kFewRedeployments), "");
   EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kDependency);
-  scene->states.state(scene.rule("B")).is_at_last_resort = true;
+  scene->states.state(scene.rule("B")).search.is_at_last_resort = true;
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.safe");
 }
 

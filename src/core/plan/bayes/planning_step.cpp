@@ -255,7 +255,7 @@ void PlanningStep::exclude(Entry& entry, double chance) const {
 void PlanningStep::exclude(Entry& entry, const Surroundings::Obstacle& obstacle) const {
   entry.candidate.excluded = obstacle.condition;
   entry.candidate.component = obstacle.component;
-  entry.candidate.because = obstacle.because;
+  entry.candidate.failure = obstacle.because;
 }
 
 // What makes no sense now may make sense once that is over which is being done to its component.

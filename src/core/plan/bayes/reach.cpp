@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace culprit::plan {
 namespace {
@@ -115,8 +116,9 @@ void Reach::find(const Graph& graph, const Knots& knots) {
 }
 
 std::size_t Reach::place_of(ComponentId component) const {
-  return static_cast<std::size_t>(
-      std::lower_bound(components_.begin(), components_.end(), component) - components_.begin());
+  const auto found = std::lower_bound(components_.begin(), components_.end(), component);
+  assert(found != components_.end() && *found == component);
+  return static_cast<std::size_t>(found - components_.begin());
 }
 
 }  // namespace culprit::plan

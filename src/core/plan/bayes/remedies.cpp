@@ -22,7 +22,8 @@ std::vector<Remedy> remedies(RuleId rule, const Knowledge& knowledge) {
   double sum = 0;
   for (std::size_t s = 0; s < strategies.size(); ++s) {
     const Strategy& strategy = knowledge.rules[strategies[s]];
-    Remedy remedy{strategies[s], state.tried[s], {}, knowledge.beliefs[strategies[s]].mean().value};
+    Remedy remedy{
+        strategies[s], state.search.tried[s], {}, knowledge.beliefs[strategies[s]].mean().value};
     if (is_down && !revives(strategy, knowledge)) remedy.chance *= kUnlikely;
     if (!remedy.is_tried) remedy.invalid = invalidity(strategy, knowledge);
     remedy.is_withheld =
@@ -57,11 +58,11 @@ double still_there(RuleId rule, const Knowledge& knowledge) {
     const double chance = knowledge.beliefs[strategies[s]].mean().value;
     const double own = chance / std::max(1.0, sum);
     turn *= 1 - chance;
-    if (!state.tried[s]) continue;
+    if (!state.search.tried[s]) continue;
     left -= own;
     unlucky *= 1 - luck_of(chance, own);
   }
-  return std::max(0.0, left) * unlucky * std::pow(turn, state.round);
+  return std::max(0.0, left) * unlucky * std::pow(turn, state.search.round);
 }
 
 }  // namespace culprit::plan

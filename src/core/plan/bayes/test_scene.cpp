@@ -63,7 +63,7 @@ Scene& Scene::tried(const std::string& name) {
   const StrategyId id = strategy(name);
   const auto& siblings = (*rules_)[(*rules_)[id].rule].strategies;
   const auto place = std::find(siblings.begin(), siblings.end(), id) - siblings.begin();
-  knowledge_->states.state((*rules_)[id].rule).tried[static_cast<std::size_t>(place)] = true;
+  knowledge_->states.state((*rules_)[id].rule).search.tried[static_cast<std::size_t>(place)] = true;
   return *this;
 }
 

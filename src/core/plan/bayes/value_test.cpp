@@ -66,7 +66,7 @@ TEST(Remedies, SayHowLikelyWhatIsWrongOutlivesThem) {
   other.tried("A.configure").tried("A.restart");
   EXPECT_NEAR(still_there(other.rule("A"), *other), 0.38, 0.01);
   Scene again(kOverlapping);
-  (*again).states.state(again.rule("A")).round = 1;
+  (*again).states.state(again.rule("A")).search.round = 1;
   EXPECT_NEAR(still_there(again.rule("A"), *again), 0.72 * 0.57 * 0.1, 1e-9);
 }
 

@@ -125,7 +125,7 @@ std::vector<Verdict> StylePlanner::plan(std::span<const RuleId> failures,
       if (first) {
         candidate.excluded = Condition::kInTheWay;
         candidate.component = knowledge.rules[*first].components.front();
-        candidate.because = first;
+        candidate.failure = first;
       } else if (verdict.chosen) {
         candidate.excluded = Condition::kOneEach;
       } else {

@@ -121,7 +121,7 @@ std::vector<Verdict> RankingPlanner::plan(std::span<const RuleId> failures,
       } else {
         candidate.excluded = Condition::kDependency;
         candidate.component = knowledge.rules[*first].components.front();
-        candidate.because = first;
+        candidate.failure = first;
       }
     }
     verdicts.push_back(std::move(verdict));

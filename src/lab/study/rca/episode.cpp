@@ -79,8 +79,8 @@ class Judge {
     const std::size_t effect = rules_[held.rule].components.front().index;
     if (plant_.fault(effect) || !plant_.is_ill(effect)) return;
     for (const Candidate& candidate : held.candidates) {
-      if (candidate.excluded != Condition::kDependency || !candidate.because) continue;
-      const std::size_t cause = rules_[*candidate.because].components.front().index;
+      if (candidate.excluded != Condition::kDependency || !candidate.failure) continue;
+      const std::size_t cause = rules_[*candidate.failure].components.front().index;
       // What is repaired already may still be said to fail.
       if (!plant_.is_ill(cause)) break;
       grounded_[held.rule] = plant_.passes(cause, effect);

@@ -117,7 +117,7 @@ class OptimumPlanner : public Planner {
         verdict.chosen = strategies[t];
       } else {
         candidate.excluded =
-            knowledge.states[rule].tried[t] ? Condition::kTried : Condition::kOneEach;
+            knowledge.states[rule].search.tried[t] ? Condition::kTried : Condition::kOneEach;
       }
       verdict.is_spent &= candidate.excluded == Condition::kTried;
       verdict.candidates.push_back(candidate);

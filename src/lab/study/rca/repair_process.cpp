@@ -385,7 +385,7 @@ void RepairProcess::show(const Situation& situation, Knowledge& knowledge) const
     RuleState& state = knowledge.states.state(rule);
     state.trigger = Slot::of(is_ill);
     state.failing_since = is_ill ? Time(50s) : kNever;
-    state.round = situation.tries[c].turns;
+    state.search.round = situation.tries[c].turns;
     const bool is_failing = is_ill && !is_exhausted(situation, c);
     knowledge.states.enter(rule, is_failing ? RulePhase::kFailing
                                  : is_ill   ? RulePhase::kExhausted
@@ -397,7 +397,7 @@ void RepairProcess::show(const Situation& situation, Knowledge& knowledge) const
     const std::vector<int> failed = vain(situation, c);
     for (std::size_t t = 0; t < failed.size(); ++t) {
       const StrategyId id = rules_[rule].strategies[t];
-      state.tried[t] = has(situation.tries[c].tried, t);
+      state.search.tried[t] = has(situation.tries[c].tried, t);
       const Treatment& what = scenario_.components[c].treatments[t];
       Belief belief = initial_belief({what.success / 100}, what.confidence);
       belief.beta += failed[t];
@@ -414,9 +414,9 @@ std::optional<Situation> RepairProcess::situation_of(const Knowledge& knowledge)
     if (state.phase == RulePhase::kQuiet) continue;
     now.ill |= one(c);
     if (knowledge.components[ComponentId(c)].process == ProcessState::kGone) now.gone |= one(c);
-    now.tries[c].turns = static_cast<std::uint8_t>(std::min(state.round, kTurns - 1));
-    for (std::size_t t = 0; t < state.tried.size(); ++t) {
-      if (state.tried[t])
+    now.tries[c].turns = static_cast<std::uint8_t>(std::min(state.search.round, kTurns - 1));
+    for (std::size_t t = 0; t < state.search.tried.size(); ++t) {
+      if (state.search.tried[t])
         now.tries[c].tried = static_cast<std::uint8_t>(now.tries[c].tried | 1U << t);
     }
   }

@@ -1,0 +1,54 @@
+#include "knowledge/attempts.h"
+
+#include <cassert>
+#include <utility>
+
+namespace culprit {
+
+void Attempts::begin(StrategyId strategy, Time now) {
+  const RuleId rule = states_.rules()[strategy].rule;
+  RuleState& state = states_.state(rule);
+  assert(!state.attempt);
+  state.attempt.emplace();
+  state.attempt->strategy = strategy;
+  state.attempt->chosen = now;
+  state.attempt->has_no_failure = state.phase == RulePhase::kQuiet;
+  states_.enter(rule, RulePhase::kAttempting);
+}
+
+void Attempts::resume(StrategyId strategy, Time now) {
+  states_.begin_search(states_.rules()[strategy].rule, now);
+  begin(strategy, now);
+  Attempt& attempt = of(strategy);
+  attempt.first_change = now;
+  attempt.is_ambiguous = true;
+  attempt.has_no_failure = false;
+}
+
+void Attempts::change_begins(StrategyId strategy, Time now) { of(strategy).first_change = now; }
+
+void Attempts::took_effect(StrategyId strategy, Time now) {
+  of(strategy).effective = now;
+  of(strategy).stage = Attempt::Stage::kWaiting;
+}
+
+void Attempts::obstruct(StrategyId strategy, std::string obstacle) {
+  of(strategy).obstacle = std::move(obstacle);
+}
+
+void Attempts::make_ambiguous(StrategyId strategy) { of(strategy).is_ambiguous = true; }
+
+void Attempts::undo(StrategyId strategy) {
+  states_.set_tried(strategy, true);
+  of(strategy).stage = Attempt::Stage::kUndoing;
+}
+
+void Attempts::undone(StrategyId strategy) { of(strategy).stage = Attempt::Stage::kOver; }
+
+Attempt& Attempts::of(StrategyId strategy) {
+  auto& attempt = states_.state(states_.rules()[strategy].rule).attempt;
+  assert(attempt && attempt->strategy == strategy);
+  return *attempt;
+}
+
+}  // namespace culprit
