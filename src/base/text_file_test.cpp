@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
+
 namespace culprit {
 namespace {
 
@@ -17,20 +19,15 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 struct TextFile : testing::Test {
-  TextFile() {
-    std::string name = (fs::temp_directory_path() / "culprit-text-XXXXXX").string();
-    folder = mkdtemp(name.data());
-    file = folder / "my.rules";
-    std::ofstream(file) << "old";
-  }
-  ~TextFile() override { fs::remove_all(folder); }
+  TextFile() { std::ofstream(file) << "old"; }
 
   std::ptrdiff_t files() const {
     return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
   }
 
-  fs::path folder;
-  fs::path file;
+  const test::TestFolder own;
+  const fs::path folder = own.path();
+  const fs::path file = folder / "my.rules";
 };
 
 // While it lives, files of this process may not grow beyond `bytes`: a disk that takes no more.

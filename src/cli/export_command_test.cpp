@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "cli/commands.h"
 
 namespace culprit::cli {
@@ -13,13 +14,6 @@ namespace {
 using testing::HasSubstr;
 
 struct ExportCommand : testing::Test {
-  ExportCommand() {
-    std::string name = (std::filesystem::temp_directory_path() / "culprit-export-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    folder = name;
-  }
-  ~ExportCommand() override { std::filesystem::remove_all(folder); }
-
   std::string path(const std::string& name) const { return (folder / name).string(); }
   static std::string read(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
@@ -39,7 +33,8 @@ struct ExportCommand : testing::Test {
     return exit_code;
   }
 
-  std::filesystem::path folder;
+  const test::TestFolder own;
+  const std::filesystem::path folder = own.path();
   std::string said;
 };
 

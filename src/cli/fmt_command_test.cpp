@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "cli/commands.h"
 
 namespace culprit::cli {
@@ -17,13 +18,6 @@ constexpr const char* kCareless = "CONST a=1\r\n\n\nRULE r\nTRIGGER  a>2\n";
 constexpr const char* kCanonical = "CONST a = 1\n\nRULE r\n  TRIGGER a > 2\n";
 
 struct Fmt : testing::Test {
-  Fmt() {
-    std::string name = (std::filesystem::temp_directory_path() / "culprit-fmt-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    folder = name;
-  }
-  ~Fmt() override { std::filesystem::remove_all(folder); }
-
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(folder / name, std::ios::binary) << text;
     return (folder / name).string();
@@ -48,7 +42,8 @@ struct Fmt : testing::Test {
     return exit_code;
   }
 
-  std::filesystem::path folder;
+  const test::TestFolder own;
+  const std::filesystem::path folder = own.path();
   std::string out;
   std::string err;
 };

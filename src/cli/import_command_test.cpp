@@ -4,18 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "cli/commands.h"
 
 namespace culprit::cli {
 namespace {
 
 struct ImportCommand : testing::Test {
-  ImportCommand() {
-    std::string name = (std::filesystem::temp_directory_path() / "culprit-import-XXXXXX").string();
-    folder = mkdtemp(name.data());
-  }
-  ~ImportCommand() override { std::filesystem::remove_all(folder); }
-
   std::string path(const std::string& name) const { return (folder / name).string(); }
 
   // Its exit code.
@@ -28,7 +23,8 @@ struct ImportCommand : testing::Test {
     return exit_code;
   }
 
-  std::filesystem::path folder;
+  const test::TestFolder own;
+  const std::filesystem::path folder = own.path();
 };
 
 TEST_F(ImportCommand, WritesTheRulesAndSumsUpTheNotes) {

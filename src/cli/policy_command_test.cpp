@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "cli/commands.h"
 #include "cli/unit_settings.h"
 #include "language/checker.h"
@@ -17,16 +18,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 struct PolicyCommand : testing::Test {
-  PolicyCommand() {
-    std::string name = (std::filesystem::temp_directory_path() / "culprit-policy-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    folder = name;
-    setenv("ROS_DOMAIN_ID", "42", 1);
-  }
-  ~PolicyCommand() override {
-    unsetenv("ROS_DOMAIN_ID");
-    std::filesystem::remove_all(folder);
-  }
+  PolicyCommand() { setenv("ROS_DOMAIN_ID", "42", 1); }
+  ~PolicyCommand() override { unsetenv("ROS_DOMAIN_ID"); }
 
   // Gives the exit code; what was written is in `written`, what was said in `said`.
   int run(std::vector<std::string> arguments) {
@@ -45,7 +38,8 @@ struct PolicyCommand : testing::Test {
     return exit_code;
   }
 
-  std::filesystem::path folder;
+  const test::TestFolder own;
+  const std::filesystem::path folder = own.path();
   std::string written;
   std::string said;
 };

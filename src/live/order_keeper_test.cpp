@@ -12,7 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "journal/test_folder.h"
+#include "base/test_folder.h"
 #include "language/checker.h"
 #include "live/run_journal.h"
 #include "robot/inbox.h"
@@ -21,8 +21,8 @@ namespace culprit {
 namespace {
 
 namespace fs = std::filesystem;
+using culprit::test::TestFolder;
 using journal::StandingOrders;
-using journal::test::TestFolder;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 

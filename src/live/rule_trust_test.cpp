@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
+
 namespace culprit {
 namespace {
 
@@ -15,14 +17,9 @@ using testing::HasSubstr;
 
 struct RuleTrust : testing::Test {
   RuleTrust() {
-    std::string name = (fs::temp_directory_path() / "culprit-trust-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    folder = name;
-    file = folder / "my.rules";
     std::ofstream(file) << "COMPONENT c NODE /c\n";
     allow(file, 0644);
   }
-  ~RuleTrust() override { fs::remove_all(folder); }
 
   static void allow(const fs::path& path, int mode) {
     fs::permissions(path, static_cast<fs::perms>(mode));
@@ -37,8 +34,9 @@ struct RuleTrust : testing::Test {
     return trusted ? "" : trusted.error();
   }
 
-  fs::path folder;
-  fs::path file;
+  const test::TestFolder own;
+  const fs::path folder = own.path();
+  const fs::path file = folder / "my.rules";
 };
 
 TEST_F(RuleTrust, AFileThatOnlyItsOwnerWritesIsGood) { EXPECT_EQ(objection(), ""); }

@@ -37,15 +37,10 @@ T value_of(Expected<T> expected) {
 }  // namespace
 
 TestWorld::TestWorld() : domain_(value_of(ros2::DomainLock::reserve())) {
-  std::string name = (std::filesystem::temp_directory_path() / "culprit-test-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  folder_ = name;
   setenv("ROS_DOMAIN_ID", std::to_string(domain_.domain()).c_str(), 1);
   setenv("ROS_LOCALHOST_ONLY", "1", 1);
   setenv("SUNSET_STATE", folder_.c_str(), 1);
 }
-
-TestWorld::~TestWorld() { std::filesystem::remove_all(folder_); }
 
 std::string TestWorld::write(const std::string& name, const std::string& text) const {
   std::ofstream(folder_ / name) << text;

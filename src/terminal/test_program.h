@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/test_folder.h"
 #include "base/units.h"
 #include "ros2/domain_lock.h"
 
@@ -17,14 +18,14 @@ namespace culprit {
 class TestWorld {
  public:
   TestWorld();
-  ~TestWorld();
 
   const std::filesystem::path& folder() const { return folder_; }
   std::string write(const std::string& name, const std::string& text) const;
 
  private:
   ros2::DomainLock domain_;
-  std::filesystem::path folder_;
+  test::TestFolder own_;
+  std::filesystem::path folder_ = own_.path();
 };
 
 // The process that culprit said last `component` to be; 0 if it did not.

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "bag/bag_file.h"
+#include "base/test_folder.h"
 #include "journal/database.h"
 #include "ros2/cdr.h"
 
@@ -36,12 +37,6 @@ inline std::string_view text_of(const ros2::Bytes& bytes) {
 
 class BagTest : public testing::Test {
  protected:
-  BagTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "culprit-bag-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~BagTest() override { std::filesystem::remove_all(folder_); }
-
   // The schema of rosbag2_storage_sqlite3.
   journal::Database make(const std::string& name) {
     auto database =
@@ -72,7 +67,8 @@ class BagTest : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  std::filesystem::path folder_;
+  const culprit::test::TestFolder own_;
+  const std::filesystem::path folder_ = own_.path();
 };
 
 }  // namespace culprit::bag::test

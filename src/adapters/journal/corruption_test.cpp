@@ -6,17 +6,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "journal/json.h"
 #include "journal/learned_copy.h"
 #include "journal/reader.h"
-#include "journal/test_folder.h"
 #include "journal/writer.h"
 
 namespace culprit::journal {
 namespace {
 
 namespace fs = std::filesystem;
-using test::TestFolder;
+using culprit::test::TestFolder;
 using testing::HasSubstr;
 
 constexpr std::int64_t kNow = 1'800'000'000'000'000'000;

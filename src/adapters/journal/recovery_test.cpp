@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "journal/event_json.h"
-#include "journal/test_folder.h"
 #include "journal/writer.h"
 #include "language/checker.h"
 
@@ -57,7 +57,7 @@ struct JournalRecovery : testing::Test {
   }
 
   const RuleSet rules = *check(Source("my.rules", "COMPONENT camera NODE /camera\n")).rules;
-  test::TestFolder folder;
+  culprit::test::TestFolder folder;
   const std::filesystem::path path = folder / "a.journal";
 };
 

@@ -7,16 +7,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "journal/recorder.h"
 #include "journal/recovery.h"
-#include "journal/test_folder.h"
 #include "language/checker.h"
 
 namespace culprit::journal {
 namespace {
 
 namespace fs = std::filesystem;
-using test::TestFolder;
+using culprit::test::TestFolder;
 using namespace std::chrono_literals;
 
 constexpr const char* kRules = R"(

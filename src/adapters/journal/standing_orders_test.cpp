@@ -7,13 +7,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "journal/test_folder.h"
+#include "base/test_folder.h"
 #include "language/checker.h"
 
 namespace culprit::journal {
 namespace {
 
-using test::TestFolder;
+using culprit::test::TestFolder;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 

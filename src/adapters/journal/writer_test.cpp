@@ -10,15 +10,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "journal/json.h"
 #include "journal/reader.h"
-#include "journal/test_folder.h"
 #include "journal/verify.h"
 
 namespace culprit::journal {
 namespace {
 
-using test::TestFolder;
+using culprit::test::TestFolder;
 using testing::HasSubstr;
 
 constexpr std::int64_t kNow = 1'800'000'000'000'000'000;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "base/test_folder.h"
 #include "ros2/messages.h"
 
 namespace culprit::ros2 {
@@ -149,8 +150,8 @@ TEST(FieldReader, ErrorsSayWhatThereIs) {
 }
 
 TEST(FieldReader, EmptyMessagesTakeAByte) {
-  const auto directory =
-      std::filesystem::temp_directory_path() / ("culprit-fields-" + std::to_string(getpid()));
+  const test::TestFolder own;
+  const auto& directory = own.path();
   std::filesystem::create_directories(directory / "my_msgs/msg");
   std::ofstream(directory / "my_msgs/msg/Holder.msg") << "std_msgs/Empty nothing\nuint8 after\n";
   std::ofstream(directory / "my_msgs/msg/Loop.msg") << "Loop again\nuint8 after\n";
@@ -159,7 +160,6 @@ TEST(FieldReader, EmptyMessagesTakeAByte) {
   const auto reader = FieldReader::compile(library, "my_msgs/msg/Holder", "after");
   const auto loop = FieldReader::compile(library, "my_msgs/msg/Loop", "after");
   const auto wide = FieldReader::compile(library, "my_msgs/msg/Wide", "after");
-  std::filesystem::remove_all(directory);
 
   ASSERT_TRUE(reader);
   Value value;

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "ros2/standard_messages.h"
 
 namespace culprit::ros2 {
@@ -18,12 +19,6 @@ using ::testing::HasSubstr;
 // A directory of message definitions that is gone after the test.
 class MessageDirectory {
  public:
-  MessageDirectory()
-      : path_(fs::temp_directory_path() / ("culprit-messages-" + std::to_string(getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~MessageDirectory() { fs::remove_all(path_); }
-
   MessageDirectory& with(const std::string& file, const std::string& text) {
     fs::create_directories((path_ / file).parent_path());
     std::ofstream(path_ / file) << text;
@@ -32,7 +27,8 @@ class MessageDirectory {
   const fs::path& path() const { return path_; }
 
  private:
-  fs::path path_;
+  test::TestFolder own_;
+  fs::path path_ = own_.path();
 };
 
 TEST(MessageLibrary, KnowsTheStandardTypesAndAllThatTheyNest) {

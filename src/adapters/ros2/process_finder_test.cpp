@@ -13,6 +13,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
+
 namespace culprit::ros2 {
 namespace {
 
@@ -212,8 +214,7 @@ TEST(ProcessFinder, WhoMayBeElsewhereIsNotKnownToHaveEnded) {
 // one process that holds them.
 class FakeProc {
  public:
-  explicit FakeProc(const std::string& user)
-      : path_(fs::temp_directory_path() / ("culprit-proc-" + std::to_string(getpid()))) {
+  explicit FakeProc(const std::string& user) {
     fs::create_directories(path_ / "net");
     fs::create_directories(path_ / "4242/fd");
     fs::create_symlink("socket:[777]", path_ / "4242/fd/5");
@@ -227,11 +228,11 @@ class FakeProc {
                                         "00:00000000 00000000  1000        0 778 2 0 0\n"
                                      << "a line that is none\n";
   }
-  ~FakeProc() { fs::remove_all(path_); }
   const fs::path& path() const { return path_; }
 
  private:
-  fs::path path_;
+  test::TestFolder own_;
+  fs::path path_ = own_.path();
 };
 
 TEST(ProcessFinder, ReadsTheTablesOfTheKernel) {

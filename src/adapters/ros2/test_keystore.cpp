@@ -48,16 +48,11 @@ void sign(const fs::path& folder, const std::string& what, const std::string& au
 }  // namespace
 
 TestKeystore::TestKeystore() {
-  std::string name = (fs::temp_directory_path() / "culprit-keys-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  folder_ = name;
   std::ofstream(folder_ / "governance.xml") << kGovernance;
   run_in(folder_, kNewKey + std::string("ca.key && openssl req -x509 -new -key ca.key -days 3650 "
                                         "-subj /CN=test_ca -out ca.pem"));
   sign(folder_, "governance", folder_);
 }
-
-TestKeystore::~TestKeystore() { fs::remove_all(folder_); }
 
 fs::path TestKeystore::file(const std::string& enclave, const std::string& name) const {
   return folder_ / "enclaves" / enclave.substr(1) / name;

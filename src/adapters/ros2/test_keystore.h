@@ -4,13 +4,14 @@
 #include <filesystem>
 #include <string>
 
+#include "base/test_folder.h"
+
 namespace culprit::ros2 {
 
 class TestKeystore {
  public:
   // Without enclaves. Gone with the object.
   TestKeystore();
-  ~TestKeystore();
   TestKeystore(const TestKeystore&) = delete;
 
   // Makes the keys of an enclave ("/culprit") whose members may do what the permissions say.
@@ -22,7 +23,8 @@ class TestKeystore {
   std::filesystem::path file(const std::string& enclave, const std::string& name) const;
 
  private:
-  std::filesystem::path folder_;
+  culprit::test::TestFolder own_;
+  std::filesystem::path folder_ = own_.path();
 };
 
 }  // namespace culprit::ros2

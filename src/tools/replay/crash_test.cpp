@@ -5,15 +5,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "journal/test_folder.h"
+#include "base/test_folder.h"
 #include "replay/test_life.h"
 
 namespace culprit::replay {
 namespace {
 
 namespace fs = std::filesystem;
+using culprit::test::TestFolder;
 using culprit::test::TestRobot;
-using journal::test::TestFolder;
 using test::Life;
 using test::moment;
 using test::value_of;

@@ -2,14 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "journal/test_folder.h"
+#include "base/test_folder.h"
 #include "replay/test_life.h"
 
 namespace culprit::replay {
 namespace {
 
+using culprit::test::TestFolder;
 using culprit::test::TestRobot;
-using journal::test::TestFolder;
 using test::Life;
 using test::value_of;
 using namespace std::chrono_literals;

@@ -7,16 +7,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "journal/recorder.h"
-#include "journal/test_folder.h"
 #include "journal/verify.h"
 #include "manager/test_robot.h"
 
 namespace culprit::replay {
 namespace {
 
+using culprit::test::TestFolder;
 using culprit::test::TestRobot;
-using journal::test::TestFolder;
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 

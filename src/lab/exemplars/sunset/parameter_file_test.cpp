@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "exemplars/sunset/crash_at_start.h"
 
 namespace culprit::sunset {
@@ -15,17 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder that is gone with the test.
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / ("sunset-file-test-" + std::to_string(getpid()))) {}
-  ~Folder() { fs::remove_all(path_); }
-  fs::path operator/(const char* name) const { return path_ / name; }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
+using Folder = test::TestFolder;
 
 ParameterFile open(const fs::path& path) {
   auto file = ParameterFile::open(path);

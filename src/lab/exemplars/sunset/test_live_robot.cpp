@@ -136,7 +136,6 @@ bool Watcher::says_autofocus(std::string_view text) {
 }
 
 LiveRobot::LiveRobot() : domain_(must(ros2::DomainLock::reserve())) {
-  state_ = std::filesystem::temp_directory_path() / ("sunset-test-" + std::to_string(getpid()));
   participant_.domain = domain_.domain();
   participant_.reach = ros2::Reach::kLocalhost;
   setenv("ROS_DOMAIN_ID", std::to_string(domain_.domain()).c_str(), 1);
@@ -150,7 +149,6 @@ LiveRobot::LiveRobot() : domain_(must(ros2::DomainLock::reserve())) {
 LiveRobot::~LiveRobot() {
   for (const auto& [member, pid] : pids_) kill(pid, SIGKILL);
   for (const auto& [member, pid] : pids_) waitpid(pid, nullptr, 0);
-  std::filesystem::remove_all(state_);
 }
 
 int LiveRobot::start(Member member) {

@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/test_folder.h"
 #include "exemplars/sunset/members.h"
 #include "exemplars/sunset/node_control.h"
 #include "ros2/domain_lock.h"
@@ -92,7 +93,8 @@ class LiveRobot {
 
  private:
   ros2::DomainLock domain_;
-  std::filesystem::path state_;
+  test::TestFolder own_;
+  const std::filesystem::path state_ = own_.path();
   ros2::ParticipantOptions participant_;
   std::map<Member, int> pids_;
   std::optional<Watcher> watcher_;

@@ -1,17 +1,19 @@
-// A folder of its own for a test, gone with it.
+// For tests: a folder of its own, gone with it.
 #pragma once
 
 #include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 
-namespace culprit::journal::test {
+namespace culprit::test {
 
 class TestFolder {
  public:
   TestFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "culprit-journal-XXXXXX").string();
-    path_ = mkdtemp(name.data());
+    std::string name = (std::filesystem::temp_directory_path() / "culprit-test-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    path_ = name;
   }
   ~TestFolder() {
     std::error_code error;
@@ -19,11 +21,12 @@ class TestFolder {
     std::filesystem::remove_all(path_, error);
   }
   TestFolder(const TestFolder&) = delete;
-  std::filesystem::path operator/(const char* name) const { return path_ / name; }
+
   const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
 
  private:
   std::filesystem::path path_;
 };
 
-}  // namespace culprit::journal::test
+}  // namespace culprit::test
