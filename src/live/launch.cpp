@@ -75,7 +75,8 @@ class Starting {
     const Part& it = parts_[component.index];
     if (it.state != Lifecycle::kActive || !it.joined || !it.began) return std::nullopt;
     const auto driver = it.was_asked ? ComingUp::Driver::kCulprit : ComingUp::Driver::kOther;
-    return ComingUp{driver, *it.joined - *it.began, it.state_since - *it.joined};
+    const Time rises = it.was_asked ? it.asked : *it.joined;
+    return ComingUp{driver, *it.joined - *it.began, it.state_since - rises};
   }
 
   std::vector<Observation> seen() && {
@@ -97,6 +98,7 @@ class Starting {
     bool has_ended = false;
     std::string trouble{};   // why it could not be started
     bool was_asked = false;  // to change its lifecycle
+    Time asked{};            // first
     Lifecycle state = Lifecycle::kUnknown;
     Time state_since{};
   };
@@ -169,7 +171,7 @@ class Starting {
   std::optional<std::string> step(ComponentId component, Transition transition, Lifecycle from,
                                   Lifecycle to) {
     if (read(component) != from) return std::nullopt;
-    part(component).was_asked = true;
+    if (!std::exchange(part(component).was_asked, true)) part(component).asked = robot_.now();
     const Reply reply = ask(component, ChangeLifecycle{transition});
     Lifecycle state = read(component);
     for (const Time end = later(robot_.now(), times_.transition);

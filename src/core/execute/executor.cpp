@@ -236,7 +236,7 @@ void Executor::note_coming_up(const Pursuit& pursuit, Time now) {
   } else if (std::holds_alternative<execute::LifecycleGoal>(pursuit.goal())) {
     const bool is_ours = pursuit.has_changed_anything() && !pursuit.met_driver();
     how.driver = is_ours ? ComingUp::Driver::kCulprit : ComingUp::Driver::kOther;
-    how.rising = now - state.node_seen;
+    how.rising = now - (is_ours ? pursuit.first_changed() : state.node_seen);
     if (is_ours) state.culprit_raised = now;
   }
   write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
@@ -249,7 +249,7 @@ void Executor::note_too_long(const Pursuit& pursuit, Time now) {
   if (std::holds_alternative<execute::PresentGoal>(pursuit.goal())) {
     how.joining = std::max(how.joining, now - pursuit.changed());
   } else if (std::holds_alternative<execute::LifecycleGoal>(pursuit.goal())) {
-    how.rising = std::max(how.rising, now - state.node_seen);
+    how.rising = std::max(how.rising, now - pursuit.first_changed());
   }
   write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
 }
@@ -258,8 +258,8 @@ void Executor::note_too_long(const Pursuit& pursuit, Time now) {
 void Executor::note_transition(const Pursuit& pursuit, const Pursuit::Request& request, Time now) {
   if (!std::holds_alternative<ChangeLifecycle>(request)) return;
   ComponentState& state = write_.components[pursuit.component()];
-  if (state.changing_since == kNever) state.changing_since = now;
-  state.transition_patience = patience(pursuit.goal());
+  state.transition_patience = std::get<execute::LifecycleGoal>(pursuit.goal()).patience;
+  state.changes_until = later(now, state.transition_patience);
 }
 
 // Which mode was set, and from which: something else may set it back.

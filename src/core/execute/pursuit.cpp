@@ -304,6 +304,7 @@ std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal,
 
 std::optional<Pursuit::Request> Pursuit::change(Request request, Time now) {
   changed_ = now;
+  first_changed_ = std::min(first_changed_, now);
   deadline_ = later(now, patience(goal_));
   wake_ = later(now, timeout(request) + 1s);
   step_ = Step::kChanging;

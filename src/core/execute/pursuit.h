@@ -60,8 +60,9 @@ class Pursuit {
   // When to advance even if nothing was observed.
   Time next_deadline() const;
 
-  // When the last change was asked for; kNever before.
+  // When the last change was asked for, and the first; kNever before.
   Time changed() const { return changed_; }
+  Time first_changed() const { return first_changed_; }
   const Goal& goal() const { return goal_; }
   ComponentId component() const { return component_; }
 
@@ -91,6 +92,7 @@ class Pursuit {
   Step step_ = Step::kLook;
   Time begun_;
   Time deadline_;
+  Time first_changed_ = kNever;
   Time changed_ = kNever;  // when the last change was asked for
   Time wake_ = kNever;     // of the answer, or of the pause
   std::optional<Reply> before_;

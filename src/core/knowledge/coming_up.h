@@ -15,7 +15,9 @@ struct ComingUp {
   // From the order to start it until its node was there; 0: not measured. What was given up because
   // it took too long counts with that time: the next start is given more.
   Duration joining{};
-  Duration rising{};  // from then until its lifecycle was where it should be; likewise
+  // Until its lifecycle was where it should be, likewise: from when it was there, or from culprit's
+  // first request if that brought it up.
+  Duration rising{};
 
   bool operator==(const ComingUp&) const = default;
 };
@@ -24,7 +26,8 @@ struct ComingUp {
 inline Duration longest_transition(const ComingUp& how) {
   using namespace std::chrono_literals;
   if (how.rising <= Duration::zero()) return 10s;
-  return std::clamp<Duration>(4 * how.rising, 2s, 2min);
+  return std::clamp<Duration>(std::chrono::ceil<std::chrono::milliseconds>(4 * how.rising), 2s,
+                              2min);
 }
 
 }  // namespace culprit

@@ -29,7 +29,7 @@ struct ComponentState {
   int missed_probes = 0;        // in a row, since it answered last
   bool answers_probes = false;  // it did, since its process began
   Lifecycle lifecycle = Lifecycle::kUnknown;
-  Time changing_since = kNever;    // its lifecycle; kNever: no transition is known to be under way
+  Time changes_until = kNever;     // when a transition under way hangs; kNever: none is known to be
   Duration transition_patience{};  // that culprit has with each, if more than it needed before
   // Where its lifecycle should be: where it was last while no strategy was at it, or where one
   // brought it on purpose. A process that takes the place of another is brought there; the state

@@ -95,8 +95,12 @@ void Monitor::restart(Time now) {
   graced_ = later(now, kGrace);
   deadlines_.set(knowledge_.rules.inputs.size() + 1, graced_);
   for (Topic& topic : topics_) topic.phi.restart(now);
-  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c)
-    write_.components[ComponentId(c)].missed_probes = 0;
+  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
+    ComponentState& state = write_.components[ComponentId(c)];
+    state.missed_probes = 0;
+    if (state.changes_until != kNever)
+      state.changes_until = std::max(state.changes_until, later(now, kGrace));
+  }
   for (std::size_t i = 0; i < knowledge_.rules.inputs.size(); ++i) {
     const Kind kind = knowledge_.rules.inputs[i].kind;
     if (kind == Kind::kRate || kind == Kind::kAge || kind == Kind::kPhi) update(InputId(i), now);

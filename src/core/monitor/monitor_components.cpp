@@ -16,6 +16,9 @@ bool has_crashed(const std::string& remark) {
          (remark.starts_with("exit code ") && remark != "exit code 0");
 }
 
+// Of what somebody else takes through its lifecycle, and how long that takes was never seen.
+constexpr Duration kUnknownTransition = std::chrono::minutes(1);
+
 // Of a node whose process runs, and of which nothing else is heard: a busy one misses some.
 constexpr int kMissedAlone = 5;
 
@@ -125,9 +128,13 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
   state.lifecycle = seen.state;
   const bool is_primary = seen.state != Lifecycle::kUnknown && seen.state != Lifecycle::kTransition;
   if (seen.state != Lifecycle::kTransition) {
-    state.changing_since = kNever;
-  } else if (state.changing_since == kNever) {
-    state.changing_since = at;
+    state.changes_until = kNever;
+  } else if (state.changes_until == kNever) {
+    const bool is_measured = state.coming_up.rising > Duration::zero();
+    const bool is_ours = state.transition_patience > Duration::zero();
+    const Duration longest =
+        std::max(longest_transition(state.coming_up), state.transition_patience);
+    state.changes_until = later(at, is_measured || is_ours ? longest : kUnknownTransition);
   }
   if (is_primary && !state.took_place && knowledge_.states.reservation(seen.component) == nullptr)
     write_.components.intend_lifecycle(seen.component, seen.state, at, write_.events);
@@ -234,10 +241,7 @@ void Monitor::forget_process(ComponentId component, Time at) {
 }
 
 bool Monitor::hangs_in_transition(ComponentId component, Time now) const {
-  const ComponentState& state = knowledge_.components[component];
-  if (state.changing_since == kNever) return false;
-  const Duration longest = std::max(longest_transition(state.coming_up), state.transition_patience);
-  return now >= later(heard_since(state.changing_since), longest);
+  return knowledge_.components[component].changes_until <= now;
 }
 
 // A node may have one thread, which answers nothing while it changes its lifecycle.
@@ -246,10 +250,10 @@ bool Monitor::hangs_in_transition(ComponentId component, Time now) const {
 bool Monitor::does_not_answer(ComponentId component, Time now) const {
   const ComponentState& state = knowledge_.components[component];
   if (state.missed_probes < kMissedProbes) return false;
-  if (state.changing_since != kNever && !hangs_in_transition(component, now)) return false;
+  if (state.changes_until != kNever && !hangs_in_transition(component, now)) return false;
   if (state.known_pid() == 0) return true;
   if (!state.answers_probes) return false;
-  if (state.changing_since != kNever) return true;
+  if (state.changes_until != kNever) return true;
   return is_heard_of(component, knowledge_) ? is_silent(component, now)
                                             : state.missed_probes >= kMissedAlone;
 }
