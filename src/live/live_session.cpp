@@ -10,6 +10,7 @@
 #include "live/health.h"
 #include "live/launch.h"
 #include "live/role.h"
+#include "live/setups.h"
 #include "replay/replay.h"
 
 namespace culprit {
@@ -164,9 +165,16 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
   session->domain_ = static_cast<int>(setup.link.participant.domain);
   setup.supervisor.robot =
       fmt::format("{}/{}", setup.link.participant.domain, session->rules_.robot);
+  const auto environments = environments_of(session->rules_);
+  setup.supervisor.environments = environments;
   auto robot = LiveRobot::open(session->rules_, std::move(setup));
   if (!robot) return Error{robot.error()};
   session->robot_ = std::move(*robot);
+  for (std::size_t c = 0; c < environments.size(); ++c) {
+    if (!environments[c])
+      session->robot_->report(session->rules_.components[c].name +
+                              " can be neither started nor replaced: " + environments[c].error());
+  }
   return session;
 }
 

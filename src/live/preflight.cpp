@@ -7,6 +7,7 @@
 #include "language/live_checks.h"
 #include "language/live_findings.h"
 #include "live/robot_survey.h"
+#include "live/setups.h"
 #include "owners/units.h"
 #include "robot/inbox.h"
 
@@ -103,6 +104,11 @@ LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& s
       if (!component.unit || stop.stop_requested()) continue;
       if (const auto could = owners::could_manage(*component.unit); !could)
         robot.unit_troubles.push_back({*component.unit, could.error()});
+    }
+    for (const Component& component : each->components) {
+      if (stop.stop_requested()) break;
+      if (auto trouble = launch_trouble(component))
+        robot.launch_troubles.push_back(std::move(*trouble));
     }
   }
   return robot;

@@ -19,8 +19,8 @@ namespace culprit {
 // "no nodes were seen on domain 7; is ROS_DOMAIN_ID the robot's?"
 std::string nobody_on(std::uint32_t domain);
 
-// Looks until all that these rules name is there, or `wait` is over, or it is to stop; and asks
-// systemd about their units.
+// Looks until all that these rules name is there, or `wait` is over, or it is to stop; asks
+// systemd about their units, and looks for what their launch commands need. Runs nothing of theirs.
 LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& survey,
                        Duration wait, const std::stop_token& stop = {});
 

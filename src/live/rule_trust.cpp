@@ -74,6 +74,15 @@ Expected<void> trust_rules(const std::string& path) {
   return {};
 }
 
+Expected<void> trust_setup(const std::string& path) {
+  const std::string why = weakness_of_all(path);
+  if (why.starts_with("cannot find")) return Error{fmt::format("SETUP: {}", why)};
+  if (!why.empty())
+    return Error{fmt::format(
+        "SETUP {} is run before a LAUNCH, and somebody else could change it: {}", path, why)};
+  return {};
+}
+
 Expected<void> trust_state(const fs::path& folder, const fs::path& journal) {
   std::error_code error;
   std::vector<fs::path> all = {folder, folder / "log", journal};

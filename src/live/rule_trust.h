@@ -16,6 +16,9 @@ namespace culprit {
 // folder with the sticky bit, such as /tmp, nobody replaces what is not his own.
 Expected<void> trust_rules(const std::string& path);
 
+// Likewise of the SETUP of a launch command, a file of shell. An error, too: it is not there.
+Expected<void> trust_setup(const std::string& path);
+
 // Likewise of where culprit keeps what it knows: the state folder, the journal, and what is kept
 // beside that. What is not there yet is judged by the folder that it will be made in.
 Expected<void> trust_state(const std::filesystem::path& folder,

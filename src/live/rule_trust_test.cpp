@@ -55,6 +55,13 @@ TEST_F(RuleTrust, NorOneThatOthersMayReplace) {
   EXPECT_EQ(objection(), "") << "as in /tmp";
 }
 
+TEST_F(RuleTrust, NorASetupThatOthersMayWriteOrThatIsNotThere) {
+  EXPECT_TRUE(trust_setup(file));
+  allow(file, 0666);
+  EXPECT_THAT(trust_setup(file).error(), HasSubstr("is run before a LAUNCH, and somebody else "));
+  EXPECT_THAT(trust_setup(folder / "none").error(), HasSubstr("SETUP: cannot find"));
+}
+
 TEST_F(RuleTrust, NorOneOfAnotherUser) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can give files away";
   ASSERT_EQ(chown(file.c_str(), 12345, 12345), 0);

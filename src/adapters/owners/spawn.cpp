@@ -23,33 +23,25 @@ extern char** environ;
 namespace culprit::owners {
 namespace {
 
+// In `added`, or else in our own environment.
+std::string value_of(const std::string& variable, const std::vector<std::string>& added) {
+  for (const std::string& each : added) {
+    if (each.starts_with(variable + "=")) return each.substr(variable.size() + 1);
+  }
+  const char* own = std::getenv(variable.c_str());
+  return own == nullptr ? "" : own;
+}
+
 // Where the program may be, in the order of looking.
 std::vector<std::string> places_of(const Program& program) {
   const std::string& name = program.arguments.front();
   if (name.find('/') != std::string::npos) return {name};
   std::vector<std::string> places;
   for (const auto& folder : program.search_first) places.push_back((folder / name).native());
-  if (const char* path = std::getenv("PATH")) {
-    std::istringstream list(path);
-    for (std::string folder; std::getline(list, folder, ':');)
-      places.push_back((folder.empty() ? "." : folder) + "/" + name);
-  }
+  std::istringstream list(value_of("PATH", program.environment));
+  for (std::string folder; std::getline(list, folder, ':');)
+    places.push_back((folder.empty() ? "." : folder) + "/" + name);
   return places;
-}
-
-// What is inherited, without what `added` has a value for, and `added`.
-std::vector<char*> environment_with(std::vector<std::string>& added) {
-  std::vector<char*> all;
-  for (char** each = environ; *each != nullptr; ++each) {
-    const std::string_view variable(*each);
-    const std::string_view name = variable.substr(0, variable.find('=') + 1);
-    const bool is_replaced = std::any_of(added.begin(), added.end(),
-                                         [&](const std::string& a) { return a.starts_with(name); });
-    if (!is_replaced) all.push_back(*each);
-  }
-  for (std::string& each : added) all.push_back(each.data());
-  all.push_back(nullptr);
-  return all;
 }
 
 std::vector<char*> pointers_to(std::vector<std::string>& words) {
@@ -64,6 +56,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
 struct Preparation {
   char* const* places;
   const char* log;
+  const char* folder;  // to run in; null: as it is
   char* const* arguments;
   char* const* environment;
   char* pid_digits;  // where the pid's are to be written; null: nowhere
@@ -127,7 +120,7 @@ bool has_interpreter(const char* path) {
 constexpr int kReport = STDERR_FILENO + 1;
 constexpr int kKept = kReport + 1;
 
-enum class Step : std::int32_t { kPrepare, kFind, kOpenLog, kRun };
+enum class Step : std::int32_t { kPrepare, kFind, kOpenLog, kEnterFolder, kRun };
 struct Failure {
   Step step;
   std::int32_t why;  // errno
@@ -150,6 +143,7 @@ Failure become(const Preparation& ready, int report) {
   closefrom(kept >= 0 ? kKept + 1 : kReport + 1);
   if (!redirect(ready.log)) return {Step::kOpenLog, errno};
   closefrom(kept >= 0 ? kKept + 1 : kReport + 1);
+  if (ready.folder != nullptr && chdir(ready.folder) != 0) return {Step::kEnterFolder, errno};
   const char* path = first_executable(ready.places);
   if (path == nullptr) return {Step::kFind, ENOENT};
   if (ready.until == Until::kItCouldRun) return {Step::kRun, has_interpreter(path) ? 0 : errno};
@@ -160,17 +154,33 @@ Failure become(const Preparation& ready, int report) {
 }
 
 std::string description(const Failure& failure, const std::string& name,
-                        const std::filesystem::path& log) {
+                        const std::filesystem::path& log, const std::filesystem::path& folder) {
   if (failure.step == Step::kFind)
     return "there is no program '" + name + "'" +
            (name.find('/') == std::string::npos ? " in PATH" : ", or it is not executable");
   const std::string why = std::strerror(failure.why);
   if (failure.step == Step::kOpenLog)
     return "cannot start '" + name + "': its log " + log.string() + " cannot be written: " + why;
+  if (failure.step == Step::kEnterFolder)
+    return "cannot start '" + name + "': its folder " + folder.string() +
+           " cannot be entered: " + why;
   return "cannot start '" + name + "': " + why;
 }
 
 }  // namespace
+
+std::vector<std::string> environment_with(const std::vector<std::string>& added) {
+  std::vector<std::string> all;
+  for (char** each = environ; *each != nullptr; ++each) {
+    const std::string_view variable(*each);
+    const std::string_view name = variable.substr(0, variable.find('=') + 1);
+    const bool is_replaced = std::any_of(added.begin(), added.end(),
+                                         [&](const std::string& a) { return a.starts_with(name); });
+    if (!is_replaced) all.emplace_back(variable);
+  }
+  all.insert(all.end(), added.begin(), added.end());
+  return all;
+}
 
 Expected<Launch> Launch::begin(const Program& program, Until until) {
   if (program.arguments.empty()) return Error{"the launch command is empty"};
@@ -180,25 +190,30 @@ Expected<Launch> Launch::begin(const Program& program, Until until) {
 
   std::vector<std::string> arguments = program.arguments;
   std::vector<std::string> places = places_of(program);
-  std::vector<std::string> added = program.environment;
-  if (!program.pid_variable.empty())
-    added.push_back(program.pid_variable + "=" + std::string(kPidDigits + 1, '\0'));
+  std::vector<std::string> variables = environment_with(program.environment);
+  if (!program.pid_variable.empty()) {
+    std::erase_if(variables, [&](const std::string& each) {
+      return each.starts_with(program.pid_variable + "=");
+    });
+    variables.push_back(program.pid_variable + "=" + std::string(kPidDigits + 1, '\0'));
+  }
   const std::vector<char*> argument_pointers = pointers_to(arguments);
   const std::vector<char*> place_pointers = pointers_to(places);
-  const std::vector<char*> environment = environment_with(added);
+  const std::vector<char*> environment = pointers_to(variables);
   const Preparation ready{
       place_pointers.data(),
       program.log.c_str(),
+      program.folder.empty() ? nullptr : program.folder.c_str(),
       argument_pointers.data(),
       environment.data(),
-      program.pid_variable.empty() ? nullptr : &added.back()[program.pid_variable.size() + 1],
+      program.pid_variable.empty() ? nullptr : &variables.back()[program.pid_variable.size() + 1],
       program.kept_until_it_runs,
       until,
       program.lifetime == Lifetime::kStarter ? getpid() : 0};
 
   const std::string& name = program.arguments.front();
   const auto failed = [&](int why) {
-    return Error{description({Step::kPrepare, why}, name, program.log)};
+    return Error{description({Step::kPrepare, why}, name, program.log, program.folder)};
   };
   std::array<int, 2> report{};
   if (pipe2(report.data(), O_CLOEXEC) != 0) return failed(errno);
@@ -219,7 +234,7 @@ Expected<Launch> Launch::begin(const Program& program, Until until) {
   const int why = errno;
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (pid < 0) return failed(why);
-  return Launch(pid, std::move(read_end), until, name, program.log);
+  return Launch(pid, std::move(read_end), until, program);
 }
 
 Launch::Launch(Launch&& other) noexcept
@@ -227,7 +242,8 @@ Launch::Launch(Launch&& other) noexcept
       report_(std::move(other.report_)),
       until_(other.until_),
       name_(std::move(other.name_)),
-      log_(std::move(other.log_)) {}
+      log_(std::move(other.log_)),
+      folder_(std::move(other.folder_)) {}
 
 Launch& Launch::operator=(Launch&& other) noexcept {
   std::swap(pid_, other.pid_);
@@ -235,6 +251,7 @@ Launch& Launch::operator=(Launch&& other) noexcept {
   std::swap(until_, other.until_);
   std::swap(name_, other.name_);
   std::swap(log_, other.log_);
+  std::swap(folder_, other.folder_);
   return *this;
 }
 
@@ -260,7 +277,7 @@ Expected<void> Launch::outcome() {
   report_ = FileDescriptor();
   const bool has_failed = size == sizeof failure;
   if (has_failed || until_ == Until::kItCouldRun) waitpid(pid, nullptr, 0);
-  if (has_failed) return Error{description(failure, name_, log_)};
+  if (has_failed) return Error{description(failure, name_, log_, folder_)};
   return {};
 }
 

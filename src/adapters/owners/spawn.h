@@ -20,8 +20,10 @@ enum class Lifetime : std::uint8_t {
 struct Program {
   std::vector<std::string> arguments;  // the first is the program, with or without a path
   std::vector<std::filesystem::path> search_first;  // where to look for it before PATH
-  std::filesystem::path log;               // its output is appended here; parent folders are made
-  std::vector<std::string> environment{};  // "NAME=value", beside what it inherits
+  std::filesystem::path log;  // its output is appended here; parent folders are made
+  // "NAME=value", beside what it inherits; also where it is looked for, if PATH is among them.
+  std::vector<std::string> environment{};
+  std::filesystem::path folder{};  // where it runs; empty: where we do
   // A variable that holds the new process's own pid, and in processes that it starts, not theirs.
   std::string pid_variable{};
   // A descriptor that the new process keeps until the program runs; -1: none.
@@ -54,23 +56,29 @@ class Launch {
   int descriptor() const { return report_.get(); }
 
   // Waits, until the program runs, or could. If it does, the caller reaps it; all others are
-  // reaped. Errors: no such program, not executable, the log cannot be written. @pre not called yet
+  // reaped. Errors: no such program, not executable, the log cannot be written, the folder cannot be
+  // entered. @pre not called yet
   Expected<void> outcome();
 
  private:
-  Launch(int pid, FileDescriptor report, Until until, std::string name, std::filesystem::path log)
+  Launch(int pid, FileDescriptor report, Until until, const Program& program)
       : pid_(pid),
         report_(std::move(report)),
         until_(until),
-        name_(std::move(name)),
-        log_(std::move(log)) {}
+        name_(program.arguments.front()),
+        log_(program.log),
+        folder_(program.folder) {}
 
   int pid_;  // 0: it is over, or moved from
   FileDescriptor report_;
   Until until_;
   std::string name_;
   std::filesystem::path log_;
+  std::filesystem::path folder_;
 };
+
+// What we have in our environment, without what `added` has a value for, and `added`.
+std::vector<std::string> environment_with(const std::vector<std::string>& added);
 
 // Starts it and waits until it runs. Gives its pid; the caller reaps it.
 Expected<int> spawn(const Program& program);

@@ -78,11 +78,19 @@ Program Supervisor::program_of(ComponentId component) const {
   Program program{
       what.launch, options_.search_first, options_.log_folder / (what.name + ".log"), {}, {}};
   program.lifetime = options_.lifetime;
+  program.folder = what.folder;
+  if (const auto environment = environment_of(component)) program.environment = *environment;
   if (!options_.robot.empty()) {
-    program.environment = mark_of(marked_as(component));
+    for (std::string& each : mark_of(marked_as(component)))
+      program.environment.push_back(std::move(each));
     program.pid_variable = kPidVariable;
   }
   return program;
+}
+
+Expected<std::vector<std::string>> Supervisor::environment_of(ComponentId component) const {
+  if (component.index < options_.environments.size()) return options_.environments[component.index];
+  return std::vector<std::string>();
 }
 
 // From the decision to start until the program runs, and carries the mark, it is nobody else's to
@@ -119,6 +127,8 @@ void Supervisor::start(CommandId command, ComponentId component) {
 }
 
 Expected<void> Supervisor::begin_start(CommandId command, ComponentId component) {
+  if (const auto environment = environment_of(component); !environment)
+    return Error{environment.error()};
   auto lock = lock_start_of(component);
   if (!lock) return Error{lock.error()};
   // Whatever was started before has the lock no more, and is seen.
@@ -276,6 +286,11 @@ void Supervisor::stop(CommandId command, ComponentId component, Ending ending, H
   if (ending == Ending::kForGood || is_gone(component) || is_left_to_launcher(component)) {
     begin_shutdown(command, component, hangs);
   } else {
+    const auto environment = environment_of(component);
+    if (!environment)
+      return answer(command, Outcome::kRefused,
+                    rules_[component].name +
+                        " is not ended, for it could not be started again: " + environment.error());
     const auto lock_of_start = lock_start_of(component);
     if (!lock_of_start) return answer(command, Outcome::kRefused, lock_of_start.error());
     auto launch = Launch::begin(program_of(component), Until::kItCouldRun);

@@ -69,6 +69,10 @@ class Supervisor {
     // supervisors started is not looked for.
     std::string robot{};
     Lifetime lifetime = Lifetime::kOwn;  // of what is started
+    // What a component has in its environment beside what it inherits, by component; those that
+    // have none may be left out. Where it could not be told, the component is neither ended to be
+    // started again nor started.
+    std::vector<Expected<std::vector<std::string>>> environments{};
   };
 
   // `rules` and `inbox` must outlive the supervisor. Takes over what carries its mark.
@@ -140,6 +144,7 @@ class Supervisor {
 
   std::string marked_as(ComponentId component) const;
   Program program_of(ComponentId component) const;
+  Expected<std::vector<std::string>> environment_of(ComponentId component) const;
   Expected<FileDescriptor> lock_start_of(ComponentId component) const;
   void answer(CommandId command, Outcome outcome, std::string text) const;
 

@@ -48,8 +48,9 @@ class Supervised {
   // Anew, as after a restart of culprit.
   void supervise(const std::filesystem::path& logs = {}) {
     supervisor.reset();
-    supervisor.emplace(rules_, Supervisor::Options{logs.empty() ? folder_ : logs, {}, robot_},
-                       inbox);
+    Supervisor::Options options{logs.empty() ? folder_ : logs, {}, robot_};
+    if (environment) options.environments = {*environment};
+    supervisor.emplace(rules_, std::move(options), inbox);
   }
   ~Supervised() {
     if (supervisor) supervisor->stop_all();
@@ -106,6 +107,7 @@ class Supervised {
 
   Inbox inbox;
   std::optional<Supervisor> supervisor;
+  std::optional<Expected<std::vector<std::string>>> environment;  // of supervise()
 
  private:
   // The first observation of this kind that fits; waits up to half a minute, on any machine enough.
@@ -286,6 +288,38 @@ TEST(Proc, WhoOnlyWaitsDoesNotWork) {
   EXPECT_FALSE((Work{900ms, 5 << 20}.is_more_than(before))) << "one of its processes has ended";
   EXPECT_TRUE((Work{1s + 50ms, 10 << 20}.is_more_than(before)));
   EXPECT_TRUE((Work{1s, 11 << 20}.is_more_than(before)));
+}
+
+// What SETUP and ENV came to, also PATH; and CWD.
+TEST(Supervisor, StartsWithTheEnvironmentAndInTheFolderOfTheComponent) {
+  Supervised c(Supervised::Declared{"LAUNCH \"my_node\" CWD /usr"});
+  const std::filesystem::path program = c.folder() / "bin/my_node";
+  std::filesystem::create_directories(program.parent_path());
+  std::ofstream(program) << "#!/bin/sh\necho map $MAP in $(pwd)\nexec sleep 1000\n";
+  std::filesystem::permissions(program, std::filesystem::perms(0755));
+  c.environment = {{"MAP=yard", "PATH=" + program.parent_path().string() + ":/usr/bin:/bin"}};
+  c.supervise();
+  c.start();
+  EXPECT_NE(c.log_when("\n").find("map yard in /usr\n"), std::string::npos);
+  c.stop();
+}
+
+TEST(Supervisor, EndsNothingThatCouldNotBeStartedAgainForItsSetupOrItsFolder) {
+  Supervised c(Supervised::Declared{"LAUNCH \"sleep 1000\" CWD /does/not/exist"});
+  const int other = *spawn(Program{{"sleep", "1000"}, {}, "/dev/null"});
+  c.supervisor->adopt(ComponentId(0), other, live_now());
+  EXPECT_NE(c.stop_to_start_again().text.find("its folder /does/not/exist cannot be entered"),
+            std::string::npos);
+  c.environment = {Error{"SETUP /x failed"}};
+  c.supervise();
+  c.supervisor->adopt(ComponentId(0), other, live_now());
+  const Reply refused = c.stop_to_start_again();
+  EXPECT_EQ(refused.outcome, Outcome::kRefused);
+  EXPECT_NE(refused.text.find("could not be started again: SETUP /x failed"), std::string::npos);
+  EXPECT_TRUE(exists(other));
+  c.supervisor.reset();
+  kill(other, SIGKILL);
+  waitpid(other, nullptr, 0);
 }
 
 TEST(Supervisor, KillsAStoppedProcessAtOnce) {

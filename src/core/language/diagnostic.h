@@ -66,6 +66,7 @@ enum class Code : std::uint16_t {
   kNoSuchDiagnostic = 63,
   kNoSuchService = 64,
   kNoSuchUnit = 65,
+  kCannotLaunch = 66,
 };
 
 // "R011"

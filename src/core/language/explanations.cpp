@@ -351,6 +351,14 @@ std::vector<Explanation> robot_explanations() {
                     "started.",
                     "COMPONENT camera NODE /robot/camera UNIT camra.service\n",
                     "COMPONENT camera NODE /robot/camera UNIT camera.service\n"),
+      against_robot(Code::kCannotLaunch, "culprit could not start this LAUNCH",
+                    "There is no such program, its SETUP is not there or could be changed "
+                    "by others than culprit's user and root, or its CWD is no folder. Nothing "
+                    "would be ended when the rule fires, for it could not be started again.",
+                    "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\" "
+                    "SETUP /opt/ros/humbel/setup.bash\n",
+                    "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\" "
+                    "SETUP /opt/ros/humble/setup.bash\n"),
   };
 }
 
@@ -409,6 +417,10 @@ const LiveInventory& example_robot() {
     robot.diagnostics = {{"camera", "camera_0", 0, {{"entropy", "0.03"}}}};
     robot.unit_troubles = {
         {{"camra.service", false}, "systemd has no camra.service; did you mean camera.service?"}};
+    robot.launch_troubles = {{"camera", LiveInventory::LaunchTrouble::Clause::kSetup,
+                              "/opt/ros/humbel/setup.bash",
+                              "SETUP: cannot find /opt/ros/humbel/setup.bash: No such file or "
+                              "directory"}};
     return robot;
   }();
   return kRobot;

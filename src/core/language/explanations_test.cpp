@@ -60,6 +60,7 @@ bool exists(Code code) {
     case Code::kNoSuchDiagnostic:
     case Code::kNoSuchService:
     case Code::kNoSuchUnit:
+    case Code::kCannotLaunch:
       return true;
   }
   return false;

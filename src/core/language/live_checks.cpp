@@ -54,7 +54,7 @@ class LiveChecks {
       before = &o;
     }
     for (const syntax::Signal& signal : file_.signals) key(signal);
-    for (const syntax::Component& component : file_.components) unit(component);
+    for (const syntax::Component& component : file_.components) owner(component);
     for (const syntax::Rule& rule : file_.rules) {
       for (const syntax::Strategy& strategy : rule.strategies) {
         for (const syntax::Adaptation& a : strategy.adaptations) services(a);
@@ -85,11 +85,21 @@ class LiveChecks {
 
   // ---- who starts it
 
-  void unit(const syntax::Component& written) {
+  void owner(const syntax::Component& written) {
     const Component* c = component_of(written.name.text);
-    if (c == nullptr || !c->unit) return;
+    if (c == nullptr) return;
     for (const LiveInventory::UnitTrouble& each : robot_.unit_troubles) {
-      if (each.unit == *c->unit) warn(Code::kNoSuchUnit, written.unit->span, each.why, "");
+      if (each.unit == c->unit) warn(Code::kNoSuchUnit, written.unit->span, each.why, "");
+    }
+    for (const LiveInventory::LaunchTrouble& each : robot_.launch_troubles) {
+      if (each.component != c->name) continue;
+      using Clause = LiveInventory::LaunchTrouble::Clause;
+      const std::string program = c->launch.empty() ? "" : c->launch.front();
+      const auto& [place, text] = each.clause == Clause::kSetup ? std::pair(written.setup, c->setup)
+                                  : each.clause == Clause::kFolder
+                                      ? std::pair(written.folder, c->folder)
+                                      : std::pair(written.launch, program);
+      if (place && text == each.text) warn(Code::kCannotLaunch, place->span, each.why, "");
     }
   }
 

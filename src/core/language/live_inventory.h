@@ -53,6 +53,16 @@ struct LiveInventory {
     bool operator==(const UnitTrouble&) const = default;
   };
   std::vector<UnitTrouble> unit_troubles{};
+  // The launch commands of the rules that could not run.
+  struct LaunchTrouble {
+    enum class Clause : std::uint8_t { kLaunch, kSetup, kFolder };
+    std::string component;
+    Clause clause = Clause::kLaunch;
+    std::string text;  // of the clause: the program, the file, the folder
+    std::string why;
+    bool operator==(const LaunchTrouble&) const = default;
+  };
+  std::vector<LaunchTrouble> launch_troubles{};
   bool operator==(const LiveInventory&) const = default;
 
   // Whether anybody is there but tools, whose nodes are hidden, and culprit.

@@ -192,6 +192,22 @@ class Parser {
                                   "write it in quotes: LAUNCH \"ros2 run package program\"");
         }
         component.launch = Name{std::get<std::string>(command.literal), command.span};
+      } else if (clause.text == "ENV" && !component.environment) {
+        s.next();
+        const Token variables = s.next();
+        if (variables.kind != Token::Kind::kString) {
+          return read_.fail_token(variables, "the variables",
+                                  "write them in quotes: ENV \"ROS_DOMAIN_ID=7 LANG=C\"");
+        }
+        component.environment = Name{std::get<std::string>(variables.literal), variables.span};
+      } else if (clause.text == "SETUP" && !component.setup) {
+        s.next();
+        component.setup = read_.name_or_text(s, "the file to source");
+        if (!component.setup) return false;
+      } else if (clause.text == "CWD" && !component.folder) {
+        s.next();
+        component.folder = read_.name_or_text(s, "the folder to run in");
+        if (!component.folder) return false;
       } else if (clause.text == "UNIT" && !component.unit) {
         s.next();
         component.unit = read_.name_or_text(s, "the unit's name");
@@ -209,8 +225,8 @@ class Parser {
         s.next();
         if (!lifecycle(s, component)) return false;
       } else {
-        return read_.unexpected_clause(
-            clause, {"NODE", "LAUNCH", "UNIT", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+        return read_.unexpected_clause(clause, {"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT",
+                                                "RESPAWNED", "REQUIRED", "LIFECYCLE"});
       }
     }
     file_.components.push_back(std::move(component));

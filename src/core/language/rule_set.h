@@ -38,6 +38,11 @@ struct Component {
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
   bool is_respawned = false;  // whoever started it starts it again: culprit ends it and waits
 
+  // What its launch command needs beside culprit's own environment and folder. All paths are whole.
+  std::string setup{};                     // a file of shell that is sourced first; may be empty
+  std::vector<std::string> environment{};  // "NAME=value"
+  std::string folder{};                    // where it runs; empty: where culprit does
+
   std::optional<SystemdUnit> unit{};  // that runs it: systemd is asked to start and to end it
 
   // Whether it can be told to start.

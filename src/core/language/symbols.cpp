@@ -33,6 +33,16 @@ std::optional<std::vector<std::string>> split_command(std::string_view text) {
   return arguments;
 }
 
+// NAME=value
+bool is_assignment(std::string_view text) {
+  const std::string_view name = text.substr(0, text.find('='));
+  const auto may_be_there = [](unsigned char c) {
+    return c < 128 && (std::isalnum(c) || c == '_');
+  };
+  return name.size() < text.size() && !name.empty() && std::isdigit(name[0]) == 0 &&
+         std::all_of(name.begin(), name.end(), may_be_there);
+}
+
 // As systemd names them (systemd.unit(5)); a template without its instance is none.
 bool is_service_unit(std::string_view name) {
   constexpr std::string_view kSuffix = ".service";
@@ -100,18 +110,49 @@ void Symbols::declare_component(const syntax::Component& written) {
                               "declare each node once"});
     }
   }
+  declare_launch(written, component);
+  if (written.unit) component.unit = declared_unit(written);
+  declared_components_.push_back(components_.emplace(component.name, id).first->first);
+  rules_.components.push_back(std::move(component));
+}
+
+// ENV, SETUP and CWD are a launch command's, and of nothing else that starts it.
+void Symbols::declare_launch(const syntax::Component& written, Component& component) {
+  const auto report = [&](const syntax::Name& where, std::string cause, std::string remedy) {
+    diagnostics_.push_back(
+        {Code::kSyntax, Severity::kError, where.span, std::move(cause), std::move(remedy)});
+  };
   if (written.launch) {
     if (auto command = split_command(written.launch->text)) {
       component.launch = std::move(*command);
     } else {
-      diagnostics_.push_back({Code::kSyntax, Severity::kError, written.launch->span,
-                              "this is no command",
-                              "write the program and its arguments; close every quote"});
+      report(*written.launch, "this is no command",
+             "write the program and its arguments; close every quote");
     }
   }
-  if (written.unit) component.unit = declared_unit(written);
-  declared_components_.push_back(components_.emplace(component.name, id).first->first);
-  rules_.components.push_back(std::move(component));
+  const auto is_for_launch = [&](const char* word, const std::optional<syntax::Name>& what) {
+    if (what && !written.launch)
+      report(*what,
+             std::string(word) + " is for a LAUNCH, and component '" + written.name.text +
+                 "' has none",
+             std::string("add LAUNCH \"program arguments\", or leave ") + word + " out");
+    return what.has_value();
+  };
+  const auto whole_path = [&](const syntax::Name& path) {
+    if (!path.text.starts_with('/'))
+      report(path, "this path is not whole", "write it from the root, with a '/' in front");
+    return path.text;
+  };
+  if (is_for_launch("SETUP", written.setup)) component.setup = whole_path(*written.setup);
+  if (is_for_launch("CWD", written.folder)) component.folder = whole_path(*written.folder);
+  if (!is_for_launch("ENV", written.environment)) return;
+  const auto variables = split_command(written.environment->text);
+  if (variables && std::all_of(variables->begin(), variables->end(), is_assignment)) {
+    component.environment = *variables;
+  } else {
+    report(*written.environment, "these are no variables",
+           "write them as NAME=value, with blanks between them: ENV \"ROS_DOMAIN_ID=7 LANG=C\"");
+  }
 }
 
 // One unit runs one component, and nobody else does.

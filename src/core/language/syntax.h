@@ -86,6 +86,9 @@ struct Component {
   Name name;
   std::optional<Name> node;
   std::optional<Name> launch;  // the quoted text, unescaped
+  std::optional<Name> setup{};
+  std::optional<Name> environment{};  // likewise
+  std::optional<Name> folder{};
   bool is_required = false;
   bool is_respawned = false;
   std::optional<Name> unit{};

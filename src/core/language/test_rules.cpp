@@ -129,15 +129,17 @@ std::string range() {
 std::string component_line() {
   const std::string node = maybe(words({"NODE", ros_name()}));
   const std::string launch = maybe(words({"LAUNCH", text()}));
+  const std::string around = words({maybe(words({"ENV", text()})), maybe(words({"SETUP", name()})),
+                                    maybe(words({"CWD", name()}))});
   const std::string required = maybe("REQUIRED");
   const std::string respawned = maybe("RESPAWNED");
   const std::string unit = maybe(words({"UNIT", name(), maybe("USER")}));
   const char* driver = coin() ? "self" : coin() ? "managed" : "launcher";
   const std::string lifecycle = maybe(words({"LIFECYCLE", driver}));
-  return coin() ? words({"COMPONENT", identifier(), node, launch, unit, respawned, required,
+  return coin() ? words({"COMPONENT", identifier(), node, launch, around, unit, respawned, required,
                          lifecycle})
-                : words({"COMPONENT", identifier(), lifecycle, required, respawned, unit, launch,
-                         node});
+                : words({"COMPONENT", identifier(), lifecycle, required, respawned, unit, around,
+                         launch, node});
 }
 
 std::string signal_line() {

@@ -89,10 +89,13 @@ class Completion {
     if (statement == "COMPONENT") {
       if (words_.back() == "NODE") return names(&live_nodes);
       if (words_.back() == "LIFECYCLE") return keywords({"self", "managed", "launcher"});
-      if (words_.back() == "UNIT") return {};
+      for (const char* takes_text : {"UNIT", "LAUNCH", "ENV", "SETUP", "CWD"}) {
+        if (words_.back() == takes_text) return {};
+      }
       if (words_[words_.size() - 2] == "UNIT")
         return keywords({"USER", "NODE", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
-      return keywords({"NODE", "LAUNCH", "UNIT", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+      return keywords(
+          {"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
     }
     if (statement == "SIGNAL") return signal();
     if (statement == "IGNORE") {

@@ -1,0 +1,171 @@
+#include "owners/setup.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <string_view>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "base/live_clock.h"
+#include "owners/file_descriptor.h"
+#include "owners/spawn.h"
+
+namespace culprit::owners {
+namespace {
+
+constexpr std::size_t kMostOutput = std::size_t{1} << 20;
+
+// The file sees no arguments. What it prints is for people, not for us.
+constexpr const char* kLine =
+    R"(culprit_setup=$1; shift; . "$culprit_setup" >&2 && exec /usr/bin/env -0)";
+
+bool begins_with_any(std::string_view variable, std::initializer_list<std::string_view> names) {
+  return std::any_of(names.begin(), names.end(),
+                     [&](std::string_view name) { return variable.starts_with(name); });
+}
+
+struct Pipe {
+  FileDescriptor read_end;
+  FileDescriptor write_end;
+};
+
+Expected<Pipe> make_pipe() {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) return Error{std::strerror(errno)};
+  return Pipe{FileDescriptor(ends[0]), FileDescriptor(ends[1])};
+}
+
+// On a thread of its own: a thread that gave up its ambient capabilities does not get them back.
+Expected<int> begin_shell(const std::filesystem::path& file, std::vector<std::string> environment,
+                          int out, int err) {
+  std::vector<std::string> words = {"bash", "--noprofile",   "--norc",     "-c",
+                                    kLine,  "culprit-setup", file.native()};
+  const auto pointers_to = [](std::vector<std::string>& texts) {
+    std::vector<char*> pointers;
+    for (std::string& text : texts) pointers.push_back(text.data());
+    pointers.push_back(nullptr);
+    return pointers;
+  };
+  const std::vector<char*> arguments = pointers_to(words);
+  const std::vector<char*> variables = pointers_to(environment);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&files, err, STDERR_FILENO);
+  posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigset_t all;
+  sigemptyset(&none);
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setflags(&attributes,
+                           POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSID);
+  pid_t pid = 0;
+  int why = 0;
+  std::thread([&] {
+    prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
+    why = posix_spawn(&pid, "/bin/bash", &files, &attributes, arguments.data(), variables.data());
+  }).join();
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  if (why != 0) return Error{std::string("/bin/bash cannot be run: ") + std::strerror(why)};
+  return pid;
+}
+
+// False at the end, and when there is too much.
+bool take_from(int descriptor, std::string& text) {
+  std::array<char, 4096> part{};
+  const ssize_t size = read(descriptor, part.data(), part.size());
+  if (size < 0) return errno == EINTR || errno == EAGAIN;
+  text.append(part.data(), static_cast<std::size_t>(size));
+  return size > 0 && text.size() <= kMostOutput;
+}
+
+enum class Over : std::uint8_t { kItself, kTime };
+// Reads until both ends are closed by all who have them, or `end`. Of errors the last part is kept.
+Over read_all(int out, int err, Time end, std::string& printed, std::string& errors) {
+  std::array<pollfd, 2> files{{{out, POLLIN, 0}, {err, POLLIN, 0}}};
+  while (files[0].fd >= 0) {
+    const Time now = live_now();
+    if (now >= end) return Over::kTime;
+    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(end - now).count();
+    poll(files.data(), files.size(), static_cast<int>(wait));
+    if (files[0].revents != 0 && !take_from(out, printed)) files[0].fd = -1;
+    if (files[1].revents != 0 && !take_from(err, errors)) files[1].fd = -1;
+    if (errors.size() > kMostOutput / 2) errors.erase(0, errors.size() - kMostOutput / 4);
+  }
+  return Over::kItself;
+}
+
+// ": No such file or directory", of what it said last.
+std::string last_words(std::string errors) {
+  while (!errors.empty() && errors.back() == '\n') errors.pop_back();
+  std::string line = errors.substr(errors.rfind('\n') + 1);
+  constexpr std::size_t kShown = 200;
+  if (line.size() > kShown) line.resize(kShown);
+  std::replace_if(
+      line.begin(), line.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+  return line.empty() ? "" : ": " + line;
+}
+
+}  // namespace
+
+Expected<std::vector<std::string>> environment_after(const std::filesystem::path& file,
+                                                     const std::vector<std::string>& given,
+                                                     Duration limit) {
+  const std::string name = "SETUP " + file.string();
+  // BASH_ENV names another file that bash would read.
+  std::vector<std::string> before = environment_with(given);
+  std::erase_if(before, [](const std::string& v) { return v.starts_with("BASH_ENV="); });
+  auto out = make_pipe();
+  auto err = make_pipe();
+  if (!out) return Error{name + ": " + out.error()};
+  if (!err) return Error{name + ": " + err.error()};
+  const auto pid = begin_shell(file, before, out->write_end.get(), err->write_end.get());
+  out->write_end = FileDescriptor();
+  err->write_end = FileDescriptor();
+  if (!pid) return Error{name + ": " + pid.error()};
+  std::string printed;
+  std::string errors;
+  const Over over =
+      read_all(out->read_end.get(), err->read_end.get(), later(live_now(), limit), printed, errors);
+  kill(-*pid, SIGKILL);  // what it started in the background, too
+  int status = 0;
+  while (waitpid(*pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (over == Over::kTime)
+    return Error{name + " took longer than " + culprit::to_string(limit) + last_words(errors)};
+  if (printed.size() > kMostOutput) return Error{name + " gives too large an environment"};
+  std::vector<std::string> after;
+  for (std::size_t begin = 0; begin < printed.size();) {
+    const std::size_t end = printed.find('\0', begin);
+    if (end == std::string::npos) break;
+    std::string variable = printed.substr(begin, end - begin);
+    // Those are the shell's own.
+    if (!begins_with_any(variable, {"_=", "SHLVL=", "PWD=", "OLDPWD="}))
+      after.push_back(std::move(variable));
+    begin = end + 1;
+  }
+  if (after.empty()) return Error{name + " failed" + last_words(errors)};
+  std::erase_if(after, [&](const std::string& variable) {
+    return std::any_of(given.begin(), given.end(), [&](const std::string& each) {
+      return variable.starts_with(each.substr(0, each.find('=') + 1));
+    });
+  });
+  after.insert(after.end(), given.begin(), given.end());
+  return after;
+}
+
+}  // namespace culprit::owners
