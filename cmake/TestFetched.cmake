@@ -1,0 +1,17 @@
+# Takes the project SOURCE as FetchContent does, with nothing set, and compiles an example against it: what is linked is
+# what TestInstalled.cmake links, and takes minutes to compile.
+set(theirs ${BUILD}/fetched)
+file(REMOVE_RECURSE ${theirs})
+file(WRITE ${theirs}/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)
+project(their_robot LANGUAGES CXX)
+include(FetchContent)
+FetchContent_Declare(culprit SOURCE_DIR ${SOURCE})
+FetchContent_MakeAvailable(culprit)
+add_library(their_robot OBJECT ${SOURCE}/examples/t01_embed_the_manager.cpp)
+target_link_libraries(their_robot PRIVATE culprit::core)
+")
+function(run)
+  execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+run(${CMAKE_COMMAND} -S ${theirs} -B ${theirs}/build -G Ninja)
+run(${CMAKE_COMMAND} --build ${theirs}/build --target their_robot)
