@@ -23,12 +23,12 @@ struct Program {
   std::filesystem::path log;  // its output is appended here; parent folders are made
   // "NAME=value", beside what it inherits; also where it is looked for, if PATH is among them.
   std::vector<std::string> environment{};
-  std::filesystem::path folder{};  // where it runs; empty: where we do
   // A variable that holds the new process's own pid, and in processes that it starts, not theirs.
   std::string pid_variable{};
   // A descriptor that the new process keeps until the program runs; -1: none.
   int kept_until_it_runs = -1;
   Lifetime lifetime = Lifetime::kOwn;
+  std::filesystem::path folder{};  // where it runs; empty: where we do
 };
 
 enum class Until : std::uint8_t {
