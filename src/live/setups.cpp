@@ -44,23 +44,22 @@ std::vector<Environment> environments_of(const RuleSet& rules) {
 }
 
 std::optional<LiveInventory::LaunchTrouble> launch_trouble(const Component& component) {
-  using Trouble = LiveInventory::LaunchTrouble;
+  using Found = LiveInventory::LaunchTrouble;
   if (component.launch.empty()) return std::nullopt;
   if (!component.setup.empty()) {
     const auto trusted = trust_setup(component.setup);
     if (!trusted)
-      return Trouble{component.name, Trouble::Clause::kSetup, component.setup, trusted.error()};
+      return Found{component.name, Found::Clause::kSetup, component.setup, trusted.error()};
   }
   std::error_code error;
   if (!component.folder.empty() && !std::filesystem::is_directory(component.folder, error))
-    return Trouble{component.name, Trouble::Clause::kFolder, component.folder,
-                   "there is no folder " + component.folder};
+    return Found{component.name, Found::Clause::kFolder, component.folder,
+                 "there is no folder " + component.folder};
   if (!component.setup.empty()) return std::nullopt;
   owners::Program program{component.launch, {}, "/dev/null", component.environment};
   program.folder = component.folder;
   if (const auto could = could_run(program); !could)
-    return Trouble{component.name, Trouble::Clause::kLaunch, component.launch.front(),
-                   could.error()};
+    return Found{component.name, Found::Clause::kLaunch, component.launch.front(), could.error()};
   return std::nullopt;
 }
 
