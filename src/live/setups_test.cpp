@@ -2,11 +2,11 @@
 
 #include <filesystem>
 #include <fstream>
-#include <unistd.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "language/checker.h"
 
 namespace culprit {
@@ -18,15 +18,10 @@ using Clause = LiveInventory::LaunchTrouble::Clause;
 
 struct Setups : testing::Test {
   Setups() {
-    std::string name = (std::filesystem::temp_directory_path() / "culprit-setups-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    folder = name;
-    setup = folder / "setup.bash";
     std::ofstream(setup) << "echo read >> " << folder << "/count\nexport PATH=" << folder
                          << ":$PATH\n";
     std::filesystem::permissions(setup, std::filesystem::perms(0600));
   }
-  ~Setups() override { std::filesystem::remove_all(folder); }
 
   static RuleSet rules(const std::string& components) {
     return *check(Source("test.rules", components)).rules;
@@ -40,8 +35,9 @@ struct Setups : testing::Test {
     std::filesystem::create_symlink("/bin/sleep", folder / name);
   }
 
-  std::filesystem::path folder;
-  std::filesystem::path setup;
+  const test::TestFolder own;
+  const std::filesystem::path& folder = own.path();
+  const std::filesystem::path setup = folder / "setup.bash";
 };
 
 TEST_F(Setups, AreReadOnceForAllThatHaveTheSame) {

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "owners/proc.h"
 
 namespace culprit::owners {
@@ -24,8 +25,6 @@ using testing::Not;
 using testing::StartsWith;
 
 struct Setup : testing::Test {
-  ~Setup() override { std::filesystem::remove_all(folder); }
-
   Expected<std::vector<std::string>> source(const std::string& text,
                                             const std::vector<std::string>& given = {},
                                             Duration limit = 30s) {
@@ -34,8 +33,8 @@ struct Setup : testing::Test {
     return environment_after(file, given, limit);
   }
 
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("culprit setup '$(x) " + std::to_string(getpid()));
+  const test::TestFolder own;
+  const std::filesystem::path folder = own / "a setup '$(x)";  // nothing that a shell would read
   const std::filesystem::path file = folder / "a \"setup\".bash";
 };
 
