@@ -8,8 +8,8 @@
 
 #include "claims.h"
 #include "study/campaign_result.h"
-#include "study/suave/campaign.h"
-#include "study/sunset/study.h"
+#include "suave_study/campaign.h"
+#include "sunset_study/study.h"
 
 namespace culprit::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "study/rca/campaign_json.h"
+#include "rca_study/campaign_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace culprit::study::rca;

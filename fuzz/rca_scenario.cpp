@@ -6,8 +6,8 @@
 #include <string>
 
 #include "plan/bayes/bayes_planner.h"
-#include "study/rca/episode.h"
-#include "study/rca/scenario_json.h"
+#include "rca_study/episode.h"
+#include "rca_study/scenario_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace culprit::study::rca;

@@ -6,9 +6,9 @@
 #include <sstream>
 #include <string>
 
-#include "study/shards/merge.h"
-#include "study/shards/sealed_line.h"
-#include "study/shards/shard_file.h"
+#include "shards/merge.h"
+#include "shards/shard_file.h"
+#include "study/sealed_line.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "demo/sunset_demo.h"
-#include "study/sunset/study.h"
+#include "sunset_study/study.h"
 #include "terminal/console.h"
 
 namespace culprit::lab {

@@ -16,7 +16,7 @@
 #include "base/text_file.h"
 #include "base/units.h"
 #include "owners/spawn.h"
-#include "study/shards/run_record.h"
+#include "study/run_record.h"
 #include "terminal/console.h"
 
 namespace culprit::lab {

@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "study/sunset/study.h"
+#include "sunset_study/study.h"
 
 namespace culprit::lab {
 

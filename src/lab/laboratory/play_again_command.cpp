@@ -5,7 +5,7 @@
 
 #include "base/text_file.h"
 #include "laboratory/commands.h"
-#include "study/single_run.h"
+#include "laboratory/play_again.h"
 #include "terminal/console.h"
 #include "web/event_json.h"
 
@@ -46,7 +46,7 @@ bool is_natural(const Json& request, const char* member) {
   return request.contains(member) && request[member].is_number_unsigned();
 }
 
-int play_again(const std::string& path) {
+int answer(const std::string& path) {
   const auto text = read_text(path);
   if (!text) return fail(text.error(), kUsage);
   const Json request = Json::parse(*text, nullptr, false);
@@ -55,8 +55,8 @@ int play_again(const std::string& path) {
                         is_natural(request, "row") && is_natural(request, "run");
   if (!is_whole) return fail("'" + path + "' is no request for a run", kUsage);
   const auto run =
-      study::play_again(request["study"].get<std::string>(), request["campaign"],
-                        {request["row"].get<std::uint32_t>(), request["run"].get<std::uint32_t>()});
+      play_again(request["study"].get<std::string>(), request["campaign"],
+                 {request["row"].get<std::uint32_t>(), request["run"].get<std::uint32_t>()});
   if (!run) return fail(run.error());
   say_text(stdout, to_json(*run).dump() + "\n");
   return kOk;
@@ -72,7 +72,7 @@ void add_play_again(CLI::App& app, int& exit_code) {
       ->add_option("REQUEST", *path,
                    "A JSON file: {study, campaign, row, run}, as they stand in a campaign's result")
       ->required();
-  command->callback([path, &exit_code] { exit_code = play_again(*path); });
+  command->callback([path, &exit_code] { exit_code = answer(*path); });
 }
 
 }  // namespace culprit::lab

@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "study/json.h"
-#include "study/rca/campaign_json.h"
-#include "study/shards/suave_record.h"
-#include "study/sunset/study.h"
+#include "rca_study/campaign_json.h"
+#include "suave_study/suave_record.h"
+#include "sunset_study/json.h"
+#include "sunset_study/study.h"
 
 namespace culprit::lab {
 namespace {

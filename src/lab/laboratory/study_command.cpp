@@ -14,9 +14,9 @@
 #include "laboratory/study_rca_command.h"
 #include "laboratory/study_runs.h"
 #include "laboratory/study_suave_command.h"
-#include "study/shards/merge.h"
-#include "study/shards/run_record.h"
-#include "study/sunset/study.h"
+#include "shards/merge.h"
+#include "study/run_record.h"
+#include "sunset_study/study.h"
 
 namespace culprit::lab {
 namespace {

@@ -4,13 +4,13 @@
 
 #include "base/text_file.h"
 #include "study/csv.h"
-#include "study/json.h"
 #include "study/plot/plots.h"
 #include "study/report/html_report.h"
-#include "study/suave/html_report.h"
-#include "study/suave/report.h"
 #include "study/tables/render.h"
 #include "study/tables/study_tables.h"
+#include "suave_study/html_report.h"
+#include "suave_study/report.h"
+#include "sunset_study/json.h"
 
 namespace culprit::lab {
 namespace {

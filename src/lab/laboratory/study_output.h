@@ -8,8 +8,8 @@
 
 #include "base/expected.h"
 #include "study/findings.h"
-#include "study/suave/campaign.h"
-#include "study/suave/validation.h"
+#include "suave_study/campaign.h"
+#include "suave_study/validation.h"
 
 namespace culprit::lab {
 

@@ -1,7 +1,7 @@
 // Working off a campaign's runs, all of them or a shard, with a progress line, until it is done or
 // interrupted: what the studies of culprit study have in common.
 //
-// C is a campaign (study/shards/shard_kind.h); `play` makes a run of it from a RunId, on several
+// C is a campaign (shards/shard_kind.h); `play` makes a run of it from a RunId, on several
 // threads, or an error, which ends the work. `signals` say when to stop.
 #pragma once
 
@@ -12,8 +12,8 @@
 #include <fmt/core.h>
 
 #include "laboratory/commands.h"
+#include "shards/shard_writer.h"
 #include "study/ordered_work.h"
-#include "study/shards/shard_writer.h"
 #include "terminal/console.h"
 #include "terminal/progress.h"
 

@@ -12,10 +12,10 @@
 #include "base/text_file.h"
 #include "laboratory/study_output.h"
 #include "laboratory/study_runs.h"
-#include "study/shards/suave_record.h"
-#include "study/suave/fit.h"
-#include "study/suave/settings_json.h"
-#include "study/suave/validation.h"
+#include "suave_study/fit.h"
+#include "suave_study/settings_json.h"
+#include "suave_study/suave_record.h"
+#include "suave_study/validation.h"
 
 namespace culprit::lab {
 namespace {

@@ -48,6 +48,8 @@ struct RunId {
 };
 
 struct Campaign {
+  static constexpr std::string_view kStudy = "sunset";  // the name of its study in files
+
   std::vector<Configuration> rows;
   std::uint32_t runs = 0;  // of each row
   std::uint64_t seed = 0;

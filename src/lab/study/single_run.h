@@ -1,16 +1,9 @@
-// One run of a campaign, played again with all that was told of it, for people who look at it
-// moment by moment.
-//
-// It depends on nothing but its campaign and its number, so nothing of it has to be kept.
+// One run of a campaign with all that was told of it, for people who look at it moment by moment.
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
-#include "base/expected.h"
 #include "knowledge/event.h"
 #include "study/timeline.h"
 
@@ -25,10 +18,5 @@ struct SingleRun {
   double end_s = 0;           // of the robot, from the begin of the run, as all times here
   bool is_told = true;        // false: the manager tells nothing of itself, there are no events
 };
-
-// `study` and `campaign` are what a result says (json.h, suave/report.h, rca/report.h), of whatever
-// origin. Errors: what is wrong with the campaign; it has no such run.
-Expected<SingleRun> play_again(std::string_view study, const nlohmann::ordered_json& campaign,
-                               RunId id);
 
 }  // namespace culprit::study

@@ -1,0 +1,23 @@
+// One run of a campaign, played again with all that was told of it, for people who look at it
+// moment by moment.
+//
+// It depends on nothing but its campaign and its number, so nothing of it has to be kept.
+#pragma once
+
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "base/expected.h"
+#include "study/campaign.h"
+#include "study/single_run.h"
+
+namespace culprit::lab {
+
+// `study` and `campaign` are what a result says (sunset_study/json.h, suave_study/report.h,
+// rca_study/report.h), of whatever origin. Errors: what is wrong with the campaign; it has no such
+// run.
+Expected<study::SingleRun> play_again(std::string_view study,
+                                      const nlohmann::ordered_json& campaign, study::RunId id);
+
+}  // namespace culprit::lab

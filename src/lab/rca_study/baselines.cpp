@@ -1,0 +1,132 @@
+#include "rca_study/baselines.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "plan/cost.h"
+#include "plan/ties.h"
+#include "plan/validity.h"
+
+namespace culprit::study::rca {
+namespace {
+
+// By active rule: which active rules (places among them) are upstream of it.
+std::vector<std::vector<std::size_t>> upstream(const Knowledge& knowledge) {
+  const auto& active = knowledge.states.active();
+  std::vector<std::vector<std::size_t>> touching(knowledge.rules.components.size());
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    for (const ComponentId c : knowledge.rules[active[i]].components)
+      touching[c.index].push_back(i);
+  }
+  std::vector<std::vector<std::size_t>> all(active.size());
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    for (const ComponentId own : knowledge.rules[active[i]].components) {
+      for (const ComponentId c : knowledge.graph.upstream(own)) {
+        for (const std::size_t j : touching[c.index]) {
+          if (j != i) all[i].push_back(j);
+        }
+      }
+    }
+  }
+  return all;
+}
+
+// The negated share of time that a walker spends at each.
+std::vector<double> walk(const std::vector<std::vector<std::size_t>>& upstream) {
+  constexpr double kJump = 0.15;
+  constexpr int kSteps = 50;
+  const auto size = static_cast<double>(upstream.size());
+  std::vector<double> share(upstream.size(), 1 / size);
+  for (int step = 0; step < kSteps; ++step) {
+    std::vector<double> next(upstream.size(), kJump / size);
+    for (std::size_t i = 0; i < upstream.size(); ++i) {
+      const double moving = (1 - kJump) * share[i];
+      if (upstream[i].empty()) next[i] += moving;
+      for (const std::size_t j : upstream[i])
+        next[j] += moving / static_cast<double>(upstream[i].size());
+    }
+    share = std::move(next);
+  }
+  for (double& each : share) each = -each;
+  return share;
+}
+
+Verdict candidates_of(RuleId rule, const Knowledge& knowledge) {
+  Verdict verdict{rule, {}, true, {}, {}};
+  for (const StrategyId id : knowledge.rules[rule].strategies) {
+    const Strategy& strategy = knowledge.rules[id];
+    Candidate candidate;
+    candidate.strategy = id;
+    candidate.cost =
+        plan::cost(knowledge.beliefs[id].mean(), strategy.impact, knowledge.rules.heaviest);
+    if (knowledge.states.is_tried(id)) {
+      candidate.excluded = Condition::kTried;
+    } else if (const auto invalid = plan::invalidity(strategy, knowledge)) {
+      candidate.excluded = Condition::kInvalid;
+      candidate.component = invalid->component;
+      candidate.remark = invalid->reason;
+    } else {
+      verdict.is_spent = false;
+    }
+    verdict.candidates.push_back(std::move(candidate));
+  }
+  std::stable_sort(verdict.candidates.begin(), verdict.candidates.end(),
+                   [](const Candidate& a, const Candidate& b) {
+                     return plan::parts(a.cost) < plan::parts(b.cost);
+                   });
+  return verdict;
+}
+
+}  // namespace
+
+std::vector<double> RankingPlanner::ranks(const Knowledge& knowledge) const {
+  std::vector<double> ranks;
+  if (ranking_ == Ranking::kFirstFailing) {
+    for (const RuleId rule : knowledge.states.active())
+      ranks.push_back(seconds(knowledge.states[rule].failing_since.time_since_epoch()));
+    return ranks;
+  }
+  const auto causes = upstream(knowledge);
+  if (ranking_ == Ranking::kRandomWalk) return walk(causes);
+  for (const auto& of_one : causes) ranks.push_back(static_cast<double>(of_one.size()));
+  return ranks;
+}
+
+std::vector<Verdict> RankingPlanner::plan(std::span<const RuleId> failures,
+                                          const Knowledge& knowledge) const {
+  const auto& active = knowledge.states.active();
+  if (failures.empty()) return {};
+  const std::vector<double> rank = ranks(knowledge);
+  std::vector<std::size_t> order(active.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
+  std::optional<RuleId> first;
+  for (const RuleId rule : active) {
+    if (knowledge.states[rule].attempt) first = rule;
+  }
+  std::vector<Verdict> verdicts;
+  for (const std::size_t place : order) {
+    const RuleId rule = active[place];
+    if (!std::binary_search(failures.begin(), failures.end(), rule)) continue;
+    Verdict verdict = candidates_of(rule, knowledge);
+    for (Candidate& candidate : verdict.candidates) {
+      if (candidate.excluded) continue;
+      if (!first) {
+        verdict.chosen = candidate.strategy;
+        first = rule;
+      } else if (first == rule) {
+        candidate.excluded = Condition::kOneEach;
+      } else {
+        candidate.excluded = Condition::kDependency;
+        candidate.component = knowledge.rules[*first].components.front();
+        candidate.failure = first;
+      }
+    }
+    verdicts.push_back(std::move(verdict));
+  }
+  return verdicts;
+}
+
+}  // namespace culprit::study::rca

@@ -1,0 +1,23 @@
+// A campaign of the root-cause benchmark as JSON: all that is needed to play it again.
+//
+//     {"settings": [{"components": 200, "faults": 3, "noise": 0, "cyclic": false}],
+//      "planners": ["paper", "bayes"], "objective": "balanced", "episodes": 20, "seed": 1,
+//      "version": "1.2.3"}
+//
+// With a scenario of its own it has "scenario" (scenario_json.h), and one setting, which says what
+// the scenario is like.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "base/expected.h"
+#include "rca_study/campaign.h"
+
+namespace culprit::study::rca {
+
+nlohmann::ordered_json to_json(const RcaCampaign& campaign);
+
+// What is missing, unknown, out of range or does not fit together is an error that says where.
+Expected<RcaCampaign> campaign_from_json(const nlohmann::ordered_json& json);
+
+}  // namespace culprit::study::rca

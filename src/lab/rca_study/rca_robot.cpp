@@ -1,0 +1,192 @@
+#include "rca_study/rca_robot.h"
+
+#include <algorithm>
+
+namespace culprit::study::rca {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kAnswer = 5ms;  // of a request that takes no time
+constexpr Duration kEnding = 200ms;
+
+std::string node_of(const RcaComponent& component) { return "/" + component.name; }
+
+}  // namespace
+
+RcaRobot::RcaRobot(const RcaScenario& scenario, const RuleSet& rules, Duration quiet)
+    : scenario_(scenario),
+      quiet_(quiet),
+      plant_(scenario),
+      noise_(simulation::mix(scenario.seed + 1)),
+      luck_(simulation::mix(scenario.seed + 2)),
+      processes_(scenario.components.size()),
+      parameters_(scenario.components.size()) {
+  plant_.on_fault = [this](std::size_t c) { on_fault(c); };
+  for (std::size_t p = 0; p < rules.parameters.size(); ++p)
+    parameters_[rules.parameters[p].component.index] = ParameterId(p);
+  for (std::size_t c = 0; c < processes_.size(); ++c) appear(c);
+  for (const RcaTopic& topic : scenario.topics) {
+    for (const std::size_t p : topic.publishers)
+      tell(EndpointAppeared{node_of(scenario.components[p]), EndpointKind::kPublisher, topic.name});
+    for (const Subscription& s : topic.subscribers)
+      tell(EndpointAppeared{node_of(scenario.components[s.component]), EndpointKind::kSubscriber,
+                            topic.name});
+  }
+  read_detectors();
+}
+
+void RcaRobot::observe(Time until, std::vector<Observation>& observations) {
+  while (inbox_.empty() && plant_.step(until)) continue;
+  std::move(inbox_.begin(), inbox_.end(), std::back_inserter(observations));
+  inbox_.clear();
+}
+
+void RcaRobot::appear(std::size_t component) {
+  Process& process = processes_[component];
+  process = {++last_pid_, process.is_hung, Lifecycle::kActive, process.tuning};
+  const ComponentId id(component);
+  tell(ProcessSeen{id, ProcessState::kRunning, process.pid, ""});
+  tell(NodeAppeared{node_of(scenario_.components[component]), process.pid});
+  tell(LifecycleRead{id, process.lifecycle});
+  if (parameters_[component]) tell(ParameterRead{*parameters_[component], Value(process.tuning)});
+}
+
+// All at once, and so is the end of the episode seen.
+void RcaRobot::read_detectors() {
+  for (std::size_t c = 0; c < processes_.size(); ++c) {
+    const Detector& detector = scenario_.components[c].detector;
+    const bool looks_ill = plant_.looks_ill(c);
+    const bool is_wrong = noise_.chance(looks_ill ? detector.miss : detector.false_alarm);
+    tell(SignalRead{SignalId(c), Value(looks_ill != is_wrong)});
+  }
+  if (!plant_.is_well()) well_since_.reset();
+  if (plant_.is_well() && !well_since_) well_since_ = now();
+  const bool is_quiet = well_since_ && now() >= later(*well_since_, quiet_);
+  is_over_ = is_quiet || now() >= Time(from_seconds(scenario_.horizon_s));
+  if (!is_over_) plant_.after(from_seconds(scenario_.reading_s), [this] { read_detectors(); });
+}
+
+void RcaRobot::on_fault(std::size_t component) {
+  const FaultKind kind = *plant_.fault(component);
+  if (kind == FaultKind::kCrash) lose(component, "killed by signal 11");
+  if (kind == FaultKind::kHang) processes_[component].is_hung = true;
+  if (kind == FaultKind::kWrongParameter) processes_[component].tuning = 0;
+}
+
+void RcaRobot::lose(std::size_t component, const std::string& remark) {
+  Process& process = processes_[component];
+  if (process.pid == 0) return;
+  tell(ProcessSeen{ComponentId(component), ProcessState::kGone, process.pid, remark});
+  tell(NodeVanished{node_of(scenario_.components[component])});
+  process.pid = 0;
+}
+
+void RcaRobot::execute(const Command& command) {
+  open_.insert(command.id);
+  const std::size_t component = command.component.index;
+  Process& process = processes_[component];
+  if (std::holds_alternative<StopProcess>(command.what)) {
+    plant_.set_down(component, true);
+    plant_.after(kEnding, [this, component, id = command.id] {
+      lose(component, "terminated");
+      reply(id, Outcome::kDone);
+    });
+  } else if (std::holds_alternative<StartProcess>(command.what)) {
+    start(command);
+  } else if (process.pid == 0) {
+    plant_.after(kAnswer, [this, id = command.id] { reply(id, Outcome::kUnreachable); });
+  } else {
+    plant_.after(command.timeout, [this, id = command.id] { reply(id, Outcome::kTimedOut); });
+    plant_.after(kAnswer, [this, command] {
+      const Process& asked = processes_[command.component.index];
+      if (asked.pid != 0 && !asked.is_hung) serve(command);
+    });
+  }
+}
+
+void RcaRobot::serve(const Command& command) {
+  const std::size_t component = command.component.index;
+  Process& process = processes_[component];
+  if (const auto* transition = std::get_if<ChangeLifecycle>(&command.what)) {
+    change(command, transition->transition);
+  } else if (std::holds_alternative<ReadLifecycle>(command.what)) {
+    reply(command.id, Outcome::kDone, process.lifecycle);
+  } else if (std::holds_alternative<ReadParameter>(command.what)) {
+    reply(command.id, Outcome::kDone, Value(process.tuning));
+  } else if (const auto* set = std::get_if<SetParameter>(&command.what)) {
+    const auto* value = std::get_if<double>(&set->value);
+    const bool is_repair = value != nullptr && *value == 1;
+    if (value != nullptr) process.tuning = *value;
+    plant_.after(duration(component, Repair::kConfigure),
+                 [this, component, is_repair, id = command.id] {
+                   if (is_repair) take_effect(component, Repair::kConfigure);
+                   reply(id, Outcome::kDone);
+                 });
+  } else {
+    reply(command.id, Outcome::kRefused);
+  }
+}
+
+// A restart is a deactivation and an activation of half its time each.
+void RcaRobot::change(const Command& command, Transition transition) {
+  const std::size_t component = command.component.index;
+  const bool is_up = transition == Transition::kActivate;
+  if (!is_up) plant_.set_down(component, true);
+  plant_.after(duration(component, Repair::kRestart) / 2,
+               [this, component, is_up, id = command.id, pid = processes_[component].pid] {
+                 Process& process = processes_[component];
+                 if (process.pid != pid || process.is_hung) return;
+                 process.lifecycle = is_up ? Lifecycle::kActive : Lifecycle::kInactive;
+                 if (is_up) {
+                   take_effect(component, Repair::kRestart);
+                   plant_.set_down(component, false);
+                 }
+                 tell(LifecycleRead{ComponentId(component), process.lifecycle});
+                 reply(id, Outcome::kDone);
+               });
+}
+
+void RcaRobot::start(const Command& command) {
+  const std::size_t component = command.component.index;
+  plant_.set_down(component, true);
+  reply(command.id, Outcome::kDone, Value(std::int64_t{last_pid_ + 1}));
+  const Duration takes = duration(component, Repair::kRedeploy) - kEnding;
+  plant_.after(std::max(takes, kAnswer), [this, component] {
+    take_effect(component, Repair::kRedeploy);
+    processes_[component].is_hung = plant_.fault(component) == FaultKind::kHang;
+    processes_[component].tuning = plant_.fault(component) == FaultKind::kWrongParameter ? 0 : 1;
+    appear(component);
+    plant_.set_down(component, false);
+    if (plant_.fault(component) == FaultKind::kCrash)
+      plant_.after(kEnding, [this, component] { lose(component, "killed by signal 11"); });
+  });
+}
+
+// Each attempt has its own luck.
+void RcaRobot::take_effect(std::size_t component, Repair repair) {
+  const auto kind = plant_.fault(component);
+  const bool is_unfixable = std::any_of(
+      scenario_.faults.begin(), scenario_.faults.end(),
+      [&](const InjectedFault& f) { return f.component == component && f.is_unfixable; });
+  bool has_helped = false;
+  for (const Treatment& t : scenario_.components[component].treatments) {
+    has_helped |= kind && !is_unfixable && t.repair == repair &&
+                  luck_.chance(t.helps[static_cast<std::size_t>(*kind)]);
+  }
+  if (has_helped) plant_.repair(component);
+  if (on_effect) on_effect(component, repair, has_helped);
+}
+
+Duration RcaRobot::duration(std::size_t component, Repair repair) const {
+  for (const Treatment& t : scenario_.components[component].treatments) {
+    if (t.repair == repair) return from_seconds(t.takes_s);
+  }
+  return kAnswer;
+}
+
+void RcaRobot::reply(CommandId command, Outcome outcome, decltype(Reply::value) value) {
+  if (open_.erase(command) > 0) tell(Reply{command, outcome, std::move(value), ""});
+}
+
+}  // namespace culprit::study::rca

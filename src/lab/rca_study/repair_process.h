@@ -1,0 +1,174 @@
+// A small robot of the benchmark as a decision process: what can be done, what it costs, and what
+// is known of the hidden truth after each outcome. The optimum (optimum.h) is worked out in it, and
+// every planner's regret.
+//
+// Hidden truth: F, the components that have a fault now; the kind of each fault; and E, which
+// subscriptions pass failures on in this episode. At the beginning F is any set of as many
+// components as the scenario has faults, kinds are any of the seven, each equally likely, and
+// subscription e passes with its probability q_e. F only becomes smaller.
+//
+// Seen: who is ill, which F and E determine (scenario.h), and whose process is gone, which a crash
+// shows. Detectors make no mistakes, and what is seen has settled.
+//
+// A round: strategies s in a set A, each at a component c that is ill, begin together; then all is
+// seen again. A fault is gone with the probability
+//
+//     sigma(c, s) = sum_k p_k prod_t (1 - h_tk)^m_t h_sk / sum_k p_k prod_t (1 - h_tk)^m_t
+//
+//   k      the kinds that the fault can be of: a crash if the process is gone, else any other
+//   p_k    their shares, equal
+//   h_tk   how likely treatment t helps against kind k: the scenario's truth
+//   m_t    how often t was tried at c in vain
+//
+// independently of the others; so what is known of kinds is the counts m. What is known of F and E
+// is a belief b(F, E), and an outcome o (who is ill, who is gone) changes it by Bayes' rule:
+//
+//     b'(F', E) ~ sum_F b(F, E) prod_{c in A, c in F} (sigma if c not in F', 1 - sigma if it is)
+//
+// over those F' and E that show o. With b and m nothing else of the past matters.
+//
+// What may begin is what culprit's planners promise: strategies that are valid, were not tried in
+// this round of the rule, one for each component, and none at a component that depends on another's
+// of A, unless its process is gone. When all were tried they may be tried again, up to kTurns times
+// each; then nothing is left.
+//
+// A round costs, in the weights of the objective (plan/bayes/objective.h),
+//
+//     w_time max_{s in A} i_s / i_max + sum_{s in A} (w_attempt + w_redeployment [s replaces a
+//     process] + w_disruption (share of the robot that s takes down))
+//
+// and a robot that is left ill, because nothing is left or nothing is begun, costs the scenario's
+// whole time, ten strategies and ten processes.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "knowledge/knowledge.h"
+#include "plan/bayes/objective.h"
+#include "rca_study/scenario.h"
+
+namespace culprit::study::rca {
+
+using Members = std::uint32_t;  // a set of components, or of subscriptions: one bit for each
+
+// What is known after some rounds.
+struct Situation {
+  struct Tries {
+    std::uint8_t tried = 0;  // in this turn: a bit for each treatment
+    std::uint8_t turns = 0;  // how often all were tried
+    bool operator==(const Tries&) const = default;
+  };
+  struct Hypothesis {
+    Members faulty = 0;
+    Members passing = 0;
+    double weight = 0;  // the probability; those of a situation sum to one
+  };
+
+  Members ill = 0;
+  Members gone = 0;
+  std::vector<Tries> tries;        // by component; nothing for those that are well
+  std::vector<Hypothesis> belief;  // by faulty and passing
+};
+
+// A strategy for each of some components.
+struct Treated {
+  std::size_t component = 0;
+  std::size_t treatment = 0;  // place in its treatments
+};
+using Round = std::vector<Treated>;
+
+class RepairProcess {
+ public:
+  static constexpr std::size_t kMostComponents = 5;
+  static constexpr std::size_t kMostSubscriptions = 9;
+  static constexpr std::size_t kMostFaults = 3;
+  static constexpr int kTurns = 2;
+
+  // Can it be worked out for this robot?
+  static bool is_small(const RcaScenario& scenario);
+
+  // Both must outlive it. `rules` are those of the scenario. @pre is_small(scenario)
+  RepairProcess(const RcaScenario& scenario, const RuleSet& rules, Objective objective);
+
+  struct Outcome {
+    double probability = 0;
+    Situation situation;
+  };
+  // What may be seen first, before anything was done.
+  std::vector<Outcome> beginnings() const;
+  std::vector<Outcome> outcomes(const Situation& situation, const Round& round) const;
+
+  // All that may begin: never empty while is_open().
+  std::vector<Round> rounds(const Situation& situation) const;
+  double cost(const Round& round) const;
+  double cost_of_leaving_it_ill() const { return left_ill_; }
+
+  // The situation if somebody said which components have a fault, and always would: only those are
+  // ill, as if no subscription passed anything on. No way on costs less than on average over what
+  // may be said. `faulty` is one of its hypotheses'.
+  Situation told(const Situation& situation, Members faulty) const;
+  // The same if nobody need say it: what is seen shows it, and always will. Nothing if it does not,
+  // or is such a situation.
+  std::optional<Situation> told_by_itself(const Situation& situation) const;
+  // Is it such a situation?
+  bool is_told(const Situation& situation) const;
+
+  // Is anybody ill for whom something is left to try?
+  bool is_open(const Situation& situation) const;
+  // Is nothing left to try at this component?
+  bool is_exhausted(const Situation& situation, std::size_t component) const;
+
+  // Who talks to whom, as a manager sees it.
+  void connect(DependencyGraph& graph) const;
+  // What a manager knows in a situation. `knowledge` is of the same rules.
+  void show(const Situation& situation, Knowledge& knowledge) const;
+  // The other way round: what is seen and tried by now, with the belief that this alone gives.
+  // Nothing while what is seen has not settled, so that no hypothesis explains it.
+  std::optional<Situation> situation_of(const Knowledge& knowledge) const;
+
+  std::size_t size() const { return scenario_.components.size(); }
+
+ private:
+  struct Way {
+    Members from = 0;
+    std::size_t to = 0;
+    double passes = 0;
+    bool is_redundant = false;
+  };
+  using Seen = std::pair<Members, Members>;  // ill, gone
+  using Sorted = std::map<Seen, std::vector<Situation::Hypothesis>>;
+
+  Members spread(Members faulty, Members passing) const;
+  std::size_t place(Members faulty, Members passing) const {
+    return faulty << ways_.size() | passing;
+  }
+  Members ill(Members faulty, Members passing) const { return ill_[place(faulty, passing)]; }
+  // The first set of subscriptions that can never be told from `passing` as long as there are no
+  // other faults than these.
+  Members alike(Members faulty, Members passing) const { return alike_[place(faulty, passing)]; }
+  void tell_apart();
+  double probability_of(Members passing) const;
+  double likelihood(const Situation& situation, std::size_t component) const;
+  double success(const Situation& situation, const Treated& treated) const;
+  std::uint8_t valid(const Situation& situation, std::size_t component) const;
+  std::vector<int> vain(const Situation& situation, std::size_t component) const;
+  Situation settled(Seen seen, std::vector<Situation::Hypothesis> belief,
+                    std::vector<Situation::Tries> tries) const;
+  bool interferes(const Situation& situation, std::size_t a, std::size_t b) const;
+
+  const RcaScenario& scenario_;
+  const RuleSet& rules_;
+  CostWeights weights_;
+  double left_ill_ = 0;
+  std::vector<Way> ways_;
+  std::vector<Members> upstream_;  // by component, by the graph
+  std::vector<std::size_t> dependents_;
+  std::vector<Members> ill_;            // by faulty and passing
+  std::vector<Members> alike_;          // as well
+  std::vector<std::size_t> redundant_;  // by component: how many sources have to be ill together
+};
+
+}  // namespace culprit::study::rca

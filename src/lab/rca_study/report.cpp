@@ -1,0 +1,189 @@
+#include "rca_study/report.h"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "rca_study/campaign_json.h"
+#include "study/pareto.h"
+#include "study/statistics/welch.h"
+#include "study/tables/columns.h"
+
+namespace culprit::study::rca {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::optional<double> path(const RcaRow& row) {
+  if (row.effects == 0) return std::nullopt;
+  return static_cast<double>(row.grounded) / static_cast<double>(row.effects);
+}
+
+std::optional<double> plan_us(const RcaRow& row, Times times) {
+  if (times == Times::kLeftOut || row.plans == 0) return std::nullopt;
+  return row.planning_us / static_cast<double>(row.plans);
+}
+
+// By row, whether no other planner beats it in the same setting. Nothing of the optimum: it is a
+// bound.
+std::vector<std::optional<bool>> on_front(const std::vector<RcaRow>& rows) {
+  std::vector<std::optional<bool>> is_on(rows.size());
+  for (const RcaRow& first : rows) {
+    std::vector<std::size_t> members;
+    std::vector<std::vector<double>> costs;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const RcaRow& row = rows[i];
+      if (row.planner == "optimum" || !(row.setting == first.setting)) continue;
+      members.push_back(i);
+      costs.push_back({-row.exact.mean(), row.strategies_per_fault.mean(),
+                       row.wrong_component.mean(), row.unnecessary.mean(), row.downtime_s.mean(),
+                       row.recovery_s.mean(), row.unresolved.mean()});
+    }
+    const std::vector<bool> front = pareto_front(costs);
+    for (std::size_t m = 0; m < members.size(); ++m) is_on[members[m]] = front[m];
+  }
+  return is_on;
+}
+
+// All that is told of a row, in the order of its telling.
+Json figures(const RcaRow& row, std::optional<bool> is_on_front, Times times) {
+  const auto optional = [](std::optional<double> value) { return value ? Json(*value) : Json(); };
+  return {{"planner", row.planner},
+          {"components", row.setting.components},
+          {"faults", row.setting.faults},
+          {"noise", row.setting.noise},
+          {"cyclic", row.setting.is_cyclic},
+          {"episodes", row.episodes},
+          {"exact_set", row.exact.mean()},
+          {"top1", row.first_right.mean()},
+          {"path", optional(path(row))},
+          {"wrong_component", row.wrong_component.mean()},
+          {"unnecessary", row.unnecessary.mean()},
+          {"strategies_per_fault", row.strategies_per_fault.mean()},
+          {"downtime_s", row.downtime_s.mean()},
+          {"recovery_s", row.recovery_s.mean()},
+          {"unresolved", row.unresolved.mean()},
+          {"regret", optional(row.regret)},
+          {"plan_us", optional(plan_us(row, times))},
+          {"on_front", is_on_front ? Json(*is_on_front) : Json()}};
+}
+
+std::string percent(std::optional<double> share) { return share ? number(100 * *share, 1) : "–"; }
+
+// bayes against each other planner of the same setting.
+void add_tests(const std::vector<RcaRow>& rows, Table& table) {
+  for (const RcaRow& ours : rows) {
+    if (ours.planner != "bayes") continue;
+    for (const RcaRow& other : rows) {
+      if (other.planner == "bayes" || !(other.setting == ours.setting)) continue;
+      const auto wrong = welch_test(other.wrong_component, ours.wrong_component);
+      const auto recovery = welch_test(other.recovery_s, ours.recovery_s);
+      if (!wrong || !recovery) continue;
+      table.notes.push_back(fmt::format(
+          "{} components, {} faults, noise {:g}{}: bayes beside {}: wrong components {:+.2f} "
+          "(p {}), recovery {:+.1f} s (p {}); Welch.",
+          ours.setting.components, ours.setting.faults, ours.setting.noise,
+          ours.setting.is_cyclic ? ", cyclic" : "", other.planner, wrong->difference,
+          p_value(wrong->p), recovery->difference, p_value(recovery->p)));
+    }
+  }
+}
+
+}  // namespace
+
+Table rca_table(const RcaCampaign& campaign, const std::vector<RcaRow>& rows, Times times) {
+  // All settings of a campaign have the same of these.
+  const RcaSetting& all = campaign.settings.front();
+  std::string robots;
+  if (all.has_mixed_levels) robots += ", mixed levels";
+  if (all.is_flapping) robots += ", flapping faults";
+  if (all.has_unfixable) robots += ", one fault that nothing fixes";
+  if (all.ignores_plumbing) robots += ", infrastructure ignored";
+  Table table{"rca",
+              fmt::format("Root causes on random robots{}: means of {} episodes, seed {}", robots,
+                          campaign.episodes, campaign.seed),
+              {{"", "planner", "", "", Align::kLeft},
+               {"", "components"},
+               {"", "faults"},
+               {"", "noise"},
+               {"", "cyclic", "", "", Align::kCentre},
+               {"right [%]", "exact set"},
+               {"right [%]", "top 1"},
+               {"right [%]", "path"},
+               {"adaptations", "per fault"},
+               {"adaptations", "wrong component"},
+               {"adaptations", "unnecessary"},
+               {"", "downtime [s]"},
+               {"", "recovery [s]"},
+               {"", "unresolved"},
+               {"", "regret [%]"},
+               {"", "on the front", "", "", Align::kCentre}},
+              {},
+              {}};
+  if (times == Times::kShown) table.columns.push_back({"", "plan [us]"});
+  const auto front = on_front(rows);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const RcaRow& row = rows[i];
+    std::vector<Cell> cells = {{row.planner},
+                               {std::to_string(row.setting.components)},
+                               {std::to_string(row.setting.faults)},
+                               {number(row.setting.noise)},
+                               {row.setting.is_cyclic ? "✓" : "–"},
+                               {percent(row.exact.mean())},
+                               {percent(row.first_right.mean())},
+                               {percent(path(row))},
+                               {number(row.strategies_per_fault.mean())},
+                               {number(row.wrong_component.mean())},
+                               {number(row.unnecessary.mean())},
+                               {number(row.downtime_s.mean())},
+                               {number(row.recovery_s.mean())},
+                               {number(row.unresolved.mean())},
+                               {percent(row.regret)},
+                               {!front[i]   ? ""
+                                : *front[i] ? "✓"
+                                            : "–"}};
+    if (times == Times::kShown) {
+      const auto us = plan_us(row, times);
+      cells.push_back({us ? number(*us, 1) : "–"});
+    }
+    if (row.censored > 0)
+      table.notes.push_back(
+          fmt::format("{} of {} robots of {} did not recover; their time counts until the end.",
+                      row.censored, row.episodes, row.planner));
+    table.rows.push_back(std::move(cells));
+  }
+  table.notes.push_back(
+      "On the (Pareto) front: no other planner is as good in the exact set, adaptations, downtime, "
+      "recovery and what is unresolved, and better in one of them.");
+  add_tests(rows, table);
+  return table;
+}
+
+std::string rca_csv(const std::vector<RcaRow>& rows, Times times) {
+  std::string out;
+  const auto front = on_front(rows);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Json all = figures(rows[i], front[i], times);
+    std::string head;
+    std::string line;
+    for (const auto& [key, value] : all.items()) {
+      const char* comma = head.empty() ? "" : ",";
+      head += comma + key;
+      line += comma;
+      if (!value.is_null()) line += value.is_string() ? value.get<std::string>() : value.dump();
+    }
+    if (out.empty()) out = head + "\n";
+    out += line + "\n";
+  }
+  return out;
+}
+
+std::string rca_json(const RcaCampaign& campaign, const std::vector<RcaRow>& rows, Times times) {
+  Json document = {
+      {"study", RcaCampaign::kStudy}, {"campaign", to_json(campaign)}, {"rows", Json::array()}};
+  const auto front = on_front(rows);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    document["rows"].push_back(figures(rows[i], front[i], times));
+  return document.dump(2) + "\n";
+}
+
+}  // namespace culprit::study::rca

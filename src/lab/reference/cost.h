@@ -1,0 +1,33 @@
+// What a strategy costs in the reference manager.
+//
+//     public code:  0.5 (1 - P) + 0.5 (i - 1) / N        paper (Eq. 1):  (1 - P) + i / i_max
+//
+// i is the sum of the impacts of the strategy's adaptations in the public code, and their maximum
+// in the paper; i_max is the highest i of the rule set. N was to be the impact of a redeploy, but a
+// misplaced "- 1" makes it that of a restart. Without S both are 1 - P (the public code writes it
+// in percent).
+#pragma once
+
+#include <vector>
+
+#include "language/rule_set.h"
+#include "reference/options.h"
+
+namespace culprit::study::reference {
+
+class Costs {
+ public:
+  Costs(const RuleSet& rules, const ReferenceOptions& options);
+
+  // `success` is P of the strategy.
+  double operator()(StrategyId strategy, Probability success) const;
+
+ private:
+  bool with_impact_;
+  bool weighted_;
+  std::vector<Cycles> impacts_;  // by strategy
+  Cycles heaviest_{1};           // i_max
+  double scale_ = 1;             // N
+};
+
+}  // namespace culprit::study::reference

@@ -1,0 +1,34 @@
+// What the reference manager takes for the dependencies of the managed system.
+//
+// As in the public code: a subscriber depends on the publishers of its topic in its own namespace
+// only (topics are compared with the namespace of the node in front of them), and whoever serves a
+// service depends on its clients.
+#pragma once
+
+#include "knowledge/dependency_graph.h"
+#include "reference/options.h"
+
+namespace culprit::study::reference {
+
+class Graph {
+ public:
+  // `rules` must outlive the graph.
+  Graph(const RuleSet& rules, const ReferenceOptions& options);
+
+  void take_in(const Observation& observation);
+
+  // A tick of the manager begins: is it time for the snapshot?
+  void tick(Time now);
+
+  // All components that `component` depends on, transitively. Valid until the next call.
+  const std::vector<ComponentId>& upstream(ComponentId component) const {
+    return graph_.upstream(component);
+  }
+
+ private:
+  DependencyGraph graph_;
+  Time frozen_at_;
+  bool is_frozen_ = false;
+};
+
+}  // namespace culprit::study::reference
