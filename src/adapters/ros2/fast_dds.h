@@ -153,6 +153,10 @@ inline void forget_unacknowledged(dds::DataWriter& writer) {
   writer.clear_history(&removed);
 }
 
+inline bool is_acknowledged(dds::DataWriter& writer) {
+  return ok(writer.wait_for_acknowledgments({0, 0}));
+}
+
 inline DdsDuration to_duration(Duration d) {
   if (d == kInfinite) return eprosima::fastrtps::c_TimeInfinite;
   return {static_cast<std::int32_t>(d.count() / 1'000'000'000),

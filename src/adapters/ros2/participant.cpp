@@ -253,6 +253,8 @@ class Writer::Impl final : public dds::DataWriterListener {
 
   void forget_unacknowledged() { fast_dds::forget_unacknowledged(*writer_); }
 
+  bool is_acknowledged() const { return fast_dds::is_acknowledged(*writer_); }
+
   const Guid& guid() const { return guid_; }
 
  private:
@@ -272,6 +274,7 @@ std::optional<std::int64_t> Writer::write(ByteView payload, const SampleIdentity
   return impl_->write(payload, related);
 }
 void Writer::forget_unacknowledged() { impl_->forget_unacknowledged(); }
+bool Writer::is_acknowledged() const { return impl_->is_acknowledged(); }
 
 class Participant::Impl {
  public:

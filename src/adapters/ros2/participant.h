@@ -133,6 +133,9 @@ class Writer {
   // Gives up on what is not acknowledged yet: it is not sent again.
   void forget_unacknowledged();
 
+  // Whether every matched reader has acknowledged all that was written. Does not wait.
+  bool is_acknowledged() const;
+
  private:
   std::unique_ptr<Impl> impl_;
 };

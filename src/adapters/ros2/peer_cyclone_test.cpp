@@ -172,7 +172,7 @@ TEST(PeerCyclone, CallsOurServices) {
   const TestDomain domain;
   Robot robot(domain);
   const auto peer = start_cyclone(domain, {"call", "/robot", "1", "3", "1", "4"});
-  ASSERT_TRUE(peer->lines().wait_for_count(5));
+  ASSERT_TRUE(peer->lines().wait_for_count(5)) << testing::PrintToString(peer->lines().all());
   EXPECT_THAT(peer->lines().all(), ElementsAre("state 1 unconfigured", "change 1 1", "change 3 1",
                                                "change 1 0", "change 4 1"));
 }

@@ -14,7 +14,8 @@
 // DDS lets the first sample to a new reader follow a heartbeat that announces it. Cyclone takes
 // what the first heartbeat announces for history, in which a volatile reader has no interest, and
 // drops the sample. So a client gives up on its old requests when a new server comes, and a server
-// lets a reply to nobody precede its first one to a client on Cyclone.
+// sends a reply to nobody before its first one to a client on Cyclone, and waits until that was
+// acknowledged.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,13 @@
 namespace culprit::ros2 {
 namespace {
 
-constexpr std::chrono::seconds kLongestWait(5);
+using namespace std::chrono_literals;
+
+constexpr auto kLongestWait = 5s;
+// While a killed client does not acknowledge, until its lease ends, nobody can tell when a new one
+// did.
+constexpr auto kLongestGreeting = 200ms;
+constexpr auto kBetweenLooks = 1ms;
 
 }  // namespace
 
@@ -85,7 +91,7 @@ void ServiceServer::handle_next() {
   Reply reply =
       mapping_of(client) == Mapping::kHeader ? answer_header(request) : answer_inline(request);
   if (reply.payload.empty()) return;
-  if (is_expected(reply)) return send(reply);
+  if (is_expected(reply) && has_greeted(reply)) return send(reply);
   const std::uint64_t number = next_waiting_++;
   waiting_.emplace(number, std::move(reply));
   // Then the client has gone, or will never hear of it; nothing is to be done about either.
@@ -127,16 +133,46 @@ bool ServiceServer::is_expected(const Reply& reply) const {
   });
 }
 
-void ServiceServer::send(const Reply& reply) {
-  if (!reply.header) {
-    reply_writer_->write(reply.payload, reply.related);
-  } else {
-    // The first sample to a reader on Cyclone may be lost (service_mapping.h): let it be one for
-    // nobody.
-    if (has_fresh_reader_) reply_writer_->write(with_header(reply.payload, ServiceHeader{}));
-    reply_writer_->write(with_header(reply.payload, *reply.header));
+// Whether the first sample to a reader on Cyclone, which may be lost (service_mapping.h), is behind
+// us. It is one for nobody, and the reply follows once it was acknowledged: sent at once, both may
+// be announced by the same heartbeat.
+bool ServiceServer::has_greeted(const Reply& reply) {
+  if (!reply.header) return true;
+  const auto now = Executor::Clock::now();
+  if (has_fresh_reader_) {
+    has_fresh_reader_ = false;
+    reply_writer_->write(with_header(reply.payload, ServiceHeader{}));
+    greeting_ends_ = now + kLongestGreeting;
+    tasks_.post_at(now + kBetweenLooks, [this] { look_at_greeting(); });
   }
-  has_fresh_reader_ = false;
+  return !greeting_ends_;
+}
+
+void ServiceServer::look_at_greeting() {
+  if (!greeting_ends_) return;
+  const auto now = Executor::Clock::now();
+  if (now < *greeting_ends_ && !reply_writer_->is_acknowledged()) {
+    tasks_.post_at(now + kBetweenLooks, [this] { look_at_greeting(); });
+    return;
+  }
+  greeting_ends_.reset();
+  send_waiting();
+}
+
+void ServiceServer::send(const Reply& reply) {
+  if (reply.header) {
+    reply_writer_->write(with_header(reply.payload, *reply.header));
+  } else {
+    reply_writer_->write(reply.payload, reply.related);
+  }
+}
+
+void ServiceServer::send_waiting() {
+  std::erase_if(waiting_, [this](const auto& waiting) {
+    if (!is_expected(waiting.second) || !has_greeted(waiting.second)) return false;
+    send(waiting.second);
+    return true;
+  });
 }
 
 void ServiceServer::on_match(const Guid& reader, Match match) {
@@ -146,11 +182,7 @@ void ServiceServer::on_match(const Guid& reader, Match match) {
   }
   reply_readers_.insert(reader);
   has_fresh_reader_ = true;
-  std::erase_if(waiting_, [this](const auto& waiting) {
-    if (!is_expected(waiting.second)) return false;
-    send(waiting.second);
-    return true;
-  });
+  send_waiting();
 }
 
 }  // namespace culprit::ros2

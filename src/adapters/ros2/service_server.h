@@ -61,7 +61,10 @@ class ServiceServer {
   Reply answer_inline(const Request& request) const;
   Reply answer_header(const Request& request) const;
   bool is_expected(const Reply& reply) const;
+  bool has_greeted(const Reply& reply);
+  void look_at_greeting();
   void send(const Reply& reply);
+  void send_waiting();
   void on_match(const Guid& reader, Match match);
 
   NodeEntry& node_;
@@ -70,7 +73,9 @@ class ServiceServer {
 
   // Of the executor's thread.
   std::set<Guid> reply_readers_;
-  bool has_fresh_reader_ = false;  // one that has matched since we last wrote
+  bool has_fresh_reader_ = false;  // one that has matched since the last greeting
+  // Set while a greeting is on its way.
+  std::optional<Executor::Clock::time_point> greeting_ends_;
   std::map<std::uint64_t, Reply> waiting_;
   std::uint64_t next_waiting_ = 1;
 
