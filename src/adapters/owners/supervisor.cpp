@@ -119,11 +119,23 @@ void Supervisor::start(CommandId command, ComponentId component) {
     return answer(command, Outcome::kDone, "its launcher starts it again");
   if (what.launch.empty())
     return answer(command, Outcome::kUnreachable, what.name + " has no LAUNCH command");
-  if (!is_gone(component))
-    return answer(command, Outcome::kRefused, what.name + " is running already");
+  if (!is_gone(component)) return meet(command, component);
   if (const auto begun = begin_start(command, component); !begun)
     return answer(command, Outcome::kUnreachable, begun.error());
   wake();
+}
+
+// What was started by a culprit that was killed, and has no node yet, is what the order asks for.
+void Supervisor::meet(CommandId command, ComponentId component) {
+  const auto coming_up = std::ranges::find_if(members_, [&](const Member& member) {
+    return member.component == component && member.awaited && !member.launch &&
+           member.state == ProcessState::kRunning && state_letter(member.process.pid()) != 'T';
+  });
+  if (coming_up == members_.end())
+    return answer(command, Outcome::kRefused, rules_[component].name + " is running already");
+  const int pid = coming_up->process.pid();
+  inbox_.put(ProcessSeen{component, ProcessState::kRunning, pid, ""});
+  inbox_.put(Reply{command, Outcome::kDone, Value(std::int64_t{pid}), ""});
 }
 
 Expected<void> Supervisor::begin_start(CommandId command, ComponentId component) {
@@ -134,7 +146,7 @@ Expected<void> Supervisor::begin_start(CommandId command, ComponentId component)
   // Whatever was started before has the lock no more, and is seen.
   take_over(component);
   if (!is_gone(component)) {
-    answer(command, Outcome::kRefused, rules_[component].name + " is running already");
+    meet(command, component);
     return {};
   }
   Program program = program_of(component);
@@ -206,7 +218,9 @@ void Supervisor::watch(ComponentId component, int pid, Relation relation) {
     if (is_first) tell_of_unit(component, pid);
   }
   note_launcher(component, pid, is_others);
-  members_.push_back({component, std::move(*process)});
+  Member& member = members_.emplace_back(Member{component, std::move(*process)});
+  if (relation != Relation::kAdopted && carries_mark(pid, marked_as(component)))
+    member.awaited = live_now();
   inbox_.put(ProcessSeen{component, ProcessState::kRunning, pid, ""});
   wake();
 }

@@ -152,6 +152,7 @@ class Supervisor {
   void take_over(ComponentId component);
   void watch(ComponentId component, int pid, Relation relation);
   Expected<void> begin_start(CommandId command, ComponentId component);
+  void meet(CommandId command, ComponentId component);
   std::optional<std::string> doubt(const Member& member) const;
   void tell_of_unit(ComponentId component, int pid) const;
   void note_launcher(ComponentId component, int pid, bool is_others);

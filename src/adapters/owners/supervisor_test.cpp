@@ -389,9 +389,28 @@ TEST(Supervisor, SaysWhenThereIsNoSuchProgram) {
 
 TEST(Supervisor, StartsNoSecondProcessBesideALivingOne) {
   Supervised c("sleep 1000");
-  c.start();
+  const int pid = c.start();
+  c.supervisor->adopt(ComponentId(0), pid, live_now());
   c.supervisor->start({3}, ComponentId(0));
   EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused);
+}
+
+// Its node is not there yet: by one that was killed, or on a slow machine.
+TEST(Supervisor, AStartThatMeetsWhatIsComingUpIsThatStart) {
+  const std::string robot = "test/" + std::to_string(getpid()) + "/meets";
+  auto first = std::make_unique<Supervised>("sleep 1000", robot);
+  const int pid = first->start();
+  first->supervisor.reset();
+  Supervised second("sleep 1000", robot);
+  EXPECT_EQ(second.state(ProcessState::kRunning).pid, pid);
+  second.supervisor->start({3}, ComponentId(0));
+  const Reply reply = second.reply_to({3});
+  EXPECT_EQ(reply.outcome, Outcome::kDone) << reply.text;
+  EXPECT_EQ(std::get<Value>(reply.value), Value(std::int64_t{pid}));
+
+  second.supervisor->adopt(ComponentId(0), pid, live_now());
+  second.supervisor->start({4}, ComponentId(0));
+  EXPECT_EQ(second.reply_to({4}).outcome, Outcome::kRefused) << "its node is there";
 }
 
 TEST(Supervisor, AdoptsAndEndsAProcessThatWasThere) {
