@@ -23,14 +23,6 @@ void add_in_order(ComponentId component, const RuleSet& rules, std::vector<bool>
   order.push_back(component);
 }
 
-std::vector<ComponentId> in_order(const RuleSet& rules) {
-  std::vector<bool> is_visited(rules.components.size());
-  std::vector<ComponentId> order;
-  for (std::size_t c = 0; c < rules.components.size(); ++c)
-    add_in_order(ComponentId(c), rules, is_visited, order);
-  return order;
-}
-
 class Starting {
  public:
   Starting(Robot& robot, const RuleSet& rules, const std::atomic<bool>& stop, LaunchTimes times)
@@ -222,6 +214,14 @@ class Starting {
 };
 
 }  // namespace
+
+std::vector<ComponentId> in_order(const RuleSet& rules) {
+  std::vector<bool> is_visited(rules.components.size());
+  std::vector<ComponentId> order;
+  for (std::size_t c = 0; c < rules.components.size(); ++c)
+    add_in_order(ComponentId(c), rules, is_visited, order);
+  return order;
+}
 
 Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start, Listener& listener,
                 const std::atomic<bool>& stop, LaunchTimes times) {

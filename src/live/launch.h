@@ -36,6 +36,9 @@ struct Launched {
   Past past;                            // how it came up
 };
 
+// Producers before their consumers, else as the file has them.
+std::vector<ComponentId> in_order(const RuleSet& rules);
+
 // Ends early when `stop` is set.
 Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start, Listener& listener,
                 const std::atomic<bool>& stop, LaunchTimes times = {});

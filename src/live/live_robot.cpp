@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "live/launch.h"
+
 namespace culprit {
 namespace {
 
@@ -24,6 +26,22 @@ Expected<std::unique_ptr<LiveRobot>> LiveRobot::open(const RuleSet& rules, Optio
   auto link = ros2::Link::open(rules, std::move(options.link), robot->inbox_);
   if (!link) return Error{link.error()};
   robot->link_ = std::move(*link);
+  robot->container_clients_ = std::make_unique<owners::ContainerClients>(
+      robot->link_->entry(), [&link = *robot->link_](const std::string& node) {
+        const auto all = link.contested();
+        const auto found = all.find(node);
+        return found == all.end() ? std::nullopt : std::optional(found->second);
+      });
+  owners::ComposedNodes::ContainerOwner owner{
+      [&robot = *robot](CommandId command, ComponentId component) {
+        robot.start_process(command, component);
+      },
+      [&robot = *robot](CommandId command, ComponentId component, int pid, owners::Ending ending,
+                        owners::Hangs hangs) {
+        robot.end_process(command, component, pid, ending, hangs);
+      }};
+  robot->composed_ = std::make_unique<owners::ComposedNodes>(
+      rules, in_order(rules), *robot->container_clients_, std::move(owner), robot->inbox_);
   return robot;
 }
 
@@ -31,9 +49,18 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
   const std::size_t before = observations.size();
   listen(until, observations);
   witness(before, observations);
+  // What a container's owner was asked for here is not the manager's.
+  const auto is_composed = [this](const Observation& o) {
+    const auto* reply = std::get_if<Reply>(&o.what);
+    return reply != nullptr && composed_->answered(*reply);
+  };
+  observations.erase(std::remove_if(observations.begin() + static_cast<std::ptrdiff_t>(before),
+                                    observations.end(), is_composed),
+                     observations.end());
   // A component whose process was found is watched from now on, whoever started it.
   for (std::size_t i = before; i < observations.size(); ++i) {
     containers_.observe(observations[i]);
+    composed_->observe(observations[i]);
     const auto* appeared = std::get_if<NodeAppeared>(&observations[i].what);
     if (appeared == nullptr || appeared->pid == 0) continue;
     const auto component = binding_.bind(appeared->node);
@@ -78,38 +105,59 @@ void LiveRobot::execute(const Command& command) {
   if (std::holds_alternative<StopProcess>(command.what)) {
     stop_process(command);
   } else if (std::holds_alternative<StartProcess>(command.what)) {
-    start(command.id, command.component);
+    start(command.id, command.component, command.timeout);
   } else {
     link_->execute(command);
   }
 }
 
-void LiveRobot::start(CommandId command, ComponentId component) {
+void LiveRobot::adopt_again(ComponentId component, int pid, Time known) {
+  supervisor_->adopt_again(component, pid, known);
+  composed_->remember(component, pid);
+}
+
+void LiveRobot::start(CommandId command, ComponentId component, Duration patience) {
+  if (composed_->is_responsible_for(component))
+    return composed_->start(command, component, patience);
+  start_process(command, component);
+}
+
+void LiveRobot::start_process(CommandId command, ComponentId component) {
   if (rules_[component].unit) return units_.start(command, component);
   supervisor_->start(command, component);
 }
 
 // What culprit started is the component's by its LAUNCH, whatever else is in it.
 void LiveRobot::stop_process(const Command& command) {
-  const auto home = containers_.home_of(command.component);
-  if (home && !supervisor_->has_started(command.component)) {
-    const std::string& name = rules_[command.component].name;
-    return inbox_.put(Reply{command.id,
-                            Outcome::kRefused,
-                            {},
-                            name + " lives in the container " + home->container + with(*home) +
-                                ": ending its process would end them all. Declare a COMPONENT "
-                                "with NODE " +
-                                home->container + " and a LAUNCH, and redeploy that"});
-  }
+  const ComponentId component = command.component;
   const Adaptation& what = rules_[command.purpose.strategy].adaptations[command.purpose.adaptation];
   const bool is_replaced = what.type == AdaptationType::kRedeploy;
   const auto ending = is_replaced ? owners::Ending::kToStartAgain : owners::Ending::kForGood;
   const StopProcess& stop = std::get<StopProcess>(command.what);
-  if (rules_[command.component].unit)
-    return units_.stop(command.id, command.component, stop.pid, ending);
-  supervisor_->stop(command.id, command.component, ending,
-                    stop.hangs ? owners::Hangs::kYes : owners::Hangs::kNo);
+  const auto hangs = stop.hangs ? owners::Hangs::kYes : owners::Hangs::kNo;
+  if (composed_->is_responsible_for(component))
+    return composed_->stop(command.id, component, stop.pid, ending, hangs);
+  const auto home = containers_.home_of(component);
+  if (home && !supervisor_->has_started(component)) {
+    const std::string& name = rules_[component].name;
+    return inbox_.put(Reply{command.id,
+                            Outcome::kRefused,
+                            {},
+                            name + " lives in the container " + home->container + with(*home) +
+                                ": ending its process would end them all. Declare how it is "
+                                "loaded, IN " +
+                                home->container +
+                                " PLUGIN package::Class, and the container itself as a "
+                                "COMPONENT with NODE " +
+                                home->container + " and a LAUNCH"});
+  }
+  end_process(command.id, component, stop.pid, ending, hangs);
+}
+
+void LiveRobot::end_process(CommandId command, ComponentId component, int pid,
+                            owners::Ending ending, owners::Hangs hangs) {
+  if (rules_[component].unit) return units_.stop(command, component, pid, ending);
+  supervisor_->stop(command, component, ending, hangs);
 }
 
 }  // namespace culprit

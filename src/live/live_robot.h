@@ -6,6 +6,8 @@
 
 #include "link/link.h"
 #include "owners/component_containers.h"
+#include "owners/composed_nodes.h"
+#include "owners/container_clients.h"
 #include "owners/supervisor.h"
 #include "owners/units.h"
 #include "robot/inbox.h"
@@ -27,8 +29,13 @@ class LiveRobot : public Robot {
   void observe(Time until, std::vector<Observation>& observations) override;
   void execute(const Command& command) override;
 
-  // Starts a component: by its LAUNCH, or by asking the systemd that runs its UNIT.
-  void start(CommandId command, ComponentId component);
+  // Starts a component: by its LAUNCH, or by asking the systemd that runs its UNIT, or the container
+  // that loads it, which has so long.
+  void start(CommandId command, ComponentId component,
+             Duration patience = owners::ComposedNodes::kComingUp);
+
+  // The component ran in this process at `known`, in an earlier run of culprit.
+  void adopt_again(ComponentId component, int pid, Time known);
 
   void interrupt() override { inbox_.interrupt(); }
 
@@ -49,6 +56,9 @@ class LiveRobot : public Robot {
   void listen(Time until, std::vector<Observation>& observations);
   void witness(std::size_t before, std::vector<Observation>& observations);
   void stop_process(const Command& command);
+  void start_process(CommandId command, ComponentId component);
+  void end_process(CommandId command, ComponentId component, int pid, owners::Ending ending,
+                   owners::Hangs hangs);
 
   const RuleSet& rules_;
   Inbox inbox_;
@@ -57,6 +67,8 @@ class LiveRobot : public Robot {
   owners::Units units_;
   std::unique_ptr<owners::Supervisor> supervisor_;
   std::unique_ptr<ros2::Link> link_;
+  std::unique_ptr<owners::ContainerClients> container_clients_;
+  std::unique_ptr<owners::ComposedNodes> composed_;
   std::optional<Time> deaf_since_;
 };
 

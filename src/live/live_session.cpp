@@ -76,7 +76,7 @@ void adopt_again(LiveRobot& robot, const Past& past, const Sightings& sightings)
   for (const Event& event : past) {
     const auto* found = std::get_if<ComponentFound>(&event.what);
     if (found != nullptr && sightings.has(found->component))
-      robot.supervisor().adopt_again(found->component, found->pid, event.at);
+      robot.adopt_again(found->component, found->pid, event.at);
   }
 }
 

@@ -359,7 +359,10 @@ void Link::on_change(const GraphChange& change) {
 
 // Rules may have nothing to complain of, or complain late: this is told in its own right.
 void Link::on_namesakes(const NodeNamesakes& seen) {
-  if (!binding_.bind(seen.node)) return;
+  const bool is_container = std::any_of(
+      rules_.components.begin(), rules_.components.end(),
+      [&](const Component& c) { return c.composed && c.composed->container == seen.node; });
+  if (!is_container && !binding_.bind(seen.node)) return;
   {
     const std::lock_guard lock(mutex_);
     if (seen.others == 0) {

@@ -67,9 +67,12 @@ class Link {
   void publish(std::vector<Health> health);
   void log(Severity severity, std::string text);
 
-  // Of each component's node that others have the name of, by full name: who they are, who started
+  // Of each component's node, and each container's, that others have the name of, by full name: who they are, who started
   // each, and how to end what is one too many. From any thread.
   std::map<std::string, std::string> contested() const;
+
+  // Our own node, for clients of what is no component. It goes with the link.
+  NodeEntry& entry() { return node_->entry(); }
 
   // Until when it is sure that what the robot says is heard (hearing.h), and that no other culprit
   // manages it (manager_lease.h). From any thread, as the next.

@@ -329,6 +329,11 @@ const ParticipantInfo* Graph::participant(const GuidPrefix& prefix) const {
   return found == peers_.end() ? nullptr : &found->second.info;
 }
 
+int Graph::process_of(const GuidPrefix& prefix) const {
+  const auto peer = peers_.find(prefix);
+  return peer == peers_.end() ? 0 : peer->second.pid;
+}
+
 const EndpointInfo* Graph::endpoint(const Guid& guid) const {
   const Endpoint* found = find(guid);
   return found == nullptr ? nullptr : &found->info;

@@ -119,6 +119,8 @@ class Graph {
   // Null when they are not known (any more).
   const ParticipantInfo* participant(const GuidPrefix& prefix) const;
   const EndpointInfo* endpoint(const Guid& guid) const;
+  // Its process on this machine; 0: it is elsewhere, or not proven, or not known.
+  int process_of(const GuidPrefix& prefix) const;
 
   // Every node, by name, with its endpoints.
   struct NodeView {

@@ -149,6 +149,57 @@ struct SetBool {
   };
 };
 
+// A component container (rclcpp_components). Answered once the node has been made.
+struct LoadNode {
+  static constexpr std::string_view kType = "composition_interfaces/srv/LoadNode";
+  struct Request {
+    std::string package_name;
+    std::string plugin_name;
+    std::string node_name;       // empty: what the class calls itself
+    std::string node_namespace;  // likewise
+    std::uint8_t log_level = 0;  // 0: as the container's
+    std::vector<std::string> remap_rules;
+    std::vector<msg::Parameter> parameters;
+    std::vector<msg::Parameter> extra_arguments;
+    static void visit(auto& self, auto& each) {
+      each(self.package_name, self.plugin_name, self.node_name, self.node_namespace, self.log_level,
+           self.remap_rules, self.parameters, self.extra_arguments);
+    }
+  };
+  struct Response {
+    bool success = false;
+    std::string error_message;
+    std::string full_node_name;
+    std::uint64_t unique_id = 0;
+    static void visit(auto& self, auto& each) {
+      each(self.success, self.error_message, self.full_node_name, self.unique_id);
+    }
+  };
+};
+
+struct UnloadNode {
+  static constexpr std::string_view kType = "composition_interfaces/srv/UnloadNode";
+  struct Request {
+    std::uint64_t unique_id = 0;
+    static void visit(auto& self, auto& each) { each(self.unique_id); }
+  };
+  struct Response {
+    bool success = false;
+    std::string error_message;
+    static void visit(auto& self, auto& each) { each(self.success, self.error_message); }
+  };
+};
+
+struct ListNodes {
+  static constexpr std::string_view kType = "composition_interfaces/srv/ListNodes";
+  struct Request {};
+  struct Response {
+    std::vector<std::string> full_node_names;
+    std::vector<std::uint64_t> unique_ids;  // as many
+    static void visit(auto& self, auto& each) { each(self.full_node_names, self.unique_ids); }
+  };
+};
+
 // system_modes: success means accepted, not done.
 struct ChangeMode {
   static constexpr std::string_view kType = "system_modes_msgs/srv/ChangeMode";

@@ -58,6 +58,9 @@ PresentGoal present(const Adaptation& adaptation, const Knowledge& knowledge) {
   const Duration impact = duration_of(adaptation.impact, knowledge.rules);
   goal.patience = std::max<Duration>(
       {goal.patience, impact, std::min<Duration>(4 * joining, PresentGoal::kMost)});
+  // Who loads it answers when it has been made.
+  if (knowledge.rules[adaptation.component].composed)
+    goal.answer = std::max(goal.answer, goal.patience);
   goal.longest = joining > Duration::zero() ? goal.patience : std::max(goal.longest, goal.patience);
   return goal;
 }
@@ -144,8 +147,11 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
     case AdaptationType::kRedeploy: {
       GoneGoal gone;
       PresentGoal back = present(adaptation, knowledge);
-      // systemd may be faster than the news of the end.
-      if (knowledge.rules[adaptation.component].unit) {
+      // systemd may be faster than the news of the end; and a container may be replaced for one of
+      // those that it loads.
+      const Component& component = knowledge.rules[adaptation.component];
+      if (component.unit || component.composed ||
+          is_container(adaptation.component, knowledge.rules)) {
         gone.pid = state.known_pid();
         back.instead_of = gone.pid;
       }

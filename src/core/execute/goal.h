@@ -54,6 +54,7 @@ struct PresentGoal {
   Duration patience = std::chrono::seconds(20);
   // While the process that was started is known to run, also if it only waits for something.
   Duration longest = std::chrono::seconds(60);
+  Duration answer = std::chrono::seconds(5);  // until the request to start it is answered
 };
 
 using Goal =

@@ -79,6 +79,8 @@ Pursuit::Pursuit(Goal goal, ComponentId component, Time now)
 
 Duration Pursuit::timeout(const Request& request) const {
   if (std::holds_alternative<StopProcess>(request)) return 12s;
+  const auto* present = std::get_if<PresentGoal>(&goal_);
+  if (present != nullptr && std::holds_alternative<StartProcess>(request)) return present->answer;
   if (std::holds_alternative<ChangeLifecycle>(request))
     return std::min<Duration>(5s, patience(goal_));
   const bool is_slow = std::holds_alternative<CallService>(request) ||
@@ -159,7 +161,8 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
       !state.alive.value_or(true))
     return give_up("whoever changes its mode is gone");
   if (const auto* gone = std::get_if<GoneGoal>(&goal_)) return pursue(*gone, knowledge, now);
-  if (const auto* present = std::get_if<PresentGoal>(&goal_)) return pursue(*present, state, now);
+  if (const auto* present = std::get_if<PresentGoal>(&goal_))
+    return pursue(*present, knowledge, now);
   if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return pursue(*service, now);
   // The change was not sent, for there was nobody to send it to.
   if (answer_ && answer_->outcome == Outcome::kUnreachable) return give_up(why(*answer_));
@@ -270,15 +273,18 @@ std::optional<Pursuit::Request> Pursuit::pursue(const GoneGoal& goal, const Know
   const bool is_gone = !state.in_graph && state.process == ProcessState::kGone;
   // Where the operating system is asked, its word is needed too: a new process must not begin
   // beside the old one because of a wrong answer.
-  const bool still_runs = state.pid != 0 && state.process != ProcessState::kGone;
+  const bool still_runs = knowledge.rules[component_].composed
+                              ? state.in_graph  // the process is its container's
+                              : state.pid != 0 && state.process != ProcessState::kGone;
   if (is_gone || (answer_->outcome == Outcome::kDone && !still_runs)) return reach();
   const bool may_come =
       answer_->outcome == Outcome::kTimedOut || answer_->outcome == Outcome::kDone;
   return may_come ? look_again(now) : give_up(why(*answer_));
 }
 
-std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal,
-                                                const ComponentState& state, Time now) {
+std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal, const Knowledge& knowledge,
+                                                Time now) {
+  const ComponentState& state = knowledge.components[component_];
   const bool is_there = goal.instead_of && state.in_graph && state.known_pid() != *goal.instead_of;
   if (is_there && !has_changed_anything()) return reach();
   // Started before culprit ended, and not in the graph yet. If it was stopped since, none is begun
@@ -288,6 +294,9 @@ std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal,
   if (is_coming && !has_changed_anything()) return look_again(now);
   if (!has_changed_anything()) return change(StartProcess{}, now);
   if (state.in_graph && state.node_seen >= begun_) return reach();
+  // Its container says that it is loaded: before culprit looked, perhaps.
+  if (state.in_graph && knowledge.rules[component_].composed && answer_->outcome == Outcome::kDone)
+    return reach();
   if (did_not_come(*answer_) || answer_->outcome == Outcome::kRefused)
     return give_up(why(*answer_));
   const auto* pid = std::get_if<Value>(&answer_->value);

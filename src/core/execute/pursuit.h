@@ -76,7 +76,7 @@ class Pursuit {
   std::optional<Request> pursue(const ModeGoal& goal, Time now);
   std::optional<Request> pursue(const ServiceGoal& goal, Time now);
   std::optional<Request> pursue(const GoneGoal& goal, const Knowledge& knowledge, Time now);
-  std::optional<Request> pursue(const PresentGoal& goal, const ComponentState& state, Time now);
+  std::optional<Request> pursue(const PresentGoal& goal, const Knowledge& knowledge, Time now);
 
   bool would_fight(const Knowledge& knowledge) const;
   std::optional<Request> change(Request request, Time now);

@@ -186,6 +186,34 @@ TEST(PursuitOfAProcess, BelievesNoAnswerWhileTheOperatingSystemSaysThatItRuns) {
   EXPECT_TRUE(pursuit.is_reached());
 }
 
+// The process is its container's, which goes on.
+TEST(PursuitOfAProcess, IsOverWhenAComposedNodeHasLeftTheGraph) {
+  One one;
+  one.rules.components[0].composed = Composition{"/box", "p", "p::C"};
+  one.runs(7, true);
+  Pursuit pursuit(GoneGoal{7}, one.c, kStart);
+  ASSERT_TRUE(is<StopProcess>(pursuit.advance(one.knowledge, kStart)));
+  pursuit.answered(done(), kStart + 1ms);
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart + 2ms));
+  EXPECT_FALSE(pursuit.is_reached()) << "its node is there";
+  one.state().in_graph = false;
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart + 1s));
+  EXPECT_TRUE(pursuit.is_reached());
+}
+
+// As a culprit did that was killed before it heard so.
+TEST(PursuitOfAProcess, BelievesAContainerThatAComposedNodeIsLoadedAlready) {
+  One one;
+  one.rules.components[0].composed = Composition{"/box", "p", "p::C"};
+  one.runs(7, true);
+  one.state().node_seen = kStart - 1s;
+  Pursuit pursuit(PresentGoal{7}, one.c, kStart);
+  ASSERT_TRUE(is<StartProcess>(pursuit.advance(one.knowledge, kStart)));
+  pursuit.answered(done(), kStart + 1ms);
+  EXPECT_FALSE(pursuit.advance(one.knowledge, kStart + 2ms));
+  EXPECT_TRUE(pursuit.is_reached());
+}
+
 // ---- a state that is looked at before it is changed
 
 TEST(PursuitOfALifecycle, ChangesNothingThatIsSoAlready) {

@@ -128,6 +128,18 @@ class Checker {
         rules_.dependencies.push_back({consumer, symbols_.component(producer)});
       }
     }
+    containers();
+  }
+
+  // What lives in a container goes down with it, and comes after it.
+  void containers() {
+    for (std::size_t part = 0; part < rules_.components.size(); ++part) {
+      const auto& composed = rules_.components[part].composed;
+      for (std::size_t c = 0; composed && c < rules_.components.size(); ++c) {
+        if (c != part && rules_.components[c].node == composed->container)
+          rules_.dependencies.push_back({ComponentId(part), ComponentId(c)});
+      }
+    }
   }
 
   void interlocks() {

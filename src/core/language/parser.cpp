@@ -214,6 +214,26 @@ class Parser {
         if (!component.unit) return false;
         component.is_users_unit = s.peek().text == "USER";
         if (component.is_users_unit) s.next();
+      } else if (clause.text == "IN" && !component.container) {
+        s.next();
+        component.container = read_.ros_name(s, "the full name of the node that loads it");
+        if (!component.container) return false;
+      } else if (clause.text == "PLUGIN" && !component.plugin) {
+        s.next();
+        component.plugin = read_.name_or_text(s, "the class to load");
+        if (!component.plugin) return false;
+      } else if (clause.text == "PACKAGE" && !component.package) {
+        s.next();
+        component.package = read_.name_or_text(s, "the package that has the class");
+        if (!component.package) return false;
+      } else if (clause.text == "PARAMETERS" && !component.parameters) {
+        s.next();
+        component.parameters = read_.name_or_text(s, "the file of its parameters");
+        if (!component.parameters) return false;
+      } else if (clause.text == "REMAP" && !component.remaps) {
+        s.next();
+        component.remaps = read_.name_or_text(s, "which name stands for which");
+        if (!component.remaps) return false;
       } else if (clause.text == "REQUIRED" && !component.is_required) {
         s.next();
         component.is_required = true;
@@ -225,8 +245,9 @@ class Parser {
         s.next();
         if (!lifecycle(s, component)) return false;
       } else {
-        return read_.unexpected_clause(clause, {"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT",
-                                                "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+        return read_.unexpected_clause(
+            clause, {"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "IN", "PLUGIN", "PACKAGE",
+                     "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
       }
     }
     file_.components.push_back(std::move(component));

@@ -5,6 +5,7 @@
 // and never changes once it is checked; what happens at run time is kept by knowledge/.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <variant>
@@ -28,6 +29,17 @@ struct SystemdUnit {
   bool operator==(const SystemdUnit&) const = default;
 };
 
+// How a node is loaded into the process of another one, a component container
+// (composition_interfaces).
+struct Composition {
+  std::string container;              // the node that loads it, by full name
+  std::string package;                // that it is registered in
+  std::string plugin;                 // "detect::Detector"
+  std::string parameters{};           // a file of them, a whole path; may be empty
+  std::vector<std::string> remaps{};  // "image:=/camera/image"
+  bool operator==(const Composition&) const = default;
+};
+
 // A managed ROS 2 node (paper: c in C).
 struct Component {
   std::string name;
@@ -45,8 +57,10 @@ struct Component {
 
   std::optional<SystemdUnit> unit{};  // that runs it: systemd is asked to start and to end it
 
+  std::optional<Composition> composed{};  // its container is asked to load and to unload it
+
   // Whether it can be told to start.
-  bool can_start() const { return unit || !launch.empty(); }
+  bool can_start() const { return unit || composed || !launch.empty(); }
   // Whether somebody starts it again after its end.
   bool can_start_again() const { return is_respawned || can_start(); }
 };
@@ -202,6 +216,15 @@ struct RuleSet {
   const Rule& operator[](RuleId id) const { return rules[id.index]; }
   const Strategy& operator[](StrategyId id) const { return strategies[id.index]; }
 };
+
+// Whether components of the rules are loaded into its node.
+inline bool is_container(ComponentId component, const RuleSet& rules) {
+  const std::string& node = rules[component].node;
+  return !node.empty() &&
+         std::any_of(rules.components.begin(), rules.components.end(), [&](const Component& c) {
+           return c.composed && c.composed->container == node;
+         });
+}
 
 // How long `cycles` last with this rule set.
 inline Duration duration_of(Cycles cycles, const RuleSet& rules) {

@@ -112,6 +112,7 @@ void Symbols::declare_component(const syntax::Component& written) {
   }
   declare_launch(written, component);
   if (written.unit) component.unit = declared_unit(written);
+  declare_composition(written, component);
   declared_components_.push_back(components_.emplace(component.name, id).first->first);
   rules_.components.push_back(std::move(component));
 }
@@ -153,6 +154,74 @@ void Symbols::declare_launch(const syntax::Component& written, Component& compon
     report(*written.environment, "these are no variables",
            "write them as NAME=value, with blanks between them: ENV \"ROS_DOMAIN_ID=7 LANG=C\"");
   }
+}
+
+// PLUGIN, PACKAGE, PARAMETERS and REMAP say how it is loaded, and IN by whom; its NODE is the name
+// that it is loaded under.
+void Symbols::declare_composition(const syntax::Component& written, Component& component) {
+  const auto report = [&](const syntax::Name& where, std::string cause, std::string remedy,
+                          Code code = Code::kSyntax) {
+    diagnostics_.push_back(
+        {code, Severity::kError, where.span, std::move(cause), std::move(remedy)});
+  };
+  const std::string self = "component '" + written.name.text + "'";
+  if (!written.container) {
+    for (const auto& [word, what] : {std::pair("PLUGIN", &written.plugin),
+                                     {"PACKAGE", &written.package},
+                                     {"PARAMETERS", &written.parameters},
+                                     {"REMAP", &written.remaps}}) {
+      if (*what)
+        report(**what, std::string(word) + " is for a component that a container loads",
+               "add IN and the full name of the container's node: IN /container");
+    }
+    return;
+  }
+  Composition composed{written.container->text, {}, {}};
+  const char* other = written.launch         ? "LAUNCH"
+                      : written.unit         ? "UNIT"
+                      : written.is_respawned ? "RESPAWNED"
+                                             : nullptr;
+  if (other != nullptr)
+    report(*written.container,
+           self + " is IN a container and has " + other + ", so it is not clear who starts it",
+           std::string("keep IN if the container loads it, else ") + other, Code::kTwoOwners);
+  if (!written.node) {
+    report(*written.container, self + " has no NODE to be loaded as", "add NODE and its full name");
+  } else if (written.node->text == composed.container) {
+    report(*written.container, "a node cannot be loaded into itself",
+           "write the full name of the node that loads it");
+  }
+  if (!written.plugin) {
+    report(*written.container, self + " has no PLUGIN, so its container cannot load it again",
+           "add PLUGIN package::Class, as ros2 component types shows it");
+  } else {
+    composed.plugin = written.plugin->text;
+    composed.package = composed.plugin.substr(0, composed.plugin.find("::"));
+    if (composed.package.empty() || (composed.package == composed.plugin && !written.package))
+      report(*written.plugin, "this class does not say which package has it",
+             "write package::Class, or add PACKAGE");
+  }
+  if (written.package) composed.package = written.package->text;
+  if (written.parameters) {
+    composed.parameters = written.parameters->text;
+    if (!composed.parameters.starts_with('/'))
+      report(*written.parameters, "this path is not whole",
+             "write it from the root, with a '/' in front");
+  }
+  if (written.remaps) {
+    const auto remaps = split_command(written.remaps->text);
+    const auto is_remap = [](std::string_view text) {
+      const std::size_t at = text.find(":=");
+      return at != std::string_view::npos && at > 0 && at + 2 < text.size();
+    };
+    if (remaps && std::all_of(remaps->begin(), remaps->end(), is_remap)) {
+      composed.remaps = *remaps;
+    } else {
+      report(*written.remaps, "these are no remappings",
+             "write them as from:=to, with blanks between them: REMAP \"image:=/camera/image\"");
+    }
+  }
+  component.composed = std::move(composed);
 }
 
 // One unit runs one component, and nobody else does.

@@ -93,6 +93,11 @@ struct Component {
   bool is_respawned = false;
   std::optional<Name> unit{};
   bool is_users_unit = false;
+  std::optional<Name> container{};  // the node that loads it
+  std::optional<Name> plugin{};
+  std::optional<Name> package{};
+  std::optional<Name> parameters{};
+  std::optional<Name> remaps{};  // "a:=b c:=d"
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
 };
 

@@ -87,15 +87,16 @@ class Completion {
     const std::string& statement = words_.front();
     if (statement == "ADAPTATION") return adaptation();
     if (statement == "COMPONENT") {
-      if (words_.back() == "NODE") return names(&live_nodes);
+      if (words_.back() == "NODE" || words_.back() == "IN") return names(&live_nodes);
       if (words_.back() == "LIFECYCLE") return keywords({"self", "managed", "launcher"});
-      for (const char* takes_text : {"UNIT", "LAUNCH", "ENV", "SETUP", "CWD"}) {
+      for (const char* takes_text :
+           {"UNIT", "LAUNCH", "ENV", "SETUP", "CWD", "PLUGIN", "PACKAGE", "PARAMETERS", "REMAP"}) {
         if (words_.back() == takes_text) return {};
       }
       if (words_[words_.size() - 2] == "UNIT")
         return keywords({"USER", "NODE", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
-      return keywords(
-          {"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+      return keywords({"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "IN", "PLUGIN", "PACKAGE",
+                       "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
     }
     if (statement == "SIGNAL") return signal();
     if (statement == "IGNORE") {

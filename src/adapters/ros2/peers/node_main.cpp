@@ -1,20 +1,28 @@
 // A managed node in a process of its own, for tests to watch, steer and kill:
 //
-//     ros2_peer_node <domain> [--hangs-if FILE] <full name>...
+//     ros2_peer_node <domain> [--hangs-if FILE] [--container] [--keeps-if FILE] <full name>...
 //
 // If there is FILE when it is activated, it takes the file away and does nothing more.
 //
 // Each has the parameters gain (0..10), count (not negative), label and serial (read-only), the
 // service ~/trigger, ~/value at 10 Hz while it is active, and one status on /diagnostics each
-// second. Of several the first is a component container (rclcpp_components), which loads nothing
-// more, and the others live in it.
+// second.
+//
+// Of several, or with --container, the first is a component container, and the others live in it. It
+// loads, unloads and lists as rclcpp_components' ComponentManager does: classes by the ament index of
+// its environment, numbers from 1, the same texts. Every class is one of these nodes. It prints what
+// it loads and unloads. While there is the FILE of --keeps-if it unloads nothing, and says so.
 #include <charconv>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -36,7 +44,8 @@ class PeerNode {
   PeerNode(Executor& executor, std::string hangs_if)
       : executor_(executor), hangs_if_(std::move(hangs_if)) {}
 
-  Expected<void> open(Context& context, NodeName name) {
+  Expected<void> open(Context& context, NodeName name,
+                      const std::vector<msg::Parameter>& overrides = {}) {
     auto managed = LifecycleNode::create(context, std::move(name),
                                          {.on_configure = [this] { return configure(); },
                                           .on_cleanup = [this] { return release(); },
@@ -47,6 +56,10 @@ class PeerNode {
     if (!managed) return Error{managed.error()};
     managed_ = std::move(*managed);
     if (auto declared = declare_parameters(); !declared) return declared;
+    if (!overrides.empty()) {
+      const auto set = managed_->node().parameters().set(overrides);
+      if (!set.successful) return Error{set.reason};
+    }
 
     auto trigger = managed_->node().create_service<srv::Trigger>(
         "~/trigger", [this](const srv::Trigger::Request&) {
@@ -62,15 +75,7 @@ class PeerNode {
     return {};
   }
 
-  Expected<void> serve_loading() {
-    auto load = ServiceServer::create(managed_->node().entry(),
-                                      {managed_->node().name().full() + "/_container/load_node",
-                                       "composition_interfaces/srv/LoadNode"},
-                                      qos::kServices, [](ByteView) { return Bytes(); });
-    if (!load) return Error{load.error()};
-    load_ = std::move(*load);
-    return {};
-  }
+  ros2::Node& node() { return managed_->node(); }
 
  private:
   Expected<void> declare_parameters() {
@@ -135,11 +140,97 @@ class PeerNode {
   int ticks_ = 0;
   std::unique_ptr<LifecycleNode> managed_;
   std::unique_ptr<ServiceServer> trigger_;
-  std::unique_ptr<ServiceServer> load_;
   std::optional<Publisher<msg::DiagnosticArray>> diagnostics_;
   std::optional<Publisher<msg::Float64>> value_;
   std::optional<Timer> diagnose_;
   std::optional<Timer> tick_;
+};
+
+class Container {
+ public:
+  Container(Executor& executor, Context& context, std::string keeps_if)
+      : executor_(executor), context_(context), keeps_if_(std::move(keeps_if)) {}
+
+  Expected<void> open(Node& node) {
+    auto load = node.create_service<srv::LoadNode>(
+        "~/_container/load_node",
+        [this](const srv::LoadNode::Request& request) { return load_node(request); });
+    auto unload = node.create_service<srv::UnloadNode>(
+        "~/_container/unload_node",
+        [this](const srv::UnloadNode::Request& request) { return unload_node(request.unique_id); });
+    auto list = node.create_service<srv::ListNodes>(
+        "~/_container/list_nodes", [this](const srv::ListNodes::Request&) { return list_nodes(); });
+    for (auto* made : {&load, &unload, &list}) {
+      if (!*made) return Error{made->error()};
+      services_.push_back(std::move(**made));
+    }
+    return {};
+  }
+
+  Expected<std::uint64_t> add(NodeName name, const std::vector<msg::Parameter>& parameters) {
+    auto peer = std::make_unique<PeerNode>(executor_, "");
+    if (auto opened = peer->open(context_, std::move(name), parameters); !opened)
+      return Error{opened.error()};
+    loaded_[++last_id_] = std::move(peer);
+    return last_id_;
+  }
+
+ private:
+  // As the ament index has it.
+  static Expected<void> find(const std::string& package, const std::string& plugin) {
+    const char* prefixes = std::getenv("AMENT_PREFIX_PATH");
+    std::istringstream all(prefixes == nullptr ? "" : prefixes);
+    for (std::string prefix; std::getline(all, prefix, ':');) {
+      std::ifstream index(prefix + "/share/ament_index/resource_index/rclcpp_components/" +
+                          package);
+      if (!index) continue;
+      for (std::string line; std::getline(index, line);) {
+        if (line.substr(0, line.find(';')) == plugin) return {};
+      }
+      return Error{"Failed to find class with the requested plugin name."};
+    }
+    return Error{"Could not find requested resource in ament index"};
+  }
+
+  srv::LoadNode::Response load_node(const srv::LoadNode::Request& request) {
+    if (auto found = find(request.package_name, request.plugin_name); !found)
+      return {false, found.error(), "", 0};
+    NodeName name{request.node_namespace.empty() ? "/" : request.node_namespace,
+                  request.node_name.empty() ? "peer" : request.node_name};
+    const std::string full = name.full();
+    const auto id = add(std::move(name), request.parameters);
+    if (!id) return {false, "Component constructor threw an exception: " + id.error(), "", 0};
+    std::printf("loaded %s\n", full.c_str());
+    std::fflush(stdout);
+    return {true, "", full, *id};
+  }
+
+  srv::UnloadNode::Response unload_node(std::uint64_t id) {
+    const auto found = loaded_.find(id);
+    if (found == loaded_.end())
+      return {false, "No node found with unique_id: " + std::to_string(id)};
+    if (std::filesystem::exists(keeps_if_)) return {false, "Failed to unload"};
+    std::printf("unloaded %s\n", found->second->node().name().full().c_str());
+    std::fflush(stdout);
+    loaded_.erase(found);
+    return {true, ""};
+  }
+
+  srv::ListNodes::Response list_nodes() const {
+    srv::ListNodes::Response all;
+    for (const auto& [id, peer] : loaded_) {
+      all.full_node_names.push_back(peer->node().name().full());
+      all.unique_ids.push_back(id);
+    }
+    return all;
+  }
+
+  Executor& executor_;
+  Context& context_;
+  const std::filesystem::path keeps_if_;
+  std::vector<std::unique_ptr<ServiceServer>> services_;
+  std::map<std::uint64_t, std::unique_ptr<PeerNode>> loaded_;
+  std::uint64_t last_id_ = 0;
 };
 
 int fail(const std::string& why) {
@@ -150,7 +241,7 @@ int fail(const std::string& why) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) return fail("usage: ros2_peer_node <domain> [--hangs-if FILE] <full name>...");
+  if (argc < 3) return fail("usage: ros2_peer_node <domain> [option]... <full name>...");
   Executor executor;
   if (auto stops = executor.stop_on({SIGINT, SIGTERM}); !stops) return fail(stops.error());
   ParticipantOptions options;
@@ -160,17 +251,34 @@ int main(int argc, char** argv) {
   options.gid_size = GidSize::kHumbleAndOlder;
   auto context = Context::create(executor, options);
   if (!context) return fail(context.error());
-  std::vector<std::unique_ptr<PeerNode>> peers;
-  const bool may_hang = std::string_view(argv[2]) == "--hangs-if" && argc > 4;
-  const std::string hangs_if = may_hang ? argv[3] : "";
-  for (int i = may_hang ? 4 : 2; i < argc; ++i) {
-    auto name = parse_node_name(argv[i]);
-    if (!name) return fail(name.error());
-    peers.push_back(std::make_unique<PeerNode>(executor, hangs_if));
-    if (auto opened = peers.back()->open(**context, *name); !opened) return fail(opened.error());
+  std::string hangs_if;
+  std::string keeps_if;
+  bool is_container = false;
+  std::vector<NodeName> names;
+  for (int i = 2; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--container") {
+      is_container = true;
+    } else if (argument == "--hangs-if" && i + 1 < argc) {
+      hangs_if = argv[++i];
+    } else if (argument == "--keeps-if" && i + 1 < argc) {
+      keeps_if = argv[++i];
+    } else {
+      auto name = parse_node_name(argument);
+      if (!name) return fail(name.error());
+      names.push_back(std::move(*name));
+    }
   }
-  if (peers.size() > 1) {
-    if (auto opened = peers.front()->serve_loading(); !opened) return fail(opened.error());
+  if (names.empty()) return fail("no name");
+  PeerNode first(executor, hangs_if);
+  if (auto opened = first.open(**context, names.front()); !opened) return fail(opened.error());
+  std::optional<Container> container;
+  if (is_container || names.size() > 1) {
+    container.emplace(executor, **context, keeps_if);
+    if (auto opened = container->open(first.node()); !opened) return fail(opened.error());
+    for (std::size_t n = 1; n < names.size(); ++n) {
+      if (auto added = container->add(names[n], {}); !added) return fail(added.error());
+    }
   }
   executor.run();
   return 0;

@@ -1,0 +1,159 @@
+// Components that a component container loads (IN /container PLUGIN package::Class).
+//
+// The container is asked to unload one and to load it again; that it did is believed when it lists
+// its nodes so. Whether a node of that name is loaded is looked at before, so that none is loaded
+// twice.
+//
+// Where it does not unload, or does not answer, the container itself is replaced: it is ended and
+// started by whoever owns it, and everything that lived in it is loaded again, in order, producers
+// first. That is done only if all of it can come back: the container is a component that can start
+// again, and each node that it lists is one that the rules say how to load. Likewise where it has
+// ended, whoever ended it: who starts it loads what it had. What somebody unloaded on purpose before
+// is not loaded.
+//
+// Proof before harm. A container is asked only if its process is known, by the proofs by which any
+// process is, and its answers count only if they come from that process. While two nodes have its
+// name none is asked.
+//
+// Each container has a thread of its own here, on which it is asked for one thing after the other.
+// If this object goes while a container comes up, whoever takes over loads what is missing with the
+// first component that it starts there.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "owners/container_services.h"
+#include "owners/supervisor.h"
+#include "robot/inbox.h"
+
+namespace culprit::owners {
+
+// All members may be called from any thread. Replies go to the inbox.
+class ComposedNodes {
+ public:
+  // Until a container has to answer what it has at hand; until a node that it says it has unloaded
+  // must have left the graph.
+  static constexpr Duration kAnswer = std::chrono::seconds(2);
+  static constexpr Duration kHungAnswer = std::chrono::milliseconds(500);
+  static constexpr Duration kUnload = std::chrono::seconds(3);
+  // Until a container that was started must be in the graph.
+  static constexpr Duration kComingUp = std::chrono::seconds(30);
+  // How long one of a container that it starts itself may load.
+  static constexpr Duration kLoad = std::chrono::seconds(30);
+
+  // Who starts and ends a container's own process. The reply to a command has to come to
+  // answered(). May be called from any thread.
+  struct ContainerOwner {
+    std::function<void(CommandId, ComponentId)> start;
+    std::function<void(CommandId, ComponentId, int pid, Ending, Hangs)> stop;
+  };
+
+  // `order`: all components, in the order in which they come up. The references must outlive this.
+  ComposedNodes(const RuleSet& rules, const std::vector<ComponentId>& order,
+                ContainerServices& services, ContainerOwner owner, Inbox& inbox);
+  ~ComposedNodes();
+
+  // Whether start() and stop() are to be asked here: it lives in a container, or is one.
+  bool is_responsible_for(ComponentId component) const;
+
+  void start(CommandId command, ComponentId component, Duration patience);
+  // `pid`: the process that is meant, the container's; 0: whichever it is.
+  void stop(CommandId command, ComponentId component, int pid, Ending ending, Hangs hangs);
+
+  void observe(const Observation& observation);
+  // The component lived in this process when an earlier run of culprit saw it.
+  void remember(ComponentId component, int pid);
+  // Whether the reply is one to a container's owner, and nobody else's.
+  bool answered(const Reply& reply);
+
+ private:
+  struct Errand {
+    enum class Kind : std::uint8_t { kStart, kStop };
+    CommandId command;
+    ComponentId component;
+    Kind kind = Kind::kStart;
+    Duration patience{};
+    int pid = 0;
+    Ending ending = Ending::kForGood;
+    Hangs hangs = Hangs::kNo;
+  };
+  struct Container {
+    std::string node;
+    std::optional<ComponentId> component;  // that it is itself
+    std::vector<ComponentId> parts;        // that it loads, in order
+    std::deque<Errand> errands{};
+    bool has_news = false;  // somebody came to it since it was asked what it has
+    // Of its thread.
+    std::map<ComponentId, int> unanswered{};        // loads, and the process that was asked
+    std::optional<std::set<std::string>> listed{};  // what it said last that it has
+    int listed_by = 0;                              // the process that said so
+    Time coming_up = kLongAgo;                      // until when, since it was started here
+    std::thread thread{};
+  };
+  // Where a part lives, or lived last.
+  struct Life {
+    int pid = 0;
+    std::optional<Time> left{};  // the graph, since
+  };
+  struct Answer {
+    Outcome outcome = Outcome::kDone;
+    std::string text{};
+    int pid = 0;
+  };
+
+  void run(Container& container);
+  void look(Container& container);
+  void put(Errand errand);
+  void reply(CommandId command, const Answer& answer);
+
+  // On a container's thread.
+  Answer stop_part(Container& container, const Errand& errand);
+  Answer stop_container(Container& container, const Errand& errand);
+  void start_part(Container& container, const Errand& errand);
+  Answer unload(Container& container, const Errand& errand, int pid, bool& is_stuck);
+  Answer replace(Container& container, int pid, Hangs hangs);
+  std::string why_not_replace(const Container& container, int pid) const;
+  Answer ensure(Container& container, Duration patience);
+  void load_all(Container& container, int pid, const Errand& errand);
+  Answer load(Container& container, ComponentId part, int pid, Duration patience);
+  ContainerAnswer list(Container& container, int pid, Duration patience);
+  Answer ask_owner(const std::function<void(CommandId)>& ask, Duration patience);
+
+  struct Process {
+    bool is_there = false;  // its node is in the graph, and its process has not ended
+    int pid = 0;            // 0: not proven
+  };
+  Process process_of(const std::string& node) const;
+  bool is_lost(const Container& container, ComponentId part, int pid) const;
+  template <class Done>
+  bool wait(Time until, Done done) const;  // `done` is called with the mutex
+
+  const RuleSet& rules_;
+  ContainerServices& services_;
+  const ContainerOwner owner_;
+  Inbox& inbox_;
+  std::map<ComponentId, Container*> container_of_;  // of what lives there, and of what it is
+
+  mutable std::mutex mutex_;  // guards what follows, and the errands
+  mutable std::condition_variable something_came_;
+  std::map<std::string, int> nodes_;  // of the graph, with their processes; 0: not known
+  std::map<std::string, Time> left_;  // when a container's node left the graph last
+  std::map<ComponentId, Life> lives_;
+  std::map<CommandId, std::optional<Reply>> asked_;  // owners
+  std::uint64_t requests_ = 0;
+  bool is_ending_ = false;
+  std::vector<std::unique_ptr<Container>> containers_;
+};
+
+}  // namespace culprit::owners

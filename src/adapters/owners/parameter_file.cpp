@@ -1,0 +1,214 @@
+#include "owners/parameter_file.h"
+
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include <yaml-cpp/yaml.h>
+
+#include "ros2/names.h"
+
+namespace culprit::owners {
+namespace {
+
+using ros2::msg::ParameterType;
+using ros2::msg::ParameterValue;
+using Parameters = std::map<std::string, ParameterValue>;
+
+constexpr std::size_t kLongestFile = 1 << 20;  // bytes
+constexpr int kDeepest = 16;
+constexpr std::size_t kMost = 10'000;  // parameters: what aliases can make of a file is not little
+constexpr const char* kParameters = "ros__parameters";
+
+struct WrongFile : std::runtime_error {
+  WrongFile(const YAML::Mark& at, const std::string& what) : std::runtime_error(what), mark(at) {}
+  YAML::Mark mark;
+};
+
+std::vector<std::string> split_name(const std::string& name) {
+  std::vector<std::string> tokens;
+  std::istringstream in(name);
+  for (std::string token; std::getline(in, token, '/');) {
+    if (!token.empty()) tokens.push_back(token);
+  }
+  return tokens;
+}
+
+using Tokens = std::vector<std::string>::const_iterator;
+// "*" stands for one token, "**" for any number.
+bool matches(Tokens pattern, Tokens end_of_pattern, Tokens name, Tokens end) {
+  if (pattern == end_of_pattern) return name == end;
+  if (*pattern == "**") {
+    if (matches(pattern + 1, end_of_pattern, name, end)) return true;
+    return name != end && matches(pattern, end_of_pattern, name + 1, end);
+  }
+  return name != end && (*pattern == "*" || *pattern == *name) &&
+         matches(pattern + 1, end_of_pattern, name + 1, end);
+}
+
+std::optional<bool> truth(const std::string& text) {
+  static const std::set<std::string> kTrue{"true", "True", "TRUE", "yes", "Yes", "YES",
+                                           "on",   "On",   "ON",   "y",   "Y"};
+  static const std::set<std::string> kFalse{"false", "False", "FALSE", "no", "No", "NO",
+                                            "off",   "Off",   "OFF",   "n",  "N"};
+  if (kTrue.contains(text)) return true;
+  if (kFalse.contains(text)) return false;
+  return std::nullopt;
+}
+
+template <class Number>
+std::optional<Number> number_in(const std::string& text) {
+  const bool has_plus = text.starts_with('+');
+  const char* begin = text.data() + (has_plus ? 1 : 0);
+  const char* end = text.data() + text.size();
+  Number value{};
+  const auto [last, error] = std::from_chars(begin, end, value);
+  if (error != std::errc() || last != end) return std::nullopt;
+  return value;
+}
+
+std::optional<double> real_in(const std::string& text) {
+  if (text == ".inf" || text == "+.inf") return std::numeric_limits<double>::infinity();
+  if (text == "-.inf") return -std::numeric_limits<double>::infinity();
+  if (text == ".nan") return std::numeric_limits<double>::quiet_NaN();
+  if (text.find_first_of("0123456789") == std::string::npos) return std::nullopt;
+  return number_in<double>(text);
+}
+
+ParameterValue scalar(const YAML::Node& node) {
+  const std::string& text = node.Scalar();
+  ParameterValue value;
+  const bool is_quoted =
+      node.Tag() == "!" || node.Tag() == "tag:yaml.org,2002:str" || node.Tag() == "!!str";
+  if (!is_quoted) {
+    if (const auto is = truth(text)) {
+      value.type = static_cast<std::uint8_t>(ParameterType::kBool);
+      value.bool_value = *is;
+      return value;
+    }
+    if (const auto whole = number_in<std::int64_t>(text)) {
+      value.type = static_cast<std::uint8_t>(ParameterType::kInteger);
+      value.integer_value = *whole;
+      return value;
+    }
+    if (const auto real = real_in(text)) {
+      value.type = static_cast<std::uint8_t>(ParameterType::kDouble);
+      value.double_value = *real;
+      return value;
+    }
+  }
+  value.type = static_cast<std::uint8_t>(ParameterType::kString);
+  value.string_value = text;
+  return value;
+}
+
+// All of one type, but that whole numbers may stand among others.
+ParameterValue list(const YAML::Node& node) {
+  ParameterValue value;
+  std::set<ParameterType> types;
+  std::vector<ParameterValue> all;
+  for (const auto& each : node) {
+    if (!each.IsScalar()) throw WrongFile(each.Mark(), "a list holds values only");
+    all.push_back(scalar(each));
+    types.insert(static_cast<ParameterType>(all.back().type));
+  }
+  const bool is_real = types == std::set{ParameterType::kInteger, ParameterType::kDouble} ||
+                       types == std::set{ParameterType::kDouble};
+  if (types.size() > 1 && !is_real) throw WrongFile(node.Mark(), "a list holds values of one type");
+  // As rcl has it: what no type can be told of is text.
+  ParameterType type = ParameterType::kStringArray;
+  for (const ParameterValue& each : all) {
+    const auto of = static_cast<ParameterType>(each.type);
+    if (is_real) {
+      type = ParameterType::kDoubleArray;
+      value.double_array_value.push_back(of == ParameterType::kInteger
+                                             ? static_cast<double>(each.integer_value)
+                                             : each.double_value);
+    } else if (of == ParameterType::kBool) {
+      type = ParameterType::kBoolArray;
+      value.bool_array_value.push_back(each.bool_value);
+    } else if (of == ParameterType::kInteger) {
+      type = ParameterType::kIntegerArray;
+      value.integer_array_value.push_back(each.integer_value);
+    } else {
+      value.string_array_value.push_back(each.string_value);
+    }
+  }
+  value.type = static_cast<std::uint8_t>(type);
+  return value;
+}
+
+void take_values(const YAML::Node& node, const std::string& name, int depth, Parameters& into) {
+  if (depth > kDeepest || into.size() > kMost)
+    throw WrongFile(node.Mark(), "these are more parameters, or deeper, than a node has");
+  if (node.IsMap()) {
+    for (const auto& entry : node) {
+      if (!entry.first.IsScalar()) throw WrongFile(entry.first.Mark(), "this is no name");
+      const std::string& key = entry.first.Scalar();
+      take_values(entry.second, name.empty() ? key : name + "." + key, depth + 1, into);
+    }
+  } else if (name.empty() || node.IsNull()) {
+    throw WrongFile(node.Mark(),
+                    name.empty() ? "parameters are a mapping" : name + " has no value");
+  } else {
+    into[name] = node.IsSequence() ? list(node) : scalar(node);
+  }
+}
+
+// Names of nodes and of namespaces, one in the other.
+void take_nodes(const YAML::Node& node, const std::string& pattern,
+                const std::vector<std::string>& wanted, int depth, Parameters& into) {
+  if (!node.IsMap() || depth > kDeepest)
+    throw WrongFile(node.Mark(),
+                    "expected the names of nodes, and below them " + std::string(kParameters));
+  for (const auto& entry : node) {
+    if (!entry.first.IsScalar()) throw WrongFile(entry.first.Mark(), "this is no name");
+    const std::string& key = entry.first.Scalar();
+    if (key != kParameters) {
+      take_nodes(entry.second, pattern + "/" + key, wanted, depth + 1, into);
+      continue;
+    }
+    const auto tokens = split_name(pattern);
+    if (matches(tokens.begin(), tokens.end(), wanted.begin(), wanted.end()))
+      take_values(entry.second, "", depth + 1, into);
+  }
+}
+
+}  // namespace
+
+Expected<std::vector<ros2::msg::Parameter>> read_parameter_file(const std::string& path,
+                                                                const std::string& node) {
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(path, error);
+  if (!is_file)
+    return Error{
+        "PARAMETERS: there is no file " + path +
+        (error && error != std::errc::no_such_file_or_directory ? ": " + error.message() : "")};
+  if (std::filesystem::file_size(path, error) > kLongestFile)
+    return Error{"PARAMETERS: " + path + " is longer than a file of parameters is"};
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) return Error{"PARAMETERS: cannot read " + path};
+  try {
+    Parameters found;
+    take_nodes(YAML::Load(text.str()), "", split_name(node), 0, found);
+    std::vector<ros2::msg::Parameter> parameters;
+    for (auto& [name, value] : found) parameters.push_back({name, std::move(value)});
+    return parameters;
+  } catch (const WrongFile& wrong) {
+    return Error{"PARAMETERS: " + path + ":" + std::to_string(wrong.mark.line + 1) + ": " +
+                 wrong.what()};
+  } catch (const YAML::Exception& wrong) {
+    return Error{"PARAMETERS: " + path + ":" + std::to_string(wrong.mark.line + 1) + ": " +
+                 wrong.msg};
+  }
+}
+
+}  // namespace culprit::owners

@@ -1,0 +1,101 @@
+#include "owners/parameter_file.h"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/test_folder.h"
+
+namespace culprit::owners {
+namespace {
+
+using testing::HasSubstr;
+using Parameters = std::vector<ros2::msg::Parameter>;
+
+Expected<Parameters> parameters_in(const std::string& text, const std::string& node) {
+  const test::TestFolder folder;
+  const std::string path = (folder.path() / "parameters.yaml").string();
+  std::ofstream(path) << text;
+  return read_parameter_file(path, node);
+}
+
+std::vector<std::string> names_in_file(const std::string& text, const std::string& node) {
+  std::vector<std::string> names;
+  const auto read = parameters_in(text, node);
+  if (!read) return {read.error()};
+  for (const auto& each : *read) names.push_back(each.name);
+  return names;
+}
+
+TEST(ParameterFile, GivesANodeWhatIsItsOwn) {
+  const std::string text =
+      "/**:\n  ros__parameters: {all: 1}\n"
+      "detector:\n  ros__parameters: {bare: 1}\n"
+      "/robot/detector:\n  ros__parameters: {full: 1}\n"
+      "robot:\n  detector:\n    ros__parameters: {nested: 1}\n"
+      "/robot/*:\n  ros__parameters: {one: 1}\n"
+      "/**/detector:\n  ros__parameters: {any: 1}\n"
+      "tracker:\n  ros__parameters: {other: 1}\n";
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names_in_file(text, "/detector"), (Names{"all", "any", "bare"}));
+  EXPECT_EQ(names_in_file(text, "/robot/detector"), (Names{"all", "any", "full", "nested", "one"}));
+}
+
+TEST(ParameterFile, KnowsTypesAsRosDoes) {
+  const auto read = parameters_in(
+      "/**:\n  ros__parameters:\n    a: true\n    b: -3\n    c: 0.5\n    d: text\n    e: '7'\n"
+      "    f: [1, 2]\n    g: [1, 2.5]\n    h: [x, 'y']\n    i: [on, off]\n    j: {k: {l: 1e3}}\n"
+      "    m: []\n    n: .nan\n",
+      "/n");
+  ASSERT_TRUE(read) << read.error();
+  std::vector<int> types;
+  for (const auto& each : *read) types.push_back(each.value.type);
+  EXPECT_EQ(types, (std::vector<int>{1, 2, 3, 4, 4, 7, 8, 9, 6, 3, 9, 3}));
+  EXPECT_EQ((*read)[4].value.string_value, "7");
+  EXPECT_EQ((*read)[6].value.double_array_value, (std::vector<double>{1, 2.5}));
+  EXPECT_EQ((*read)[9].name, "j.k.l");
+}
+
+TEST(ParameterFile, LaterLinesWin) {
+  const auto read =
+      parameters_in("/**:\n  ros__parameters: {rate: 1}\nn:\n  ros__parameters: {rate: 2}\n", "/n");
+  ASSERT_TRUE(read) << read.error();
+  ASSERT_EQ(read->size(), 1u);
+  EXPECT_EQ(read->front().value.integer_value, 2);
+}
+
+TEST(ParameterFile, SaysWhatIsWrongAndWhere) {
+  const auto wrong = [](const std::string& text) {
+    const auto read = parameters_in(text, "/n");
+    return read ? "nothing" : read.error();
+  };
+  EXPECT_THAT(wrong("n:\n  ros__parameters: 7\n"), HasSubstr(":2: parameters are a mapping"));
+  EXPECT_THAT(wrong("n: 7\n"), HasSubstr(":1: expected the names of nodes"));
+  EXPECT_THAT(wrong("n:\n  ros__parameters: {a: [1, x]}\n"), HasSubstr("values of one type"));
+  EXPECT_THAT(wrong("n:\n  ros__parameters: {a: }\n"), HasSubstr("a has no value"));
+  EXPECT_THAT(wrong("n: [\n"), HasSubstr("parameters.yaml:"));
+  EXPECT_THAT(wrong(std::string((1 << 20) + 1, ' ')), HasSubstr("longer"));
+  EXPECT_THAT(read_parameter_file("/no/such.yaml", "/n").error(),
+              HasSubstr("there is no file /no/such.yaml"));
+}
+
+// What aliases make of a few lines would fill the memory.
+TEST(ParameterFile, EndsWhereAliasesDoNot) {
+  std::string text = "a: &a {x0: 1, x1: 1, x2: 1, x3: 1, x4: 1, x5: 1, x6: 1, x7: 1}\n";
+  for (char c = 'b'; c < 'j'; ++c) {
+    text += std::string(1, c) + ": &" + c + " {";
+    for (int i = 0; i < 8; ++i)
+      text += std::string(i == 0 ? "" : ", ") + "y" + std::to_string(i) + ": *" +
+              static_cast<char>(c - 1);
+    text += "}\n";
+  }
+  EXPECT_FALSE(parameters_in("n:\n  ros__parameters: {z: *i}\n" + text, "/n"));
+  std::string inside = "n:\n  ros__parameters:\n";
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) inside += "    " + line + "\n";
+  EXPECT_FALSE(parameters_in(inside, "/n"));
+}
+
+}  // namespace
+}  // namespace culprit::owners

@@ -1,0 +1,218 @@
+// Components that a container loads, on a peer that behaves as rclcpp_components' container does:
+// one is reloaded and its container goes on; where that fails, or the container died, the container
+// and all that it had come back, once and in order.
+#include <atomic>
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/live_clock.h"
+#include "owners/proc.h"
+#include "ros2/node.h"
+#include "ros2/options.h"
+#include "ros2/services.h"
+#include "terminal/test_program.h"
+
+namespace culprit::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using testing::Not;
+
+// The detector is wrong until it is loaded with the parameters that the rules give it.
+constexpr const char* kWeak = R"(
+RULE DetectorWeak
+  POLICIES ERROR ATTEMPTS 1
+  TRIGGER parameter(detector, gain) < 5
+    STRATEGY detector_redeploy 90 10
+      ADAPTATION detector redeploy 5
+)";
+constexpr const char* kGone = R"(
+RULE DetectorGone
+  POLICIES ERROR
+  TRIGGER alive(detector) == false
+    STRATEGY detector_redeploy 90 10
+      ADAPTATION detector redeploy 5
+RULE TrackerGone
+  POLICIES ERROR
+  TRIGGER alive(tracker) == false
+    STRATEGY tracker_redeploy 90 10
+      ADAPTATION tracker redeploy 5
+RULE BoxGone
+  POLICIES ERROR
+  TRIGGER alive(box) == false
+    STRATEGY box_redeploy 90 10
+      ADAPTATION box redeploy 5
+)";
+
+struct Composed : testing::Test {
+  void SetUp() override {
+    setenv("AMENT_PREFIX_PATH", world.folder().c_str(), 1);
+    const std::filesystem::path index =
+        world.folder() / "share/ament_index/resource_index/rclcpp_components";
+    std::filesystem::create_directories(index);
+    std::ofstream(index / "peer") << "peer::Node;lib/libpeer.so\n";
+  }
+  std::string domain() const { return std::to_string(ros2::options_from_environment()->domain); }
+  // The box, and what lives there, in the order in which it is loaded.
+  std::string rules(const std::string& behaviour, const std::string& plugin = "peer::Node") const {
+    const std::string parameters =
+        world.write("detector.yaml", "detector:\n  ros__parameters:\n    gain: 7.0\n");
+    return "COMPONENT box NODE /box LAUNCH \"ros2_peer_node " + domain() + " --container" +
+           behaviour + " /box\"\nCOMPONENT detector NODE /detector IN /box PLUGIN " + plugin +
+           " PARAMETERS " + parameters +
+           "\nCOMPONENT tracker NODE /tracker IN /box PLUGIN peer::Node\n";
+  }
+  TestProgram run(const std::string& text, std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"culprit", "run", world.write("composed.rules", text),
+                                       "--state-dir", state()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return TestProgram(world, std::move(arguments));
+  }
+  std::string state() const { return (world.folder() / "state").string(); }
+  TestProgram box(std::vector<std::string> names = {"/box", "/detector", "/tracker"}) const {
+    std::vector<std::string> arguments{"ros2_peer_node", domain(), "--keeps-if", keeps()};
+    arguments.insert(arguments.end(), names.begin(), names.end());
+    return TestProgram(world, std::move(arguments));
+  }
+  std::string keeps() const { return (world.folder() / "keeps").string(); }
+  // What a box that culprit started has said.
+  std::string said() const {
+    std::ifstream in(state() + "/log/box.log");
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  template <class Done>
+  static bool comes(Done done) {
+    for (const Time end = live_now() + TestProgram::kPatience; !done();) {
+      if (live_now() > end) return false;
+      std::this_thread::sleep_for(20ms);
+    }
+    return true;
+  }
+  void end_box(const TestProgram& culprit) const {
+    if (const int pid = pid_in(culprit.output(), "box"); pid != 0) kill(pid, SIGKILL);
+  }
+
+  TestWorld world;
+};
+
+TEST_F(Composed, OneIsReloadedAndItsContainerGoesOn) {
+  auto container = box();
+  const auto culprit = run(rules("") + kWeak);
+  EXPECT_TRUE(culprit.prints("DetectorWeak resolved by detector_redeploy")) << culprit.output();
+  EXPECT_THAT(container.output(), HasSubstr("unloaded /detector\nloaded /detector\n"));
+  EXPECT_THAT(container.output(), Not(HasSubstr("/tracker")));
+  EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
+  EXPECT_THAT(culprit.output(), Not(HasSubstr("tracker is lost")));
+  EXPECT_THAT(culprit.output(), Not(HasSubstr("several nodes")));
+}
+
+TEST_F(Composed, WhatItsContainerDoesNotUnloadComesBackWithAFreshContainerAndAllThatItHad) {
+  std::ofstream(keeps()) << "now";
+  auto container = box();
+  const auto culprit = run(rules(" --keeps-if " + keeps()) + kWeak);
+  EXPECT_TRUE(culprit.prints("its container is replaced, with all that it has"))
+      << culprit.output();
+  EXPECT_TRUE(culprit.prints("DetectorWeak resolved by detector_redeploy")) << culprit.output();
+  EXPECT_TRUE(container.wait(1s)) << "two containers";
+  EXPECT_TRUE(comes([&] { return said().find("loaded /tracker\n") != std::string::npos; }));
+  EXPECT_EQ(said(), "loaded /detector\nloaded /tracker\n") << culprit.output();
+  end_box(culprit);
+}
+
+TEST_F(Composed, NoContainerIsReplacedThatHasWhatNobodyCouldLoadAgain) {
+  std::ofstream(keeps()) << "now";
+  auto container = box({"/box", "/detector", "/tracker", "/planner"});
+  const auto culprit = run(rules("") + kWeak);
+  EXPECT_TRUE(culprit.prints("/planner lives there, too, and nobody could load it again"))
+      << culprit.output();
+  EXPECT_TRUE(culprit.prints("DetectorWeak is exhausted")) << culprit.output();
+  EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
+}
+
+TEST_F(Composed, NothingIsUnloadedThatCouldNotBeLoadedAgain) {
+  auto container = box();
+  const auto culprit = run(rules("", "peer::Nodde") + kWeak);
+  EXPECT_TRUE(
+      culprit.prints("the package peer has no component peer::Nodde; did you mean "
+                     "peer::Node?"))
+      << culprit.output();
+  EXPECT_TRUE(culprit.prints("DetectorWeak is exhausted")) << culprit.output();
+  EXPECT_THAT(container.output(), Not(HasSubstr("unloaded")));
+}
+
+TEST_F(Composed, AContainerThatIsKilledComesBackOnceWithAllThatItHad) {
+  const auto culprit = run(rules("") + kGone, {"--launch"});
+  ASSERT_TRUE(culprit.prints("tracker is there (process ")) << culprit.output();
+  ASSERT_TRUE(comes([&] { return said() == "loaded /detector\nloaded /tracker\n"; })) << said();
+  const int first = pid_in(culprit.output(), "box");
+  ASSERT_NE(first, 0) << culprit.output();
+  kill(first, SIGKILL);
+  EXPECT_TRUE(culprit.prints("DetectorGone resolved")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("TrackerGone resolved")) << culprit.output();
+  EXPECT_TRUE(comes([&] { return pid_in(culprit.output(), "box") != first; }));
+  EXPECT_EQ(said(), "loaded /detector\nloaded /tracker\nloaded /detector\nloaded /tracker\n")
+      << culprit.output();
+  EXPECT_THAT(culprit.output(), Not(HasSubstr("several nodes")));
+  end_box(culprit);
+}
+
+TEST_F(Composed, WhatAKilledCulpritLeftUnfinishedIsFinishedOnce) {
+  auto text = rules("") + kGone;
+  {
+    auto culprit = run(text, {"--launch"});
+    ASSERT_TRUE(culprit.prints("tracker is there (process ")) << culprit.output();
+    kill(pid_in(culprit.output(), "box"), SIGKILL);
+    ASSERT_TRUE(culprit.prints("detector is lost")) << culprit.output();
+    culprit.signal(SIGKILL);
+    ASSERT_TRUE(culprit.wait());
+  }
+  const auto culprit = run(text);
+  EXPECT_TRUE(comes([&] {
+    return pid_in(culprit.output(), "detector") != 0 && pid_in(culprit.output(), "tracker") != 0;
+  })) << culprit.output();
+  EXPECT_TRUE(comes([&] {
+    return said() == "loaded /detector\nloaded /tracker\nloaded /detector\nloaded /tracker\n";
+  })) << said()
+      << culprit.output();
+  EXPECT_THAT(culprit.output(), Not(HasSubstr("several nodes")));
+  end_box(culprit);
+}
+
+// Whoever is on the network can offer services of these names.
+TEST_F(Composed, WhoOnlyOffersTheServicesOfAContainerIsNotBelieved) {
+  auto container = box();
+  ros2::Executor executor;
+  auto context = ros2::Context::create(executor, *ros2::options_from_environment());
+  ASSERT_TRUE(context) << context.error();
+  auto forger = ros2::Node::create(**context, {"/", "forger"});
+  ASSERT_TRUE(forger) << forger.error();
+  auto list = (*forger)->create_service<ros2::srv::ListNodes>(
+      "/box/_container/list_nodes", [](const ros2::srv::ListNodes::Request&) {
+        return ros2::srv::ListNodes::Response{{"/detector"}, {99}};
+      });
+  ASSERT_TRUE(list) << list.error();
+  std::atomic<int> asked = 0;
+  auto unload = (*forger)->create_service<ros2::srv::UnloadNode>(
+      "/box/_container/unload_node", [&](const ros2::srv::UnloadNode::Request&) {
+        ++asked;
+        return ros2::srv::UnloadNode::Response{false, "no"};
+      });
+  ASSERT_TRUE(unload) << unload.error();
+  std::thread thread([&] { executor.run(); });
+  container.signal(SIGSTOP);  // so that only the forger answers
+  const auto culprit = run(rules("") + kGone);
+  EXPECT_TRUE(culprit.prints("somebody else answers for the container /box")) << culprit.output();
+  container.signal(SIGCONT);
+  EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
+  EXPECT_EQ(asked, 0);
+  executor.stop();
+  thread.join();
+}
+
+}  // namespace
+}  // namespace culprit::cli
