@@ -15,7 +15,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 // Two nodes of SUNSET, whose silence is a failure.
-constexpr const char* kRules = R"(
+constexpr const char* kCommandRules = R"(
 ROBOT two_cameras
 COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
 COMPONENT depth  NODE /managed_subsystem/depth  LAUNCH "sunset-node depth"
@@ -76,7 +76,7 @@ TEST_F(Commands, SayThatTheirOutputIsNotWhole) {
 }
 
 TEST_F(Commands, CheckShowsEveryMistake) {
-  auto good = culprit({"check", world.write("good.rules", kRules)});
+  auto good = culprit({"check", world.write("good.rules", kCommandRules)});
   EXPECT_EQ(good.wait(), 0) << good.output();
   EXPECT_THAT(good.output(), HasSubstr("2 rules"));
 
@@ -96,7 +96,7 @@ TEST_F(Commands, CheckShowsEveryMistake) {
 }
 
 TEST_F(Commands, CheckPrintsNothingButTheDocumentForPrograms) {
-  const std::string good = world.write("good.rules", kRules);
+  const std::string good = world.write("good.rules", kCommandRules);
   const std::string bad = world.write("bad.rules", "robot x\n");
   auto json = culprit({"check", "--format", "json", good, bad});
   EXPECT_EQ(json.wait(), 1);
@@ -176,7 +176,8 @@ TEST_F(Commands, GraphShowsTheRobot) {
 
 TEST_F(Commands, PlanLooksAtTheRobotAndLeavesItAsItIs) {
   const TestProgram camera(world, {"sunset-node", "camera"});
-  auto plan = culprit({"plan", world.write("two.rules", kRules), "--robot", "--format", "json"});
+  auto plan =
+      culprit({"plan", world.write("two.rules", kCommandRules), "--robot", "--format", "json"});
   ASSERT_EQ(plan.wait(), 0) << plan.output();
   const auto json = nlohmann::json::parse(plan.output().substr(plan.output().find('{')));
   EXPECT_TRUE(json["failures"].empty()) << "what was never seen is not gone: " << json;
@@ -190,7 +191,8 @@ TEST_F(Commands, PlanLooksAtTheRobotAndLeavesItAsItIs) {
 
 TEST_F(Commands, RunAdoptsWhatRunsStartsWhatIsMissingAndLeavesTheRobotAsItIs) {
   TestProgram camera(world, {"sunset-node", "camera"});
-  auto run = culprit({"run", world.write("two.rules", kRules), "--launch", "--state-dir", state()});
+  auto run =
+      culprit({"run", world.write("two.rules", kCommandRules), "--launch", "--state-dir", state()});
   ASSERT_TRUE(run.prints("starting depth")) << run.output();
   ASSERT_TRUE(run.prints("depth is there (process ")) << run.output();
   ASSERT_TRUE(run.prints("camera is there (process ")) << run.output();
@@ -215,8 +217,8 @@ TEST_F(Commands, RunAdoptsWhatRunsStartsWhatIsMissingAndLeavesTheRobotAsItIs) {
 TEST_F(Commands, RunSaysWhatItWouldDoAndDoesNothing) {
   TestProgram camera(world, {"sunset-node", "camera"});
   const TestProgram depth(world, {"sunset-node", "depth"});
-  auto run =
-      culprit({"run", world.write("two.rules", kRules), "--dry-run", "--state-dir", state()});
+  auto run = culprit(
+      {"run", world.write("two.rules", kCommandRules), "--dry-run", "--state-dir", state()});
   ASSERT_TRUE(run.prints("camera is there")) << run.output();
   ASSERT_TRUE(run.prints("depth is there")) << run.output();
   camera.signal(SIGKILL);

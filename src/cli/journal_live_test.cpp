@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 
 // The camera takes its time to come up, and whoever restarts it can be killed meanwhile.
-constexpr const char* kRules = R"(
+constexpr const char* kJournalRules = R"(
 ROBOT one_camera
 COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
 RULE CameraGone
@@ -35,7 +35,7 @@ struct Journal : testing::Test {
   }
 
   TestWorld world;
-  const std::string rules = world.write("one.rules", kRules);
+  const std::string rules = world.write("one.rules", kJournalRules);
   const std::string state = (world.folder() / "state").string();
   const std::string journal = (world.folder() / "state" / "one_camera.journal").string();
 };
@@ -91,7 +91,7 @@ TEST_F(Journal, GoesOnWithRulesThatAreReloaded) {
   ASSERT_TRUE(run.prints("the rules are not reloaded")) << run.output();
   EXPECT_THAT(run.output(), HasSubstr("did you mean RULE?"));
 
-  world.write("one.rules", std::string(kRules) + R"(
+  world.write("one.rules", std::string(kJournalRules) + R"(
 RULE CameraStopped
   POLICIES WARNING
   TRIGGER age(/managed_subsystem/rgb_camera) > 1h

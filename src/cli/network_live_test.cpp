@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-int count_of(const std::string& text, const std::string& what) {
+int count_in(const std::string& text, const std::string& what) {
   int count = 0;
   for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
   return count;
@@ -51,9 +51,9 @@ TEST(Network, ACutCableIsNoReasonToActAndABadOneNoneToFail) {
 
   (*network)->set({.is_cut = true});
   EXPECT_TRUE(culprit->prints("STORM", 60s)) << culprit->output();
-  const int decided = count_of(culprit->output(), "decided");  // before it was clear
+  const int decided = count_in(culprit->output(), "decided");  // before it was clear
   std::this_thread::sleep_for(5s);
-  EXPECT_EQ(count_of(culprit->output(), "decided"), decided) << culprit->output();
+  EXPECT_EQ(count_in(culprit->output(), "decided"), decided) << culprit->output();
   (*network)->set({});
   ASSERT_TRUE(robot->inject("cuda_out_of_memory"));
   EXPECT_TRUE(robot->is_well_within(60s)) << robot->complaint() << "\n" << culprit->output();

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kRules = R"(
+constexpr const char* kOwnerRules = R"(
 COMPONENT lidar NODE /lidar UNIT lidar.service USER
 RULE LidarGone
   POLICIES ERROR
@@ -43,8 +43,9 @@ struct NodesOfARealSystemd : testing::Test {
            std::to_string(ros2::options_from_environment()->domain) + " /lidar";
   }
   TestProgram run() {
-    return TestProgram(world, {"culprit", "run", world.write("units.rules", kRules), "--settle",
-                               "0.2", "--state-dir", (world.folder() / "state").string()});
+    return TestProgram(
+        world, {"culprit", "run", world.write("units.rules", kOwnerRules), "--settle", "0.2",
+                "--state-dir", (world.folder() / "state").string()});
   }
   // Waits until another process than `old` is there; 0: none came.
   static int another(const TestProgram& culprit, int old) {

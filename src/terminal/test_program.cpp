@@ -10,12 +10,14 @@
 #include <thread>
 
 #include "base/environment.h"
+#include "base/test_expected.h"
 #include "owners/spawn.h"
 
 namespace culprit {
 namespace {
 
 using namespace std::chrono_literals;
+using test::value_of;
 
 // Whether `done` came true within a time that only failures need.
 template <class Done>
@@ -26,12 +28,6 @@ bool eventually(Done done, Duration patience = TestProgram::kPatience) {
     std::this_thread::sleep_for(20ms);
   }
   return true;
-}
-
-template <class T>
-T value_of(Expected<T> expected) {
-  if (!expected) throw std::runtime_error(expected.error());
-  return std::move(*expected);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace culprit::web {
 namespace {
 
-constexpr const char* kRules = R"(
+constexpr const char* kObservedRules = R"(
 COMPONENT camera NODE /camera
 COMPONENT lidar  NODE /lidar
 RULE CameraGone
@@ -19,7 +19,7 @@ RULE CameraGone
 )";
 
 TEST(HubObserver, ShowsWhoElseHasTheNameOfANodeWithItsComponent) {
-  const RuleSet rules = *check(Source("test", kRules)).rules;
+  const RuleSet rules = *check(Source("test", kObservedRules)).rules;
   Manager manager(rules, std::make_unique<BayesPlanner>(), {});
   Hub hub;
   Metrics metrics;

@@ -14,7 +14,7 @@ using culprit::test::TestRobot;
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-constexpr const char* kRules = R"(
+constexpr const char* kMetricsRules = R"(
 ROBOT test
 COMPONENT camera NODE /camera LAUNCH "camera"
 RULE CameraSilent
@@ -38,7 +38,7 @@ struct Counted : testing::Test {
     return status_routes(hub, metrics, 20ms)[route].answer(nullptr);
   }
 
-  TestRobot robot{kRules};
+  TestRobot robot{kMetricsRules};
   Metrics metrics;
 };
 

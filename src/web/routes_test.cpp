@@ -23,7 +23,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kRules = R"(
+constexpr const char* kRouteRules = R"(
 COMPONENT camera NODE /camera
 RULE CameraSilent
   POLICIES ERROR
@@ -84,7 +84,7 @@ struct Routes : testing::Test {
   Hub hub;
   Metrics metrics;
   RuleDesk desk{path};
-  const RuleSet rules = *check(Source("test", kRules)).rules;
+  const RuleSet rules = *check(Source("test", kRouteRules)).rules;
   OrderKeeper keeper{"this is a test"};
   OrderDesk order_desk{keeper.keeping()};
   bool is_file_wrong = false;
@@ -159,22 +159,24 @@ TEST_F(Routes, CheckATextAsYouType) {
 TEST_F(Routes, SaveTheFileThatWasOpened) {
   const Json opened = ask("get /api/rules").body;
   EXPECT_EQ(opened["text"], "");
-  const Answer saved = ask("put /api/rules", {{"text", kRules}, {"version", opened["version"]}});
+  const Answer saved =
+      ask("put /api/rules", {{"text", kRouteRules}, {"version", opened["version"]}});
   EXPECT_EQ(saved.status, 200);
-  EXPECT_EQ(ask("get /api/rules").body["text"], kRules);
+  EXPECT_EQ(ask("get /api/rules").body["text"], kRouteRules);
   EXPECT_EQ(ask("get /api/rules").body["version"], saved.body["version"]);
 }
 
 TEST_F(Routes, DoNotOverwriteWhatSomebodyElseHasWritten) {
   const Json opened = ask("get /api/rules").body;
   std::ofstream(path) << "# of somebody else\n";
-  const Answer answer = ask("put /api/rules", {{"text", kRules}, {"version", opened["version"]}});
+  const Answer answer =
+      ask("put /api/rules", {{"text", kRouteRules}, {"version", opened["version"]}});
   EXPECT_EQ(answer.status, 409);
   EXPECT_EQ(ask("get /api/rules").body["text"], "# of somebody else\n");
 }
 
 TEST_F(Routes, DoNotSaveRulesThatArePartOfTheProgram) {
-  RuleDesk built_in("sunset.rules", kRules);
+  RuleDesk built_in("sunset.rules", kRouteRules);
   const auto routes = rule_routes(built_in);
   EXPECT_EQ(routes[0].answer(nullptr).body["can_save"], false);
   EXPECT_EQ(routes[1].answer({{"text", ""}, {"version", ""}}).status, 403);
@@ -252,7 +254,7 @@ TEST_F(Routes, ReloadOnlyRulesWithoutErrors) {
 }
 
 TEST_F(Routes, OfferWhatTheRobotHasAndDisturbItNoMoreThanNeeded) {
-  const Json names = ask("post /api/rules/names", {{"text", kRules}}).body;
+  const Json names = ask("post /api/rules/names", {{"text", kRouteRules}}).body;
   EXPECT_EQ(names["nodes"].dump(), R"({"/camera":{"parameters":{"gain":0.5,"matrix":null}}})");
   EXPECT_EQ(names["topics"].dump(), R"(["/rgb"])");
   EXPECT_THAT(looked_at.nodes, testing::ElementsAre("/camera"));

@@ -10,17 +10,14 @@
 #include <gtest/gtest.h>
 
 #include "bag/bag_file.h"
+#include "base/test_expected.h"
 #include "base/test_folder.h"
 #include "journal/database.h"
 #include "ros2/cdr.h"
 
 namespace culprit::bag::test {
 
-template <class T>
-T value_of(Expected<T> expected) {
-  if (!expected) throw std::runtime_error(expected.error());
-  return std::move(*expected);
-}
+using culprit::test::value_of;
 
 // Of a std_msgs/Float64.
 inline ros2::Bytes number(double value) {

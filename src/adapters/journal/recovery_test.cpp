@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_expected.h"
 #include "base/test_folder.h"
 #include "journal/event_json.h"
 #include "journal/writer.h"
@@ -12,28 +13,24 @@
 namespace culprit::journal {
 namespace {
 
+using culprit::test::value_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr std::int64_t kNow = 1'800'000'000'000'000'000;
-
-template <class T>
-T value_of(Expected<T> expected) {
-  EXPECT_TRUE(expected.has_value()) << expected.error();
-  return std::move(*expected);
-}
+constexpr std::int64_t kRecoveredAt = 1'800'000'000'000'000'000;
 
 struct JournalRecovery : testing::Test {
   JournalRecovery() {
     Session session;
     session.boot = boot_id();
     Batch all;
-    all.entries.push_back({0, kNow, std::string(kind::kSession), to_text(to_json(session))});
-    all.entries.push_back({0, kNow, std::string(kind::kSteps), "anything"});
-    all.entries.push_back({0, kNow, std::string(kind::kEvent), found(4242)});
+    all.entries.push_back(
+        {0, kRecoveredAt, std::string(kind::kSession), to_text(to_json(session))});
+    all.entries.push_back({0, kRecoveredAt, std::string(kind::kSteps), "anything"});
+    all.entries.push_back({0, kRecoveredAt, std::string(kind::kEvent), found(4242)});
     Writer writer = value_of(Writer::open(path, {}));
-    EXPECT_TRUE(writer.append(all, kNow, Durability::kProcessEnd));
+    EXPECT_TRUE(writer.append(all, kRecoveredAt, Durability::kProcessEnd));
   }
 
   std::string found(int pid) const {
@@ -46,7 +43,7 @@ struct JournalRecovery : testing::Test {
   }
   Recovery recovered() {
     const Reader reader = value_of(Reader::open(path));
-    return value_of(recover(reader, rules, {Time(), kNow}));
+    return value_of(recover(reader, rules, {Time(), kRecoveredAt}));
   }
   static std::vector<int> processes(const Past& past) {
     std::vector<int> pids;

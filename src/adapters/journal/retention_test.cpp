@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using culprit::test::TestFolder;
 using namespace std::chrono_literals;
 
-constexpr const char* kRules = R"(
+constexpr const char* kRetentionRules = R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
 RULE Silent
   POLICIES ERROR
@@ -73,7 +73,7 @@ struct Recovered : testing::Test {
 
   const TestFolder folder;
   const fs::path path = folder / "a.journal";
-  const RuleSet rules = *check(Source("test", kRules)).rules;
+  const RuleSet rules = *check(Source("test", kRetentionRules)).rules;
   Knowledge knowledge{rules};
   Time now = Time(1000s);
   std::atomic<std::int64_t> clock = kWall;  // what the wall clock shows; the recorder's thread asks

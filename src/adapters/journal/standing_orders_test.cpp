@@ -17,7 +17,7 @@ using culprit::test::TestFolder;
 using testing::HasSubstr;
 using namespace std::chrono_literals;
 
-constexpr const char* kRules = R"(
+constexpr const char* kOrderRules = R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
 RULE Silent
   POLICIES ERROR
@@ -25,10 +25,10 @@ RULE Silent
     STRATEGY redeploy 50 10
       ADAPTATION camera redeploy 2
 )";
-constexpr std::int64_t kWall = 1'800'000'000'000'000'000;
-constexpr std::int64_t kDay = 86'400'000'000'000;
+constexpr std::int64_t kOrderedAt = 1'800'000'000'000'000'000;
+constexpr std::int64_t kOneDay = 86'400'000'000'000;
 
-Clocks clocks(Time robot, std::int64_t wall = kWall, const std::string& boot = "first") {
+Clocks clocks(Time robot, std::int64_t wall = kOrderedAt, const std::string& boot = "first") {
   return {boot, robot, wall, true};
 }
 
@@ -58,14 +58,14 @@ TEST(StandingOrders, LetSilencesEndWhileNobodyLooks) {
 }
 
 TEST(StandingOrders, GoByNoWallClockWithinOneStartOfTheMachine) {
-  for (const std::int64_t jump : {40 * kDay, -40 * kDay}) {
-    const auto later = again(with_all(), clocks(Time(100s)), clocks(Time(110s), kWall + jump));
+  for (const std::int64_t jump : {40 * kOneDay, -40 * kOneDay}) {
+    const auto later = again(with_all(), clocks(Time(100s)), clocks(Time(110s), kOrderedAt + jump));
     EXPECT_EQ(later, with_all());
   }
 }
 
 TEST(StandingOrders, GoByTheWallClockOverARestartOfTheMachineIfItIsSet) {
-  const Clocks now = clocks(Time(5s), kWall + 20'000'000'000, "second");
+  const Clocks now = clocks(Time(5s), kOrderedAt + 20'000'000'000, "second");
   const auto later = again(with_all(), clocks(Time(100s)), now);
   ASSERT_EQ(later.silences.size(), 2u);
   EXPECT_EQ(later.silences[0].until, Time(45s)) << "60 s were left, 20 s ago";
@@ -74,13 +74,13 @@ TEST(StandingOrders, GoByTheWallClockOverARestartOfTheMachineIfItIsSet) {
 TEST(StandingOrders, DoNotEndASilenceBecauseTheClockWasNotSetYet) {
   Clocks then = clocks(Time(100s), 100'000'000'000);  // 1970, no battery
   then.is_wall_set = false;
-  const auto later = again(with_all(), then, clocks(Time(5s), kWall, "second"));
+  const auto later = again(with_all(), then, clocks(Time(5s), kOrderedAt, "second"));
   ASSERT_EQ(later.silences.size(), 2u);
   EXPECT_EQ(later.silences[0].until, Time(65s));
 }
 
 TEST(StandingOrders, ChangeByOrders) {
-  const RuleSet rules = *check(Source("test", kRules)).rules;
+  const RuleSet rules = *check(Source("test", kOrderRules)).rules;
   const auto order = [&](decltype(Order::what) what) {
     return by_name({1, "ada", "why", std::move(what)}, rules);
   };
@@ -101,7 +101,7 @@ TEST(StandingOrders, ChangeByOrders) {
 }
 
 TEST(StandingOrders, OfAnotherAreNewWhereTheyRestrainMore) {
-  const RuleSet rules = *check(Source("test", kRules)).rules;
+  const RuleSet rules = *check(Source("test", kOrderRules)).rules;
   StandingOrders ours;
   ours.dry_run = StandingOrders::Said{"eve", ""};
   ours.silences = {{StandingOrders::About::kComponent, rules.components[0].name, {}, Time(9s)}};

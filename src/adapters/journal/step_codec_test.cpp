@@ -10,7 +10,7 @@
 namespace culprit::journal {
 namespace {
 
-const RuleSet& rules() {
+const RuleSet& codec_rules() {
   static const RuleSet set = *check(Source("t", R"(
 COMPONENT a NODE /a LAUNCH "a"
 COMPONENT b NODE /b LAUNCH "b"
@@ -138,7 +138,7 @@ RC_GTEST_PROP(StepCodec, BringsBackWhatWasWritten, ()) {
   const Step first = any_step();
   const Step second = any_step();
   const std::string bytes = bytes_of(first) + bytes_of(second);
-  StepReader reader(bytes, rules());
+  StepReader reader(bytes, codec_rules());
   Step step;
   for (const Step* written : {&first, &second}) {
     const auto more = reader.next(step);
@@ -157,7 +157,7 @@ RC_GTEST_PROP(StepCodec, RefusesWhatIsCutShort, ()) {
   const std::string bytes = bytes_of(any_step());
   const auto size = *rc::gen::inRange<std::size_t>(1, bytes.size());
   const std::string cut = bytes.substr(0, size);
-  StepReader reader(cut, rules());
+  StepReader reader(cut, codec_rules());
   Step step;
   RC_ASSERT(!reader.next(step).has_value());
 }
@@ -166,7 +166,7 @@ TEST(StepCodec, RefusesWhatTheRulesDoNotHave) {
   Step step;
   step.observations = {{Time{}, SampleArrived{TopicId(7), 1}}};
   const std::string bytes = bytes_of(step);
-  StepReader reader(bytes, rules());
+  StepReader reader(bytes, codec_rules());
   EXPECT_FALSE(reader.next(step));
 }
 

@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_expected.h"
 #include "base/test_folder.h"
 #include "journal/json.h"
 #include "journal/reader.h"
@@ -19,15 +20,10 @@ namespace culprit::journal {
 namespace {
 
 using culprit::test::TestFolder;
+using culprit::test::value_of;
 using testing::HasSubstr;
 
-constexpr std::int64_t kNow = 1'800'000'000'000'000'000;
-
-template <class T>
-T value_of(Expected<T> expected) {
-  EXPECT_TRUE(expected.has_value()) << expected.error();
-  return std::move(*expected);
-}
+constexpr std::int64_t kWrittenAt = 1'800'000'000'000'000'000;
 
 Writer open(const std::filesystem::path& path, Writer::Options options = {}) {
   return value_of(Writer::open(path, options));
@@ -37,12 +33,12 @@ Batch batch(int events, std::size_t size = 10) {
   Batch all;
   for (int i = 0; i < events; ++i)
     all.entries.push_back(
-        {0, kNow, std::string(kind::kEvent), to_text({{"text", std::string(size, 'x')}})});
+        {0, kWrittenAt, std::string(kind::kEvent), to_text({{"text", std::string(size, 'x')}})});
   return all;
 }
 
 Expected<void> append(Writer& writer, const Batch& all) {
-  return writer.append(all, kNow, Durability::kProcessEnd);
+  return writer.append(all, kWrittenAt, Durability::kProcessEnd);
 }
 
 Verification verified(const std::filesystem::path& path, std::optional<Link> noted = {}) {
@@ -156,8 +152,8 @@ TEST(Rotation, DropsWhatIsTooOld) {
   options.max_age_ns = 1000;
   Writer writer = open(folder / "a.journal", options);
   ASSERT_TRUE(append(writer, batch(10)));
-  ASSERT_TRUE(
-      writer.append({{{0, kNow + 2000, "gap", "{}"}}, {}}, kNow + 2000, Durability::kProcessEnd));
+  ASSERT_TRUE(writer.append({{{0, kWrittenAt + 2000, "gap", "{}"}}, {}}, kWrittenAt + 2000,
+                            Durability::kProcessEnd));
   EXPECT_EQ(verified(folder / "a.journal").first, 11);
 }
 
@@ -347,10 +343,10 @@ TEST(Writer, ForgetsOneRuleOrAll) {
   all.learned.beliefs = {kBelief, {"Other", "s", {2, 1}, {1, 1}}};
   all.learned.couplings = {{"Rule", "Other", {1, 0}}};
   ASSERT_TRUE(append(writer, all));
-  EXPECT_EQ(value_of(writer.forget("Rule", kNow)), 1);
+  EXPECT_EQ(value_of(writer.forget("Rule", kWrittenAt)), 1);
   EXPECT_EQ(value_of(writer.learned()).beliefs.size(), 1u);
   EXPECT_TRUE(value_of(writer.learned()).couplings.empty());
-  EXPECT_EQ(value_of(writer.forget("", kNow)), 1);
+  EXPECT_EQ(value_of(writer.forget("", kWrittenAt)), 1);
   EXPECT_TRUE(value_of(writer.learned()).beliefs.empty());
   EXPECT_TRUE(verified(folder / "a.journal").findings.empty());
 }

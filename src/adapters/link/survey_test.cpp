@@ -12,8 +12,8 @@ namespace {
 using namespace std::chrono_literals;
 
 // A managed node with a parameter, a topic and a diagnostic.
-struct Robot {
-  explicit Robot(const TestDomain& domain) : context(domain.options()) {
+struct SurveyedRobot {
+  explicit SurveyedRobot(const TestDomain& domain) : context(domain.options()) {
     context.run([&] {
       managed = std::move(*LifecycleNode::create(*context, {"/", "robot"}, {}));
       EXPECT_TRUE(managed->node().parameters().declare("gain", Value(1.5)));
@@ -22,7 +22,7 @@ struct Robot {
       ticking = std::make_unique<Timer>(context->executor(), 20ms, [this] { tick(); });
     });
   }
-  ~Robot() {
+  ~SurveyedRobot() {
     context.run([&] { ticking.reset(); });
   }
   template <class Message>
@@ -64,7 +64,7 @@ bool shows(const Survey& survey, Predicate wanted) {
 
 TEST(Survey, SeesTheGraphAndTheDiagnosticsButNotItself) {
   const TestDomain domain;
-  const Robot robot(domain);
+  const SurveyedRobot robot(domain);
   const auto survey = survey_of(domain);
   EXPECT_TRUE(shows(*survey, [](const LiveInventory& seen) {
     const auto topic = seen.topics.find("/visibility");
@@ -81,7 +81,7 @@ TEST(Survey, SeesTheGraphAndTheDiagnosticsButNotItself) {
 
 TEST(Survey, ReadsWhatIsAskedForAndFollowsIt) {
   const TestDomain domain;
-  Robot robot(domain);
+  SurveyedRobot robot(domain);
   const auto survey = survey_of(domain);
   survey->ask_for({{"robot"}, {{"/visibility", {"data", "no.such.field"}}}});
   const auto has = [](const LiveInventory& seen, double gain, const char* state) {
@@ -112,7 +112,7 @@ TEST(Survey, ForgetsWhatIsGone) {
   const TestDomain domain;
   const auto survey = survey_of(domain);
   {
-    const Robot robot(domain);
+    const SurveyedRobot robot(domain);
     ASSERT_TRUE(shows(*survey, [](const LiveInventory& seen) {
       return seen.nodes.contains("/robot") && seen.topics.contains("/visibility");
     }));

@@ -14,7 +14,7 @@ using ros2::EventLog;
 using ros2::kPatience;
 using ros2::LifecycleState;
 
-constexpr const char* kPlant = R"(
+constexpr const char* kManagedPlant = R"(
 plant: {ros__parameters: {type: system, parts: pump, modes: {
   __DEFAULT__: {pump: active},
   fast:        {pump: active.FAST},
@@ -74,7 +74,7 @@ struct Manager {
   bool tells(const std::string& what) {
     return told.wait_for_one([&](const std::string& text) { return text == what; });
   }
-  const Model model = *read_model("plant.yaml", kPlant);
+  const Model model = *read_model("plant.yaml", kManagedPlant);
   EventLog<std::string> told;
   ros2::Executor executor;
   std::unique_ptr<ModeManager> manager;

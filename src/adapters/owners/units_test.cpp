@@ -27,11 +27,11 @@ using testing::IsEmpty;
 constexpr Duration kPatience = 20s;
 constexpr ComponentId kLidar{0};
 
-bool runs(int pid) { return pid != 0 && state_letter(pid).value_or('Z') != 'Z'; }
+bool is_alive(int pid) { return pid != 0 && state_letter(pid).value_or('Z') != 'Z'; }
 
 void end(int pid) {
   kill(pid, SIGKILL);
-  while (runs(pid)) std::this_thread::sleep_for(1ms);
+  while (is_alive(pid)) std::this_thread::sleep_for(1ms);
 }
 
 struct UnitsOnAStandInForSystemd : testing::Test {
@@ -88,7 +88,7 @@ TEST_F(UnitsOnAStandInForSystemd, AreStartedAndSayWhichProcess) {
   const Reply reply = start();
   EXPECT_EQ(reply.outcome, Outcome::kDone) << reply.text;
   EXPECT_EQ(reply.value, decltype(Reply::value)(Value(std::int64_t{now_running()})));
-  EXPECT_TRUE(runs(now_running()));
+  EXPECT_TRUE(is_alive(now_running()));
   EXPECT_EQ(start().outcome, Outcome::kDone) << "it runs already";
   EXPECT_THAT(systemd.asked(), ElementsAre("StartUnit lidar.service"));
 }
@@ -97,9 +97,9 @@ TEST_F(UnitsOnAStandInForSystemd, AreReplacedByOneRequest) {
   const int old = running();
   const Reply reply = stop(old);
   EXPECT_EQ(reply.outcome, Outcome::kDone) << reply.text;
-  EXPECT_FALSE(runs(old));
+  EXPECT_FALSE(is_alive(old));
   EXPECT_EQ(start().outcome, Outcome::kDone);
-  EXPECT_TRUE(runs(now_running()));
+  EXPECT_TRUE(is_alive(now_running()));
   EXPECT_NE(now_running(), old);
   EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service"));
 }
@@ -110,7 +110,7 @@ TEST_F(UnitsOnAStandInForSystemd, ThatSystemdStartedAgainAreNotEndedNorDoubled) 
   end(old);
   EXPECT_EQ(stop(old).outcome, Outcome::kDone);
   EXPECT_EQ(start().outcome, Outcome::kDone);
-  EXPECT_TRUE(runs(now_running()));
+  EXPECT_TRUE(is_alive(now_running()));
   EXPECT_THAT(systemd.asked(), IsEmpty());
 }
 
@@ -119,7 +119,7 @@ TEST_F(UnitsOnAStandInForSystemd, ThatAreDeadAreStartedOnce) {
   end(old);
   EXPECT_EQ(stop(old).outcome, Outcome::kDone);
   EXPECT_EQ(start().outcome, Outcome::kDone);
-  EXPECT_TRUE(runs(now_running()));
+  EXPECT_TRUE(is_alive(now_running()));
   EXPECT_THAT(systemd.asked(), ElementsAre("StartUnit lidar.service"));
 }
 
@@ -145,7 +145,7 @@ TEST_F(UnitsOnAStandInForSystemd, AreEndedForGood) {
   systemd.add("lidar.service", {.restarts = true});
   const int old = running();
   EXPECT_EQ(stop(old, Ending::kForGood).outcome, Outcome::kDone);
-  EXPECT_FALSE(runs(old));
+  EXPECT_FALSE(is_alive(old));
   EXPECT_EQ(now_running(), 0);
   EXPECT_THAT(systemd.asked(), ElementsAre("StopUnit lidar.service"));
 }
@@ -163,7 +163,7 @@ TEST_F(UnitsOnAStandInForSystemd, OfWhichAChildWasTheNodeAreRestartedIfOnlyThatE
   kill(node, SIGKILL);
   waitpid(node, nullptr, 0);
   EXPECT_EQ(stop(node).outcome, Outcome::kDone);
-  EXPECT_FALSE(runs(main));
+  EXPECT_FALSE(is_alive(main));
   EXPECT_EQ(start().outcome, Outcome::kDone);
   EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service"));
 }
@@ -178,8 +178,8 @@ TEST_F(UnitsOnAStandInForSystemd, DoNotEndWhatIsNotTheirs) {
   const Reply reply = stop(other);
   EXPECT_EQ(reply.outcome, Outcome::kRefused);
   EXPECT_THAT(reply.text, HasSubstr("is not of lidar.service"));
-  EXPECT_TRUE(runs(main));
-  EXPECT_TRUE(runs(other));
+  EXPECT_TRUE(is_alive(main));
+  EXPECT_TRUE(is_alive(other));
   EXPECT_THAT(systemd.asked(), IsEmpty());
   kill(other, SIGKILL);
   waitpid(other, nullptr, 0);
@@ -191,7 +191,7 @@ TEST_F(UnitsOnAStandInForSystemd, ThatRunAnotherComponentTooAreNotEndedForOne) {
   const Reply reply = stop(main);
   EXPECT_EQ(reply.outcome, Outcome::kRefused);
   EXPECT_THAT(reply.text, HasSubstr("lidar.service runs camera, too"));
-  EXPECT_TRUE(runs(main));
+  EXPECT_TRUE(is_alive(main));
   EXPECT_THAT(systemd.asked(), IsEmpty());
 }
 
@@ -203,10 +203,10 @@ TEST_F(UnitsOnAStandInForSystemd, ThatSystemdRefusesAreLeftAsTheyAre) {
     const Reply reply = stop(old);
     EXPECT_EQ(reply.outcome, Outcome::kRefused);
     EXPECT_THAT(reply.text, HasSubstr("culprit may not: not you; give its user the right"));
-    EXPECT_TRUE(runs(old));
+    EXPECT_TRUE(is_alive(old));
   }
   EXPECT_EQ(stop(old, Ending::kForGood).outcome, Outcome::kRefused);
-  EXPECT_TRUE(runs(old));
+  EXPECT_TRUE(is_alive(old));
   EXPECT_THAT(could_manage({"lidar.service", false}).error(), HasSubstr("culprit may not"));
 }
 
@@ -241,7 +241,7 @@ TEST_F(UnitsOnAStandInForSystemd, AreNotEndedOnWordsThatMakeNoSense) {
   EXPECT_THAT(stop(old).text, HasSubstr("says that lidar.service is 'sleepy'"));
   systemd.say("active", 4'000'000'000u);
   EXPECT_EQ(stop(old).outcome, Outcome::kRefused);
-  EXPECT_TRUE(runs(old));
+  EXPECT_TRUE(is_alive(old));
   EXPECT_THAT(systemd.asked(), IsEmpty());
 }
 
@@ -255,7 +255,7 @@ TEST_F(UnitsOnAStandInForSystemd, AreRefusedInTimeIfTheBusHangsOrIsGone) {
   EXPECT_EQ(start().outcome, Outcome::kDone) << "it is asked again";
   bus.signal(SIGKILL);
   EXPECT_THAT(stop(old).text, HasSubstr("is it running"));
-  EXPECT_TRUE(runs(old));
+  EXPECT_TRUE(is_alive(old));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "ros2/peer_process.h"
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
+#include "ros2/test_change_state.h"
 #include "ros2/timer.h"
 
 namespace culprit::ros2 {
@@ -26,18 +27,6 @@ std::unique_ptr<PeerProcess> start_cyclone(const TestDomain& domain,
                                            std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {CULPRIT_PEER_CYCLONE, std::to_string(domain.number())});
   return std::make_unique<PeerProcess>(std::move(arguments));
-}
-
-bool change(ServiceClient& client, std::uint8_t id) {
-  const auto answers =
-      std::make_shared<EventLog<bool>>();  // the callback may come after a failed wait
-  client.call(encode(srv::ChangeState::Request{{id, ""}}), Repeat::kNever, kPatience,
-              [answers](const CallResult& result) {
-                EXPECT_EQ(result.outcome, CallOutcome::kAnswered);
-                const auto response = decode<srv::ChangeState::Response>(result.reply);
-                answers->add(response && response->success);
-              });
-  return answers->wait_for_count(1) && answers->all().front();
 }
 
 std::unique_ptr<ServiceClient> changes_state(NodeEntry& node, const std::string& robot) {

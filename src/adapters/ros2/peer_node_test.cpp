@@ -11,6 +11,7 @@
 #include "ros2/peer_process.h"
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
+#include "ros2/test_change_state.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -41,18 +42,6 @@ struct Manager {
   LiveContext context;
   NodeEntry node;
 };
-
-bool change(ServiceClient& client, std::uint8_t id) {
-  const auto answers =
-      std::make_shared<EventLog<bool>>();  // the callback may come after a failed wait
-  client.call(encode(srv::ChangeState::Request{{id, ""}}), Repeat::kNever, kPatience,
-              [answers](const CallResult& result) {
-                EXPECT_EQ(result.outcome, CallOutcome::kAnswered);
-                const auto response = decode<srv::ChangeState::Response>(result.reply);
-                answers->add(response && response->success);
-              });
-  return answers->wait_for_count(1) && answers->all().front();
-}
 
 TEST(PeerNode, IsSeenWithItsProcess) {
   const TestDomain domain;

@@ -12,16 +12,16 @@ namespace {
 Time at(int seconds) { return Time(std::chrono::seconds(seconds)); }
 
 // A UDP socket at a port of its own, with which it also sends to itself.
-struct Socket {
-  Socket() {
+struct BoundSocket {
+  BoundSocket() {
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof address;
     EXPECT_EQ(bind(descriptor, reinterpret_cast<sockaddr*>(&address), size), 0);
     EXPECT_EQ(getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size), 0);
   }
-  ~Socket() { close(descriptor); }
-  Socket(const Socket&) = delete;
+  ~BoundSocket() { close(descriptor); }
+  BoundSocket(const BoundSocket&) = delete;
 
   std::uint16_t port() const { return ntohs(address.sin_port); }
   void get(const char* text) const {
@@ -37,7 +37,7 @@ struct Socket {
 };
 
 TEST(ReceiveWatch, TellsSinceWhenADatagramLiesUnread) {
-  const Socket socket;
+  const BoundSocket socket;
   ReceiveWatch watch;
   watch.opened(socket.port());
   EXPECT_EQ(watch.attended(), kNever) << "nobody looked yet";
@@ -55,7 +55,7 @@ TEST(ReceiveWatch, TellsSinceWhenADatagramLiesUnread) {
 }
 
 TEST(ReceiveWatch, KnowsThatAThreadWorksThatAlwaysHasMoreToRead) {
-  const Socket socket;
+  const BoundSocket socket;
   ReceiveWatch watch;
   watch.opened(socket.port());
   socket.get("a");
@@ -69,9 +69,9 @@ TEST(ReceiveWatch, KnowsThatAThreadWorksThatAlwaysHasMoreToRead) {
 }
 
 TEST(ReceiveWatch, TellsOfTheThreadThatHangsForLongest) {
-  const Socket one, other;
+  const BoundSocket one, other;
   ReceiveWatch watch;
-  for (const Socket* each : {&one, &other}) watch.opened(each->port());
+  for (const BoundSocket* each : {&one, &other}) watch.opened(each->port());
   one.get("a");
   watch.look(at(1));
   other.get("a");
@@ -81,7 +81,7 @@ TEST(ReceiveWatch, TellsOfTheThreadThatHangsForLongest) {
 }
 
 TEST(ReceiveWatch, PassesOverSocketsFromWhichNobodyMeansToRead) {
-  const Socket one, other;
+  const BoundSocket one, other;
   ReceiveWatch watch;
   watch.opened(one.port());
   other.get("a");

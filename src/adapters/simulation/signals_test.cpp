@@ -20,7 +20,7 @@ std::optional<Value> field_of(const Depth& depth, std::string_view field) {
   return depth.metres;
 }
 
-constexpr const char* kRules = R"(
+constexpr const char* kSignalRules = R"(
 SIGNAL depth    TOPIC /depth FIELD data
 SIGNAL nothing  TOPIC /depth FIELD nothing
 SIGNAL own      DIAGNOSTIC pump KEY heat
@@ -33,7 +33,7 @@ RULE Deep
 )";
 
 struct Sea {
-  RuleSet rules = *check(Source("test.rules", kRules)).rules;
+  RuleSet rules = *check(Source("test.rules", kSignalRules)).rules;
   World world{1};
   Node sounder{world, "/sounder", {}};
   Topic<Depth> topic{world, "/depth", {{2ms, {}}, 0}};

@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kRules =
+constexpr const char* kSimulatedRules =
     "COMPONENT camera NODE /camera LAUNCH \"camera\"\n"
     "RULE CameraDead\n"
     "  POLICIES ERROR\n"
@@ -73,7 +73,7 @@ struct Robot {
 };
 
 std::string managed(Robot& robot, Duration time) {
-  const Source source("camera.rules", kRules);
+  const Source source("camera.rules", kSimulatedRules);
   const RuleSet rules = *check(source).rules;
   Manager::Options options;
   options.start = robot.world.now();
@@ -144,7 +144,7 @@ TEST(SimulatedRobot, IsTheSameForTheSameSeed) {
 // ---- commands
 
 std::vector<Reply> replies(Robot& robot, Command command, Duration time = 3s) {
-  const Source source("camera.rules", kRules);
+  const Source source("camera.rules", kSimulatedRules);
   const RuleSet rules = *check(source).rules;
   SimulatedRobot adapter(rules, robot.world);
   command.id = {1};

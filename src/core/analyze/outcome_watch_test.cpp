@@ -12,8 +12,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr RuleId kCause{std::size_t{0}};
-constexpr RuleId kEffect{std::size_t{1}};
+constexpr RuleId kWatchedCause{std::size_t{0}};
+constexpr RuleId kWatchedEffect{std::size_t{1}};
 constexpr RuleId kBeside{std::size_t{2}};
 
 // b depends on a; the lamp stands beside them.
@@ -34,13 +34,13 @@ struct Judged {
         helps(has_helped) {
     for (const char* node : {"/a", "/b", "/lamp"}) knowledge.graph.node_appeared(node);
     knowledge.outcomes.healthy = 10s;
-    knowledge.states.state(kEffect).trigger = Slot::of(!helps);
+    knowledge.states.state(kWatchedEffect).trigger = Slot::of(!helps);
   }
 
   // At once if it helped, else at its deadline.
   void judge() {
     Attempt attempt;
-    attempt.strategy = strategy(kEffect);
+    attempt.strategy = strategy(kWatchedEffect);
     attempt.first_change = attempt.effective = kBegun;
     attempt.deadline = kDeadline;
     watch.judged(attempt, helps, helps ? kBegun + 1s : kDeadline);
@@ -63,7 +63,7 @@ struct Judged {
 
   StrategyId strategy(RuleId rule) const { return rules[rule].strategies.front(); }
   double sum() const {
-    const Belief belief = knowledge.beliefs[strategy(kEffect)];
+    const Belief belief = knowledge.beliefs[strategy(kWatchedEffect)];
     return belief.alpha + belief.beta;
   }
 
@@ -89,7 +89,7 @@ TEST_P(OutcomeWatchOf, WhatStandsIsLearnedFrom) {
 TEST_P(OutcomeWatchOf, ASecondFaultUpstreamBlamesNobodyAndThanksNobody) {
   Judged j("ERROR", GetParam());
   j.judge();
-  j.fail(kCause, Judged::kDeadline + 1s);
+  j.fail(kWatchedCause, Judged::kDeadline + 1s);
   EXPECT_FALSE(j.counts());
 }
 
@@ -97,14 +97,15 @@ TEST_P(OutcomeWatchOf, WhatIsAdaptedUpstreamBeforeTheDeadlineMayHaveDoneIt) {
   Judged j("ERROR", GetParam());
   if (j.helps) {
     j.judge();
-    j.adapt(kCause, Judged::kDeadline - 1s);
+    j.adapt(kWatchedCause, Judged::kDeadline - 1s);
   } else {
-    j.knowledge.states.state(kEffect).attempt.emplace().strategy = j.strategy(kEffect);
-    j.knowledge.states.enter(kEffect, RulePhase::kAttempting);
-    j.knowledge.states.state(kCause).attempt.emplace().strategy = j.strategy(kCause);
+    j.knowledge.states.state(kWatchedEffect).attempt.emplace().strategy =
+        j.strategy(kWatchedEffect);
+    j.knowledge.states.enter(kWatchedEffect, RulePhase::kAttempting);
+    j.knowledge.states.state(kWatchedCause).attempt.emplace().strategy = j.strategy(kWatchedCause);
     Attempts attempts(j.knowledge.states);
-    mark_ambiguous(j.knowledge, kCause, attempts, j.knowledge.outcomes);
-    Attempt attempt = *j.knowledge.states[kEffect].attempt;
+    mark_ambiguous(j.knowledge, kWatchedCause, attempts, j.knowledge.outcomes);
+    Attempt attempt = *j.knowledge.states[kWatchedEffect].attempt;
     attempt.first_change = attempt.effective = Judged::kBegun;
     attempt.deadline = Judged::kDeadline;
     j.watch.judged(attempt, false, Judged::kDeadline);
@@ -115,22 +116,22 @@ TEST_P(OutcomeWatchOf, WhatIsAdaptedUpstreamBeforeTheDeadlineMayHaveDoneIt) {
 TEST_P(OutcomeWatchOf, WhatIsAdaptedUpstreamAfterTheDeadlineHasNoPartInIt) {
   Judged j("ERROR", GetParam());
   j.judge();
-  j.adapt(kCause, Judged::kDeadline);
+  j.adapt(kWatchedCause, Judged::kDeadline);
   EXPECT_TRUE(j.counts());
 }
 
 TEST_P(OutcomeWatchOf, WhatHidItAndIsGoneBeforeTheDeadlineHidesItNoLonger) {
   Judged j("WARNING", GetParam());
-  j.fail(kCause, Judged::kBegun - 1s);
+  j.fail(kWatchedCause, Judged::kBegun - 1s);
   if (j.helps) j.judge();
-  j.knowledge.states.enter(kCause, RulePhase::kQuiet);
+  j.knowledge.states.enter(kWatchedCause, RulePhase::kQuiet);
   if (!j.helps) j.judge();
   EXPECT_TRUE(j.counts());
 }
 
 TEST_P(OutcomeWatchOf, NobodySeesThroughWhatIsMoreCriticalAtTheDeadline) {
   Judged j("WARNING", GetParam());
-  j.fail(kCause, Judged::kBegun - 1s);
+  j.fail(kWatchedCause, Judged::kBegun - 1s);
   j.judge();
   EXPECT_FALSE(j.counts());
 }

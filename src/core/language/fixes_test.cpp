@@ -33,16 +33,16 @@ TEST(Fixes, PutWordsRight) {
   EXPECT_EQ(fixed("RULE: r\n"), "RULE r\n");
 }
 
-std::string rule(const std::string& trigger, const std::string& strategy = "STRATEGY s 50 10",
-                 const std::string& adaptation = "ADAPTATION c restart 5",
-                 const std::string& policies = "POLICIES ERROR") {
+std::string rule_file(const std::string& trigger, const std::string& strategy = "STRATEGY s 50 10",
+                      const std::string& adaptation = "ADAPTATION c restart 5",
+                      const std::string& policies = "POLICIES ERROR") {
   return "COMPONENT c\nRULE r\n" + policies + "\nTRIGGER " + trigger + "\n" + strategy + "\n" +
          adaptation + "\n";
 }
 
 TEST(Fixes, PutExpressionsRight) {
   const auto becomes = [](const std::string& wrong, const std::string& right) {
-    EXPECT_EQ(fixed(rule(wrong)), rule(right));
+    EXPECT_EQ(fixed(rule_file(wrong)), rule_file(right));
   };
   becomes("x > 1 and y < 2", "x > 1 && y < 2");
   becomes("x > 1 & y < 2", "x > 1 && y < 2");
@@ -60,31 +60,35 @@ TEST(Fixes, PutExpressionsRight) {
 }
 
 TEST(Fixes, PutRulesRight) {
-  const std::string good = rule("x > 1");
-  EXPECT_EQ(fixed(rule("x > 1", "STRATEGY s 50% 10")), good);
-  EXPECT_EQ(fixed(rule("x > 1", "STRATEGY s 50%10")), good);
-  EXPECT_EQ(fixed(rule("x > 1", "STRATEGY s 0.5 10")), good);
-  EXPECT_EQ(fixed(rule("x > 1", "STRATEGY s 50 10", "ADAPTATION c restrat 5")), good);
-  EXPECT_EQ(fixed(rule("x > 1", "STRATEGY s 50 10", "ADAPTATION c action_restart 5")), good);
-  EXPECT_EQ(fixed(rule("x > 1", "STRATEGY s 50 10", "ADAPTATION c restart 5", "POLICIES CRITICAL")),
-            good);
+  const std::string good = rule_file("x > 1");
+  EXPECT_EQ(fixed(rule_file("x > 1", "STRATEGY s 50% 10")), good);
+  EXPECT_EQ(fixed(rule_file("x > 1", "STRATEGY s 50%10")), good);
+  EXPECT_EQ(fixed(rule_file("x > 1", "STRATEGY s 0.5 10")), good);
+  EXPECT_EQ(fixed(rule_file("x > 1", "STRATEGY s 50 10", "ADAPTATION c restrat 5")), good);
+  EXPECT_EQ(fixed(rule_file("x > 1", "STRATEGY s 50 10", "ADAPTATION c action_restart 5")), good);
   EXPECT_EQ(
-      fixed(rule("x > 1", "STRATEGY s 50 10", "ADAPTATION c restart 5", "POLICIES ERROR FOR 2 s")),
-      rule("x > 1", "STRATEGY s 50 10", "ADAPTATION c restart 5", "POLICIES ERROR FOR 2s"));
+      fixed(rule_file("x > 1", "STRATEGY s 50 10", "ADAPTATION c restart 5", "POLICIES CRITICAL")),
+      good);
+  EXPECT_EQ(
+      fixed(rule_file("x > 1", "STRATEGY s 50 10", "ADAPTATION c restart 5",
+                      "POLICIES ERROR FOR 2 s")),
+      rule_file("x > 1", "STRATEGY s 50 10", "ADAPTATION c restart 5", "POLICIES ERROR FOR 2s"));
 }
 
 TEST(Fixes, PutNamesRight) {
   const std::string head = "COMPONENT camera\nSIGNAL entropy DIAGNOSTIC s KEY entropy\n";
-  EXPECT_EQ(fixed(head + rule("entropi > 1")), head + rule("entropy > 1"));
-  EXPECT_EQ(fixed(head + rule("alive(camrea) == false")), head + rule("alive(camera) == false"));
-  EXPECT_EQ(fixed(head + rule("entropi > 1"), Strictness::kStrict), head + rule("entropy > 1"));
+  EXPECT_EQ(fixed(head + rule_file("entropi > 1")), head + rule_file("entropy > 1"));
+  EXPECT_EQ(fixed(head + rule_file("alive(camrea) == false")),
+            head + rule_file("alive(camera) == false"));
+  EXPECT_EQ(fixed(head + rule_file("entropi > 1"), Strictness::kStrict),
+            head + rule_file("entropy > 1"));
 }
 
 TEST(Fixes, AreNotOfferedWhereMoreThanOneIsLikely) {
   EXPECT_EQ(fixed("CYCLE 200\n"), "") << "which unit?";
-  EXPECT_EQ(fixed(rule("x > 1", "STRATEGY s 0.001 10")), "") << "a tenth of a percent?";
-  EXPECT_EQ(fixed(rule("mode == 'it\"s'")), "");
-  EXPECT_EQ(fixed(rule("age(image) > 1s")), "") << "in which namespace?";
+  EXPECT_EQ(fixed(rule_file("x > 1", "STRATEGY s 0.001 10")), "") << "a tenth of a percent?";
+  EXPECT_EQ(fixed(rule_file("mode == 'it\"s'")), "");
+  EXPECT_EQ(fixed(rule_file("age(image) > 1s")), "") << "in which namespace?";
 }
 
 // Over everything that people wrote wrong.

@@ -12,7 +12,7 @@
 namespace culprit {
 namespace {
 
-std::string read(const std::filesystem::path& path) {
+std::string text_without_mark(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   const Source source(path.string(), std::string(std::istreambuf_iterator<char>(in), {}));
   return std::string(source.text());  // without a byte order mark
@@ -39,7 +39,7 @@ std::optional<std::size_t> line_break(const std::string& text, std::size_t at) {
 
 const Grammar& grammar() {
   static const Grammar all(
-      read("docs/grammar.ebnf"),
+      text_without_mark("docs/grammar.ebnf"),
       {{"A to Z, a to z, _", {{"a", "Z", "_", "e", "s"}, one<is_letter>}},
        {"0 to 9", {{"0", "1", "9"}, one<is_digit>}},
        {"any character but LF", {{"x", " ", "#", "\"", "ü", "<", ">", "/"}, one<is_in_line>}},
@@ -97,7 +97,7 @@ TEST(Grammar, HasNoProductionThatNoRuleFileUses) {
   for (const char* folder : {"rules", "src/core/language/golden"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
       if (entry.path().extension() != ".rules") continue;
-      const std::string text = read(entry.path());
+      const std::string text = text_without_mark(entry.path());
       std::vector<Diagnostic> diagnostics;
       parse(Source("", text), diagnostics);
       if (!diagnostics.empty()) continue;  // golden files hold mistakes, too

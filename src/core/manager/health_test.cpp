@@ -6,7 +6,7 @@
 namespace culprit::test {
 namespace {
 
-constexpr const char* kRules = R"(
+constexpr const char* kHealthRules = R"(
 CYCLE 100ms
 COMPONENT camera NODE /camera LAUNCH "camera"
 COMPONENT fusion NODE /fusion LAUNCH "fusion"
@@ -33,7 +33,7 @@ Manager::Options healthy_after(Duration healthy) {
 TestRobot robot_that_is_well(Duration healthy, Intensity restarts = {}) {
   Manager::Options options = healthy_after(healthy);
   options.governor.limits.restarts = restarts;
-  TestRobot robot(kRules, std::make_unique<BayesPlanner>(), options);
+  TestRobot robot(kHealthRules, std::make_unique<BayesPlanner>(), options);
   robot.add("camera", {}, "/image");
   robot.add("fusion", {"camera"}, "/fused");
   robot.discover();
@@ -215,7 +215,7 @@ TEST(ProvenHealth, WhatComesAndGoesIsToldAcrossCrashesOfCulprit) {
 }
 
 TEST(ProvenHealth, OnlyTheLastResortIsLeftAcrossACrashOfCulprit) {
-  TestRobot robot(std::string(kRules) +
+  TestRobot robot(std::string(kHealthRules) +
                       "    STRATEGY give_in 50 10 LASTRESORT\n"
                       "      ADAPTATION fusion stop 50\n",
                   std::make_unique<BayesPlanner>(), healthy_after(20s));

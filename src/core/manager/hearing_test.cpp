@@ -9,7 +9,7 @@
 namespace culprit::test {
 namespace {
 
-constexpr const char* kRules = R"(
+constexpr const char* kHearingRules = R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
 COMPONENT lidar  NODE /lidar  LAUNCH "lidar"
 RULE CameraSilent
@@ -35,7 +35,7 @@ RULE Blurred
 )";
 
 TestRobot robot() {
-  TestRobot robot(kRules);
+  TestRobot robot(kHearingRules);
   robot.add("camera", {}, "/rgb");
   robot.add("lidar", {}, "/scan");
   robot["camera"].parameters["focus"] = Value(std::int64_t{0});
@@ -195,7 +195,7 @@ class InterruptedRobot : public Robot {
 
 // Else it would wait until something happens to the robot.
 TEST(Runtime, AnOrderInterruptsItsWait) {
-  const Checked checked = check(Source("test.rules", kRules));
+  const Checked checked = check(Source("test.rules", kHearingRules));
   Manager manager(*checked.rules, std::make_unique<BayesPlanner>(), {});
   InterruptedRobot robot;
   Runtime runtime(manager, robot);
@@ -204,7 +204,7 @@ TEST(Runtime, AnOrderInterruptsItsWait) {
 }
 
 TEST(Runtime, TellsTheManagerThatItOverslept) {
-  const Checked checked = check(Source("test.rules", kRules));
+  const Checked checked = check(Source("test.rules", kHearingRules));
   Manager manager(*checked.rules, std::make_unique<BayesPlanner>(), {});
   SleepyRobot robot;
   Runtime runtime(manager, robot);

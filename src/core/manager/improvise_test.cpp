@@ -8,7 +8,7 @@
 namespace culprit::test {
 namespace {
 
-constexpr const char* kRules = R"(COMPONENT camera NODE /camera LAUNCH "camera"
+constexpr const char* kImproviseRules = R"(COMPONENT camera NODE /camera LAUNCH "camera"
 COMPONENT map NODE /map LAUNCH "map"
 COMPONENT lidar NODE /lidar
 RULE CameraSilent
@@ -19,11 +19,11 @@ RULE CameraSilent
 )";
 
 std::string improvised() {
-  return kRules + improvised_rules(*check(Source("test.rules", kRules)).rules);
+  return kImproviseRules + improvised_rules(*check(Source("test.rules", kImproviseRules)).rules);
 }
 
 TEST(Improvise, WritesRulesForWhatNobodyAdapts) {
-  EXPECT_EQ(improvised_rules(*check(Source("test.rules", kRules)).rules), R"(
+  EXPECT_EQ(improvised_rules(*check(Source("test.rules", kImproviseRules)).rules), R"(
 # Improvised: nobody wrote rules for these components.
 
 RULE improvised_map
@@ -45,14 +45,14 @@ RULE improvised_lidar
 TEST(Improvise, HasNothingToAddToItsOwnRules) {
   const Checked checked = check(Source("test.rules", improvised()));
   ASSERT_TRUE(checked.rules);
-  const auto before = check(Source("test.rules", kRules)).diagnostics;
+  const auto before = check(Source("test.rules", kImproviseRules)).diagnostics;
   EXPECT_EQ(checked.diagnostics.size(), before.size()) << "nothing is wrong with what is added";
   EXPECT_EQ(improvised_rules(*checked.rules), "");
 }
 
 TEST(Improvise, ReplacesAProcessThatNoRuleIsAbout) {
   for (const bool is_on : {false, true}) {
-    TestRobot robot(is_on ? improvised() : kRules);
+    TestRobot robot(is_on ? improvised() : kImproviseRules);
     robot.add("camera", {}, "/rgb");
     robot.add("map");
     robot.add("lidar");

@@ -9,7 +9,7 @@ namespace culprit::test {
 namespace {
 
 // `clause` of the component; the redeploy takes ten cycles of 200 ms.
-std::string camera(const std::string& clause) {
+std::string camera_with(const std::string& clause) {
   return "COMPONENT camera NODE /camera LAUNCH \"camera\" " + clause +
          "\nRULE Dead\n  POLICIES ERROR\n  TRIGGER age(/rgb) > 350ms\n"
          "    STRATEGY redeploy 90 10\n      ADAPTATION camera redeploy 10\n";
@@ -27,7 +27,7 @@ TestRobot robot_of(const std::string& rules, Duration activates_itself_after = {
 }
 
 TEST(Lifecycles, WhatActivatesItselfByDeclarationIsNeverToldTo) {
-  TestRobot robot = robot_of(camera("LIFECYCLE self"), 6s);
+  TestRobot robot = robot_of(camera_with("LIFECYCLE self"), 6s);
   robot.kill("camera");
   robot.run_for(20s);
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
@@ -36,7 +36,7 @@ TEST(Lifecycles, WhatActivatesItselfByDeclarationIsNeverToldTo) {
 }
 
 TEST(Lifecycles, ADeclaredDriverThatNeverComesIsAFailureThatSaysSo) {
-  TestRobot robot = robot_of(camera("LIFECYCLE launcher"));
+  TestRobot robot = robot_of(camera_with("LIFECYCLE launcher"));
   robot.kill("camera");
   robot.run_for(40s);
   EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
@@ -44,7 +44,7 @@ TEST(Lifecycles, ADeclaredDriverThatNeverComesIsAFailureThatSaysSo) {
 }
 
 TEST(Lifecycles, AManagedNodeIsNotWaitedFor) {
-  TestRobot robot = robot_of(camera("LIFECYCLE managed"));
+  TestRobot robot = robot_of(camera_with("LIFECYCLE managed"));
   robot.kill("camera");
   robot.run_for(1500ms);
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
@@ -52,7 +52,7 @@ TEST(Lifecycles, AManagedNodeIsNotWaitedFor) {
 
 // Nothing is known of it: it is activated after the impact, and its own timer then fails.
 TEST(Lifecycles, ANodeThatActivatesItselfCrashesOnceAtMost) {
-  TestRobot robot = robot_of(camera(""), 4s);
+  TestRobot robot = robot_of(camera_with(""), 4s);
   robot.kill("camera");
   robot.run_for(60s);
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
@@ -67,7 +67,7 @@ TEST(Lifecycles, ANodeThatActivatesItselfCrashesOnceAtMost) {
 }
 
 TEST(Lifecycles, ANodeThatWasSeenToActivateItselfIsWaitedFor) {
-  TestRobot robot(camera(""));
+  TestRobot robot(camera_with(""));
   auto& added = robot.add("camera", {}, "/rgb");
   added.state = added.state_at_start = Lifecycle::kUnconfigured;
   added.activates_itself_after = 3s;
@@ -84,7 +84,7 @@ TEST(Lifecycles, ANodeThatWasSeenToActivateItselfIsWaitedFor) {
 }
 
 TEST(Lifecycles, AnObservedDriverThatDoesNotComeAgainIsReplaced) {
-  TestRobot robot = robot_of(camera(""), 1s);
+  TestRobot robot = robot_of(camera_with(""), 1s);
   robot.kill("camera");
   robot.run_for(10s);
   ASSERT_TRUE(robot.works("camera")) << transcript(robot);
@@ -101,7 +101,7 @@ TEST(Lifecycles, AnObservedDriverThatDoesNotComeAgainIsReplaced) {
 
 TEST(Lifecycles, ARuleThatItMustBeActiveOutweighsThatOthersDeactivatedIt) {
   TestRobot robot =
-      robot_of(camera("LIFECYCLE managed") +
+      robot_of(camera_with("LIFECYCLE managed") +
                "RULE Idle\n  POLICIES WARNING FOR 30s\n  TRIGGER lifecycle(camera) != \"active\"\n"
                "    STRATEGY activate 90 10\n      ADAPTATION camera activate 5\n");
   robot["camera"].state = Lifecycle::kInactive;
@@ -141,7 +141,7 @@ TEST(Lifecycles, AnErrorInOnActivateEndsTheAttemptAtOnce) {
 }
 
 TEST(Lifecycles, AGoalEndsWithItsProcess) {
-  TestRobot robot = robot_of(camera("LIFECYCLE self"));
+  TestRobot robot = robot_of(camera_with("LIFECYCLE self"));
   robot.kill("camera");
   robot.run_for(3s);
   ASSERT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
@@ -150,7 +150,7 @@ TEST(Lifecycles, AGoalEndsWithItsProcess) {
 }
 
 TEST(Lifecycles, AStartIsWaitedForWhileItsProcessRuns) {
-  TestRobot robot = robot_of(camera("LIFECYCLE managed"));
+  TestRobot robot = robot_of(camera_with("LIFECYCLE managed"));
   robot["camera"].start_time = 45s;
   for (int kills = 1; kills <= 2; ++kills) {
     robot.kill("camera");

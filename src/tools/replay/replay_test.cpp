@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_expected.h"
 #include "base/test_folder.h"
 #include "journal/recorder.h"
 #include "journal/verify.h"
@@ -17,12 +18,13 @@ namespace {
 
 using culprit::test::TestFolder;
 using culprit::test::TestRobot;
+using culprit::test::value_of;
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
 constexpr std::int64_t kWall = 1'800'000'000'000'000'000;
 
-constexpr const char* kRules = R"(
+constexpr const char* kReplayRules = R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
 COMPONENT fusion NODE /fusion LAUNCH "fusion"
 RULE CameraSilent
@@ -39,20 +41,14 @@ RULE FusionSilent
       ADAPTATION fusion redeploy 10
 )";
 
-template <class T>
-T value_of(Expected<T> expected) {
-  if (!expected) throw std::runtime_error(expected.error());
-  return std::move(*expected);
-}
-
 // Records what `play` does to a robot of two components.
 void record(const std::filesystem::path& path, const std::function<void(TestRobot&)>& play) {
-  TestRobot robot(kRules);
+  TestRobot robot(kReplayRules);
   robot.add("camera", {}, "/rgb");
   robot.add("fusion", {"camera"}, "/fused");
   journal::Session session;
   session.rules_path = "test.rules";
-  session.rules_text = kRules;
+  session.rules_text = kReplayRules;
   session.settling = Manager::kDiscovery;
   journal::Recorder::Options options;
   options.path = path;
@@ -168,14 +164,14 @@ RULE Blind
 TEST(Recorder, LosesNothingWhileTheJournalCannotBeWritten) {
   const TestFolder folder;
   const auto path = folder / "later" / "a.journal";
-  TestRobot robot(kRules);
+  TestRobot robot(kReplayRules);
   robot.add("camera", {}, "/rgb");
   robot.add("fusion", {"camera"}, "/fused");
   std::ofstream(folder / "later") << "a file where a folder should be";
   std::vector<std::string> troubles;
   {
     journal::Session session;
-    session.rules_text = kRules;
+    session.rules_text = kReplayRules;
     session.settling = Manager::kDiscovery;
     journal::Recorder::Options options;
     options.path = path;

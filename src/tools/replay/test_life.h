@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "base/test_expected.h"
 #include "journal/recorder.h"
 #include "journal/recovery.h"
 #include "journal/requests.h"
@@ -18,16 +19,11 @@ namespace culprit::replay::test {
 
 namespace fs = std::filesystem;
 using culprit::test::TestRobot;
+using culprit::test::value_of;
 using namespace std::chrono_literals;
 
 inline constexpr int kProcess = 4711;  // of each culprit here
 inline constexpr std::int64_t kWall = 1'800'000'000'000'000'000;
-
-template <class T>
-T value_of(Expected<T> expected) {
-  if (!expected) throw std::runtime_error(expected.error());
-  return std::move(*expected);
-}
 
 // As the file system has it at this moment: what is not written yet dies with the process.
 inline void copy_journal(const fs::path& from, const fs::path& to) {
