@@ -70,7 +70,7 @@ journal::Session session() {
   journal::Session session;
   session.rules_path = "bench.rules";
   session.rules_text = kRules;
-  session.settling = Manager::kDiscovery;
+  session.discovery = Manager::kDiscovery;
   return session;
 }
 

@@ -112,11 +112,11 @@ void planning_step(benchmark::State& state) {
   const std::vector<Link> links = connect(knowledge, components, 5);
   knowledge.now = Time(std::chrono::seconds(100));
   for (std::size_t r = 0; r < components; ++r)
-    knowledge.states.state(RuleId(r)).trigger = Slot::of(false);
+    knowledge.states.state(RuleId(r)).detection.trigger = Slot::of(false);
   std::vector<RuleId> failures;
   for (std::size_t f = 0; f < failing; ++f) {
     failures.emplace_back(f * components / failing);
-    knowledge.states.state(failures.back()).trigger = Slot::of(true);
+    knowledge.states.state(failures.back()).detection.trigger = Slot::of(true);
     knowledge.states.state(failures.back()).failing_since = Time(std::chrono::seconds(90));
     knowledge.states.enter(failures.back(), RulePhase::kFailing);
   }

@@ -50,7 +50,7 @@ int main() {
   const RuleSet& rules = *checked.rules;
 
   Manager::Options options;
-  options.settling = 1s;  // until then nothing is called missing
+  options.discovery = 1s;  // until then nothing is called missing
   Manager manager(rules, std::make_unique<BayesPlanner>(), options);
 
   Tank tank;

@@ -84,7 +84,7 @@ int main() {
   if (!checked.rules) return 1;
   const RuleSet& rules = *checked.rules;
   Manager::Options options;
-  options.settling = 1s;
+  options.discovery = 1s;
   Manager manager(rules, std::make_unique<BayesPlanner>(), options);
   Lidar robot;
   Runtime runtime(manager, robot);

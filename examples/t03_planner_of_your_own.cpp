@@ -31,27 +31,27 @@ RULE PictureBlurred
 
 class AsWritten : public Planner {
  public:
-  std::vector<Verdict> plan(std::span<const RuleId> failures,
-                            const Knowledge& knowledge) const override {
-    std::vector<Verdict> verdicts;
+  std::vector<Decision> plan(std::span<const RuleId> failures,
+                             const Knowledge& knowledge) const override {
+    std::vector<Decision> decisions;
     for (const RuleId rule : failures) {
-      Verdict verdict{.rule = rule, .chosen = {}, .candidates = {}};
+      Decision decision{.rule = rule, .chosen = {}, .candidates = {}};
       for (const StrategyId strategy : knowledge.rules[rule].strategies) {
         Candidate candidate;
         candidate.strategy = strategy;
         if (knowledge.states.is_tried(strategy)) {
           candidate.excluded = Condition::kTried;
-        } else if (verdict.chosen) {
+        } else if (decision.chosen) {
           candidate.excluded = Condition::kOneEach;
         } else {
-          verdict.chosen = strategy;
+          decision.chosen = strategy;
         }
-        verdict.candidates.push_back(std::move(candidate));
+        decision.candidates.push_back(std::move(candidate));
       }
-      verdict.is_spent = !verdict.chosen;
-      verdicts.push_back(std::move(verdict));
+      decision.is_spent = !decision.chosen;
+      decisions.push_back(std::move(decision));
     }
-    return verdicts;
+    return decisions;
   }
 };
 
@@ -62,7 +62,7 @@ int main() {
   if (!checked.rules) return 1;
   const RuleSet& rules = *checked.rules;
   Manager::Options options;
-  options.settling = 1s;
+  options.discovery = 1s;
   Manager manager(rules, std::make_unique<AsWritten>(), options);
 
   // A camera whose picture is sharp with a short exposure, whatever its focus.

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "journal/history.h"
 #include "journal/json.h"
-#include "journal/past.h"
 
 namespace culprit::cli {
 namespace {

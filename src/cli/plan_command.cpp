@@ -74,12 +74,12 @@ bool all_is_known(const Knowledge& knowledge) {
 
 // Until discovery has settled and all that triggers read is known (or has had as long again to
 // come), and as long as rules wait until they call something a failure.
-void watch(Manager& manager, LiveRobot& robot, const RuleSet& rules, Duration settling,
+void watch(Manager& manager, LiveRobot& robot, const RuleSet& rules, Duration discovery,
            const std::atomic<bool>& stop) {
   Runtime runtime(manager, robot);
-  const Time settled = later(robot.now(), settling);
+  const Time settled = later(robot.now(), discovery);
   runtime.run(stop, settled);
-  for (const Time limit = later(settled, settling);
+  for (const Time limit = later(settled, discovery);
        !stop && robot.now() < limit && !all_is_known(manager.knowledge());)
     runtime.run(stop, later(robot.now(), rules.cycle));
   runtime.run(stop, later(robot.now(), longest_detection(rules)));
@@ -108,17 +108,17 @@ int plan_for_robot(const LoadedRules& loaded, const PlanOptions& options) {
   // An onlooker decides nothing, so nothing is asked of the robot.
   Manager::Options manager_options;
   manager_options.start = (*robot)->now();
-  manager_options.settling = from_seconds(options.settle_seconds);
+  manager_options.discovery = from_seconds(options.settle_seconds);
   manager_options.governor = Governor::Options::recommended();
   manager_options.governor.quiet_at_start = Duration::zero();  // the question is about the robot
   Manager manager(rules, std::make_unique<Onlooker>(), manager_options);
   fmt::print(stderr, "culprit: watching {} for {:g} s or more; nothing is changed on it\n",
              rules.robot.empty() ? "the robot" : rules.robot,
-             seconds(manager_options.settling + longest_detection(rules)));
+             seconds(manager_options.discovery + longest_detection(rules)));
   auto preflight = std::async(std::launch::async, [&] {
     return sight(Source(options.rules, loaded.text), options.message_path);
   });
-  watch(manager, **robot, rules, manager_options.settling, signals.stopped());
+  watch(manager, **robot, rules, manager_options.discovery, signals.stopped());
   const bool is_stopped = signals.stopped();
   signals.on_stop({});
   if (is_stopped) {

@@ -41,7 +41,7 @@ class BagRun {
     options.autonomy = Autonomy::kAdvise;
     options.start = start;
     // A bag does not show nodes: none is absent because it was not seen.
-    options.settling = std::chrono::hours(24 * 365);
+    options.discovery = std::chrono::hours(24 * 365);
     return options;
   }
 

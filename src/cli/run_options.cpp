@@ -33,7 +33,7 @@ Expected<LiveSession::Options> RunOptions::session(const RuleSet& rule_set) cons
   out.planner_record = planner.to_json();
   out.governor_record = governor.to_json();
   out.forgetting = forgetting;
-  out.settling = from_seconds(settle_seconds);
+  out.discovery = from_seconds(settle_seconds);
   out.launches = launch;
   out.message_path = message_path;
   out.journal = journal_path(rule_set);

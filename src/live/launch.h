@@ -11,8 +11,8 @@
 #include <functional>
 #include <vector>
 
+#include "knowledge/history.h"
 #include "knowledge/known_robot.h"
-#include "knowledge/past.h"
 #include "live/listener.h"
 #include "robot/robot.h"
 
@@ -33,7 +33,7 @@ struct Launched {
   // What was observed. Of lifecycles only where they are now: how they got there was a start.
   std::vector<Observation> seen;
   std::vector<KnownRobot::Part> parts;  // what was started, and so counts as seen
-  Past past;                            // how it came up
+  History past;                         // how it came up
 };
 
 // Producers before their consumers, else as the file has them.

@@ -58,7 +58,7 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   session.process = getpid();
   session.boot = journal::boot_id();
   session.start = start;
-  session.settling = options.settling;
+  session.discovery = options.discovery;
   session.forgetting = options.forgetting;
   session.learned = beginning.learned;
   session.interrupted = beginning.interrupted;
@@ -72,7 +72,7 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
 
 // Also those that left the graph while nobody looked on, because they were stopped, say. Not where
 // the rules name another node now.
-void adopt_again(LiveRobot& robot, const Past& past, const Sightings& sightings) {
+void adopt_again(LiveRobot& robot, const History& past, const Sightings& sightings) {
   for (const Event& event : past) {
     const auto* found = std::get_if<ComponentFound>(&event.what);
     if (found != nullptr && sightings.has(found->component))
@@ -110,9 +110,9 @@ std::optional<Silenceable> translated(const Silenceable& what, const RuleSet& fr
 
 // Verdicts that wait for their proof. None is due before the next session has had the time to see
 // the robot: what nobody looked at counts for nothing.
-Past waiting_verdicts(const Knowledge& knowledge, const RuleSet& next, Time first) {
+History waiting_verdicts(const Knowledge& knowledge, const RuleSet& next, Time first) {
   const RuleSet& rules = knowledge.rules;
-  Past waiting;
+  History waiting;
   for (const PendingOutcome& outcome : knowledge.outcomes.open) {
     const Strategy& strategy = rules[outcome.strategy];
     const auto same = journal::find_strategy(next, rules[strategy.rule].name, strategy.name);
@@ -124,7 +124,7 @@ Past waiting_verdicts(const Knowledge& knowledge, const RuleSet& next, Time firs
 }
 
 // In the order in which it happened.
-void add(Past& past, const Past& more) {
+void add(History& past, const History& more) {
   for (const Event& event : more) {
     const auto next = std::find_if(past.begin(), past.end(),
                                    [&](const Event& each) { return each.at > event.at; });
@@ -363,7 +363,7 @@ bool LiveSession::is_adapting() const {
 
 LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string occasion) {
   end();
-  const Time sees = later(robot_->now(), frame_.options.settling);
+  const Time sees = later(robot_->now(), frame_.options.discovery);
   return {learned_by(manager_->knowledge()), known_robot(),
           waiting_verdicts(manager_->knowledge(), next, sees),
           standing_orders(*manager_, frame_.advises, next, robot_->now()), std::move(occasion)};

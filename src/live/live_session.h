@@ -33,7 +33,7 @@ class LiveSession {
     journal::Json planner_record;
     journal::Json governor_record = journal::Json::object();
     double forgetting = 1;
-    Duration settling = Manager::kDiscovery;
+    Duration discovery = Manager::kDiscovery;
     bool launches = false;      // components that are missing
     bool has_preflight = true;  // says what the robot has of what the rules name
     std::vector<std::filesystem::path> message_path;
@@ -60,7 +60,7 @@ class LiveSession {
   struct Handover {
     journal::Learned learned;
     KnownRobot known_robot;
-    Past verdicts;                    // that do not count yet
+    History verdicts;                 // that do not count yet
     std::vector<Observation> orders;  // of people, that still hold
     std::string occasion;             // why there is a next one
   };

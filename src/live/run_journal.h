@@ -17,7 +17,7 @@ struct RunBeginning {
   std::optional<journal::Writer> writer;  // nothing: it cannot be written now
   journal::Learned learned;
   journal::Json interrupted = journal::Json::array();
-  Past past;  // without silences
+  History past;  // without silences
   KnownRobot known_robot;
   journal::StandingOrders orders;
   bool are_orders_kept = false;       // they stand in their file just so

@@ -68,7 +68,7 @@ void Metrics::watch(const Manager& manager) {
     counts_.orders.try_emplace(label("result", result), 0);
   counts_.info = label("robot", rules.robot);
   look(manager, counts_);
-  is_settled_ = false;
+  is_discovered_ = false;
 }
 
 void Metrics::stepped(Duration took, std::size_t observations, const Manager& manager) {
@@ -78,7 +78,7 @@ void Metrics::stepped(Duration took, std::size_t observations, const Manager& ma
   step_nanoseconds_.fetch_add(static_cast<std::uint64_t>(took.count()), kRelaxed);
   observations_.fetch_add(observations, kRelaxed);
   hears_ = manager.hears();
-  is_settled_ = manager.knowledge().now >= manager.settled();
+  is_discovered_ = manager.knowledge().now >= manager.discovered();
   if (!manager.events().empty()) {
     const std::lock_guard lock(mutex_);
     for (const Event& event : manager.events()) count(event, manager.knowledge().rules, counts_);

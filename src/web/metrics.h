@@ -32,7 +32,7 @@ class Metrics {
   // From any thread.
   std::uint64_t steps() const { return steps_; }
   // The robot had its time to show itself.
-  bool is_settled() const { return is_settled_; }
+  bool is_discovered() const { return is_discovered_; }
   // The robot can be heard.
   bool hears() const { return hears_; }
   // All of it, with what the operating system says of this process.
@@ -65,7 +65,7 @@ class Metrics {
   std::atomic<std::uint64_t> steps_ = 0;
   std::atomic<std::uint64_t> step_nanoseconds_ = 0;
   std::atomic<std::uint64_t> observations_ = 0;
-  std::atomic<bool> is_settled_ = false;
+  std::atomic<bool> is_discovered_ = false;
   std::atomic<bool> hears_ = true;
 
   mutable std::mutex mutex_;

@@ -53,7 +53,8 @@ Json rule_to_json(RuleId id, const Knowledge& knowledge, Time start) {
   Json json{{"phase", word_of(state.phase)}};
   // What is true and must hold a while longer, FOR or HOLD, is no failure yet.
   if (state.phase == RulePhase::kQuiet) {
-    json["trigger"] = state.trigger.known ? Json(state.trigger.b) : Json(nullptr);
+    json["trigger"] =
+        state.detection.trigger.known ? Json(state.detection.trigger.b) : Json(nullptr);
     return json;
   }
   json["since"] = time_to_json(state.failing_since, start);

@@ -28,7 +28,7 @@ Answer health(bool does_step, const Metrics& metrics) {
 
 Answer readiness(bool does_step, const Metrics& metrics) {
   if (const Answer healthy = health(does_step, metrics); healthy.status != 200) return healthy;
-  if (!metrics.is_settled())
+  if (!metrics.is_discovered())
     return refuse(503, "the robot is still given its time to show itself (--settle)");
   return {200, {{"status", "ready"}}};
 }

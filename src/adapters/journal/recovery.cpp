@@ -21,7 +21,7 @@ class Trail {
     if (!session.is_object()) return;
     latest_ = Time(Duration(integer_of(session, "start")));
     process_ = static_cast<int>(integer_of(session, "process"));
-    past_ = past_from_json(session.value("past", Json()), rules_);
+    past_ = history_from_json(session.value("past", Json()), rules_);
     is_paused_ = flag_of(session, "paused");
     is_dry_run_ = flag_of(session, "dry_run");
     const Json interrupted = session.value("interrupted", Json());
@@ -51,7 +51,7 @@ class Trail {
 
   bool is_paused() const { return is_paused_; }
   bool is_dry_run() const { return is_dry_run_; }
-  const Past& past() const { return past_; }
+  const History& past() const { return past_; }
 
   // Whether another culprit than the one that wrote these rows managed the robot last.
   bool was_succeeded_by(std::optional<int> manager) const {
@@ -165,7 +165,7 @@ class Trail {
   const RuleSet& rules_;
   std::vector<std::string>& given_up_;
   std::vector<Interrupted> open_;
-  Past past_;
+  History past_;
   Time latest_{};    // event or step, or the beginning of the run
   int process_ = 0;  // of the culprit that wrote the rows
   bool is_paused_ = false;

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "journal/history.h"
 #include "journal/known_robot.h"
-#include "journal/past.h"
 #include "journal/reader.h"
 #include "journal/session.h"
 #include "knowledge/interrupted.h"
@@ -31,7 +31,7 @@ struct Recovery {
   bool is_dry_run = false;   // likewise
   std::vector<Interrupted> interrupted;
   std::vector<std::string> given_up;  // what was under way and cannot be finished, and why
-  Past past;                          // of all runs before, on the robot's clock
+  History past;                       // of all runs before, on the robot's clock
   KnownRobot known_robot;             // what they saw of this robot since the machine was started
 };
 

@@ -45,7 +45,7 @@ struct JournalRecovery : testing::Test {
     const Reader reader = value_of(Reader::open(path));
     return value_of(recover(reader, rules, {Time(), kRecoveredAt}));
   }
-  static std::vector<int> processes(const Past& past) {
+  static std::vector<int> processes(const History& past) {
     std::vector<int> pids;
     for (const Event& event : past) {
       if (const auto* seen = std::get_if<ComponentFound>(&event.what)) pids.push_back(seen->pid);

@@ -72,7 +72,7 @@ Json to_json(const Session& session) {
           {"process", session.process},
           {"boot", session.boot},
           {"start", session.start.time_since_epoch().count()},
-          {"settling", session.settling.count()},
+          {"settling", session.discovery.count()},
           {"forgetting", session.forgetting},
           {"advises", session.advises},
           {"planner", session.planner},
@@ -110,7 +110,7 @@ Expected<Session> session_from_json(const Json& json) {
   session.process = static_cast<int>(integer_of(json, "process"));
   session.boot = text_of(json, "boot");
   session.start = Time(Duration(integer_of(json, "start")));
-  session.settling = Duration(integer_of(json, "settling"));
+  session.discovery = Duration(integer_of(json, "settling"));
   session.forgetting = number_of(json, "forgetting", 1);
   session.learned = *learned;
   session.interrupted = json.value("interrupted", Json::array());
@@ -119,8 +119,8 @@ Expected<Session> session_from_json(const Json& json) {
   session.is_paused = flag_of(json, "paused");
   session.is_dry_run = flag_of(json, "dry_run");
   session.orders_kept = flag_of(json, "orders_kept");
-  if (!(session.forgetting > 0 && session.forgetting <= 1) || session.settling < Duration::zero() ||
-      session.rules_text.size() > (64u << 20))
+  if (!(session.forgetting > 0 && session.forgetting <= 1) ||
+      session.discovery < Duration::zero() || session.rules_text.size() > (64u << 20))
     return Error{"the beginning of a run cannot be read"};
   return session;
 }

@@ -22,7 +22,7 @@ struct Session {
   int process = 0;         // culprit's, on its machine; 0: an older culprit did not say
   std::string boot;        // which start of the machine: the robot's clock counts from there
   Time start{};
-  Duration settling{};
+  Duration discovery{};
   double forgetting = 1;
   Learned learned;                   // what was known at the start
   Json interrupted = Json::array();  // what the run before left behind (requests.h)

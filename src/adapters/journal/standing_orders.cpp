@@ -114,8 +114,8 @@ std::vector<Order> restraints_beyond(const StandingOrders& ours, const StandingO
   return orders;
 }
 
-Past to_past(const StandingOrders& orders, const RuleSet& rules, Time now) {
-  Past past;
+History to_past(const StandingOrders& orders, const RuleSet& rules, Time now) {
+  History past;
   for (const Quiet& quiet : orders.silences) {
     const auto what = find(quiet, rules);
     if (!what || quiet.until <= now) continue;
@@ -126,7 +126,7 @@ Past to_past(const StandingOrders& orders, const RuleSet& rules, Time now) {
   return past;
 }
 
-std::vector<Quiet> silences_of(const Past& past, const RuleSet& rules) {
+std::vector<Quiet> silences_of(const History& past, const RuleSet& rules) {
   StandingOrders orders;
   for (const Event& event : past) {
     if (!is_about_silence(event)) continue;

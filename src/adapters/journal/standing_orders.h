@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "journal/clocks.h"
-#include "knowledge/past.h"
+#include "knowledge/history.h"
 #include "language/rule_set.h"
 
 namespace culprit::journal {
@@ -60,10 +60,10 @@ StandingOrders both(StandingOrders a, const StandingOrders& b);
 std::vector<Order> restraints_beyond(const StandingOrders& ours, const StandingOrders& theirs,
                                      const RuleSet& rules, Time now);
 
-// Silences as the manager remembers them (knowledge/past.h); those about what `rules` does not have
+// Silences as the manager remembers them (knowledge/history.h); those about what `rules` does not have
 // are left out. And back.
-Past to_past(const StandingOrders& orders, const RuleSet& rules, Time now);
-std::vector<StandingOrders::Quiet> silences_of(const Past& past, const RuleSet& rules);
+History to_past(const StandingOrders& orders, const RuleSet& rules, Time now);
+std::vector<StandingOrders::Quiet> silences_of(const History& past, const RuleSet& rules);
 bool is_about_silence(const Event& event);
 
 // As text, also for a successor on another machine. A silence goes on for what is left of it; where

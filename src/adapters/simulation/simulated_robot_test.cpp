@@ -77,7 +77,7 @@ std::string managed(Robot& robot, Duration time) {
   const RuleSet rules = *check(source).rules;
   Manager::Options options;
   options.start = robot.world.now();
-  options.settling = 100ms;
+  options.discovery = 100ms;
   Manager manager(rules, std::make_unique<PaperPlanner>(), options);
   SimulatedRobot adapter(rules, robot.world);
   Runtime runtime(manager, adapter);

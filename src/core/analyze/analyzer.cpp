@@ -48,9 +48,9 @@ void Analyzer::restart(Time now) {
   for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
     const RuleId id(r);
     RuleState& state = write_.states.state(id);
-    if (state.trigger_since != kLongAgo) state.trigger_since = now;
-    state.history.assign(state.history.size(), false);
-    state.true_in_history = 0;
+    if (state.detection.trigger_since != kLongAgo) state.detection.trigger_since = now;
+    state.detection.history.assign(state.detection.history.size(), false);
+    state.detection.true_in_history = 0;
     if (state.attempt) {
       state.attempt->is_ambiguous = true;
       if (state.attempt->stage == Attempt::Stage::kWaiting) state.attempt->effective = now;
@@ -63,13 +63,13 @@ std::vector<RuleId> Analyzer::plannable(Time now) const {
   std::vector<RuleId> ids;
   for (const RuleId id : knowledge_.states.active()) {
     const RuleState& state = knowledge_.states[id];
-    const bool wants_help = state.phase == RulePhase::kFailing && is_true(state.trigger);
+    const bool wants_help = state.phase == RulePhase::kFailing && is_true(state.detection.trigger);
     if (wants_help && state.search.retry_at <= now && !state.is_advised) ids.push_back(id);
   }
   return ids;
 }
 
-void Analyzer::remember(const Past& past) {
+void Analyzer::remember(const History& past) {
   for (const Event& event : past) remember(event);
 }
 
@@ -154,13 +154,14 @@ void Analyzer::look_at(RuleId id, Time now) {
 void Analyzer::evaluate_trigger(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   const Slot value = evaluate(knowledge_.rules[id].trigger, knowledge_.signals.slots());
-  if (!same(value, state.trigger, Type::kBool) || state.trigger_since == kLongAgo) {
-    state.trigger = value;
-    state.trigger_since = now;
+  if (!same(value, state.detection.trigger, Type::kBool) ||
+      state.detection.trigger_since == kLongAgo) {
+    state.detection.trigger = value;
+    state.detection.trigger_since = now;
   }
-  if (!is_true(value)) state.armed = true;
+  if (!is_true(value)) state.detection.armed = true;
   if (is_false(value) && state.left_off && !state.left_off->gone) forget_left_off(id, now);
-  if (!state.history.empty()) sample_history(id, now);
+  if (!state.detection.history.empty()) sample_history(id, now);
 }
 
 // What an earlier process left off at went away while nobody looked on.
@@ -173,20 +174,24 @@ void Analyzer::forget_left_off(RuleId id, Time now) {
 
 void Analyzer::sample_history(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
-  if (state.sampled != kLongAgo && now < later(state.sampled, knowledge_.rules.cycle)) return;
-  state.sampled = now;
-  state.newest = (state.newest + 1) % state.history.size();
-  state.true_in_history -= state.history[state.newest] ? 1 : 0;
-  state.history[state.newest] = is_true(state.trigger);
-  state.true_in_history += state.history[state.newest] ? 1 : 0;
+  if (state.detection.sampled != kLongAgo &&
+      now < later(state.detection.sampled, knowledge_.rules.cycle))
+    return;
+  state.detection.sampled = now;
+  state.detection.newest = (state.detection.newest + 1) % state.detection.history.size();
+  state.detection.true_in_history -= state.detection.history[state.detection.newest] ? 1 : 0;
+  state.detection.history[state.detection.newest] = is_true(state.detection.trigger);
+  state.detection.true_in_history += state.detection.history[state.detection.newest] ? 1 : 0;
 }
 
 bool Analyzer::detects(RuleId id, Time now) const {
   const RuleState& state = knowledge_.states[id];
   const Policies& policies = knowledge_.rules[id].policies;
-  if (now < state.quiet_until || (policies.on_change && !state.armed)) return false;
-  if (!state.history.empty()) return state.true_in_history >= policies.hold_needed;
-  return is_true(state.trigger) && now >= later(state.trigger_since, policies.hold_for);
+  if (now < state.quiet_until || (policies.on_change && !state.detection.armed)) return false;
+  if (!state.detection.history.empty())
+    return state.detection.true_in_history >= policies.hold_needed;
+  return is_true(state.detection.trigger) &&
+         now >= later(state.detection.trigger_since, policies.hold_for);
 }
 
 Duration Analyzer::clearing_time(RuleId id) const {
@@ -197,7 +202,8 @@ Duration Analyzer::clearing_time(RuleId id) const {
 
 bool Analyzer::is_gone(RuleId id, Time now) const {
   const RuleState& state = knowledge_.states[id];
-  return is_false(state.trigger) && now >= later(state.trigger_since, clearing_time(id));
+  return is_false(state.detection.trigger) &&
+         now >= later(state.detection.trigger_since, clearing_time(id));
 }
 
 void Analyzer::detect(RuleId id, Time now) {
@@ -215,7 +221,7 @@ void Analyzer::detect(RuleId id, Time now) {
   }
   const bool is_said_to_be_exhausted = is_same && state.search.is_exhausted;
   state.recurring_since = recurs ? state.first_detected() : kNever;
-  state.armed = false;
+  state.detection.armed = false;
   state.is_advised = false;
   state.settling.reset();
   if (is_same) {
@@ -240,7 +246,8 @@ void Analyzer::watch_failing(RuleId id, Time now) {
   const RuleState& state = knowledge_.states[id];
   if (is_gone(id, now)) {
     resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
-  } else if (!state.trigger.known && now >= later(state.trigger_since, kLostAfter)) {
+  } else if (!state.detection.trigger.known &&
+             now >= later(state.detection.trigger_since, kLostAfter)) {
     leave(id, now);
     write_.events.tell(now, FailureLost{id});
   }
@@ -283,8 +290,8 @@ void Analyzer::judge(RuleId id, Time now) {
   attempt.deadline = later(later(attempt.effective, impact), knowledge_.signals.latency(id));
   if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
-  if (is_suspended || now < attempt.deadline || is_false(state.trigger)) return;
-  if (state.trigger.known || now >= later(attempt.deadline, kLostAfter) ||
+  if (is_suspended || now < attempt.deadline || is_false(state.detection.trigger)) return;
+  if (state.detection.trigger.known || now >= later(attempt.deadline, kLostAfter) ||
       holds_up_more_critical(attempt.strategy))
     fail(id, now);
 }
@@ -336,8 +343,8 @@ bool Analyzer::has_components_back(const Attempt& attempt) const {
 bool Analyzer::went_away_before(const Attempt& attempt) const {
   const RuleId id = knowledge_.rules[attempt.strategy].rule;
   const RuleState& state = knowledge_.states[id];
-  return !knowledge_.rules[id].policies.on_change && is_false(state.trigger) &&
-         state.trigger_since < attempt.first_change;
+  return !knowledge_.rules[id].policies.on_change && is_false(state.detection.trigger) &&
+         state.detection.trigger_since < attempt.first_change;
 }
 
 void Analyzer::succeed(RuleId id, Time now) {
@@ -368,7 +375,7 @@ void Analyzer::fail(RuleId id, Time now) {
     if (!went_away_before(attempt)) outcomes_.judged(attempt, false, now);
   }
   const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
-                             : state.trigger.known
+                             : state.detection.trigger.known
                                  ? "the failure is still there"
                                  : "nobody can see whether the failure is still there";
   attempt.stage = Attempt::Stage::kUndoing;
@@ -448,25 +455,26 @@ void Analyzer::schedule(RuleId id, Time now) {
   const auto want = [&](Time at) {
     if (at > now) next = std::min(next, at);
   };
-  if (is_false(state.trigger) && state.phase != RulePhase::kQuiet)
-    want(later(state.trigger_since, clearing_time(id)));
-  if (!state.trigger.known && state.phase != RulePhase::kQuiet)
-    want(later(state.trigger_since, kLostAfter));
-  if (is_true(state.trigger) && state.phase == RulePhase::kQuiet) {
-    want(later(state.trigger_since, policies.hold_for));
+  if (is_false(state.detection.trigger) && state.phase != RulePhase::kQuiet)
+    want(later(state.detection.trigger_since, clearing_time(id)));
+  if (!state.detection.trigger.known && state.phase != RulePhase::kQuiet)
+    want(later(state.detection.trigger_since, kLostAfter));
+  if (is_true(state.detection.trigger) && state.phase == RulePhase::kQuiet) {
+    want(later(state.detection.trigger_since, policies.hold_for));
     want(state.quiet_until);
   }
   if (state.phase == RulePhase::kFailing) want(state.search.retry_at);
   if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
     want(state.attempt->deadline);
     // Until nobody waits any longer; a more critical failure may come before.
-    if (!state.trigger.known) want(later(now, knowledge_.rules.cycle));
+    if (!state.detection.trigger.known) want(later(now, knowledge_.rules.cycle));
   }
   if (state.attempt && state.attempt->stage == Attempt::Stage::kSuspended)
     want(later(now, knowledge_.rules.cycle));
-  const auto window = static_cast<int>(state.history.size());
-  if (window > 0 && state.true_in_history != (is_true(state.trigger) ? window : 0)) {
-    want(later(state.sampled, knowledge_.rules.cycle));
+  const auto window = static_cast<int>(state.detection.history.size());
+  if (window > 0 &&
+      state.detection.true_in_history != (is_true(state.detection.trigger) ? window : 0)) {
+    want(later(state.detection.sampled, knowledge_.rules.cycle));
   }
   deadlines_.set(id.index, next);
 }

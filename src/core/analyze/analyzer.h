@@ -33,8 +33,8 @@
 #include "analyze/coupling_watch.h"
 #include "analyze/outcome_watch.h"
 #include "knowledge/deadlines.h"
+#include "knowledge/history.h"
 #include "knowledge/knowledge.h"
-#include "knowledge/past.h"
 
 namespace culprit {
 
@@ -67,7 +67,7 @@ class Analyzer {
   Analyzer(const Knowledge& knowledge, Writes writes);
 
   // What earlier processes tried. Before the first advance().
-  void remember(const Past& past);
+  void remember(const History& past);
 
   // Nobody watched until `now`: whatever has to last begins anew (FOR, HOLD, a strategy's waiting
   // time), and the strategies under way prove nothing, however they end.

@@ -126,7 +126,7 @@ void CouplingWatch::advance(Time now) {
     const bool is_other = state.phase == RulePhase::kQuiet || state.failing_since != q.detected;
     if (is_other || now >= q.abandoned) return true;
     // On its way out, or out of sight: it is asked again.
-    if (!state.trigger.known || !state.trigger.b) {
+    if (!state.detection.trigger.known || !state.detection.trigger.b) {
       q.due = later(now, knowledge_.rules.cycle);
       return false;
     }

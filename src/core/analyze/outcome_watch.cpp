@@ -71,7 +71,7 @@ void OutcomeWatch::advance(Time now) {
 
 void OutcomeWatch::count(const PendingOutcome& outcome, Time now) {
   const RuleId rule = knowledge_.rules[outcome.strategy].rule;
-  if (outcome.is_void || !knowledge_.states[rule].trigger.known) {
+  if (outcome.is_void || !knowledge_.states[rule].detection.trigger.known) {
     write_.events.tell(now, OutcomeCounted{outcome.strategy, OutcomeCounted::As::kNothing});
   } else if (outcome.has_helped && !outcome.is_back) {
     write_.beliefs.helped(outcome.strategy);

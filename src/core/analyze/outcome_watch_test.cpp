@@ -34,7 +34,7 @@ struct Judged {
         helps(has_helped) {
     for (const char* node : {"/a", "/b", "/lamp"}) knowledge.graph.node_appeared(node);
     knowledge.outcomes.healthy = 10s;
-    knowledge.states.state(kWatchedEffect).trigger = Slot::of(!helps);
+    knowledge.states.state(kWatchedEffect).detection.trigger = Slot::of(!helps);
   }
 
   // At once if it helped, else at its deadline.

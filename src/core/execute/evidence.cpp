@@ -58,7 +58,7 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
     if (adaptation.type != AdaptationType::kRedeploy ||
         !is_at_work(knowledge.components[component]))
       continue;
-    // Its own silence, or that of nobody knows whom, speaks against it.
+    // Its own outage, or one of nobody knows whom, speaks against it.
     const bool is_suspect = std::any_of(silent->begin(), silent->end(), [&](TopicId topic) {
       const std::string& name = rules[topic].name;
       return knowledge.graph.publishes(component, name) ||

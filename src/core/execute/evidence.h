@@ -16,7 +16,7 @@ namespace culprit {
 
 // Why a component that the strategy redeploys is not what is broken; nothing if nothing says so.
 //
-// Only silence needs agreement: a rule whose trigger reads a value (a quality, a diagnostic, a
+// Only an outage needs agreement: a rule whose trigger reads a value (a quality, a diagnostic, a
 // parameter) has seen for itself that something works badly, and names who is to be redeployed for
 // it. Nor does a last resort, or `stop`, accuse anybody: it is what is wanted then.
 std::optional<std::string> contradiction(const Strategy& strategy, const Knowledge& knowledge,

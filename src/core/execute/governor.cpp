@@ -54,7 +54,7 @@ Governor::Governor(const Knowledge& knowledge, Writes writes, Options options, T
       refused_(knowledge.rules.strategies.size(), kNever),
       told_(knowledge.rules.strategies.size()) {}
 
-void Governor::remember(const Past& past) {
+void Governor::remember(const History& past) {
   limits_.remember(past);
   for (const Event& event : past) {
     const auto* accepted = std::get_if<OrderAccepted>(&event.what);

@@ -12,8 +12,8 @@
 
 #include "execute/limits.h"
 #include "execute/storm_watch.h"
+#include "knowledge/history.h"
 #include "knowledge/knowledge.h"
-#include "knowledge/past.h"
 #include "robot/order.h"
 
 namespace culprit {
@@ -57,7 +57,7 @@ class Governor {
   Governor(const Knowledge& knowledge, Writes writes, Options options, Time start);
 
   // What earlier processes spent, and what people told them. Before the first advance().
-  void remember(const Past& past);
+  void remember(const History& past);
 
   // ---- orders
 

@@ -160,7 +160,7 @@ void Limits::began(StrategyId id, Time now) {
   spend(id, now, knowledge_.states[knowledge_.rules[id].rule].failing_since);
 }
 
-void Limits::remember(const Past& past) {
+void Limits::remember(const History& past) {
   std::vector<Time> detected(knowledge_.rules.rules.size(), kLongAgo);
   for (const Event& event : past) {
     const auto spent = [&](StrategyId id) {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "execute/intensity.h"
+#include "knowledge/history.h"
 #include "knowledge/knowledge.h"
-#include "knowledge/past.h"
 
 namespace culprit {
 
@@ -57,7 +57,7 @@ class Limits {
   std::optional<Limit> on(StrategyId strategy, Time now) const;
   void began(StrategyId strategy, Time now);
   // What earlier processes spent.
-  void remember(const Past& past);
+  void remember(const History& past);
   // Of the step that is over.
   void note(const Event& event);
 

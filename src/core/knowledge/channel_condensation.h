@@ -25,8 +25,8 @@ class ChannelCondensation {
   template <class GetEnds>
   const LiveCondensation& up_to_date(GetEnds ends);
   // @pre it is up to date
-  LiveCondensation::Knot knot_of(std::size_t node) const {
-    return condensation_.knot_of(nodes_[node]);
+  LiveCondensation::Scc scc_of(std::size_t node) const {
+    return condensation_.scc_of(nodes_[node]);
   }
 
  private:

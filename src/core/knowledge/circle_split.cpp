@@ -13,12 +13,12 @@ void CircleSplit::Search::begin(Vertex at, std::uint32_t mark) {
   marks[at] = mark;
 }
 
-CircleSplit::Parts CircleSplit::split(const Adjacency& edges,
-                                      std::span<const std::uint32_t> knot_of, std::uint32_t knot,
-                                      std::span<const Vertex> members, std::vector<Edge> gone) {
+CircleSplit::Parts CircleSplit::split(const Adjacency& edges, std::span<const std::uint32_t> scc_of,
+                                      std::uint32_t scc, std::span<const Vertex> members,
+                                      std::vector<Edge> gone) {
   edges_ = &edges;
-  knot_of_ = knot_of;
-  knot_ = knot;
+  scc_of_ = scc_of;
+  scc_ = scc;
   needed_ = std::move(gone);
   parts_ = {};
   steps_ = 0;
@@ -130,7 +130,7 @@ std::vector<std::vector<CircleSplit::Vertex>> CircleSplit::circles_of(
   const Condensation condensed(members.size(), inside);
   std::vector<std::vector<Vertex>> circles(condensed.size());
   for (std::size_t m = 0; m < members.size(); ++m)
-    circles[condensed.knot_of(static_cast<Vertex>(m))].push_back(members[m]);
+    circles[condensed.scc_of(static_cast<Vertex>(m))].push_back(members[m]);
   return circles;
 }
 

@@ -30,8 +30,8 @@ class CircleSplit {
   };
 
   // `edges` are those that are left, also out of the circle, whose `members` are those of which
-  // knot_of[member] is `knot`; `gone` led from members to members.
-  Parts split(const Adjacency& edges, std::span<const std::uint32_t> knot_of, std::uint32_t knot,
+  // scc_of[member] is `scc`; `gone` led from members to members.
+  Parts split(const Adjacency& edges, std::span<const std::uint32_t> scc_of, std::uint32_t scc,
               std::span<const Vertex> members, std::vector<Edge> gone);
 
  private:
@@ -46,7 +46,7 @@ class CircleSplit {
   };
   enum class End : std::uint8_t { kMet, kConsumerBrokeOff, kProducerBrokeOff };
 
-  bool is_in(Vertex vertex) const { return knot_of_[vertex] == knot_ && out_[vertex] != run_; }
+  bool is_in(Vertex vertex) const { return scc_of_[vertex] == scc_ && out_[vertex] != run_; }
   End search(Vertex consumer, Vertex producer);
   bool step(Search& search, const Search& other, bool is_upward);
   void take_out(const std::vector<Vertex>& part, bool is_upward);
@@ -54,8 +54,8 @@ class CircleSplit {
   void look_at_all(std::span<const Vertex> members);
 
   const Adjacency* edges_ = nullptr;
-  std::span<const std::uint32_t> knot_of_;
-  std::uint32_t knot_ = 0;
+  std::span<const std::uint32_t> scc_of_;
+  std::uint32_t scc_ = 0;
   std::vector<Edge> needed_;  // the consumer has to reach the producer
   Parts parts_;
   std::size_t steps_ = 0;

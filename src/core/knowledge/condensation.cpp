@@ -32,15 +32,15 @@ class Traversal {
       : neighbours_(neighbours),
         number_(neighbours.first.size() - 1, kNone),
         low_(number_.size()),
-        knot_of_(number_.size(), kNone) {}
+        scc_of_(number_.size(), kNone) {}
 
-  std::vector<Condensation::Knot> run() {
+  std::vector<Condensation::Scc> run() {
     for (Vertex v = 0; v < number_.size(); ++v) {
       if (number_[v] == kNone) visit_from(v);
     }
-    return std::move(knot_of_);
+    return std::move(scc_of_);
   }
-  std::uint32_t knots() const { return knots_; }
+  std::uint32_t sccs() const { return sccs_; }
 
  private:
   struct Call {
@@ -68,7 +68,7 @@ class Traversal {
       const Vertex target = neighbours_.targets[call.next++];
       if (number_[target] == kNone) {
         enter(target);
-      } else if (knot_of_[target] == kNone) {
+      } else if (scc_of_[target] == kNone) {
         lower(v, number_[target]);
       }
     }
@@ -81,19 +81,19 @@ class Traversal {
     do {
       v = open_.back();
       open_.pop_back();
-      knot_of_[v] = knots_;
+      scc_of_[v] = sccs_;
     } while (v != root);
-    ++knots_;
+    ++sccs_;
   }
 
   const Neighbours& neighbours_;
   std::vector<std::uint32_t> number_;  // in the order of visits
   std::vector<std::uint32_t> low_;     // the lowest number known to be reached
-  std::vector<Condensation::Knot> knot_of_;
-  std::vector<Vertex> open_;  // visited, and in no knot yet
+  std::vector<Condensation::Scc> scc_of_;
+  std::vector<Vertex> open_;  // visited, and in no SCC yet
   std::vector<Call> calls_;
   std::uint32_t count_ = 0;
-  std::uint32_t knots_ = 0;
+  std::uint32_t sccs_ = 0;
 };
 
 }  // namespace
@@ -111,14 +111,14 @@ void ChannelEdges::add(std::span<const Vertex> producers, std::span<const Vertex
 Condensation::Condensation(std::size_t vertices, std::span<const Edge> edges) {
   const Neighbours neighbours(vertices, edges);
   Traversal search(neighbours);
-  knot_of_ = search.run();
+  scc_of_ = search.run();
   std::vector<Edge> between;
   between.reserve(edges.size());
   for (const Edge& edge : edges) {
-    const Edge knots(knot_of_[edge.first], knot_of_[edge.second]);
-    if (knots.first != knots.second) between.push_back(knots);
+    const Edge sccs(scc_of_[edge.first], scc_of_[edge.second]);
+    if (sccs.first != sccs.second) between.push_back(sccs);
   }
-  Neighbours condensed(search.knots(), between);
+  Neighbours condensed(search.sccs(), between);
   first_producer_ = std::move(condensed.first);
   producers_ = std::move(condensed.targets);
 }

@@ -1,8 +1,8 @@
 // The dependency graph with every circle drawn together, for whoever asks about many components at
 // once.
 //
-// A knot is a node, or several that all depend on each other (a strongly connected component). The
-// knots are numbered so that each comes after all that it depends on: one pass from the first to
+// An SCC is a node, or several that all depend on each other (a strongly connected component). The
+// SCCs are numbered so that each comes after all that it depends on: one pass from the first to
 // the last carries anything from producers to all their consumers.
 #pragma once
 
@@ -35,29 +35,29 @@ class ChannelEdges {
 
 class Condensation {
  public:
-  using Knot = std::uint32_t;
+  using Scc = std::uint32_t;
   using Vertex = std::uint32_t;
-  static constexpr Knot kNone = std::numeric_limits<Knot>::max();
+  static constexpr Scc kNone = std::numeric_limits<Scc>::max();
 
   // `edges` lead from a consumer to a producer; both are below `vertices`. Tarjan's algorithm.
   Condensation(std::size_t vertices, std::span<const std::pair<Vertex, Vertex>> edges);
 
   std::size_t size() const { return first_producer_.size() - 1; }
-  Knot knot_of(Vertex vertex) const { return knot_of_[vertex]; }
+  Scc scc_of(Vertex vertex) const { return scc_of_[vertex]; }
   // Their order, as that of a LiveCondensation: each number is its place, and none is empty.
   std::size_t places() const { return size(); }
-  Knot at(std::size_t place) const { return static_cast<Knot>(place); }
-  std::size_t place_of(Knot knot) const { return knot; }
-  // What a knot depends on directly: lower numbers, possibly more than once.
-  std::span<const Knot> producers(Knot knot) const {
+  Scc at(std::size_t place) const { return static_cast<Scc>(place); }
+  std::size_t place_of(Scc scc) const { return scc; }
+  // What an SCC depends on directly: lower numbers, possibly more than once.
+  std::span<const Scc> producers(Scc scc) const {
     return std::span(producers_)
-        .subspan(first_producer_[knot], first_producer_[knot + 1] - first_producer_[knot]);
+        .subspan(first_producer_[scc], first_producer_[scc + 1] - first_producer_[scc]);
   }
 
  private:
-  std::vector<Knot> knot_of_;
-  std::vector<std::uint32_t> first_producer_;  // by knot, and the end
-  std::vector<Knot> producers_;
+  std::vector<Scc> scc_of_;
+  std::vector<std::uint32_t> first_producer_;  // by SCC, and the end
+  std::vector<Scc> producers_;
 };
 
 }  // namespace culprit

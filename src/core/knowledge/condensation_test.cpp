@@ -13,16 +13,16 @@ using Edges = std::vector<std::pair<Condensation::Vertex, Condensation::Vertex>>
 TEST(Condensation, PutsProducersFirst) {
   const Condensation chain(3, Edges{{0, 1}, {1, 2}});
   EXPECT_EQ(chain.size(), 3u);
-  EXPECT_LT(chain.knot_of(2), chain.knot_of(1));
-  EXPECT_LT(chain.knot_of(1), chain.knot_of(0));
+  EXPECT_LT(chain.scc_of(2), chain.scc_of(1));
+  EXPECT_LT(chain.scc_of(1), chain.scc_of(0));
 }
 
 TEST(Condensation, DrawsACircleTogether) {
   const Condensation circle(4, Edges{{0, 1}, {1, 2}, {2, 0}, {3, 0}});
   EXPECT_EQ(circle.size(), 2u);
-  EXPECT_EQ(circle.knot_of(0), circle.knot_of(1));
-  EXPECT_EQ(circle.knot_of(1), circle.knot_of(2));
-  EXPECT_EQ(circle.producers(circle.knot_of(3)).size(), 1u);
+  EXPECT_EQ(circle.scc_of(0), circle.scc_of(1));
+  EXPECT_EQ(circle.scc_of(1), circle.scc_of(2));
+  EXPECT_EQ(circle.producers(circle.scc_of(3)).size(), 1u);
 }
 
 TEST(Condensation, EndsOnALongChain) {
@@ -52,12 +52,12 @@ RC_GTEST_PROP(Condensation, AgreesWithASlowSearch, ()) {
     const auto from_a = reached(a, edges);
     for (const auto b : from_a) {
       const bool is_mutual = a == b || reached(b, edges).contains(a);
-      RC_ASSERT((condensed.knot_of(a) == condensed.knot_of(b)) == is_mutual);
-      RC_ASSERT(condensed.knot_of(b) <= condensed.knot_of(a));
+      RC_ASSERT((condensed.scc_of(a) == condensed.scc_of(b)) == is_mutual);
+      RC_ASSERT(condensed.scc_of(b) <= condensed.scc_of(a));
     }
   }
-  for (Condensation::Knot knot = 0; knot < condensed.size(); ++knot) {
-    for (const auto producer : condensed.producers(knot)) RC_ASSERT(producer < knot);
+  for (Condensation::Scc scc = 0; scc < condensed.size(); ++scc) {
+    for (const auto producer : condensed.producers(scc)) RC_ASSERT(producer < scc);
   }
 }
 

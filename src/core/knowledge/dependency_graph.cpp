@@ -303,11 +303,11 @@ std::optional<DependencyGraph::Vertex> DependencyGraph::vertex_of(ComponentId co
   return node ? std::optional<Vertex>(node->index) : std::nullopt;
 }
 
-std::optional<LiveCondensation::Knot> DependencyGraph::knot_of(ComponentId component) const {
+std::optional<LiveCondensation::Scc> DependencyGraph::scc_of(ComponentId component) const {
   const auto node = vertex_of(component);
   if (!node) return std::nullopt;
   condensation();
-  return condensation_.knot_of(*node);
+  return condensation_.scc_of(*node);
 }
 
 std::vector<std::string> DependencyGraph::nodes() const {

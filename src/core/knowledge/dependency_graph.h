@@ -82,10 +82,10 @@ class DependencyGraph {
   // asked for; the reference is valid until the next change.
   const LiveCondensation& condensation() const;
   // Nothing while the component was not seen and is not declared to depend on another.
-  std::optional<LiveCondensation::Knot> knot_of(ComponentId component) const;
+  std::optional<LiveCondensation::Scc> scc_of(ComponentId component) const;
 
   using Vertex = std::uint32_t;
-  // Nodes as numbers below size(). Nothing as for knot_of().
+  // Nodes as numbers below size(). Nothing as for scc_of().
   std::size_t size() const { return nodes_.size(); }
   std::optional<Vertex> vertex_of(ComponentId component) const;
   std::optional<ComponentId> component_at(Vertex vertex) const { return nodes_[vertex].component; }

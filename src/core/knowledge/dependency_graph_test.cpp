@@ -182,20 +182,18 @@ void check_condensation(const RuleSet& rules, const DependencyGraph& graph) {
   ChannelEdges edges(graph.size());
   graph.for_each_channel([&](auto producers, auto consumers) { edges.add(producers, consumers); });
   const Condensation anew(edges.vertices(), edges.edges());
-  const auto knot_of = [&](std::size_t c) {
-    return anew.knot_of(*graph.vertex_of(ComponentId(c)));
-  };
+  const auto scc_of = [&](std::size_t c) { return anew.scc_of(*graph.vertex_of(ComponentId(c))); };
   for (std::size_t a = 0; a < rules.components.size(); ++a) {
     for (std::size_t b = 0; b < rules.components.size(); ++b) {
-      RC_ASSERT((graph.knot_of(ComponentId(a)) == graph.knot_of(ComponentId(b))) ==
-                (knot_of(a) == knot_of(b)));
+      RC_ASSERT((graph.scc_of(ComponentId(a)) == graph.scc_of(ComponentId(b))) ==
+                (scc_of(a) == scc_of(b)));
     }
   }
   const LiveCondensation& live = graph.condensation();
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     for (const ComponentId producer : graph.upstream(ComponentId(c))) {
-      RC_ASSERT(live.place_of(*graph.knot_of(producer)) <=
-                live.place_of(*graph.knot_of(ComponentId(c))));
+      RC_ASSERT(live.place_of(*graph.scc_of(producer)) <=
+                live.place_of(*graph.scc_of(ComponentId(c))));
     }
   }
 }

@@ -12,7 +12,7 @@ namespace culprit {
 namespace {
 
 using Vertex = LiveCondensation::Vertex;
-using Knot = LiveCondensation::Knot;
+using Scc = LiveCondensation::Scc;
 using Edges = std::vector<LiveCondensation::Edge>;
 
 LiveCondensation graph(std::size_t vertices, const Edges& edges) {
@@ -31,28 +31,28 @@ Edges with_a_chain(Edges edges, Vertex from, Vertex to) {
 TEST(LiveCondensation, DrawsTogetherWhatAnEdgeClosesACircleOf) {
   LiveCondensation live = graph(100, with_a_chain({}, 0, 99));
   live.update({}, Edges{{30, 10}});
-  EXPECT_EQ(live.knot_of(10), live.knot_of(30));
-  EXPECT_EQ(live.knot_of(20), live.knot_of(30));
-  EXPECT_NE(live.knot_of(9), live.knot_of(10));
-  EXPECT_NE(live.knot_of(30), live.knot_of(31));
+  EXPECT_EQ(live.scc_of(10), live.scc_of(30));
+  EXPECT_EQ(live.scc_of(20), live.scc_of(30));
+  EXPECT_NE(live.scc_of(9), live.scc_of(10));
+  EXPECT_NE(live.scc_of(30), live.scc_of(31));
 }
 
 TEST(LiveCondensation, LetsACircleFallApartWhereItsEdgeGoes) {
   LiveCondensation live = graph(100, with_a_chain({{30, 10}}, 0, 99));
   live.update(Edges{{30, 10}}, {});
-  std::set<Knot> knots;
-  for (Vertex v = 0; v < 100; ++v) knots.insert(live.knot_of(v));
-  EXPECT_EQ(knots.size(), 100u);
+  std::set<Scc> sccs;
+  for (Vertex v = 0; v < 100; ++v) sccs.insert(live.scc_of(v));
+  EXPECT_EQ(sccs.size(), 100u);
 }
 
 TEST(LiveCondensation, LeavesACircleThatHoldsTogetherOtherwise) {
   LiveCondensation live = graph(100, with_a_chain({{30, 10}, {30, 10}, {25, 9}}, 0, 99));
-  const Knot before = live.knot_of(20);
+  const Scc before = live.scc_of(20);
   live.update(Edges{{30, 10}}, {});
-  EXPECT_EQ(live.knot_of(30), before) << "there were two of the edge";
+  EXPECT_EQ(live.scc_of(30), before) << "there were two of the edge";
   live.update(Edges{{30, 10}}, {});
-  EXPECT_EQ(live.knot_of(25), before);
-  EXPECT_NE(live.knot_of(30), before) << "it broke off";
+  EXPECT_EQ(live.scc_of(25), before);
+  EXPECT_NE(live.scc_of(30), before) << "it broke off";
 }
 
 TEST(LiveCondensation, TakesNoMorePlacesHoweverOftenCirclesComeAndGo) {
@@ -68,29 +68,29 @@ TEST(LiveCondensation, TakesNoMorePlacesHoweverOftenCirclesComeAndGo) {
 // Everything that it says, beside what is found from nothing.
 void check(const LiveCondensation& live, std::size_t vertices, const Edges& edges) {
   const Condensation anew(vertices, edges);
-  std::map<Knot, Condensation::Knot> same;
-  std::set<Knot> all;
+  std::map<Scc, Condensation::Scc> same;
+  std::set<Scc> all;
   for (Vertex v = 0; v < vertices; ++v) {
-    const auto known = same.emplace(live.knot_of(v), anew.knot_of(v));
-    RC_ASSERT(known.first->second == anew.knot_of(v));
-    all.insert(live.knot_of(v));
+    const auto known = same.emplace(live.scc_of(v), anew.scc_of(v));
+    RC_ASSERT(known.first->second == anew.scc_of(v));
+    all.insert(live.scc_of(v));
   }
   RC_ASSERT(all.size() == anew.size());
 
-  std::multiset<std::pair<Knot, Knot>> between;
+  std::multiset<std::pair<Scc, Scc>> between;
   for (const auto& [consumer, producer] : edges) {
-    const std::pair knots(live.knot_of(consumer), live.knot_of(producer));
-    if (knots.first != knots.second) between.insert(knots);
+    const std::pair sccs(live.scc_of(consumer), live.scc_of(producer));
+    if (sccs.first != sccs.second) between.insert(sccs);
   }
-  std::multiset<std::pair<Knot, Knot>> told;
-  std::set<Knot> placed;
+  std::multiset<std::pair<Scc, Scc>> told;
+  std::set<Scc> placed;
   for (std::size_t place = 0; place < live.places(); ++place) {
-    const Knot knot = live.at(place);
-    if (knot == LiveCondensation::kNone) continue;
-    RC_ASSERT(live.place_of(knot) == place);
-    RC_ASSERT(placed.insert(knot).second);
-    for (const Knot producer : live.producers(knot)) {
-      told.emplace(knot, producer);
+    const Scc scc = live.at(place);
+    if (scc == LiveCondensation::kNone) continue;
+    RC_ASSERT(live.place_of(scc) == place);
+    RC_ASSERT(placed.insert(scc).second);
+    for (const Scc producer : live.producers(scc)) {
+      told.emplace(scc, producer);
       RC_ASSERT(live.place_of(producer) < place);
     }
   }

@@ -10,7 +10,7 @@ RuleStates::RuleStates(const RuleSet& rules)
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     states_[r].search.tried.assign(rules.rules[r].strategies.size(), false);
     const int window = rules.rules[r].policies.hold_window;
-    if (window > 1) states_[r].history.assign(static_cast<std::size_t>(window), false);
+    if (window > 1) states_[r].detection.history.assign(static_cast<std::size_t>(window), false);
   }
   active_.reserve(rules.rules.size());
   exhausted_.reserve(rules.rules.size());
@@ -108,7 +108,8 @@ std::optional<RuleId> RuleStates::sickness(ComponentId component, Criticality le
 
 bool RuleStates::awaits_person(RuleId id) const {
   const RuleState& state = states_[id.index];
-  return state.phase == RulePhase::kExhausted && state.trigger.known && state.trigger.b;
+  return state.phase == RulePhase::kExhausted && state.detection.trigger.known &&
+         state.detection.trigger.b;
 }
 
 std::optional<RuleId> RuleStates::awaiting_person_at(ComponentId component, Criticality level,

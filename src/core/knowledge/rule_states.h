@@ -51,14 +51,10 @@ struct LeftOff {
   std::optional<Time> gone;  // it went away then, which is not proven yet
 };
 
-struct RuleState {
-  RulePhase phase = RulePhase::kQuiet;
+// What the rule's trigger says, and how far its policies are satisfied.
+struct Detection {
   Slot trigger;                   // as last evaluated
   Time trigger_since = kLongAgo;  // since when it has that value
-  Time failing_since = kNever;    // when the failure was detected
-  Time recurring_since = kNever;  // if it went away and is back: when it was detected first
-  Time gone_since = kLongAgo;     // when it went away last
-  Time quiet_until = kLongAgo;    // COOLDOWN
   bool armed = true;              // ON_CHANGE: the trigger was not true since the rule acted
 
   // HOLD n/k: the last k evaluations, one per cycle, newest at `newest`.
@@ -66,6 +62,15 @@ struct RuleState {
   std::size_t newest = 0;
   int true_in_history = 0;
   Time sampled = kLongAgo;
+};
+
+struct RuleState {
+  RulePhase phase = RulePhase::kQuiet;
+  Detection detection;
+  Time failing_since = kNever;    // when the failure was detected
+  Time recurring_since = kNever;  // if it went away and is back: when it was detected first
+  Time gone_since = kLongAgo;     // when it went away last
+  Time quiet_until = kLongAgo;    // COOLDOWN
 
   Search search;
   std::optional<Attempt> attempt;

@@ -60,7 +60,7 @@ class SignalStore {
   struct Rhythm {
     std::optional<Time> last;
     Duration interval{};
-    Duration silence{};
+    Duration gap{};
     Duration longest{};  // the longest pause that ended by itself
   };
   const Rhythm& rhythm(TopicId id) const { return rhythms_[id.index]; }

@@ -19,9 +19,9 @@ bool same_reasons(const std::vector<Candidate>& a, const std::vector<Candidate>&
 }
 
 // Of all that was left to try, the governor withholds everything until a person has looked.
-bool is_given_up(const Verdict& verdict, const Knowledge& knowledge) {
+bool is_given_up(const Decision& decision, const Knowledge& knowledge) {
   bool is_any = false;
-  for (const Candidate& candidate : verdict.candidates) {
+  for (const Candidate& candidate : decision.candidates) {
     if (candidate.excluded == Condition::kTried || candidate.excluded == Condition::kInvalid)
       continue;
     const bool is_withheld = candidate.excluded == Condition::kWithheld;
@@ -48,7 +48,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
       monitor_(knowledge_,
                {knowledge_.signals, knowledge_.graph, knowledge_.components, knowledge_.sightings,
                 knowledge_.heard_names, knowledge_.events},
-               options.start, later(options.start, options.settling)),
+               options.start, later(options.start, options.discovery)),
       analyzer_(knowledge_, {knowledge_.states, knowledge_.signals, knowledge_.beliefs,
                              knowledge_.couplings, knowledge_.outcomes, knowledge_.events}),
       planner_(std::move(planner)),
@@ -57,7 +57,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
       governor_(knowledge_, {knowledge_.withheld, knowledge_.events}, options.governor,
                 options.start),
       autonomy_(options.autonomy),
-      settled_(later(options.start, options.settling)),
+      discovered_(later(options.start, options.discovery)),
       now_(options.start),
       held_back_(rules.rules.size()) {
   knowledge_.beliefs.set_forgetting(options.forgetting);
@@ -65,7 +65,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
   knowledge_.outcomes.healthy = options.governor.limits.backoff.healthy;
 }
 
-void Manager::remember(const Past& past) {
+void Manager::remember(const History& past) {
   monitor_.remember(past);
   governor_.remember(past);
   analyzer_.remember(past);
@@ -74,7 +74,7 @@ void Manager::remember(const Past& past) {
 void Manager::resume(Interrupted interrupted) {
   if (autonomy_ == Autonomy::kAdvise) return;
   const StrategyId strategy = interrupted.strategy;
-  executor_.resume(std::move(interrupted), now_, settled_);
+  executor_.resume(std::move(interrupted), now_, discovered_);
   governor_.began(strategy, now_);
 }
 
@@ -124,7 +124,7 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
   news_ |= !knowledge_.events.empty();
 }
 
-// Nobody listened until `now`, so that no silence, no delay and no late answer proves anything.
+// Nobody listened until `now`, so that no gap, no delay and no late answer proves anything.
 void Manager::restart(Time now) {
   monitor_.restart(now);
   analyzer_.restart(now);
@@ -218,21 +218,21 @@ void Manager::plan(Time now) {
     for (const StrategyId strategy : knowledge_.rules[failure].strategies)
       refresh_conditions(strategy, now);
   }
-  for (const Verdict& verdict : allowed_plan(failures, now)) {
-    if (verdict.chosen) {
+  for (const Decision& decision : allowed_plan(failures, now)) {
+    if (decision.chosen) {
       // What was allowed when the plan was made may have been the last of its kind.
       const bool has_to_wait =
-          governor_.holds_back(*verdict.chosen, now) || governor_.withholds(*verdict.chosen, now);
-      if (!has_to_wait) carry_out(verdict, now);
-    } else if (verdict.is_spent && !plan::awaits_repair(verdict, knowledge_)) {
-      hold_back(verdict, now);
-      analyzer_.round_is_spent(verdict.rule, now);
+          governor_.holds_back(*decision.chosen, now) || governor_.withholds(*decision.chosen, now);
+      if (!has_to_wait) carry_out(decision, now);
+    } else if (decision.is_spent && !plan::awaits_repair(decision, knowledge_)) {
+      hold_back(decision, now);
+      analyzer_.round_is_spent(decision.rule, now);
     } else {
-      hold_back(verdict, now);
-      if (is_given_up(verdict, knowledge_))
-        analyzer_.give_up(verdict.rule, now);
-      else if (plan::waits_for_person(verdict, knowledge_))
-        analyzer_.turn_to_last_resort(verdict.rule, now);
+      hold_back(decision, now);
+      if (is_given_up(decision, knowledge_))
+        analyzer_.give_up(decision.rule, now);
+      else if (plan::waits_for_person(decision, knowledge_))
+        analyzer_.turn_to_last_resort(decision.rule, now);
     }
   }
   news_ = false;
@@ -247,7 +247,7 @@ void Manager::refresh_conditions(StrategyId strategy, Time now) {
     monitor_.refresh(interlock.condition, now);
 }
 
-std::vector<Verdict> Manager::allowed_plan(const std::vector<RuleId>& failures, Time now) {
+std::vector<Decision> Manager::allowed_plan(const std::vector<RuleId>& failures, Time now) {
   governor_.begin_planning();
   return plan::allowed(*planner_, failures, knowledge_,
                        [&](StrategyId chosen) { return governor_.withholds(chosen, now); });
@@ -265,18 +265,18 @@ Time Manager::next_planning(Time now) const {
   return next;
 }
 
-void Manager::carry_out(const Verdict& verdict, Time now) {
-  const StrategyId strategy = *verdict.chosen;
-  held_back_[verdict.rule.index] = {};
+void Manager::carry_out(const Decision& decision, Time now) {
+  const StrategyId strategy = *decision.chosen;
+  held_back_[decision.rule.index] = {};
   const bool is_dry = autonomy_ == Autonomy::kAdvise;
-  if (!is_dry && governor_.awaits_approval({strategy, verdict.candidates, verdict.suspects}, now))
+  if (!is_dry && governor_.awaits_approval({strategy, decision.candidates, decision.suspects}, now))
     return;
   if (!is_dry) make_way_for(strategy, now);
   knowledge_.events.tell(
-      now, StrategyChosen{strategy, verdict.candidates, plan::explained_by(strategy, knowledge_),
-                          is_dry, verdict.suspects});
+      now, StrategyChosen{strategy, decision.candidates, plan::explained_by(strategy, knowledge_),
+                          is_dry, decision.suspects});
   if (is_dry) {
-    knowledge_.states.advise(verdict.rule);
+    knowledge_.states.advise(decision.rule);
     return;
   }
   begin(strategy, now);
@@ -289,12 +289,13 @@ void Manager::begin(StrategyId strategy, Time now) {
   governor_.began(strategy, now);
 }
 
-void Manager::hold_back(const Verdict& verdict, Time now) {
-  Said& said = held_back_[verdict.rule.index];
-  const Time since = knowledge_.states[verdict.rule].failing_since;
-  if (said.failing_since == since && same_reasons(said.candidates, verdict.candidates)) return;
-  said = {since, verdict.candidates};
-  knowledge_.events.tell(now, FailureHeldBack{verdict.rule, verdict.candidates, verdict.suspects});
+void Manager::hold_back(const Decision& decision, Time now) {
+  Said& said = held_back_[decision.rule.index];
+  const Time since = knowledge_.states[decision.rule].failing_since;
+  if (said.failing_since == since && same_reasons(said.candidates, decision.candidates)) return;
+  said = {since, decision.candidates};
+  knowledge_.events.tell(now,
+                         FailureHeldBack{decision.rule, decision.candidates, decision.suspects});
 }
 
 std::optional<std::string> Manager::held_back() const {

@@ -28,8 +28,9 @@ class Manager : public ManagingSystem {
 
   struct Options {
     Autonomy autonomy = Autonomy::kAct;
-    Time start{};                    // when watching begins
-    Duration settling = kDiscovery;  // for so long nothing is called absent because it was not seen
+    Time start{};  // when watching begins
+    Duration discovery =
+        kDiscovery;  // for so long nothing is called absent because it was not seen
     // What was learned n outcomes ago weighs forgetting^n; 1: nothing is forgotten.
     double forgetting = 1;
     Governor::Options governor{};
@@ -47,8 +48,8 @@ class Manager : public ManagingSystem {
   Autonomy autonomy() const { return autonomy_; }
   // Whether the robot would be heard if it spoke. If not, nothing is judged.
   bool hears() const { return hears_; }
-  // When the robot has had its time to show itself (Options::settling).
-  Time settled() const { return settled_; }
+  // When the robot has had its time to show itself (Options::discovery).
+  Time discovered() const { return discovered_; }
 
   // The failures that wait for a decision now, ascending.
   std::vector<RuleId> plannable() const { return analyzer_.plannable(now_); }
@@ -63,11 +64,11 @@ class Manager : public ManagingSystem {
   }
   // What earlier processes did counts: budgets, back-offs, silences and what was tried last on.
   // Before the first step, and before resume().
-  void remember(const Past& past);
+  void remember(const History& past);
   // What earlier runs saw of this robot counts as seen.
   void remember(const KnownRobot& known) { monitor_.remember(known); }
   // A strategy that an earlier process left in the middle is finished, once the robot had the time
-  // of settling to show itself. Before the first step; one for each rule at most.
+  // of discovery to show itself. Before the first step; one for each rule at most.
   void resume(Interrupted interrupted);
 
  private:
@@ -80,10 +81,10 @@ class Manager : public ManagingSystem {
   void abandon_all(const std::string& reason, Time now);
   void make_way_for(StrategyId strategy, Time now);
   void plan(Time now);
-  std::vector<Verdict> allowed_plan(const std::vector<RuleId>& failures, Time now);
+  std::vector<Decision> allowed_plan(const std::vector<RuleId>& failures, Time now);
   void begin(StrategyId strategy, Time now);
-  void carry_out(const Verdict& verdict, Time now);
-  void hold_back(const Verdict& verdict, Time now);
+  void carry_out(const Decision& decision, Time now);
+  void hold_back(const Decision& decision, Time now);
   Time next_planning(Time now) const;
 
   Knowledge knowledge_;
@@ -93,7 +94,7 @@ class Manager : public ManagingSystem {
   Executor executor_;
   Governor governor_;
   Autonomy autonomy_;
-  Time settled_;  // until then nothing is called absent
+  Time discovered_;  // until then nothing is called absent
   Time now_;
   bool hears_ = true;
   bool news_ = false;        // something a plan depends on changed since the last plan

@@ -19,13 +19,13 @@ std::optional<std::string> objection(StrategyId id, const Knowledge& knowledge) 
 
 // What is known is copied only where something is withheld: that is seldom, and what-if questions
 // ask for very many plans.
-std::vector<Verdict> RestrainedPlanner::plan(std::span<const RuleId> failures,
-                                             const Knowledge& knowledge) const {
-  std::vector<Verdict> verdicts = planner_.plan(failures, knowledge);
-  const bool is_any_withheld = std::any_of(verdicts.begin(), verdicts.end(), [&](const Verdict& v) {
-    return v.chosen && objection(*v.chosen, knowledge);
-  });
-  if (!is_any_withheld) return verdicts;
+std::vector<Decision> RestrainedPlanner::plan(std::span<const RuleId> failures,
+                                              const Knowledge& knowledge) const {
+  std::vector<Decision> decisions = planner_.plan(failures, knowledge);
+  const bool is_any_withheld =
+      std::any_of(decisions.begin(), decisions.end(),
+                  [&](const Decision& v) { return v.chosen && objection(*v.chosen, knowledge); });
+  if (!is_any_withheld) return decisions;
   Knowledge marked(knowledge.rules, knowledge);
   return plan::allowed(planner_, failures, marked, [&](StrategyId chosen) {
     auto reason = objection(chosen, marked);

@@ -14,8 +14,8 @@ class RestrainedPlanner : public Planner {
   // `planner` must outlive this one.
   explicit RestrainedPlanner(const Planner& planner) : planner_(planner) {}
 
-  std::vector<Verdict> plan(std::span<const RuleId> failures,
-                            const Knowledge& knowledge) const override;
+  std::vector<Decision> plan(std::span<const RuleId> failures,
+                             const Knowledge& knowledge) const override;
 
  private:
   const Planner& planner_;

@@ -42,12 +42,12 @@ std::string choice(bool has_namesake) {
   robot.run_for(1s);
   if (has_namesake) robot.tell(NamesakesSeen{"/camera", 1});
   const BayesPlanner planner;
-  const auto verdicts =
+  const auto decisions =
       RestrainedPlanner(planner).plan(robot.manager().plannable(), robot.manager().knowledge());
-  EXPECT_EQ(verdicts.size(), 1u);
+  EXPECT_EQ(decisions.size(), 1u);
   for (const auto& each : robot.manager().knowledge().withheld) EXPECT_EQ(each.reason, "");
-  if (verdicts.empty() || !verdicts.front().chosen) return "";
-  return robot.rules()[*verdicts.front().chosen].name;
+  if (decisions.empty() || !decisions.front().chosen) return "";
+  return robot.rules()[*decisions.front().chosen].name;
 }
 
 TEST(RestrainedPlanner, ChoosesNoRedeployThatTheEvidenceSpeaksAgainst) {
@@ -66,11 +66,11 @@ TEST(RestrainedPlanner, AsksOfEachThatIsChosen) {
   robot.run_for(1s);
   robot.tell(NamesakesSeen{"/camera", 1});
   const BayesPlanner planner;
-  const auto verdicts =
+  const auto decisions =
       RestrainedPlanner(planner).plan(robot.manager().plannable(), robot.manager().knowledge());
   std::vector<std::string> chosen;
-  for (const Verdict& verdict : verdicts) {
-    if (verdict.chosen) chosen.push_back(robot.rules()[*verdict.chosen].name);
+  for (const Decision& decision : decisions) {
+    if (decision.chosen) chosen.push_back(robot.rules()[*decision.chosen].name);
   }
   ASSERT_EQ(chosen.size(), 1u) << "the lidar is repaired";
   EXPECT_NE(chosen.front(), "restart") << "the camera has a namesake";

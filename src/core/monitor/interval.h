@@ -19,7 +19,7 @@ inline Duration smoothed(Duration before, Duration now) {
 // How long it is usually silent in between: what comes in bursts pauses longer than it does on
 // average. A longer pause counts at once, but no outage is taken for a pause; a shorter one counts
 // for an eighth.
-inline Duration usual_silence(Duration before, Duration now) {
+inline Duration usual_gap(Duration before, Duration now) {
   return now > before && before > Duration::zero() ? std::min(now, 2 * before)
                                                    : smoothed(before, now);
 }

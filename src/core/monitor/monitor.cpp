@@ -23,11 +23,11 @@ double as_number(const Slot& slot, Type type) {
 
 }  // namespace
 
-Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time settled)
+Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time discovered)
     : knowledge_(knowledge),
       write_(writes),
       start_(start),
-      settled_(settled),
+      discovered_(discovered),
       topics_(knowledge.rules.topics.size()),
       signals_(knowledge.rules.signals.size()),
       derived_(knowledge.rules.inputs.size()),
@@ -82,7 +82,7 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time set
       parameter_signals_[parameter->index].push_back(SignalId(s));
     }
   }
-  deadlines_.set(rules.inputs.size(), settled_);
+  deadlines_.set(rules.inputs.size(), discovered_);
 }
 
 void Monitor::observe(const Observation& observation, Time at) {

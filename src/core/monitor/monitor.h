@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "knowledge/deadlines.h"
+#include "knowledge/history.h"
 #include "knowledge/knowledge.h"
 #include "knowledge/known_robot.h"
-#include "knowledge/past.h"
 #include "monitor/phi_accrual.h"
 #include "monitor/sliding_count.h"
 #include "monitor/sliding_values.h"
@@ -49,14 +49,14 @@ class Monitor {
   };
 
   // `knowledge` must outlive the monitor. Watching begins at `start`. What was never seen
-  // (knowledge/sightings.h) is unknown; when `settled`, that is told. What an earlier run saw may
-  // still be discovered until `settled`, from then on it is absent: a component that is not there
+  // (knowledge/sightings.h) is unknown; when `discovered`, that is told. What an earlier run saw may
+  // still be discovered until `discovered`, from then on it is absent: a component that is not there
   // is not alive, a topic is silent. A topic that is seen later has as long to speak, from when its
   // publisher came.
-  Monitor(const Knowledge& knowledge, Writes writes, Time start, Time settled);
+  Monitor(const Knowledge& knowledge, Writes writes, Time start, Time discovered);
 
   // What earlier processes of culprit knew of lifecycles. Before the first observation.
-  void remember(const Past& past);
+  void remember(const History& past);
   // What they saw. Before the first observation.
   void remember(const KnownRobot& known);
 
@@ -64,7 +64,7 @@ class Monitor {
   void observe(const Observation& observation, Time at);
 
   // What was not heard until `now` could not have been heard, as when nobody listened: every
-  // silence begins anew. For kGrace, a node that leaves the graph is not taken for dead unless the
+  // gap begins anew. For kGrace, a node that leaves the graph is not taken for dead unless the
   // operating system says so: it may only have to be discovered anew.
   void restart(Time now);
 
@@ -156,12 +156,12 @@ class Monitor {
 
   const Knowledge& knowledge_;
   Writes write_;
-  // Since when a silence counts that began at `since`.
+  // Since when a gap counts that began at `since`.
   Time heard_since(Time since) const { return std::max(since, awake_); }
 
   Time start_;
-  Time settled_;
-  Time awake_ = kLongAgo;   // no silence counts from before
+  Time discovered_;
+  Time awake_ = kLongAgo;   // no gap counts from before
   Time graced_ = kLongAgo;  // until then nodes may have to be discovered anew
   bool is_deaf_ = false;
   std::vector<Topic> topics_;
@@ -172,7 +172,7 @@ class Monitor {
   std::vector<std::vector<InputId>> parameter_inputs_;
   std::vector<std::vector<SignalId>> parameter_signals_;
   std::vector<std::vector<InputId>> diagnostic_inputs_;
-  // By InputId; then `settled_`, then `graced_`; then ComponentState::awaits_ends_until by component.
+  // By InputId; then `discovered_`, then `graced_`; then ComponentState::awaits_ends_until by component.
   Deadlines deadlines_;
 };
 

@@ -114,7 +114,7 @@ void Monitor::on(Time, const EndpointVanished& seen) {
   write_.graph.endpoint_vanished(seen.node, seen.kind, seen.name);
 }
 
-void Monitor::remember(const Past& past) {
+void Monitor::remember(const History& past) {
   for (const Event& event : past) {
     if (const auto* intended = std::get_if<LifecycleIntended>(&event.what))
       write_.components[intended->component].intended_lifecycle = intended->state;
@@ -278,8 +278,8 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   ComponentState& state = write_.components[component];
   const bool is_alive =
       state.in_graph && state.process == ProcessState::kRunning && !does_not_answer(component, at);
-  if (!knowledge_.sightings.has(component)) return;        // it may be a name that nobody has
-  if (!is_alive && !state.alive && at < settled_) return;  // it may still be discovered
+  if (!knowledge_.sightings.has(component)) return;           // it may be a name that nobody has
+  if (!is_alive && !state.alive && at < discovered_) return;  // it may still be discovered
   const bool may_be_unheard = is_deaf_ || at < graced_;
   if (!is_alive && may_be_unheard && state.process == ProcessState::kRunning) {
     state.alive.reset();

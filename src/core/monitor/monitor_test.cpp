@@ -180,9 +180,9 @@ TEST(Monitor, KnowsHowLongATopicThatComesInBurstsIsSilent) {
     watched.observe(100ms * i + 1ms, SampleArrived{TopicId(0), 1});
   }
   EXPECT_LT(rhythm().interval, 60ms);
-  EXPECT_GT(rhythm().silence, 85ms);
+  EXPECT_GT(rhythm().gap, 85ms);
   watched.observe(60s, SampleArrived{TopicId(0), 1});
-  EXPECT_LT(rhythm().silence, 200ms) << "an outage is no pause";
+  EXPECT_LT(rhythm().gap, 200ms) << "an outage is no pause";
 }
 
 TEST(Monitor, HearsOfAParameterAtOnceHoweverSeldomItChanges) {

@@ -14,8 +14,8 @@ using Kind = Input::Kind;
 }  // namespace
 
 using monitor::smoothed;
+using monitor::usual_gap;
 using monitor::usual_latency;
-using monitor::usual_silence;
 
 void Monitor::on(Time at, const SampleArrived& seen) {
   write_.sightings.note(seen.topic, at);
@@ -25,7 +25,7 @@ void Monitor::on(Time at, const SampleArrived& seen) {
   if (rhythm.last && *rhythm.last >= awake_) {
     const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
     rhythm.interval = smoothed(rhythm.interval, interval);
-    rhythm.silence = usual_silence(rhythm.silence, interval);
+    rhythm.gap = usual_gap(rhythm.gap, interval);
     if (interval > rhythm.longest && !has_begun_since(*rhythm.last, seen.topic))
       rhythm.longest = interval;
   }
@@ -59,7 +59,7 @@ void Monitor::see(TopicId topic, Time at) {
 
 Time Monitor::silent_from(TopicId topic) const {
   const auto first = knowledge_.sightings.first(topic);
-  return first ? later(std::max(*first, start_), settled_ - start_) : kNever;
+  return first ? later(std::max(*first, start_), discovered_ - start_) : kNever;
 }
 
 Slot Monitor::age(InputId id, Time now) const {

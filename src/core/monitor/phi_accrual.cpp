@@ -66,8 +66,8 @@ std::optional<double> PhiAccrual::phi(Time now) const {
 
 Time PhiAccrual::exceeds(double deviations) const {
   if (!last_ || intervals_.size() < kLeastIntervals) return kNever;
-  const double silence = mean_ + deviations * deviation();
-  return later(*last_, from_seconds(std::max(silence, 0.0)) + Duration(1));
+  const double gap = mean_ + deviations * deviation();
+  return later(*last_, from_seconds(std::max(gap, 0.0)) + Duration(1));
 }
 
 }  // namespace culprit::monitor

@@ -1,9 +1,9 @@
-// How suspicious is a topic's silence? The phi-accrual failure detector (Hayashibara et al., SRDS
+// How suspicious is it that a topic sends nothing? The phi-accrual failure detector (Hayashibara et al., SRDS
 // 2004).
 //
 //     phi(t) = -log10 P(an interval longer than t),   intervals ~ Normal(mean, sd) of the last ones
 //
-// phi 1: one in ten intervals is as long as this silence; phi 8: one in a hundred million. It
+// phi 1: one in ten intervals is as long as this gap; phi 8: one in a hundred million. It
 // adapts itself to the topic's rhythm, so one threshold fits a 100 Hz lidar and a 1 Hz battery
 // monitor alike.
 #pragma once
@@ -24,7 +24,7 @@ class PhiAccrual {
   // A machine is never as regular as its clock: the standard deviation is at least this share of
   // the mean.
   static constexpr double kLeastDeviation = 0.25;
-  // A silence this suspicious is an outage and not part of the rhythm, unless it happens again and
+  // A gap this suspicious is an outage and not part of the rhythm, unless it happens again and
   // again.
   static constexpr double kOutage = 8;
   static constexpr int kNewRhythm = 3;
@@ -32,7 +32,7 @@ class PhiAccrual {
   // `count` messages came at `at`, evenly spread since the last ones. Times never go back.
   void add(Time at, std::uint32_t count);
 
-  // Nobody listened until `now`: the silence begins anew, and its length tells nothing.
+  // Nobody listened until `now`: the gap begins anew, and its length tells nothing.
   void restart(Time now);
 
   // Nothing while the rhythm is unknown.
@@ -40,7 +40,7 @@ class PhiAccrual {
 
   // How many standard deviations beyond the mean an interval is whose phi is `phi`.
   static double deviations(double phi);
-  // When the silence will be longer than that, if nothing comes. kNever while the rhythm is
+  // When the gap will be longer than that, if nothing comes. kNever while the rhythm is
   // unknown.
   Time exceeds(double deviations) const;
 

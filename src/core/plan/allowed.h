@@ -8,14 +8,14 @@ namespace culprit::plan {
 // Plans until nothing that is chosen is withheld. `withholds(strategy)` says whether the strategy
 // may not be begun although others may, and then marks it in `knowledge` (Knowledge::withheld).
 template <class Withholds>
-std::vector<Verdict> allowed(const Planner& planner, std::span<const RuleId> failures,
-                             const Knowledge& knowledge, const Withholds& withholds) {
+std::vector<Decision> allowed(const Planner& planner, std::span<const RuleId> failures,
+                              const Knowledge& knowledge, const Withholds& withholds) {
   while (true) {
-    std::vector<Verdict> verdicts = planner.plan(failures, knowledge);
+    std::vector<Decision> decisions = planner.plan(failures, knowledge);
     bool is_any_withheld = false;
-    for (const Verdict& verdict : verdicts)
-      is_any_withheld |= verdict.chosen && withholds(*verdict.chosen);
-    if (!is_any_withheld) return verdicts;
+    for (const Decision& decision : decisions)
+      is_any_withheld |= decision.chosen && withholds(*decision.chosen);
+    if (!is_any_withheld) return decisions;
   }
 }
 

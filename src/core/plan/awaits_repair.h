@@ -11,7 +11,7 @@
 
 namespace culprit::plan {
 
-// `verdict` is of a failure for which nothing was chosen.
-bool awaits_repair(const Verdict& verdict, const Knowledge& knowledge);
+// `decision` is of a failure for which nothing was chosen.
+bool awaits_repair(const Decision& decision, const Knowledge& knowledge);
 
 }  // namespace culprit::plan

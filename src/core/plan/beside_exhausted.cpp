@@ -38,7 +38,7 @@ bool may_be_tried_beside_exhausted(StrategyId strategy, const Knowledge& knowled
   });
 }
 
-bool waits_for_person(const Verdict& verdict, const Knowledge& knowledge) {
+bool waits_for_person(const Decision& decision, const Knowledge& knowledge) {
   const auto is_out = [](const Candidate& c) {
     return c.excluded == Condition::kTried || c.excluded == Condition::kInvalid;
   };
@@ -46,7 +46,7 @@ bool waits_for_person(const Verdict& verdict, const Knowledge& knowledge) {
     return c.excluded == Condition::kDependency && c.failure &&
            knowledge.states.awaits_person(*c.failure);
   };
-  const auto& all = verdict.candidates;
+  const auto& all = decision.candidates;
   return std::any_of(all.begin(), all.end(), waits) &&
          std::all_of(all.begin(), all.end(),
                      [&](const Candidate& c) { return is_out(c) || waits(c); });

@@ -18,6 +18,6 @@ namespace culprit::plan {
 bool may_be_tried_beside_exhausted(StrategyId strategy, const Knowledge& knowledge);
 
 // Does the failure wait for a person, together with an exhausted one that explains it?
-bool waits_for_person(const Verdict& verdict, const Knowledge& knowledge);
+bool waits_for_person(const Decision& decision, const Knowledge& knowledge);
 
 }  // namespace culprit::plan

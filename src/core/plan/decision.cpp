@@ -69,20 +69,20 @@ class Describer {
 
 }  // namespace
 
-std::vector<Decision> decide(const Planner& planner, std::vector<RuleId> failures,
-                             const Knowledge& knowledge) {
+std::vector<ExplainedDecision> decide(const Planner& planner, std::vector<RuleId> failures,
+                                      const Knowledge& knowledge) {
   FlipFinder finder(planner, std::move(failures), knowledge);
-  std::vector<Decision> decisions;
-  for (const Verdict& verdict : finder.verdicts()) {
-    Decision decision{verdict, {}, {}};
-    if (verdict.chosen) decision.explains = explained_by(*verdict.chosen, knowledge);
-    for (const Candidate& candidate : verdict.candidates) {
+  std::vector<ExplainedDecision> decisions;
+  for (const Decision& decision : finder.decisions()) {
+    ExplainedDecision explained{decision, {}, {}};
+    if (decision.chosen) explained.explains = explained_by(*decision.chosen, knowledge);
+    for (const Candidate& candidate : decision.candidates) {
       const bool is_sought =
-          verdict.chosen != candidate.strategy && decisions.size() < kMostFlipped;
-      decision.flips.push_back(is_sought ? finder.flips(candidate.strategy)
-                                         : std::vector<Change>());
+          decision.chosen != candidate.strategy && decisions.size() < kMostFlipped;
+      explained.flips.push_back(is_sought ? finder.flips(candidate.strategy)
+                                          : std::vector<Change>());
     }
-    decisions.push_back(std::move(decision));
+    decisions.push_back(std::move(explained));
   }
   return decisions;
 }

@@ -13,16 +13,16 @@ namespace culprit::plan {
 // some fifty plans for all failures.
 inline constexpr std::size_t kMostFlipped = 20;
 
-struct Decision {
-  Verdict verdict;
+struct ExplainedDecision {
+  Decision decision;
   std::vector<RuleId> explains;  // failures that are expected to go away with it
   std::vector<std::vector<Change>>
       flips;  // by candidate; empty: chosen, none found, or none sought
 };
 
 // What `planner` decides about `failures`, in the order of the decisions.
-std::vector<Decision> decide(const Planner& planner, std::vector<RuleId> failures,
-                             const Knowledge& knowledge);
+std::vector<ExplainedDecision> decide(const Planner& planner, std::vector<RuleId> failures,
+                                      const Knowledge& knowledge);
 
 // How things would be with `change`, behind "`loser` would be chosen if": "its success probability
 // were at least 87.3 % (is 60 %)". `knowledge` is how they are.

@@ -38,16 +38,16 @@ FlipFinder::FlipFinder(const Planner& planner, std::vector<RuleId> failures,
     : planner_(planner),
       failures_(std::move(failures)),
       what_if_(knowledge),
-      verdicts_(planner.plan(failures_, what_if_.knowledge())) {}
+      decisions_(planner.plan(failures_, what_if_.knowledge())) {}
 
 std::vector<Change> FlipFinder::flips(StrategyId loser) {
-  assert(std::any_of(verdicts_.begin(), verdicts_.end(), [&](const Verdict& verdict) {
-    const auto& all = verdict.candidates;
-    return verdict.chosen != loser && std::any_of(all.begin(), all.end(), [&](const Candidate& c) {
+  assert(std::any_of(decisions_.begin(), decisions_.end(), [&](const Decision& decision) {
+    const auto& all = decision.candidates;
+    return decision.chosen != loser && std::any_of(all.begin(), all.end(), [&](const Candidate& c) {
              return c.strategy == loser;
            });
   }));
-  const Outcome now = outcome(verdicts_, loser);
+  const Outcome now = outcome(decisions_, loser);
   std::vector<Change> flips;
   const auto add = [&](std::optional<Change> flip) {
     if (flip) flips.push_back(std::move(*flip));
@@ -65,14 +65,14 @@ std::vector<Change> FlipFinder::flips(StrategyId loser) {
   return flips;
 }
 
-FlipFinder::Outcome FlipFinder::outcome(const std::vector<Verdict>& verdicts,
+FlipFinder::Outcome FlipFinder::outcome(const std::vector<Decision>& decisions,
                                         StrategyId loser) const {
   const Knowledge& knowledge = what_if_.knowledge();
   Outcome outcome;
-  const auto own = std::find_if(verdicts.begin(), verdicts.end(), [&](const Verdict& v) {
+  const auto own = std::find_if(decisions.begin(), decisions.end(), [&](const Decision& v) {
     return v.rule == knowledge.rules[loser].rule;
   });
-  if (own == verdicts.end()) return outcome;
+  if (own == decisions.end()) return outcome;
   const auto candidate = std::find_if(own->candidates.begin(), own->candidates.end(),
                                       [&](const Candidate& c) { return c.strategy == loser; });
   if (candidate == own->candidates.end()) return outcome;
@@ -84,7 +84,7 @@ FlipFinder::Outcome FlipFinder::outcome(const std::vector<Verdict>& verdicts,
   if (candidate->excluded == Condition::kAdapting)
     outcome.hindrance = repaired_for(candidate->component, knowledge);
   if (candidate->excluded == Condition::kAffected) {
-    for (const Verdict& other : verdicts) {
+    for (const Decision& other : decisions) {
       if (!other.chosen) continue;
       const auto& adapted = knowledge.rules[*other.chosen].components;
       if (!std::binary_search(adapted.begin(), adapted.end(), candidate->component)) continue;

@@ -19,13 +19,13 @@ class FlipFinder {
   FlipFinder(const Planner& planner, std::vector<RuleId> failures, const Knowledge& knowledge);
 
   // What is decided without any change.
-  const std::vector<Verdict>& verdicts() const { return verdicts_; }
+  const std::vector<Decision>& decisions() const { return decisions_; }
 
   // The changes with which `loser` is chosen. First those of numbers, the smallest first: a change
   // of a success probability by 10 % is as large as one of an impact by a tenth of the heaviest, as
   // in the paper's Eq. 1. Probabilities are found to a tenth of a percent, impacts to a cycle: one
   // less does not do. Then those of circumstances.
-  // @pre a verdict has `loser` among its candidates and has not chosen it
+  // @pre a decision has `loser` among its candidates and has not chosen it
   std::vector<Change> flips(StrategyId loser);
 
  private:
@@ -37,7 +37,7 @@ class FlipFinder {
     std::optional<Condition> excluded;
     ComponentId component;  // that the condition is about
   };
-  Outcome outcome(const std::vector<Verdict>& verdicts, StrategyId loser) const;
+  Outcome outcome(const std::vector<Decision>& decisions, StrategyId loser) const;
   Outcome outcome_with(const Change& change, StrategyId loser);
   bool wins_with(const Change& change, StrategyId loser) {
     return outcome_with(change, loser).is_chosen;
@@ -52,7 +52,7 @@ class FlipFinder {
   const Planner& planner_;
   std::vector<RuleId> failures_;
   WhatIf what_if_;
-  std::vector<Verdict> verdicts_;
+  std::vector<Decision> decisions_;
 };
 
 }  // namespace culprit::plan

@@ -43,10 +43,12 @@ class Situation {
     }
     return failures;
   }
-  std::vector<Decision> decide() const { return plan::decide(kPlanner, failures(), knowledge_); }
+  std::vector<ExplainedDecision> decide() const {
+    return plan::decide(kPlanner, failures(), knowledge_);
+  }
   bool is_chosen(StrategyId strategy) const {
-    for (const Verdict& verdict : kPlanner.plan(failures(), knowledge_)) {
-      if (verdict.chosen == strategy) return true;
+    for (const Decision& decision : kPlanner.plan(failures(), knowledge_)) {
+      if (decision.chosen == strategy) return true;
     }
     return false;
   }
@@ -178,14 +180,14 @@ TEST(Flips, NameAllFailuresThatAreInTheWay) {
 // The last rule waits for the first one and, as long as the third is there, for the second.
 class Queue final : public Planner {
  public:
-  std::vector<Verdict> plan(std::span<const RuleId> failures,
-                            const Knowledge& knowledge) const override {
+  std::vector<Decision> plan(std::span<const RuleId> failures,
+                             const Knowledge& knowledge) const override {
     const auto is_there = [&](std::size_t rule) {
       return std::find(failures.begin(), failures.end(), RuleId(rule)) != failures.end();
     };
     const RuleId last = failures.back();
-    Verdict verdict;
-    verdict.rule = last;
+    Decision decision;
+    decision.rule = last;
     Candidate candidate;
     candidate.strategy = knowledge.rules[last].strategies.front();
     if (is_there(0)) candidate.failure = RuleId(0);
@@ -193,10 +195,10 @@ class Queue final : public Planner {
     if (candidate.failure) {
       candidate.excluded = Condition::kDependency;
     } else {
-      verdict.chosen = candidate.strategy;
+      decision.chosen = candidate.strategy;
     }
-    verdict.candidates = {candidate};
-    return {verdict};
+    decision.candidates = {candidate};
+    return {decision};
   }
 };
 
@@ -299,11 +301,11 @@ std::unique_ptr<Situation> random_situation() {
   return s;
 }
 
-std::string summary(const std::vector<Decision>& decisions) {
+std::string summary(const std::vector<ExplainedDecision>& decisions) {
   std::string out;
-  for (const Decision& d : decisions) {
-    out += std::to_string(d.verdict.rule.index) + ":" +
-           (d.verdict.chosen ? std::to_string(d.verdict.chosen->index) : "-") + " ";
+  for (const ExplainedDecision& d : decisions) {
+    out += std::to_string(d.decision.rule.index) + ":" +
+           (d.decision.chosen ? std::to_string(d.decision.chosen->index) : "-") + " ";
   }
   return out;
 }
@@ -323,14 +325,14 @@ std::optional<Change> a_step_less(const Change& change, const Knowledge& knowled
 RC_GTEST_PROP(Flips, FlipTheDecision, ()) {
   const auto s = random_situation();
   const auto decisions = s->decide();
-  for (const Decision& decision : decisions) {
-    for (std::size_t i = 0; i < decision.flips.size(); ++i) {
-      const StrategyId loser = decision.verdict.candidates[i].strategy;
-      for (const Change& change : decision.flips[i]) {
+  for (const ExplainedDecision& explained : decisions) {
+    for (std::size_t i = 0; i < explained.flips.size(); ++i) {
+      const StrategyId loser = explained.decision.candidates[i].strategy;
+      for (const Change& change : explained.flips[i]) {
         WhatIf less(s->knowledge());
         if (const auto step = a_step_less(change, s->knowledge())) {
           less.assume(*step);
-          for (const Verdict& v : kPlanner.plan(s->failures(), less.knowledge()))
+          for (const Decision& v : kPlanner.plan(s->failures(), less.knowledge()))
             RC_ASSERT(v.chosen != loser);
         }
       }
@@ -338,10 +340,10 @@ RC_GTEST_PROP(Flips, FlipTheDecision, ()) {
   }
   // Made to the robot itself, one of them each time.
   std::vector<std::pair<StrategyId, Change>> all;
-  for (const Decision& decision : decisions) {
-    for (std::size_t i = 0; i < decision.flips.size(); ++i) {
-      for (const Change& change : decision.flips[i])
-        all.emplace_back(decision.verdict.candidates[i].strategy, change);
+  for (const ExplainedDecision& explained : decisions) {
+    for (std::size_t i = 0; i < explained.flips.size(); ++i) {
+      for (const Change& change : explained.flips[i])
+        all.emplace_back(explained.decision.candidates[i].strategy, change);
     }
   }
   RC_CLASSIFY(!all.empty(), "with flips");
@@ -358,9 +360,9 @@ RC_GTEST_PROP(Flips, LeaveWhatIsKnownAsItIs, ()) {
   RC_ASSERT(summary(s->decide()) == before);
   // What the finder assumed it took back: asked twice, it says the same.
   FlipFinder finder(kPlanner, s->failures(), s->knowledge());
-  for (const Verdict& verdict : finder.verdicts()) {
-    for (const Candidate& candidate : verdict.candidates) {
-      if (verdict.chosen == candidate.strategy) continue;
+  for (const Decision& decision : finder.decisions()) {
+    for (const Candidate& candidate : decision.candidates) {
+      if (decision.chosen == candidate.strategy) continue;
       const auto words = [&] {
         std::string out;
         for (const Change& change : finder.flips(candidate.strategy))

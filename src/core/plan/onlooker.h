@@ -8,7 +8,9 @@ namespace culprit {
 
 class Onlooker : public Planner {
  public:
-  std::vector<Verdict> plan(std::span<const RuleId>, const Knowledge&) const override { return {}; }
+  std::vector<Decision> plan(std::span<const RuleId>, const Knowledge&) const override {
+    return {};
+  }
 };
 
 }  // namespace culprit

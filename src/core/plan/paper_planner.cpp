@@ -10,22 +10,22 @@
 
 namespace culprit {
 
-std::vector<Verdict> PaperPlanner::plan(std::span<const RuleId> failures,
-                                        const Knowledge& knowledge) const {
-  std::vector<Verdict> verdicts;
+std::vector<Decision> PaperPlanner::plan(std::span<const RuleId> failures,
+                                         const Knowledge& knowledge) const {
+  std::vector<Decision> decisions;
   std::vector<ComponentId> affected;
   if (!switches_.criticality) {
-    select(failures, Criticality::kNonCritical, knowledge, affected, verdicts);
-    return verdicts;
+    select(failures, Criticality::kNonCritical, knowledge, affected, decisions);
+    return decisions;
   }
   for (const Criticality level :
        {Criticality::kError, Criticality::kWarning, Criticality::kNonCritical}) {
     std::vector<RuleId> of_level;
     std::copy_if(failures.begin(), failures.end(), std::back_inserter(of_level),
                  [&](RuleId id) { return knowledge.rules[id].policies.criticality == level; });
-    select(of_level, level, knowledge, affected, verdicts);
+    select(of_level, level, knowledge, affected, decisions);
   }
-  return verdicts;
+  return decisions;
 }
 
 double PaperPlanner::cost(const Strategy& strategy, StrategyId id,
@@ -37,7 +37,7 @@ double PaperPlanner::cost(const Strategy& strategy, StrategyId id,
 
 void PaperPlanner::select(std::span<const RuleId> failures, Criticality level,
                           const Knowledge& knowledge, std::vector<ComponentId>& affected,
-                          std::vector<Verdict>& verdicts) const {
+                          std::vector<Decision>& decisions) const {
   const RuleSet& rules = knowledge.rules;
   std::vector<Candidate> candidates;
   for (const RuleId failure : failures) {
@@ -53,31 +53,31 @@ void PaperPlanner::select(std::span<const RuleId> failures, Criticality level,
     return key(a) < key(b);
   });
 
-  std::vector<Verdict> found;
+  std::vector<Decision> found;
   for (const RuleId failure : failures) found.push_back({failure, {}, true, {}, {}});
-  const auto verdict_of = [&](RuleId rule) {
+  const auto decision_about = [&](RuleId rule) {
     return std::lower_bound(found.begin(), found.end(), rule,
-                            [](const Verdict& v, RuleId r) { return v.rule < r; });
+                            [](const Decision& v, RuleId r) { return v.rule < r; });
   };
   for (Candidate& candidate : candidates) {
-    const auto verdict = verdict_of(rules[candidate.strategy].rule);
+    const auto decision = decision_about(rules[candidate.strategy].rule);
     examine(candidate, level, knowledge, affected);
     // What is affected by the strategy chosen for the same failure is rather excluded by that
     // choice itself.
     const bool is_free = !candidate.excluded || candidate.excluded == Condition::kAffected;
-    if (is_free && verdict->chosen) candidate.excluded = Condition::kOneEach;
+    if (is_free && decision->chosen) candidate.excluded = Condition::kOneEach;
     if (!candidate.excluded) {
-      verdict->chosen = candidate.strategy;
+      decision->chosen = candidate.strategy;
       const auto& adapted = rules[candidate.strategy].components;
       affected.insert(affected.end(), adapted.begin(), adapted.end());
     }
     const bool is_out =
         candidate.excluded == Condition::kTried || candidate.excluded == Condition::kInvalid;
-    verdict->is_spent &= is_out;
-    verdict->candidates.push_back(std::move(candidate));
+    decision->is_spent &= is_out;
+    decision->candidates.push_back(std::move(candidate));
   }
-  verdicts.insert(verdicts.end(), std::make_move_iterator(found.begin()),
-                  std::make_move_iterator(found.end()));
+  decisions.insert(decisions.end(), std::make_move_iterator(found.begin()),
+                   std::make_move_iterator(found.end()));
 }
 
 void PaperPlanner::examine(Candidate& candidate, Criticality level, const Knowledge& knowledge,

@@ -42,13 +42,13 @@ class PaperPlanner : public Planner {
  public:
   explicit PaperPlanner(PaperSwitches switches = {}) : switches_(switches) {}
 
-  std::vector<Verdict> plan(std::span<const RuleId> failures,
-                            const Knowledge& knowledge) const override;
+  std::vector<Decision> plan(std::span<const RuleId> failures,
+                             const Knowledge& knowledge) const override;
 
  private:
   double cost(const Strategy& strategy, StrategyId id, const Knowledge& knowledge) const;
   void select(std::span<const RuleId> failures, Criticality level, const Knowledge& knowledge,
-              std::vector<ComponentId>& affected, std::vector<Verdict>& verdicts) const;
+              std::vector<ComponentId>& affected, std::vector<Decision>& decisions) const;
   void examine(Candidate& candidate, Criticality level, const Knowledge& knowledge,
                const std::vector<ComponentId>& affected) const;
   bool depends_on_cause(Candidate& candidate, Criticality level, const Knowledge& knowledge) const;

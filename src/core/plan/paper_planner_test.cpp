@@ -76,20 +76,21 @@ class PaperPlannerTest : public testing::Test {
     for (const RuleId id : knowledge_.states.active()) {
       if (knowledge_.states[id].phase == RulePhase::kFailing) ids.push_back(id);
     }
-    verdicts_ = PaperPlanner(switches).plan(ids, knowledge_);
+    decisions_ = PaperPlanner(switches).plan(ids, knowledge_);
     std::string out;
-    for (const Verdict& verdict : verdicts_) {
-      if (!verdict.chosen) continue;
-      out +=
-          (out.empty() ? "" : " ") + rules_[verdict.rule].name + "." + rules_[*verdict.chosen].name;
+    for (const Decision& decision : decisions_) {
+      if (!decision.chosen) continue;
+      out += (out.empty() ? "" : " ") + rules_[decision.rule].name + "." +
+             rules_[*decision.chosen].name;
     }
     return out;
   }
 
   const Candidate& candidate(const std::string& rule_name, const std::string& strategy) const {
-    for (const Verdict& verdict : verdicts_) {
-      for (const Candidate& c : verdict.candidates) {
-        if (rules_[verdict.rule].name == rule_name && rules_[c.strategy].name == strategy) return c;
+    for (const Decision& decision : decisions_) {
+      for (const Candidate& c : decision.candidates) {
+        if (rules_[decision.rule].name == rule_name && rules_[c.strategy].name == strategy)
+          return c;
       }
     }
     throw std::logic_error("no such candidate");
@@ -97,7 +98,7 @@ class PaperPlannerTest : public testing::Test {
 
   RuleSet rules_;
   Knowledge knowledge_;
-  std::vector<Verdict> verdicts_;
+  std::vector<Decision> decisions_;
 };
 
 TEST(Cost, IsThePapersEquation) {
@@ -120,7 +121,7 @@ TEST_F(PaperPlannerTest, Condition1SkipsWhatWasTried) {
   EXPECT_EQ(plan({"A"}), "A.dear");
   knowledge_.states.state(rule("A")).search.tried[1] = true;
   EXPECT_EQ(plan({"A"}), "");
-  EXPECT_TRUE(verdicts_[0].is_spent);
+  EXPECT_TRUE(decisions_[0].is_spent);
 }
 
 TEST_F(PaperPlannerTest, Condition2SkipsWhatMakesNoSense) {
@@ -140,7 +141,7 @@ TEST_F(PaperPlannerTest, Condition3SkipsComponentsUnderAdaptation) {
   knowledge_.states.enter(rule("B"), RulePhase::kAttempting);
   EXPECT_EQ(plan({"Bad"}), "");
   EXPECT_EQ(candidate("Bad", "first").excluded, Condition::kAdapting);
-  EXPECT_FALSE(verdicts_[0].is_spent) << "it only has to wait";
+  EXPECT_FALSE(decisions_[0].is_spent) << "it only has to wait";
 }
 
 TEST_F(PaperPlannerTest, Condition4SkipsComponentsOfStrategiesChosenJustNow) {
@@ -179,19 +180,19 @@ TEST_F(PaperPlannerTest, AFailureDoesNotHoldBackItself) {
 
 TEST_F(PaperPlannerTest, Condition5HoldsForAnExhaustedFailureWhileItIsThere) {
   knowledge_.states.enter(rule("A"), RulePhase::kExhausted);
-  knowledge_.states.state(rule("A")).trigger = Slot::of(true);
+  knowledge_.states.state(rule("A")).detection.trigger = Slot::of(true);
   EXPECT_EQ(plan({"B"}), "");
   EXPECT_EQ(candidate("B", "cheap").excluded, Condition::kDependency);
   EXPECT_EQ(candidate("B", "cheap").failure, rule("A"));
-  EXPECT_FALSE(verdicts_[0].is_spent) << "it waits for a person";
+  EXPECT_FALSE(decisions_[0].is_spent) << "it waits for a person";
   EXPECT_EQ(plan({"B"}, {.dependencies = false}), "B.cheap") << "who knows no causes";
-  knowledge_.states.state(rule("A")).trigger = Slot::of(false);
+  knowledge_.states.state(rule("A")).detection.trigger = Slot::of(false);
   EXPECT_EQ(plan({"B"}), "B.cheap");
 }
 
 TEST_F(PaperPlannerTest, TriesOneReconfigurationBesideAnExhaustedCause) {
   knowledge_.states.enter(rule("A"), RulePhase::kExhausted);
-  knowledge_.states.state(rule("A")).trigger = Slot::of(true);
+  knowledge_.states.state(rule("A")).detection.trigger = Slot::of(true);
   EXPECT_EQ(plan({"Bad"}), "Bad.first");
   knowledge_.states.state(rule("Bad")).search.tried[0] = true;
   EXPECT_EQ(plan({"Bad"}), "") << "once";

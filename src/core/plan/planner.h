@@ -11,7 +11,7 @@
 namespace culprit {
 
 // What is to be done about one failure.
-struct Verdict {
+struct Decision {
   RuleId rule;
   std::optional<StrategyId> chosen;  // nothing: the failure has to wait, or nothing is left
   bool is_spent = false;             // no untried strategy is valid now: the round is over
@@ -24,11 +24,11 @@ class Planner {
  public:
   virtual ~Planner() = default;
 
-  // Decides about `failures`: failing rules without a strategy under way, ascending. One verdict
+  // Decides about `failures`: failing rules without a strategy under way, ascending. One decision
   // for each, in the order of the decisions. The strategies chosen together do not interfere with
   // each other or with those under way.
-  virtual std::vector<Verdict> plan(std::span<const RuleId> failures,
-                                    const Knowledge& knowledge) const = 0;
+  virtual std::vector<Decision> plan(std::span<const RuleId> failures,
+                                     const Knowledge& knowledge) const = 0;
 };
 
 // For whoever needs several of a kind.

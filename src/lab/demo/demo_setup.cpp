@@ -22,7 +22,7 @@ LiveSession::Options demo_session(const char* rules_file, LiveRobot::Options rob
   options.rules_file = rules_file;
   options.robot = std::move(robot);
   options.planner = std::move(planner);
-  options.settling = std::chrono::seconds(20);  // the nodes are only just being started
+  options.discovery = std::chrono::seconds(20);  // the nodes are only just being started
   options.has_preflight = false;
   options.journal = state / "journal";
   options.no_journal = kForgets;

@@ -37,7 +37,7 @@ Expected<void> SunsetDemo::open() {
   auto robot = world_->robot();
   if (!robot) return Error{robot.error()};
   how_ = demo_session("sunset.rules", std::move(*robot), options_.planner, world_->state());
-  how_.settling = SunsetWorld::kStarting;
+  how_.discovery = SunsetWorld::kStarting;
   auto opened = LiveSession::open({.options = how_,
                                    .records = false,
                                    .lease = {},

@@ -87,7 +87,7 @@ Expected<void> LiveRun::begin() {
   if (auto begun = world_->begin(robot_->supervisor(), rules_); !begun) return begun;
   Manager::Options manager;
   manager.start = live_now();
-  manager.settling = SunsetWorld::kStarting;
+  manager.discovery = SunsetWorld::kStarting;
   manager_ = study_.manager(id_, manager);
   runtime_ = std::make_unique<Runtime>(*manager_, *robot_);
   runtime_->on_events = [this](std::span<const Event> events) { on_events(events); };

@@ -33,28 +33,28 @@ Candidate examined(StrategyId id, StrategyId only, bool is_busy, const Knowledge
 
 }  // namespace
 
-std::vector<Verdict> OneByOnePlanner::plan(std::span<const RuleId> failures,
-                                           const Knowledge& knowledge) const {
+std::vector<Decision> OneByOnePlanner::plan(std::span<const RuleId> failures,
+                                            const Knowledge& knowledge) const {
   const auto& active = knowledge.states.active();
   bool is_busy = std::any_of(active.begin(), active.end(),
                              [&](RuleId id) { return knowledge.states[id].attempt.has_value(); });
-  std::vector<Verdict> verdicts;
+  std::vector<Decision> decisions;
   for (const RuleId id : failures) {
     const Rule& rule = knowledge.rules[id];
     const StrategyId only = likeliest(rule, knowledge.rules);
-    Verdict verdict;
-    verdict.rule = id;
+    Decision decision;
+    decision.rule = id;
     for (const StrategyId each : rule.strategies)
-      verdict.candidates.push_back(examined(each, only, is_busy, knowledge));
+      decision.candidates.push_back(examined(each, only, is_busy, knowledge));
     const auto found =
-        std::find_if(verdict.candidates.begin(), verdict.candidates.end(),
+        std::find_if(decision.candidates.begin(), decision.candidates.end(),
                      [&](const Candidate& candidate) { return candidate.strategy == only; });
-    if (!found->excluded) verdict.chosen = only;
-    verdict.is_spent = found->excluded == Condition::kTried;
-    is_busy |= verdict.chosen.has_value();
-    verdicts.push_back(std::move(verdict));
+    if (!found->excluded) decision.chosen = only;
+    decision.is_spent = found->excluded == Condition::kTried;
+    is_busy |= decision.chosen.has_value();
+    decisions.push_back(std::move(decision));
   }
-  return verdicts;
+  return decisions;
 }
 
 }  // namespace culprit::study

@@ -9,8 +9,8 @@ namespace culprit::study {
 
 class OneByOnePlanner : public Planner {
  public:
-  std::vector<Verdict> plan(std::span<const RuleId> failures,
-                            const Knowledge& knowledge) const override;
+  std::vector<Decision> plan(std::span<const RuleId> failures,
+                             const Knowledge& knowledge) const override;
 };
 
 }  // namespace culprit::study

@@ -89,30 +89,30 @@ double StylePlanner::worth(StrategyId id, const Knowledge& knowledge) const {
   return success * value_of(strategy.rule, knowledge) / cycles;
 }
 
-std::vector<Verdict> StylePlanner::plan(std::span<const RuleId> failures,
-                                        const Knowledge& knowledge) const {
+std::vector<Decision> StylePlanner::plan(std::span<const RuleId> failures,
+                                         const Knowledge& knowledge) const {
   const auto is_worthier = [&](StrategyId a, StrategyId b) {
     return plan::parts(worth(a, knowledge)) > plan::parts(worth(b, knowledge));
   };
-  std::vector<Verdict> verdicts;
+  std::vector<Decision> decisions;
   for (const RuleId id : failures) {
     std::vector<StrategyId> order = knowledge.rules[id].strategies;
     std::stable_sort(order.begin(), order.end(), is_worthier);
-    Verdict& verdict = verdicts.emplace_back();
-    verdict.rule = id;
-    for (const StrategyId each : order) verdict.candidates.emplace_back().strategy = each;
+    Decision& decision = decisions.emplace_back();
+    decision.rule = id;
+    for (const StrategyId each : order) decision.candidates.emplace_back().strategy = each;
   }
   if (style_ == Style::kGhahremani) {
-    std::stable_sort(verdicts.begin(), verdicts.end(), [&](const Verdict& a, const Verdict& b) {
+    std::stable_sort(decisions.begin(), decisions.end(), [&](const Decision& a, const Decision& b) {
       return is_worthier(a.candidates.front().strategy, b.candidates.front().strategy);
     });
   }
   std::vector<ComponentId> affected;
-  for (Verdict& verdict : verdicts) {
-    const std::optional<RuleId> first = comes_first(verdict.rule, knowledge);
-    verdict.is_spent = true;
-    for (Candidate& candidate : verdict.candidates) {
-      const bool is_predefined = candidate.strategy == verdict.candidates.front().strategy;
+  for (Decision& decision : decisions) {
+    const std::optional<RuleId> first = comes_first(decision.rule, knowledge);
+    decision.is_spent = true;
+    for (Candidate& candidate : decision.candidates) {
+      const bool is_predefined = candidate.strategy == decision.candidates.front().strategy;
       examine(candidate, affected, knowledge);
       const bool is_out =
           candidate.excluded == Condition::kTried || candidate.excluded == Condition::kInvalid;
@@ -120,22 +120,22 @@ std::vector<Verdict> StylePlanner::plan(std::span<const RuleId> failures,
         candidate.excluded = Condition::kOneEach;
         continue;
       }
-      verdict.is_spent &= is_out;
+      decision.is_spent &= is_out;
       if (candidate.excluded) continue;
       if (first) {
         candidate.excluded = Condition::kInTheWay;
         candidate.component = knowledge.rules[*first].components.front();
         candidate.failure = first;
-      } else if (verdict.chosen) {
+      } else if (decision.chosen) {
         candidate.excluded = Condition::kOneEach;
       } else {
-        verdict.chosen = candidate.strategy;
+        decision.chosen = candidate.strategy;
         const auto& adapted = knowledge.rules[candidate.strategy].components;
         affected.insert(affected.end(), adapted.begin(), adapted.end());
       }
     }
   }
-  return verdicts;
+  return decisions;
 }
 
 }  // namespace culprit::study

@@ -31,8 +31,8 @@ std::optional<Style> find_style(std::string_view name);
 class StylePlanner : public Planner {
  public:
   explicit StylePlanner(Style style) : style_(style) {}
-  std::vector<Verdict> plan(std::span<const RuleId> failures,
-                            const Knowledge& knowledge) const override;
+  std::vector<Decision> plan(std::span<const RuleId> failures,
+                             const Knowledge& knowledge) const override;
 
  private:
   // The failure that one of `rule` waits for.

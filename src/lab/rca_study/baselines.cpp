@@ -52,8 +52,8 @@ std::vector<double> walk(const std::vector<std::vector<std::size_t>>& upstream) 
   return share;
 }
 
-Verdict candidates_of(RuleId rule, const Knowledge& knowledge) {
-  Verdict verdict{rule, {}, true, {}, {}};
+Decision candidates_of(RuleId rule, const Knowledge& knowledge) {
+  Decision decision{rule, {}, true, {}, {}};
   for (const StrategyId id : knowledge.rules[rule].strategies) {
     const Strategy& strategy = knowledge.rules[id];
     Candidate candidate;
@@ -67,15 +67,15 @@ Verdict candidates_of(RuleId rule, const Knowledge& knowledge) {
       candidate.component = invalid->component;
       candidate.remark = invalid->reason;
     } else {
-      verdict.is_spent = false;
+      decision.is_spent = false;
     }
-    verdict.candidates.push_back(std::move(candidate));
+    decision.candidates.push_back(std::move(candidate));
   }
-  std::stable_sort(verdict.candidates.begin(), verdict.candidates.end(),
+  std::stable_sort(decision.candidates.begin(), decision.candidates.end(),
                    [](const Candidate& a, const Candidate& b) {
                      return plan::parts(a.cost) < plan::parts(b.cost);
                    });
-  return verdict;
+  return decision;
 }
 
 }  // namespace
@@ -93,8 +93,8 @@ std::vector<double> RankingPlanner::ranks(const Knowledge& knowledge) const {
   return ranks;
 }
 
-std::vector<Verdict> RankingPlanner::plan(std::span<const RuleId> failures,
-                                          const Knowledge& knowledge) const {
+std::vector<Decision> RankingPlanner::plan(std::span<const RuleId> failures,
+                                           const Knowledge& knowledge) const {
   const auto& active = knowledge.states.active();
   if (failures.empty()) return {};
   const std::vector<double> rank = ranks(knowledge);
@@ -106,15 +106,15 @@ std::vector<Verdict> RankingPlanner::plan(std::span<const RuleId> failures,
   for (const RuleId rule : active) {
     if (knowledge.states[rule].attempt) first = rule;
   }
-  std::vector<Verdict> verdicts;
+  std::vector<Decision> decisions;
   for (const std::size_t place : order) {
     const RuleId rule = active[place];
     if (!std::binary_search(failures.begin(), failures.end(), rule)) continue;
-    Verdict verdict = candidates_of(rule, knowledge);
-    for (Candidate& candidate : verdict.candidates) {
+    Decision decision = candidates_of(rule, knowledge);
+    for (Candidate& candidate : decision.candidates) {
       if (candidate.excluded) continue;
       if (!first) {
-        verdict.chosen = candidate.strategy;
+        decision.chosen = candidate.strategy;
         first = rule;
       } else if (first == rule) {
         candidate.excluded = Condition::kOneEach;
@@ -124,9 +124,9 @@ std::vector<Verdict> RankingPlanner::plan(std::span<const RuleId> failures,
         candidate.failure = first;
       }
     }
-    verdicts.push_back(std::move(verdict));
+    decisions.push_back(std::move(decision));
   }
-  return verdicts;
+  return decisions;
 }
 
 }  // namespace culprit::study::rca

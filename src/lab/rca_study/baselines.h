@@ -24,8 +24,8 @@ enum class Ranking : std::uint8_t { kFirstFailing, kTopological, kRandomWalk };
 class RankingPlanner : public Planner {
  public:
   explicit RankingPlanner(Ranking ranking) : ranking_(ranking) {}
-  std::vector<Verdict> plan(std::span<const RuleId> failures,
-                            const Knowledge& knowledge) const override;
+  std::vector<Decision> plan(std::span<const RuleId> failures,
+                             const Knowledge& knowledge) const override;
 
  private:
   std::vector<double> ranks(const Knowledge& knowledge) const;  // of the active rules; low is first

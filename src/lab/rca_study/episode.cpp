@@ -22,15 +22,15 @@ class TimedPlanner : public Planner {
   TimedPlanner(std::unique_ptr<const Planner> planner, EpisodeResult& result)
       : planner_(std::move(planner)), result_(result) {}
 
-  std::vector<Verdict> plan(std::span<const RuleId> failures,
-                            const Knowledge& knowledge) const override {
+  std::vector<Decision> plan(std::span<const RuleId> failures,
+                             const Knowledge& knowledge) const override {
     if (failures.empty()) return planner_->plan(failures, knowledge);
     const auto begin = std::chrono::steady_clock::now();
-    auto verdicts = planner_->plan(failures, knowledge);
+    auto decisions = planner_->plan(failures, knowledge);
     const auto took = std::chrono::steady_clock::now() - begin;
     ++result_.plans;
     result_.planning_us += std::chrono::duration<double, std::micro>(took).count();
-    return verdicts;
+    return decisions;
   }
 
  private:
@@ -146,7 +146,7 @@ EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
   robot.plant().on_change = [&](std::size_t component) { clock.change(component); };
   Judge judge(scenario, rules, robot.plant(), result);
   Manager::Options options;
-  options.settling = Duration::zero();
+  options.discovery = Duration::zero();
   Manager manager(rules, std::make_unique<TimedPlanner>(std::move(planner), result), options);
   Runtime runtime(manager, robot);
   runtime.on_events = [&](std::span<const Event> events) {

@@ -49,7 +49,7 @@ class Learner {
     scenario_.faults = random_faults(campaign_.setting, simulation::mix(seed));
     RcaRobot robot(scenario_, rules_, kQuiet);
     Manager::Options options;
-    options.settling = Duration::zero();
+    options.discovery = Duration::zero();
     options.forgetting = campaign_.forgetting;
     options.governor.limits.backoff.healthy = kHealthy;
     Manager manager(rules_, planner(), options);

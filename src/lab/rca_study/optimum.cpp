@@ -57,11 +57,11 @@ class Followed {
     if (!process_.is_open(situation)) return {};
     process_.show(situation, knowledge_);
     Round round;
-    for (const Verdict& verdict : planner_.plan(knowledge_.states.active(), knowledge_)) {
-      if (!verdict.chosen) continue;
-      const auto& all = knowledge_.rules[verdict.rule].strategies;
-      const auto place = std::find(all.begin(), all.end(), *verdict.chosen) - all.begin();
-      round.push_back({verdict.rule.index, static_cast<std::size_t>(place)});
+    for (const Decision& decision : planner_.plan(knowledge_.states.active(), knowledge_)) {
+      if (!decision.chosen) continue;
+      const auto& all = knowledge_.rules[decision.rule].strategies;
+      const auto place = std::find(all.begin(), all.end(), *decision.chosen) - all.begin();
+      round.push_back({decision.rule.index, static_cast<std::size_t>(place)});
     }
     return round;
   }
@@ -80,16 +80,16 @@ class OptimumPlanner : public Planner {
   OptimumPlanner(const RcaScenario& scenario, Objective objective)
       : rules_(rules_of(scenario)), process_(scenario, rules_, objective), optimum_(process_) {}
 
-  std::vector<Verdict> plan(std::span<const RuleId> failures,
-                            const Knowledge& knowledge) const override {
+  std::vector<Decision> plan(std::span<const RuleId> failures,
+                             const Knowledge& knowledge) const override {
     Round round;
     if (may_begin(knowledge)) {
       const auto situation = process_.situation_of(knowledge);
       if (situation && process_.is_open(*situation)) round = optimum_.round(*situation);
     }
-    std::vector<Verdict> verdicts;
-    for (const RuleId rule : failures) verdicts.push_back(verdict(rule, round, knowledge));
-    return verdicts;
+    std::vector<Decision> decisions;
+    for (const RuleId rule : failures) decisions.push_back(decision(rule, round, knowledge));
+    return decisions;
   }
 
  private:
@@ -103,8 +103,8 @@ class OptimumPlanner : public Planner {
     return true;
   }
 
-  Verdict verdict(RuleId rule, const Round& round, const Knowledge& knowledge) const {
-    Verdict verdict{rule, {}, true, {}, {}};
+  Decision decision(RuleId rule, const Round& round, const Knowledge& knowledge) const {
+    Decision decision{rule, {}, true, {}, {}};
     const auto& strategies = knowledge.rules[rule].strategies;
     for (std::size_t t = 0; t < strategies.size(); ++t) {
       const bool is_chosen = std::any_of(round.begin(), round.end(), [&](const Treated& treated) {
@@ -114,15 +114,15 @@ class OptimumPlanner : public Planner {
       candidate.strategy = strategies[t];
       candidate.component = ComponentId(rule.index);
       if (is_chosen) {
-        verdict.chosen = strategies[t];
+        decision.chosen = strategies[t];
       } else {
         candidate.excluded =
             knowledge.states[rule].search.tried[t] ? Condition::kTried : Condition::kOneEach;
       }
-      verdict.is_spent &= candidate.excluded == Condition::kTried;
-      verdict.candidates.push_back(candidate);
+      decision.is_spent &= candidate.excluded == Condition::kTried;
+      decision.candidates.push_back(candidate);
     }
-    return verdict;
+    return decision;
   }
 
   RuleSet rules_;

@@ -147,14 +147,14 @@ TEST(Optimum, HasBeliefsThatSumToOneWhateverHappens) {
 class Copy : public Planner {
  public:
   Copy(const RepairProcess& process, Optimum& optimum) : process_(process), optimum_(optimum) {}
-  std::vector<Verdict> plan(std::span<const RuleId>, const Knowledge& knowledge) const override {
-    std::vector<Verdict> verdicts;
+  std::vector<Decision> plan(std::span<const RuleId>, const Knowledge& knowledge) const override {
+    std::vector<Decision> decisions;
     for (const Treated& treated : optimum_.round(*process_.situation_of(knowledge))) {
       const RuleId rule(treated.component);
-      verdicts.push_back(
+      decisions.push_back(
           {rule, knowledge.rules[rule].strategies[treated.treatment], false, {}, {}});
     }
-    return verdicts;
+    return decisions;
   }
 
  private:
@@ -164,7 +164,9 @@ class Copy : public Planner {
 
 class Nothing : public Planner {
  public:
-  std::vector<Verdict> plan(std::span<const RuleId>, const Knowledge&) const override { return {}; }
+  std::vector<Decision> plan(std::span<const RuleId>, const Knowledge&) const override {
+    return {};
+  }
 };
 
 TEST(ExpectedCost, OfThePlannerThatDoesTheBestIsTheOptimum) {

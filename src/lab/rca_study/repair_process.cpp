@@ -85,7 +85,7 @@ RepairProcess::RepairProcess(const RcaScenario& scenario, const RuleSet& rules, 
     for (const std::size_t p : topic.publishers) from |= one(p);
     for (const Subscription& s : topic.subscribers) {
       if (s.is_redundant) redundant_[s.component] += topic.publishers.size();
-      if (s.passes > 0) ways_.push_back({from, s.component, s.passes, s.is_redundant});
+      if (s.passes > 0) paths_.push_back({from, s.component, s.passes, s.is_redundant});
     }
   }
   DependencyGraph graph(rules);
@@ -95,7 +95,7 @@ RepairProcess::RepairProcess(const RcaScenario& scenario, const RuleSet& rules, 
     dependents_[c] = graph.downstream(ComponentId(c)).size();
   }
   for (Members faulty = 0; faulty < one(size()); ++faulty) {
-    for (Members passing = 0; passing < one(ways_.size()); ++passing)
+    for (Members passing = 0; passing < one(paths_.size()); ++passing)
       ill_.push_back(spread(faulty, passing));
   }
   tell_apart();
@@ -114,8 +114,8 @@ Members RepairProcess::spread(Members faulty, Members passing) const {
       is_more |= !has(ill, c);
       ill |= one(c);
     };
-    for (std::size_t w = 0; w < ways_.size(); ++w) {
-      const Way& way = ways_[w];
+    for (std::size_t w = 0; w < paths_.size(); ++w) {
+      const Way& way = paths_[w];
       if (!has(passing, w) || (way.from & ill) == 0) continue;
       if (!way.is_redundant) add(way.to);
       redundant[way.to] += static_cast<std::size_t>(std::popcount(way.from & ill));
@@ -131,7 +131,7 @@ void RepairProcess::tell_apart() {
   alike_.resize(ill_.size());
   for (Members faulty = 0; faulty < one(size()); ++faulty) {
     std::map<std::vector<Members>, Members> first;
-    for (Members passing = 0; passing < one(ways_.size()); ++passing) {
+    for (Members passing = 0; passing < one(paths_.size()); ++passing) {
       std::vector<Members> shown{ill(faulty, passing)};
       for (std::size_t c = 0; c < size(); ++c) {
         if (has(faulty, c)) shown.push_back(alike(faulty & ~one(c), passing));
@@ -143,8 +143,8 @@ void RepairProcess::tell_apart() {
 
 double RepairProcess::probability_of(Members passing) const {
   double probability = 1;
-  for (std::size_t w = 0; w < ways_.size(); ++w)
-    probability *= has(passing, w) ? ways_[w].passes : 1 - ways_[w].passes;
+  for (std::size_t w = 0; w < paths_.size(); ++w)
+    probability *= has(passing, w) ? paths_[w].passes : 1 - paths_[w].passes;
   return probability;
 }
 
@@ -153,7 +153,7 @@ std::vector<RepairProcess::Outcome> RepairProcess::beginnings() const {
   const auto faults = static_cast<int>(scenario_.faults.size());
   for (Members faulty = 0; faulty < one(size()); ++faulty) {
     if (std::popcount(faulty) != faults) continue;
-    for (Members passing = 0; passing < one(ways_.size()); ++passing) {
+    for (Members passing = 0; passing < one(paths_.size()); ++passing) {
       const double of_both =
           probability_of(passing) / binomial(size(), static_cast<std::size_t>(faults));
       if (of_both == 0) continue;
@@ -383,7 +383,7 @@ void RepairProcess::show(const Situation& situation, Knowledge& knowledge) const
     const bool is_ill = has(situation.ill, c);
     const bool is_gone = has(situation.gone, c);
     RuleState& state = knowledge.states.state(rule);
-    state.trigger = Slot::of(is_ill);
+    state.detection.trigger = Slot::of(is_ill);
     state.failing_since = is_ill ? Time(50s) : kNever;
     state.search.round = situation.tries[c].turns;
     const bool is_failing = is_ill && !is_exhausted(situation, c);
@@ -430,7 +430,7 @@ std::optional<Situation> RepairProcess::situation_of(const Knowledge& knowledge)
     for (std::size_t c = 0; c < size(); ++c) {
       if (has(faulty, c)) weight *= likelihood(now, c) * (has(now.gone, c) ? kCrash : 1 - kCrash);
     }
-    for (Members passing = 0; weight > 0 && passing < one(ways_.size()); ++passing) {
+    for (Members passing = 0; weight > 0 && passing < one(paths_.size()); ++passing) {
       if (ill(faulty, passing) == now.ill)
         belief.push_back({faulty, passing, weight * probability_of(passing)});
     }

@@ -143,7 +143,7 @@ class RepairProcess {
 
   Members spread(Members faulty, Members passing) const;
   std::size_t place(Members faulty, Members passing) const {
-    return faulty << ways_.size() | passing;
+    return faulty << paths_.size() | passing;
   }
   Members ill(Members faulty, Members passing) const { return ill_[place(faulty, passing)]; }
   // The first set of subscriptions that can never be told from `passing` as long as there are no
@@ -163,7 +163,7 @@ class RepairProcess {
   const RuleSet& rules_;
   CostWeights weights_;
   double left_ill_ = 0;
-  std::vector<Way> ways_;
+  std::vector<Way> paths_;
   std::vector<Members> upstream_;  // by component, by the graph
   std::vector<std::size_t> dependents_;
   std::vector<Members> ill_;            // by faulty and passing

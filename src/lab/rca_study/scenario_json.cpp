@@ -199,8 +199,8 @@ class Reader {
       topic.subscribers.push_back(s);
     });
     ends_ += topic.publishers.size() + topic.subscribers.size();
-    ways_ += topic.publishers.size() * topic.subscribers.size();
-    if (ends_ > kMostEnds || ways_ > kMostWays)
+    paths_ += topic.publishers.size() * topic.subscribers.size();
+    if (ends_ > kMostEnds || paths_ > kMostWays)
       fields.complain("subscribers", "are more than are read in all");
     topic.is_ignored = fields.has("ignored") && fields.truth("ignored");
     scenario_.topics.push_back(std::move(topic));
@@ -225,7 +225,7 @@ class Reader {
   RcaScenario scenario_;
   std::map<std::string, std::size_t> places_;
   std::size_t ends_ = 0;
-  std::size_t ways_ = 0;
+  std::size_t paths_ = 0;
 };
 
 }  // namespace

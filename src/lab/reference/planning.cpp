@@ -9,7 +9,7 @@ Planning::Planning(const RuleSet& rules, const ReferenceOptions& options)
       switches_(options.switches),
       cost_(rules, options),
       reserved_(rules.components.size()),
-      verdicts_(rules.rules.size()),
+      decisions_(rules.rules.size()),
       said_(rules.rules.size()) {}
 
 const std::vector<StrategyId>& Planning::advance(Time now, const Analysis& analysis,
@@ -40,13 +40,13 @@ std::vector<Candidate> Planning::candidates(Criticality level, const Analysis& a
 
 void Planning::select(Criticality level, const Present& present) {
   std::vector<Candidate> all = candidates(level, present.analysis);
-  for (const Candidate& candidate : all) verdicts_[rules_[candidate.strategy].rule.index].clear();
+  for (const Candidate& candidate : all) decisions_[rules_[candidate.strategy].rule.index].clear();
   for (Candidate& candidate : all) {
     const Strategy& strategy = rules_[candidate.strategy];
-    auto& verdict = verdicts_[strategy.rule.index];
+    auto& decision = decisions_[strategy.rule.index];
     examine(candidate, level, present);
-    const bool has_one =
-        std::any_of(verdict.begin(), verdict.end(), [](const Candidate& c) { return !c.excluded; });
+    const bool has_one = std::any_of(decision.begin(), decision.end(),
+                                     [](const Candidate& c) { return !c.excluded; });
     // What is reserved for the strategy chosen for the same failure is rather excluded by that
     // choice.
     const bool is_free = !candidate.excluded || candidate.excluded == Condition::kAffected;
@@ -55,7 +55,7 @@ void Planning::select(Criticality level, const Present& present) {
       chosen_.push_back(candidate.strategy);
       for (const ComponentId component : strategy.components) reserved_[component.index] = true;
     }
-    verdict.push_back(std::move(candidate));
+    decision.push_back(std::move(candidate));
   }
 }
 
@@ -92,15 +92,15 @@ void Planning::tell(Time now, std::span<const RuleId> failures, std::vector<Even
   for (const StrategyId strategy : chosen_) {
     const RuleId rule = rules_[strategy].rule;
     said_[rule.index].clear();
-    events.push_back({now, StrategyChosen{strategy, verdicts_[rule.index], {}, false}});
+    events.push_back({now, StrategyChosen{strategy, decisions_[rule.index], {}, false}});
   }
   for (const RuleId failure : failures) {
-    auto& verdict = verdicts_[failure.index];
-    const bool is_chosen =
-        std::any_of(verdict.begin(), verdict.end(), [](const Candidate& c) { return !c.excluded; });
-    if (is_chosen || said_[failure.index] == verdict) continue;
-    said_[failure.index] = verdict;
-    events.push_back({now, FailureHeldBack{failure, verdict}});
+    auto& decision = decisions_[failure.index];
+    const bool is_chosen = std::any_of(decision.begin(), decision.end(),
+                                       [](const Candidate& c) { return !c.excluded; });
+    if (is_chosen || said_[failure.index] == decision) continue;
+    said_[failure.index] = decision;
+    events.push_back({now, FailureHeldBack{failure, decision}});
   }
 }
 

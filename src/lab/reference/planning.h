@@ -49,8 +49,8 @@ class Planning {
   Costs cost_;
   std::vector<bool> reserved_;  // by component
   std::vector<StrategyId> chosen_;
-  std::vector<std::vector<Candidate>> verdicts_;  // by rule, of this tick
-  std::vector<std::vector<Candidate>> said_;      // by rule, why it waits, as it was told last
+  std::vector<std::vector<Candidate>> decisions_;  // by rule, of this tick
+  std::vector<std::vector<Candidate>> said_;       // by rule, why it waits, as it was told last
 };
 
 }  // namespace culprit::study::reference

@@ -28,10 +28,10 @@ std::size_t index_of(const PaperSwitches& switches) {
   return static_cast<std::size_t>(row - rows.begin());
 }
 
-published::Verdict verdict(const Difference& difference, Metric metric) {
-  if (difference.p >= kAlpha) return published::Verdict::kNotSignificant;
+published::Significance significance(const Difference& difference, Metric metric) {
+  if (difference.p >= kAlpha) return published::Significance::kNotSignificant;
   const bool is_better = (difference.estimate > 0) == (traits(metric).better == Better::kHigher);
-  return is_better ? published::Verdict::kBetter : published::Verdict::kWorse;
+  return is_better ? published::Significance::kBetter : published::Significance::kWorse;
 }
 
 Change change(const Rows& rows, const published::Effect& effect, std::size_t metric_index,
@@ -46,7 +46,7 @@ Change change(const Rows& rows, const published::Effect& effect, std::size_t met
   if (base != 0) change.percent = change.difference.estimate / base * 100;
   if (tukey == nullptr) return change;
   change.difference = tukey->compare(without, with);
-  change.verdict = verdict(change.difference, metric);
+  change.significance = significance(change.difference, metric);
   return change;
 }
 
@@ -103,7 +103,7 @@ Agreement agreement(const Ablation& ablation) {
   for (const Effect& effect : ablation.effects) {
     for (const Change& change : effect.changes) {
       ++count.effects;
-      if (change.verdict == change.theirs.verdict) ++count.same_verdicts;
+      if (change.significance == change.theirs.significance) ++count.same_significance;
       if (!change.is_significant_for_them()) continue;
       ++count.significant;
       if (change.has_same_sign()) ++count.significant_signs;

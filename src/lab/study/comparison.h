@@ -27,13 +27,13 @@ std::vector<MeanComparison> compare_means(const Row& row);
 struct Change {
   std::optional<double> percent;  // of the mean without; nothing where that is 0
   Difference difference;          // Tukey's HSD among the eight configurations
-  published::Verdict verdict = published::Verdict::kNotSignificant;
+  published::Significance significance = published::Significance::kNotSignificant;
   published::Change theirs;
 
   // Both rise, or both fall.
   bool has_same_sign() const { return (difference.estimate > 0) == (theirs.percent > 0); }
   bool is_significant_for_them() const {
-    return theirs.verdict != published::Verdict::kNotSignificant;
+    return theirs.significance != published::Significance::kNotSignificant;
   }
 };
 
@@ -60,7 +60,7 @@ struct Agreement {
   int means = 0;
   int means_within = 0;
   int effects = 0;
-  int same_verdicts = 0;      // not significant for both, or significant for both, the same way
+  int same_significance = 0;  // not significant for both, or significant for both, the same way
   int significant = 0;        // for them
   int significant_signs = 0;  // of these, ours has the same sign
 };

@@ -47,13 +47,13 @@ TEST(Comparison, SaysWhatLiesOutside) {
 TEST(Comparison, JudgesEffectsByTukeysTestAndByWhatIsBetter) {
   const Ablation ablation = ablations(synthetic()).front();
   const Effect& criticality_with_d = ablation.effects[5];  // D - -  ->  D C -
-  EXPECT_EQ(criticality_with_d.changes[0].verdict, published::Verdict::kBetter);
+  EXPECT_EQ(criticality_with_d.changes[0].significance, published::Significance::kBetter);
   EXPECT_NEAR(*criticality_with_d.changes[0].percent, 66, 8);
   EXPECT_LT(criticality_with_d.changes[0].difference.p, 1e-10);
-  EXPECT_EQ(criticality_with_d.changes[1].verdict, published::Verdict::kWorse)
+  EXPECT_EQ(criticality_with_d.changes[1].significance, published::Significance::kWorse)
       << "a longer reaction time";
   const Change& noise = ablation.effects[4].changes[0];  // - - -  ->  - C -
-  EXPECT_EQ(noise.verdict, published::Verdict::kNotSignificant);
+  EXPECT_EQ(noise.significance, published::Significance::kNotSignificant);
   EXPECT_GT(noise.difference.p, 0.05);
 }
 

@@ -49,13 +49,13 @@ std::string compact(const PaperSwitches& switches) {
   return text;
 }
 
-std::string_view name(published::Verdict verdict) {
-  switch (verdict) {
-    case published::Verdict::kNotSignificant:
+std::string_view name(published::Significance significance) {
+  switch (significance) {
+    case published::Significance::kNotSignificant:
       return "none";
-    case published::Verdict::kBetter:
+    case published::Significance::kBetter:
       return "better";
-    case published::Verdict::kWorse:
+    case published::Significance::kWorse:
       return "worse";
   }
   return "none";
@@ -123,9 +123,9 @@ std::string effects_csv(const CampaignResult& result) {
             .number(change.difference.high)
             .number(change.difference.p)
             .number_if(change.percent.has_value(), change.percent.value_or(0))
-            .text(name(change.verdict))
+            .text(name(change.significance))
             .number(change.theirs.percent)
-            .text(name(change.theirs.verdict))
+            .text(name(change.theirs.significance))
             .truth(change.has_same_sign());
       }
     }

@@ -27,9 +27,9 @@ constexpr std::array<Result, 2> kRobustness = {{
      {{{0.98, 0.30}, {2.02, 2.52}, {4.48, 2.89}, {0.26, 0.59}}}},
 }};
 
-constexpr Change grey(double percent) { return {percent, Verdict::kNotSignificant}; }
-constexpr Change green(double percent) { return {percent, Verdict::kBetter}; }
-constexpr Change red(double percent) { return {percent, Verdict::kWorse}; }
+constexpr Change grey(double percent) { return {percent, Significance::kNotSignificant}; }
+constexpr Change green(double percent) { return {percent, Significance::kBetter}; }
+constexpr Change red(double percent) { return {percent, Significance::kWorse}; }
 
 constexpr Factor kD = Factor::kDependencies;
 constexpr Factor kC = Factor::kCriticality;

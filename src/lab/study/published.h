@@ -41,11 +41,11 @@ std::span<const Result, 2> robustness();
 std::optional<Values> values_of(const Configuration& configuration);
 
 // The colours of the second ablation table: grey, green, red.
-enum class Verdict : std::uint8_t { kNotSignificant, kBetter, kWorse };
+enum class Significance : std::uint8_t { kNotSignificant, kBetter, kWorse };
 
 struct Change {
   double percent = 0;  // of the first configuration's mean
-  Verdict verdict = Verdict::kNotSignificant;
+  Significance significance = Significance::kNotSignificant;
 };
 
 enum class Factor : std::uint8_t { kDependencies, kCriticality, kImpact };

@@ -27,11 +27,11 @@ TEST(Published, VerdictsFollowFromTheSignsAndFromWhatIsBetter) {
   for (const Effect& effect : effects()) {
     for (std::size_t i = 0; i < kPublishedMetrics.size(); ++i) {
       const Change& change = effect.changes[i];
-      if (change.verdict == Verdict::kNotSignificant) continue;
+      if (change.significance == Significance::kNotSignificant) continue;
       ++significant;
       const bool rises = change.percent > 0;
       const bool is_better = rises == (traits(kPublishedMetrics[i]).better == Better::kHigher);
-      EXPECT_EQ(change.verdict, is_better ? Verdict::kBetter : Verdict::kWorse);
+      EXPECT_EQ(change.significance, is_better ? Significance::kBetter : Significance::kWorse);
     }
   }
   EXPECT_EQ(significant, 17) << "coloured cells of the table";

@@ -18,7 +18,7 @@ namespace culprit::study {
 namespace {
 
 // When managing begins everything has run for a while, so what is not seen is not there.
-constexpr Duration kSettling = std::chrono::milliseconds(200);
+constexpr Duration kDiscovery = std::chrono::milliseconds(200);
 
 std::string rules_of(const std::string& planner, const sunset::model::Profile& profile,
                      Detectors detectors) {
@@ -159,7 +159,7 @@ std::uint64_t SunsetStudy::seed_of(RunId id) const {
 Manager::Options SunsetStudy::manager_options(const sunset::model::Profile& profile) {
   Manager::Options options;
   options.start = Time{profile.manager_start};
-  options.settling = kSettling;
+  options.discovery = kDiscovery;
   return options;
 }
 

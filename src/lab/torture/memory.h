@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "knowledge/history.h"
 #include "knowledge/interrupted.h"
-#include "knowledge/past.h"
 #include "language/rule_set.h"
 
 namespace culprit::torture {
@@ -22,7 +22,7 @@ class Memory {
   void note(std::span<const Observation> observations, std::span<const Event> events,
             std::span<const Command> commands);
 
-  const Past& past() const { return past_; }
+  const History& past() const { return past_; }
   // Those that had begun to change anything.
   std::vector<Interrupted> interrupted() const;
 
@@ -34,7 +34,7 @@ class Memory {
   void close(RuleId rule);
 
   const RuleSet& rules_;
-  Past past_;
+  History past_;
   std::vector<Interrupted> open_;
 };
 

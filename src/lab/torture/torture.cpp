@@ -87,7 +87,7 @@ class Run {
   std::unique_ptr<Manager> make_manager(Time start) const {
     Manager::Options options;
     options.start = start;
-    options.settling = 3s;
+    options.discovery = 3s;
     options.governor = scenario_.governor;
     std::unique_ptr<const Planner> planner = std::make_unique<BayesPlanner>();
     if (scenario_.uses_paper_planner) planner = std::make_unique<PaperPlanner>();
@@ -99,7 +99,7 @@ class Run {
     Time start{};
     std::vector<Belief> beliefs;
     KnownRobot known_robot;
-    Past past;
+    History past;
     std::vector<Interrupted> interrupted;
   };
 

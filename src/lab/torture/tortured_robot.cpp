@@ -300,7 +300,7 @@ bool TorturedRobot::is_of_the_mute(const Observation& observation) const {
   return false;
 }
 
-void TorturedRobot::rediscover(const Past& past) {
+void TorturedRobot::rediscover(const History& past) {
   for (auto& queue : on_the_way_) queue.clear();
   unanswered_.clear();
   denied_.clear();

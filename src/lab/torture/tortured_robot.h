@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "knowledge/past.h"
+#include "knowledge/history.h"
 #include "language/rule_set.h"
 #include "simulation/simulated_robot.h"
 #include "simulation/topic.h"
@@ -38,7 +38,7 @@ class TorturedRobot : public Robot {
   void befall(const Mishap& mishap);
   // A manager that begins anew is told what is there, as by discovery, and which of the processes
   // that were known in the `past` are gone (process/supervisor.h, adopt_again()).
-  void rediscover(const Past& past);
+  void rediscover(const History& past);
   // From now on nothing is lost, late or wrong.
   void end_noise() { noise_ = {}; }
 

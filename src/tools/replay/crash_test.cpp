@@ -147,7 +147,7 @@ journal::Recovery left_behind(Duration later, std::optional<journal::Ending> end
   return value_of(journal::recover(reader, robot.rules(), now, manager_before));
 }
 
-bool has_verdict_on_its_strategy(const Past& past) {
+bool has_verdict_on_its_strategy(const History& past) {
   return std::any_of(past.begin(), past.end(), [](const Event& event) {
     return std::holds_alternative<OutcomePending>(event.what) ||
            std::holds_alternative<OutcomeCounted>(event.what) ||

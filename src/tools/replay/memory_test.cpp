@@ -54,7 +54,7 @@ struct Memory : testing::Test {
   }
   // Of people, that hold on.
   std::ptrdiff_t orders() const {
-    const Past& past = life->recovery.past;
+    const History& past = life->recovery.past;
     return std::count_if(past.begin(), past.end(), [](const Event& event) {
       return std::holds_alternative<OrderAccepted>(event.what);
     });
@@ -241,12 +241,12 @@ TEST_F(Memory, OfWhatWasSeenIsOfOneDomain) {
 TEST(MemoryAfterARestartOfTheMachine, KeepsSilencesOnly) {
   const TestRobot robot(kRules);
   const Time then(1000s);
-  const Past past = {
+  const History past = {
       {then, OrderAccepted{{1, "Ann", "", Silence{kCamera, 60s}}}},
       {then, StrategyChosen{StrategyId(0), {}, {}, false}},
       {then, FailureDetected{RuleId(0)}},
   };
-  const Past after = journal::of_people(past, Time(5s) - 20s - then);
+  const History after = journal::of_people(past, Time(5s) - 20s - then);
   ASSERT_EQ(after.size(), 1u);
   EXPECT_EQ(after[0].at, Time(-15s));
   EXPECT_EQ(journal::still_counting(after, Time(44s), robot.rules()).size(), 1u);

@@ -1,7 +1,7 @@
 #include "replay/replay.h"
 
+#include "journal/history.h"
 #include "journal/known_robot.h"
-#include "journal/past.h"
 #include "journal/recorder.h"
 #include "journal/requests.h"
 #include "knowledge/describe.h"
@@ -48,11 +48,11 @@ std::unique_ptr<Manager> manager_for(const journal::Session& session, const Rule
   options.autonomy = freedom.autonomy;
   options.governor = freedom.governor;
   options.start = session.start;
-  options.settling = session.settling;
+  options.discovery = session.discovery;
   options.forgetting = session.forgetting;
   auto manager = std::make_unique<Manager>(rules, std::move(planner), options);
   restore(*manager, session.learned, rules);
-  manager->remember(journal::past_from_json(session.past, rules));
+  manager->remember(journal::history_from_json(session.past, rules));
   manager->remember(journal::known_robot_from_json(session.known_robot));
   if (!session.interrupted.is_array()) return manager;
   for (const journal::Json& each : session.interrupted) {

@@ -49,7 +49,7 @@ void record(const std::filesystem::path& path, const std::function<void(TestRobo
   journal::Session session;
   session.rules_path = "test.rules";
   session.rules_text = kReplayRules;
-  session.settling = Manager::kDiscovery;
+  session.discovery = Manager::kDiscovery;
   journal::Recorder::Options options;
   options.path = path;
   options.wall_clock = [&robot] { return kWall + robot.now.time_since_epoch().count(); };
@@ -94,7 +94,7 @@ TEST(Replay, SaysWhereItDecidesOtherwise) {
   const journal::Reader reader = value_of(journal::Reader::open(folder / "a.journal"));
   Recording recording = value_of(Recording::open(reader));
   struct Nothing : Planner {
-    std::vector<Verdict> plan(std::span<const RuleId>, const Knowledge&) const override {
+    std::vector<Decision> plan(std::span<const RuleId>, const Knowledge&) const override {
       return {};
     }
   };
@@ -172,7 +172,7 @@ TEST(Recorder, LosesNothingWhileTheJournalCannotBeWritten) {
   {
     journal::Session session;
     session.rules_text = kReplayRules;
-    session.settling = Manager::kDiscovery;
+    session.discovery = Manager::kDiscovery;
     journal::Recorder::Options options;
     options.path = path;
     options.wall_clock = [] { return kWall; };

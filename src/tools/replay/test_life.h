@@ -52,7 +52,7 @@ class Life {
     session.process = kProcess;
     session.boot = journal::boot_id();
     session.start = robot.now;
-    session.settling = 2s;
+    session.discovery = 2s;
     session.learned = value_of(reader.learned());
     session.is_paused = recovery.is_paused;
     session.is_dry_run = recovery.is_dry_run;

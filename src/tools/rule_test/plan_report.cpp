@@ -33,19 +33,19 @@ std::vector<std::string> names_of(const auto& ids, const RuleSet& rules) {
 }
 
 // One sentence, as culprit run says it.
-std::string sentence(const plan::Decision& decision, const RuleSet& rules) {
-  const Verdict& verdict = decision.verdict;
-  if (verdict.chosen) {
+std::string sentence(const plan::ExplainedDecision& explained, const RuleSet& rules) {
+  const Decision& decision = explained.decision;
+  if (decision.chosen) {
     return describe(
-        Event{{}, StrategyChosen{*verdict.chosen, verdict.candidates, decision.explains, true}},
+        Event{{}, StrategyChosen{*decision.chosen, decision.candidates, explained.explains, true}},
         rules);
   }
-  if (verdict.is_spent) return describe(Event{{}, RoundSpent{verdict.rule, {}}}, rules);
+  if (decision.is_spent) return describe(Event{{}, RoundSpent{decision.rule, {}}}, rules);
   const auto withheld =
-      std::find_if(verdict.candidates.begin(), verdict.candidates.end(),
+      std::find_if(decision.candidates.begin(), decision.candidates.end(),
                    [](const Candidate& c) { return c.excluded == Condition::kWithheld; });
-  if (withheld == verdict.candidates.end())
-    return describe(Event{{}, FailureHeldBack{verdict.rule, verdict.candidates}}, rules);
+  if (withheld == decision.candidates.end())
+    return describe(Event{{}, FailureHeldBack{decision.rule, decision.candidates}}, rules);
   ActionHeldBack held;
   held.strategy = withheld->strategy;
   held.reason = withheld->remark;
@@ -53,15 +53,16 @@ std::string sentence(const plan::Decision& decision, const RuleSet& rules) {
 }
 
 // Chosen, and not begun.
-void hold_back(plan::Decision& decision, const std::string& reason, const RuleSet& rules) {
-  for (Candidate& candidate : decision.verdict.candidates) {
-    if (candidate.strategy != decision.verdict.chosen) continue;
+void hold_back(plan::ExplainedDecision& explained, const std::string& reason,
+               const RuleSet& rules) {
+  for (Candidate& candidate : explained.decision.candidates) {
+    if (candidate.strategy != explained.decision.chosen) continue;
     candidate.excluded = Condition::kWithheld;
     candidate.component = rules[candidate.strategy].components.front();
     candidate.remark = reason;
   }
-  decision.verdict.chosen.reset();
-  decision.explains.clear();
+  explained.decision.chosen.reset();
+  explained.explains.clear();
 }
 
 std::optional<double> seconds_failing(RuleId rule, const PlanReport& report) {
@@ -82,13 +83,13 @@ std::string nearness(const NearTrigger& near, const RuleSet& rules) {
                      quantity(near.threshold, input));
 }
 
-std::string candidate_table(const Verdict& verdict, const Knowledge& knowledge) {
+std::string candidate_table(const Decision& decision, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   std::size_t width = std::string_view("strategy").size();
-  for (const Candidate& c : verdict.candidates)
+  for (const Candidate& c : decision.candidates)
     width = std::max(width, rules[c.strategy].name.size());
   std::string out = fmt::format("  {:<{}}  success  impact   cost\n", "strategy", width);
-  for (const Candidate& c : verdict.candidates) {
+  for (const Candidate& c : decision.candidates) {
     out +=
         fmt::format("  {:<{}}  {:>7}  {:>6}  {:>5.2f}  {}\n", rules[c.strategy].name, width,
                     to_string(knowledge.beliefs[c.strategy].mean()), rules[c.strategy].impact.count,
@@ -97,11 +98,11 @@ std::string candidate_table(const Verdict& verdict, const Knowledge& knowledge) 
   return out;
 }
 
-std::string flips_as_text(const plan::Decision& decision, const Knowledge& knowledge) {
+std::string flips_as_text(const plan::ExplainedDecision& explained, const Knowledge& knowledge) {
   std::string out;
-  for (std::size_t i = 0; i < decision.flips.size(); ++i) {
-    const auto& flips = decision.flips[i];
-    const StrategyId loser = decision.verdict.candidates[i].strategy;
+  for (std::size_t i = 0; i < explained.flips.size(); ++i) {
+    const auto& flips = explained.flips[i];
+    const StrategyId loser = explained.decision.candidates[i].strategy;
     for (std::size_t f = 0; f < flips.size(); ++f) {
       out += f == 0 ? "  " + knowledge.rules[loser].name + " would be chosen if\n" : "";
       out += "    " + std::string(f == 0 ? "" : "or ") +
@@ -111,15 +112,15 @@ std::string flips_as_text(const plan::Decision& decision, const Knowledge& knowl
   return out;
 }
 
-std::string as_text(const plan::Decision& decision, const PlanReport& report) {
+std::string as_text(const plan::ExplainedDecision& explained, const PlanReport& report) {
   const RuleSet& rules = report.knowledge.rules;
-  const RuleId rule = decision.verdict.rule;
+  const RuleId rule = explained.decision.rule;
   const auto failing = seconds_failing(rule, report);
   return fmt::format(
              "{} ({}{})\n  {}\n\n", rules[rule].name, to_string(rules[rule].policies.criticality),
-             failing ? fmt::format(", for {:.1f} s", *failing) : "", sentence(decision, rules)) +
-         candidate_table(decision.verdict, report.knowledge) +
-         flips_as_text(decision, report.knowledge) + "\n";
+             failing ? fmt::format(", for {:.1f} s", *failing) : "", sentence(explained, rules)) +
+         candidate_table(explained.decision, report.knowledge) +
+         flips_as_text(explained, report.knowledge) + "\n";
 }
 
 // ---- for programs
@@ -160,18 +161,18 @@ struct AsJson {
   }
 };
 
-Json candidate_as_json(const plan::Decision& decision, std::size_t place,
+Json candidate_as_json(const plan::ExplainedDecision& explained, std::size_t place,
                        const Knowledge& knowledge) {
-  const Candidate& candidate = decision.verdict.candidates[place];
+  const Candidate& candidate = explained.decision.candidates[place];
   const Strategy& strategy = knowledge.rules[candidate.strategy];
   Json json{{"strategy", strategy.name},
             {"success", knowledge.beliefs[candidate.strategy].mean().value},
             {"impact", strategy.impact.count},
             {"cost", candidate.cost},
-            {"chosen", decision.verdict.chosen == candidate.strategy},
+            {"chosen", explained.decision.chosen == candidate.strategy},
             {"excluded", exclusion_as_json(candidate, knowledge.rules)},
             {"flips", Json::array()}};
-  for (const plan::Change& change : decision.flips[place]) {
+  for (const plan::Change& change : explained.flips[place]) {
     Json flip = std::visit(AsJson{knowledge.rules}, change);
     flip["text"] = plan::describe(change, candidate.strategy, knowledge);
     json["flips"].push_back(std::move(flip));
@@ -179,24 +180,24 @@ Json candidate_as_json(const plan::Decision& decision, std::size_t place,
   return json;
 }
 
-Json decision_as_json(const plan::Decision& decision, const PlanReport& report) {
+Json decision_as_json(const plan::ExplainedDecision& explained, const PlanReport& report) {
   const RuleSet& rules = report.knowledge.rules;
-  const Verdict& verdict = decision.verdict;
-  Json json{{"rule", rules[verdict.rule].name},
-            {"criticality", to_string(rules[verdict.rule].policies.criticality)}};
-  if (const auto failing = seconds_failing(verdict.rule, report)) json["failing_s"] = *failing;
+  const Decision& decision = explained.decision;
+  Json json{{"rule", rules[decision.rule].name},
+            {"criticality", to_string(rules[decision.rule].policies.criticality)}};
+  if (const auto failing = seconds_failing(decision.rule, report)) json["failing_s"] = *failing;
   json["chosen"] = nullptr;
   json["blamed"] = Json::array();
-  if (verdict.chosen) {
-    json["chosen"] = rules[*verdict.chosen].name;
-    json["blamed"] = names_of(rules[*verdict.chosen].components, rules);
+  if (decision.chosen) {
+    json["chosen"] = rules[*decision.chosen].name;
+    json["blamed"] = names_of(rules[*decision.chosen].components, rules);
   }
-  json["spent"] = verdict.is_spent;
-  json["explains"] = names_of(decision.explains, rules);
-  json["text"] = sentence(decision, rules);
+  json["spent"] = decision.is_spent;
+  json["explains"] = names_of(explained.explains, rules);
+  json["text"] = sentence(explained, rules);
   json["candidates"] = Json::array();
-  for (std::size_t i = 0; i < verdict.candidates.size(); ++i)
-    json["candidates"].push_back(candidate_as_json(decision, i, report.knowledge));
+  for (std::size_t i = 0; i < decision.candidates.size(); ++i)
+    json["candidates"].push_back(candidate_as_json(explained, i, report.knowledge));
   return json;
 }
 
@@ -218,13 +219,15 @@ PlanReport::PlanReport(const Planner& planner, std::vector<RuleId> failures,
     : knowledge(plan_knowledge),
       decisions(plan::decide(RestrainedPlanner(planner), std::move(failures), plan_knowledge)) {
   if (!held_back) return;
-  for (plan::Decision& decision : decisions) hold_back(decision, *held_back, knowledge.rules);
+  for (plan::ExplainedDecision& explained : decisions)
+    hold_back(explained, *held_back, knowledge.rules);
 }
 
 std::string plan_as_text(const PlanReport& report) {
   const RuleSet& rules = report.knowledge.rules;
   std::string out;
-  for (const plan::Decision& decision : report.decisions) out += as_text(decision, report);
+  for (const plan::ExplainedDecision& explained : report.decisions)
+    out += as_text(explained, report);
   if (report.decisions.empty()) {
     out += "Nothing waits for a decision.\n";
     const auto near = near_triggers(report.knowledge, kMostNearTriggers);
@@ -239,8 +242,8 @@ std::string plan_as_text(const PlanReport& report) {
 Json plan_as_json(const PlanReport& report) {
   const RuleSet& rules = report.knowledge.rules;
   Json json{{"robot", rules.robot}, {"failures", Json::array()}, {"near", Json::array()}};
-  for (const plan::Decision& decision : report.decisions)
-    json["failures"].push_back(decision_as_json(decision, report));
+  for (const plan::ExplainedDecision& explained : report.decisions)
+    json["failures"].push_back(decision_as_json(explained, report));
   for (const NearTrigger& near : near_triggers(report.knowledge, kMostNearTriggers)) {
     json["near"].push_back({{"rule", rules[near.rule].name},
                             {"input", describe(rules[near.input], rules)},

@@ -18,7 +18,7 @@ struct PlanReport {
              const std::optional<std::string>& held_back);
 
   const Knowledge& knowledge;
-  std::vector<plan::Decision> decisions;
+  std::vector<plan::ExplainedDecision> decisions;
   std::optional<Time> now;  // nothing: how long a failure has been there means nothing
 };
 

@@ -4,8 +4,8 @@
 
 namespace culprit {
 
-std::vector<Verdict> BayesPlanner::plan(std::span<const RuleId> failures,
-                                        const Knowledge& knowledge) const {
+std::vector<Decision> BayesPlanner::plan(std::span<const RuleId> failures,
+                                         const Knowledge& knowledge) const {
   if (failures.empty()) return {};
   return plan::PlanningStep(failures, knowledge, weights_).run();
 }

@@ -11,7 +11,7 @@
 //   3. adapts a component that is being adapted, or one that depends on such a component,
 //   4. is for a failure that more likely is the effect of another one (1 - R_i > 1/2),
 //   5. is for a failure that is expected to go away with one that was just resolved,
-//   6. adapts a component that depends on a suspicious one: a verdict is pending,
+//   6. adapts a component that depends on a suspicious one: whether that fails too is not known yet,
 //   7. adapts a component on which a more critical failure depends that is being worked on and that
 //      it does not explain: the lower criticality never delays the higher. What waits for a person
 //      is not worked on: its cause is exhausted, or all that is left was refused, say.
@@ -39,8 +39,8 @@ class BayesPlanner : public Planner {
   explicit BayesPlanner(Objective objective = Objective::kBalanced)
       : weights_(weights(objective)) {}
 
-  std::vector<Verdict> plan(std::span<const RuleId> failures,
-                            const Knowledge& knowledge) const override;
+  std::vector<Decision> plan(std::span<const RuleId> failures,
+                             const Knowledge& knowledge) const override;
 
  private:
   CostWeights weights_;

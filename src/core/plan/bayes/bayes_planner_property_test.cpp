@@ -169,8 +169,8 @@ bool shares(const Strategy& a, const Strategy& b) {
 
 std::vector<const Strategy*> chosen(const Scene& scene) {
   std::vector<const Strategy*> all;
-  for (const Verdict& verdict : scene.verdicts()) {
-    if (verdict.chosen) all.push_back(&scene.rules()[*verdict.chosen]);
+  for (const Decision& decision : scene.decisions()) {
+    if (decision.chosen) all.push_back(&scene.rules()[*decision.chosen]);
   }
   return all;
 }
@@ -241,7 +241,7 @@ struct RandomPipeline {
     });
   }
   std::optional<StrategyId> chosen_for(int rule) const {
-    return scene.verdict(name_of('R', rule)).chosen;
+    return scene.decision(name_of('R', rule)).chosen;
   }
 };
 
@@ -292,12 +292,12 @@ RC_GTEST_PROP(BayesPlannerOnRandomRobots, ReplacesNothingWhoseFailureAnExhausted
   robot.scene.exhaust(name_of('R', exhausted));
   robot.scene.plan(BayesPlanner(random_objective()));
   const ComponentId cause = robot.scene.component(name_of('c', exhausted));
-  for (const Verdict& verdict : robot.scene.verdicts()) {
-    const ComponentId touched = robot.scene.rules()[verdict.rule].components.front();
+  for (const Decision& decision : robot.scene.decisions()) {
+    const ComponentId touched = robot.scene.rules()[decision.rule].components.front();
     const auto& upstream = robot.scene->graph.upstream(touched);
     const bool is_explained = std::find(upstream.begin(), upstream.end(), cause) != upstream.end();
-    RC_ASSERT(!is_explained || !verdict.chosen);
-    RC_ASSERT(!is_explained || !verdict.is_spent);
+    RC_ASSERT(!is_explained || !decision.chosen);
+    RC_ASSERT(!is_explained || !decision.is_spent);
   }
 }
 

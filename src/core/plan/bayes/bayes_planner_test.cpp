@@ -43,7 +43,7 @@ TEST(BayesPlanner, AFailureDoesNotGoThroughAComponentThatIsSeenToBeWell) {
   scene.fail("A").fail("C");
   scene.plan(kFewRedeployments);
   EXPECT_EQ(scene.candidate("C.restart").excluded, Condition::kDependency) << "b may be ill";
-  scene->states.state(scene.rule("B")).trigger = Slot::of(false);
+  scene->states.state(scene.rule("B")).detection.trigger = Slot::of(false);
   scene.plan(kFewRedeployments);
   EXPECT_NE(scene.candidate("C.restart").excluded, Condition::kDependency);
 }
@@ -70,7 +70,7 @@ TEST(BayesPlanner, TriesWhatIsLeft) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "A.redeploy");
   scene.tried("A.redeploy");
   EXPECT_EQ(scene.plan(kFewRedeployments), "");
-  EXPECT_TRUE(scene.verdict("A").is_spent);
+  EXPECT_TRUE(scene.decision("A").is_spent);
 }
 
 TEST(BayesPlanner, ReplacesAProcessThatIsGone) {
@@ -108,7 +108,7 @@ TEST(BayesPlanner, WaitsWhileAnUpstreamComponentIsSuspect) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "");
   EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kSuspect);
   EXPECT_EQ(scene.candidate("B.restart").failure, scene.rule("A"));
-  EXPECT_FALSE(scene.verdict("B").is_spent);
+  EXPECT_FALSE(scene.decision("B").is_spent);
   scene->signals.set_rhythm(TopicId(0), {scene->now - 50ms, 100ms, 100ms});
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart") << "it spoke";
   scene->signals.set_rhythm(TopicId(0), {scene->now - 1500ms, 100ms, 100ms});
@@ -164,7 +164,7 @@ TEST(BayesPlanner, TreatsACauseAsTheWorstFailureThatItExplains) {
               failure_of("c", "Lost") + failure_of("d", "Other"));
   scene.link("a", "b").link("b", "c").fail("Camera").fail("Blind").fail("Lost").fail("Other");
   EXPECT_EQ(scene.plan(kFewRedeployments), "Camera.restart Other.restart");
-  EXPECT_EQ(scene.verdicts().front().rule, scene.rule("Camera")) << "and first: it explains more";
+  EXPECT_EQ(scene.decisions().front().rule, scene.rule("Camera")) << "and first: it explains more";
   EXPECT_EQ(scene.candidate("Lost.restart").excluded, Condition::kDependency);
   EXPECT_EQ(scene.candidate("Lost.restart").failure, scene.rule("Camera"));
 }
@@ -272,10 +272,10 @@ TEST(BayesPlanner, RepairsNothingThatAnExhaustedFailureExplains) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "C.other D.restart");
   EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kDependency);
   EXPECT_EQ(scene.candidate("B.restart").failure, scene.rule("A"));
-  EXPECT_FALSE(scene.verdict("B").is_spent);
+  EXPECT_FALSE(scene.decision("B").is_spent);
   scene.tried("C.other");
   EXPECT_EQ(scene.plan(kFewRedeployments), "D.restart") << "once";
-  scene->states.state(scene.rule("A")).trigger = Slot::of(false);
+  scene->states.state(scene.rule("A")).detection.trigger = Slot::of(false);
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart D.restart") << "it no longer explains them";
 }
 
@@ -328,7 +328,7 @@ TEST(BayesPlanner, SaysWhoIsSuspectedAndWhatItIsWorth) {
   Scene scene = robot();
   scene.fail("A").fail("B");
   scene.plan(kBalanced);
-  const auto& suspects = scene.verdict("B").suspects;
+  const auto& suspects = scene.decision("B").suspects;
   ASSERT_EQ(suspects.size(), 2u);
   EXPECT_EQ(suspects[0].component, scene.component("a"));
   EXPECT_EQ(suspects[0].failure, scene.rule("A"));
@@ -342,8 +342,8 @@ TEST(BayesPlanner, DecidesAboutEveryFailure) {
   Scene scene = robot();
   scene.fail("A").fail("B").fail("C").fail("D");
   scene.plan(kBalanced);
-  EXPECT_EQ(scene.verdicts().size(), 4u);
-  EXPECT_EQ(scene.verdict("C").candidates.size(), 2u);
+  EXPECT_EQ(scene.decisions().size(), 4u);
+  EXPECT_EQ(scene.decision("C").candidates.size(), 2u);
 }
 
 }  // namespace

@@ -6,22 +6,21 @@
 namespace culprit::plan {
 namespace {
 
-// The choices in the order of their worth, highest first, equal ones as they came.
-std::vector<std::size_t> by_worth(std::span<const Choice> choices) {
-  std::vector<std::size_t> order(choices.size());
+// The items in the order of their worth, highest first, equal ones as they came.
+std::vector<std::size_t> by_worth(std::span<const Item> items) {
+  std::vector<std::size_t> order(items.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return choices[a].worth > choices[b].worth;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return items[a].worth > items[b].worth; });
   return order;
 }
 
 class BranchAndBound {
  public:
-  explicit BranchAndBound(std::span<const Choice> choices) : choices_(choices) {
-    for (const std::size_t c : by_worth(choices)) {
+  explicit BranchAndBound(std::span<const Item> items) : items_(items) {
+    for (const std::size_t c : by_worth(items)) {
       const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const auto& group) {
-        return choices[group.front()].failure == choices[c].failure;
+        return items[group.front()].failure == items[c].failure;
       });
       if (same == groups_.end()) {
         groups_.emplace_back(1, c);
@@ -31,7 +30,7 @@ class BranchAndBound {
     }
     bounds_.assign(groups_.size() + 1, 0);
     for (std::size_t g = groups_.size(); g-- > 0;)
-      bounds_[g] = bounds_[g + 1] + choices[groups_[g].front()].worth;
+      bounds_[g] = bounds_[g + 1] + items[groups_[g].front()].worth;
   }
 
   std::vector<std::size_t> run() {
@@ -50,17 +49,17 @@ class BranchAndBound {
     if (group == groups_.size() || worth + bounds_[group] <= best_worth_) return;
     for (const std::size_t c : groups_[group]) {
       const bool is_free = std::none_of(taken_.begin(), taken_.end(), [&](std::size_t t) {
-        return conflict(choices_[c], choices_[t]);
+        return conflict(items_[c], items_[t]);
       });
       if (!is_free) continue;
       taken_.push_back(c);
-      branch(group + 1, worth + choices_[c].worth);
+      branch(group + 1, worth + items_[c].worth);
       taken_.pop_back();
     }
     branch(group + 1, worth);
   }
 
-  std::span<const Choice> choices_;
+  std::span<const Item> items_;
   std::vector<std::vector<std::size_t>> groups_;  // by failure, the most worth first
   std::vector<std::int64_t> bounds_;              // what the groups from here on can add at most
   std::vector<std::size_t> taken_;
@@ -70,22 +69,21 @@ class BranchAndBound {
 
 class Greedy {
  public:
-  explicit Greedy(std::span<const Choice> choices)
-      : choices_(choices), is_chosen_(choices.size(), false) {
+  explicit Greedy(std::span<const Item> items) : items_(items), is_chosen_(items.size(), false) {
     std::size_t failures = 0;
-    for (const Choice& choice : choices) failures = std::max(failures, choice.failure + 1);
+    for (const Item& item : items) failures = std::max(failures, item.failure + 1);
     of_failure_.assign(failures, kNone);
-    taken_.assign(choices.front().takes.size(), 0);
+    taken_.assign(items.front().takes.size(), 0);
     at_place_.assign(taken_.size() * kWordBits, kNone);
   }
 
   std::vector<std::size_t> run() {
-    const auto order = by_worth(choices_);
+    const auto order = by_worth(items_);
     fill(order);
     constexpr int kPasses = 3;
     for (int pass = 0; pass < kPasses && improve(order); ++pass) fill(order);
     std::vector<std::size_t> chosen;
-    for (std::size_t c = 0; c < choices_.size(); ++c) {
+    for (std::size_t c = 0; c < items_.size(); ++c) {
       if (is_chosen_[c]) chosen.push_back(c);
     }
     return chosen;
@@ -107,14 +105,14 @@ class Greedy {
       if (rival != kNone && std::find(rivals_.begin(), rivals_.end(), rival) == rivals_.end())
         rivals_.push_back(rival);
     };
-    found(of_failure_[choices_[c].failure]);
-    for_each_common(choices_[c].near, taken_, [&](std::size_t place) { found(at_place_[place]); });
+    found(of_failure_[items_[c].failure]);
+    for_each_common(items_[c].near, taken_, [&](std::size_t place) { found(at_place_[place]); });
     return rivals_;
   }
 
   // Lets chosen ones go for those that only they shut out, where these are worth more together.
   bool improve(const std::vector<std::size_t>& order) {
-    std::vector<std::vector<std::size_t>> shut_out(choices_.size());
+    std::vector<std::vector<std::size_t>> shut_out(items_.size());
     for (const std::size_t c : order) {
       if (!is_chosen_[c] && rivals(c).size() == 1) shut_out[rivals_.front()].push_back(c);
     }
@@ -131,13 +129,13 @@ class Greedy {
     for (const std::size_t c : shut_out) {
       const bool is_free = rivals(c).size() == 1 &&  // also after other swaps
                            std::none_of(coming.begin(), coming.end(), [&](std::size_t other) {
-                             return conflict(choices_[c], choices_[other]);
+                             return conflict(items_[c], items_[other]);
                            });
       if (!is_free) continue;
       coming.push_back(c);
-      worth += choices_[c].worth;
+      worth += items_[c].worth;
     }
-    if (worth <= choices_[leaving].worth) return false;
+    if (worth <= items_[leaving].worth) return false;
     put(leaving, kNone);
     for (const std::size_t c : coming) choose(c);
     return true;
@@ -146,14 +144,14 @@ class Greedy {
   void choose(std::size_t c) { put(c, c); }
   void put(std::size_t c, std::size_t holder) {
     is_chosen_[c] = holder != kNone;
-    of_failure_[choices_[c].failure] = holder;
-    for_each(choices_[c].takes, [&](std::size_t place) {
+    of_failure_[items_[c].failure] = holder;
+    for_each(items_[c].takes, [&](std::size_t place) {
       at_place_[place] = holder;
       holder != kNone ? set(taken_, place) : clear(taken_, place);
     });
   }
 
-  std::span<const Choice> choices_;
+  std::span<const Item> items_;
   std::vector<bool> is_chosen_;
   std::vector<std::size_t> of_failure_;  // the chosen one
   std::vector<Word> taken_;              // places
@@ -163,20 +161,20 @@ class Greedy {
 
 }  // namespace
 
-bool conflict(const Choice& a, const Choice& b) {
+bool conflict(const Item& a, const Item& b) {
   return a.failure == b.failure || meet(a.takes, b.near);
 }
 
-std::vector<std::size_t> best_conflict_free_set(std::span<const Choice> choices) {
-  return choices.size() <= kExact ? exact_set(choices) : greedy_set(choices);
+std::vector<std::size_t> best_conflict_free_set(std::span<const Item> items) {
+  return items.size() <= kExact ? exact_set(items) : greedy_set(items);
 }
 
-std::vector<std::size_t> exact_set(std::span<const Choice> choices) {
-  return BranchAndBound(choices).run();
+std::vector<std::size_t> exact_set(std::span<const Item> items) {
+  return BranchAndBound(items).run();
 }
 
-std::vector<std::size_t> greedy_set(std::span<const Choice> choices) {
-  return choices.empty() ? std::vector<std::size_t>() : Greedy(choices).run();
+std::vector<std::size_t> greedy_set(std::span<const Item> items) {
+  return items.empty() ? std::vector<std::size_t>() : Greedy(items).run();
 }
 
 }  // namespace culprit::plan

@@ -1,9 +1,9 @@
-// Which together? The choices of the highest total worth of which no two conflict.
+// Which together? The items of the highest total worth of which no two conflict.
 //
-// Two choices conflict if they are for the same failure, or if what one takes is near what the
-// other takes. Exact up to kExact choices, by branch and bound over the failures: a branch is left
-// when even the best remaining choice of every remaining failure could not make it better. Beyond,
-// greedy by worth, and then improved by swaps: a choice makes place for those that only it shuts
+// Two items conflict if they are for the same failure, or if what one takes is near what the
+// other takes. Exact up to kExact items, by branch and bound over the failures: a branch is left
+// when even the best remaining item of every remaining failure could not make it better. Beyond,
+// greedy by worth, and then improved by swaps: an item makes place for those that only it shuts
 // out if these are worth more together.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace culprit::plan {
 
 inline constexpr std::size_t kExact = 20;
 
-struct Choice {
+struct Item {
   std::size_t failure = 0;
   std::int64_t worth = 0;       // > 0, in parts of any unit: sums are exact
   std::span<const Word> takes;  // places
@@ -23,13 +23,13 @@ struct Choice {
                                 // takes near b if and only if b takes near a.
 };
 
-bool conflict(const Choice& a, const Choice& b);
+bool conflict(const Item& a, const Item& b);
 
-// Indices into `choices`, ascending. Among sets of the same worth, the one with earlier choices.
-std::vector<std::size_t> best_conflict_free_set(std::span<const Choice> choices);
+// Indices into `items`, ascending. Among sets of the same worth, the one with earlier items.
+std::vector<std::size_t> best_conflict_free_set(std::span<const Item> items);
 
 // The two ways; for tests and measurements.
-std::vector<std::size_t> exact_set(std::span<const Choice> choices);
-std::vector<std::size_t> greedy_set(std::span<const Choice> choices);
+std::vector<std::size_t> exact_set(std::span<const Item> items);
+std::vector<std::size_t> greedy_set(std::span<const Item> items);
 
 }  // namespace culprit::plan

@@ -21,19 +21,19 @@ struct Problem {
       set(near[b], a);
     }
     for (std::size_t c = 0; c < failures_and_worths.size(); ++c)
-      choices.push_back(
+      items.push_back(
           {failures_and_worths[c].first, failures_and_worths[c].second, takes[c], near[c]});
   }
 
   std::int64_t worth(const std::vector<std::size_t>& chosen) const {
     std::int64_t sum = 0;
-    for (const std::size_t c : chosen) sum += choices[c].worth;
+    for (const std::size_t c : chosen) sum += items[c].worth;
     return sum;
   }
   bool is_free(const std::vector<std::size_t>& chosen) const {
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        if (conflict(choices[chosen[i]], choices[chosen[j]])) return false;
+        if (conflict(items[chosen[i]], items[chosen[j]])) return false;
       }
     }
     return true;
@@ -41,9 +41,9 @@ struct Problem {
   // Every subset is tried.
   std::int64_t best_worth() const {
     std::int64_t best = 0;
-    for (std::size_t subset = 0; subset < std::size_t{1} << choices.size(); ++subset) {
+    for (std::size_t subset = 0; subset < std::size_t{1} << items.size(); ++subset) {
       std::vector<std::size_t> chosen;
-      for (std::size_t c = 0; c < choices.size(); ++c) {
+      for (std::size_t c = 0; c < items.size(); ++c) {
         if ((subset >> c & 1) != 0) chosen.push_back(c);
       }
       if (is_free(chosen)) best = std::max(best, worth(chosen));
@@ -53,32 +53,32 @@ struct Problem {
 
   BitRows takes;
   BitRows near;
-  std::vector<Choice> choices;
+  std::vector<Item> items;
 };
 
 using Set = std::vector<std::size_t>;
 
 TEST(ConflictFreeSet, HoldsOneChoiceForEachFailure) {
   const Problem problem({{0, 1}, {0, 2}, {1, 3}}, {});
-  EXPECT_EQ(exact_set(problem.choices), (Set{1, 2}));
-  EXPECT_EQ(greedy_set(problem.choices), (Set{1, 2}));
+  EXPECT_EQ(exact_set(problem.items), (Set{1, 2}));
+  EXPECT_EQ(greedy_set(problem.items), (Set{1, 2}));
 }
 
 TEST(ConflictFreeSet, TakesTwoThatAreWorthMoreThanTheOneTheyConflictWith) {
   const Problem problem({{0, 5}, {1, 3}, {2, 3}}, {{0, 1}, {0, 2}});
-  EXPECT_EQ(exact_set(problem.choices), (Set{1, 2}));
+  EXPECT_EQ(exact_set(problem.items), (Set{1, 2}));
 }
 
 TEST(ConflictFreeSet, GreedyIsImprovedBySwaps) {
   // 0 comes first and shuts out 1 and 2, which together are worth more.
   const Problem problem({{0, 5}, {1, 4}, {2, 4}}, {{0, 1}, {0, 2}});
-  EXPECT_EQ(greedy_set(problem.choices), (Set{1, 2}));
+  EXPECT_EQ(greedy_set(problem.items), (Set{1, 2}));
 }
 
 TEST(ConflictFreeSet, OfEquallyGoodOnesIsTheEarlier) {
   const Problem problem({{0, 1}, {1, 1}}, {{0, 1}});
-  EXPECT_EQ(exact_set(problem.choices), Set{0});
-  EXPECT_EQ(greedy_set(problem.choices), Set{0});
+  EXPECT_EQ(exact_set(problem.items), Set{0});
+  EXPECT_EQ(greedy_set(problem.items), Set{0});
 }
 
 TEST(ConflictFreeSet, OfNothingIsEmpty) { EXPECT_EQ(best_conflict_free_set({}), Set{}); }
@@ -88,24 +88,24 @@ Problem random_problem(std::size_t most) {
   std::vector<std::pair<std::size_t, std::int64_t>> all;
   for (std::size_t c = 0; c < count; ++c)
     all.emplace_back(*rc::gen::inRange<std::size_t>(0, count), *rc::gen::inRange(1, 1000) / 8.0);
-  const auto choice = rc::gen::inRange<std::size_t>(0, count);
+  const auto item = rc::gen::inRange<std::size_t>(0, count);
   return Problem(std::move(all),
                  *rc::gen::container<std::vector<std::pair<std::size_t, std::size_t>>>(
-                     rc::gen::pair(choice, choice)));
+                     rc::gen::pair(item, item)));
 }
 
 RC_GTEST_PROP(ConflictFreeSet, IsAsGoodAsTheBestOfAllSubsets, ()) {
   const Problem problem = random_problem(12);
-  const Set chosen = exact_set(problem.choices);
+  const Set chosen = exact_set(problem.items);
   RC_ASSERT(problem.is_free(chosen));
   RC_ASSERT(problem.worth(chosen) == problem.best_worth());
 }
 
 RC_GTEST_PROP(ConflictFreeSet, GreedyIsFreeAndLeavesOutNothingThatFits, ()) {
   const Problem problem = random_problem(40);
-  Set chosen = greedy_set(problem.choices);
+  Set chosen = greedy_set(problem.items);
   RC_ASSERT(problem.is_free(chosen));
-  for (std::size_t c = 0; c < problem.choices.size(); ++c) {
+  for (std::size_t c = 0; c < problem.items.size(); ++c) {
     if (std::find(chosen.begin(), chosen.end(), c) != chosen.end()) continue;
     chosen.push_back(c);
     RC_ASSERT(!problem.is_free(chosen));

@@ -36,8 +36,6 @@ void search(std::size_t root, const BitRows& rows, std::span<Word> open,
   }
 }
 
-constexpr std::size_t kLevels = 3;
-
 std::size_t level_of(const Rule& rule) {
   return static_cast<std::size_t>(rule.policies.criticality);
 }
@@ -57,7 +55,7 @@ bool may_be_broken(RuleId rule, const RuleSet& rules) {
 
 }  // namespace
 
-Failures::Failures(const Knowledge& knowledge, const Reach& reach, const Ways& ways)
+Failures::Failures(const Knowledge& knowledge, const Reach& reach, const FailurePaths& paths)
     : knowledge_(knowledge),
       rules_(by_name(knowledge)),
       causes_(rules_.size(), rules_.size()),
@@ -81,7 +79,7 @@ Failures::Failures(const Knowledge& knowledge, const Reach& reach, const Ways& w
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     const auto row = causes_[i];
     for (const ComponentId c : rules[rules_[i]].components) {
-      for_each(ways.upstream(reach.place_of(c), rules_[i]),
+      for_each(paths.upstream(reach.place_of(c), rules_[i]),
                [&](std::size_t place) { add(row, touching[place]); });
     }
     clear(row, i);

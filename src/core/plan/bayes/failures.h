@@ -2,7 +2,7 @@
 // trigger is true: they still explain others.
 //
 // Failure j may be the cause of failure i if a component that j touches is upstream of one that i
-// touches, by a way that i can have taken (plan/bayes/ways.h), however critical either is (but a
+// touches, by a way that i can have taken (plan/bayes/failure_paths.h), however critical either is (but a
 // bad value that is only ever reconfigured is no cause of what is more critical): how bad a cause
 // is, its effects say (plan/bayes/levels.h). Failures that may be the causes of each other,
 // directly or round several corners, form a circle; that needs no circle in the graph, because a
@@ -14,14 +14,16 @@
 
 #include <vector>
 
-#include "plan/bayes/ways.h"
+#include "plan/bayes/failure_paths.h"
 
 namespace culprit::plan {
 
+inline constexpr std::size_t kLevels = 3;  // of criticality
+
 class Failures {
  public:
-  // `reach` holds all components that these rules touch; `ways` are made of it.
-  Failures(const Knowledge& knowledge, const Reach& reach, const Ways& ways);
+  // `reach` holds all components that these rules touch; `paths` are made of it.
+  Failures(const Knowledge& knowledge, const Reach& reach, const FailurePaths& paths);
 
   std::size_t size() const { return rules_.size(); }
   RuleId operator[](std::size_t i) const { return rules_[i]; }

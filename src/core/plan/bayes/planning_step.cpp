@@ -37,16 +37,16 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
       planned_(failures.begin(), failures.end()),
       suspicious_(suspicious_rules(failures, knowledge)),
       reach_(knowledge, components_of_interest(knowledge, suspicious_)),
-      ways_(knowledge, reach_),
-      failures_(knowledge, reach_, ways_),
+      paths_(knowledge, reach_),
+      failures_(knowledge, reach_, paths_),
       responsibility_(knowledge, failures_),
       levels_(knowledge, failures_, responsibility_),
-      remedies_(all_remedies()),
-      surroundings_(knowledge, reach_, levels_, worked_on(), suspicious_),
+      chances_(all_chances()),
+      exclusions_(knowledge, reach_, levels_, worked_on(), suspicious_),
       has_choice_(failures_.size(), false),
       tries_(failures_.size()) {}
 
-std::vector<Verdict> PlanningStep::run() {
+std::vector<Decision> PlanningStep::run() {
   Time until = kLongAgo;
   for (const RuleId rule : planned_) {
     if (is_newborn(rule, knowledge_)) until = std::max(until, newborn_until(rule, knowledge_));
@@ -54,18 +54,19 @@ std::vector<Verdict> PlanningStep::run() {
   if (until > kLongAgo) watchers_.emplace(knowledge_, until);
   find_stakes();
   for (const RuleId rule : planned_) examine(failures_.index_of(rule));
-  std::sort(entries_.begin(), entries_.end(),
-            [&](const Entry& a, const Entry& b) { return is_before(a, b); });
+  std::sort(weighed_.begin(), weighed_.end(),
+            [&](const WeighedCandidate& a, const WeighedCandidate& b) { return is_before(a, b); });
   revive();
   for (const Criticality level :
        {Criticality::kError, Criticality::kWarning, Criticality::kNonCritical})
     select(level);
-  return verdicts();
+  return decisions();
 }
 
-std::vector<std::vector<Remedy>> PlanningStep::all_remedies() const {
-  std::vector<std::vector<Remedy>> all(failures_.size());
-  for (const RuleId rule : planned_) all[failures_.index_of(rule)] = remedies(rule, knowledge_);
+std::vector<std::vector<StrategyChance>> PlanningStep::all_chances() const {
+  std::vector<std::vector<StrategyChance>> all(failures_.size());
+  for (const RuleId rule : planned_)
+    all[failures_.index_of(rule)] = strategy_chances(rule, knowledge_);
   return all;
 }
 
@@ -85,11 +86,11 @@ bool PlanningStep::waits_for_person(std::size_t failure) const {
            !may_be_tried_beside_exhausted(id, knowledge_) && is_left_to_person(*cause);
   };
   bool is_anything_left = false;
-  for (const Remedy& remedy : remedies_[failure]) {
-    if (remedy.is_out()) continue;
+  for (const StrategyChance& each : chances_[failure]) {
+    if (each.is_out()) continue;
     is_anything_left = true;
-    const StrategyId id = remedy.strategy;
-    const bool is_held = remedy.is_withheld && knowledge_.withheld[id.index].until == kNever;
+    const StrategyId id = each.strategy;
+    const bool is_held = each.is_withheld && knowledge_.withheld[id.index].until == kNever;
     if (!is_held && !is_in_vain(id)) return false;
   }
   return is_anything_left;
@@ -116,8 +117,8 @@ std::optional<RuleId> PlanningStep::cause_of(std::size_t failure) const {
 }
 
 // By level, then by worth, then by name.
-bool PlanningStep::is_before(const Entry& a, const Entry& b) const {
-  const auto key = [&](const Entry& e) {
+bool PlanningStep::is_before(const WeighedCandidate& a, const WeighedCandidate& b) const {
+  const auto key = [&](const WeighedCandidate& e) {
     const Strategy& strategy = knowledge_.rules[e.candidate.strategy];
     const Rule& rule = knowledge_.rules[strategy.rule];
     return std::tuple<int, std::int64_t, std::int64_t, const std::string&, const std::string&>(
@@ -155,8 +156,8 @@ void PlanningStep::find_stakes() {
 }
 
 void PlanningStep::examine(std::size_t failure) {
-  const std::vector<Remedy>& all = remedies_[failure];
-  const std::vector<Option> tries = options(failure, all);
+  const std::vector<StrategyChance>& all = chances_[failure];
+  const std::vector<Try> tries = tries_of(failure, all);
   std::vector<std::size_t> order(all.size());  // p/c index
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -166,7 +167,7 @@ void PlanningStep::examine(std::size_t failure) {
     };
     return key(a) < key(b);
   });
-  std::vector<Option> possible;
+  std::vector<Try> possible;
   double helps = 0;
   for (const std::size_t s : order) {
     if (!all[s].is_out() && !all[s].is_withheld) possible.push_back(tries[s]);
@@ -178,37 +179,38 @@ void PlanningStep::examine(std::size_t failure) {
 
   std::size_t next = 0;
   for (const std::size_t s : order) {
-    Entry& entry = entries_.emplace_back();
-    entry.failure = failure;
-    entry.candidate.strategy = all[s].strategy;
+    WeighedCandidate& weighed = weighed_.emplace_back();
+    weighed.failure = failure;
+    weighed.candidate.strategy = all[s].strategy;
     if (all[s].is_tried) {
-      entry.candidate.excluded = Condition::kTried;
+      weighed.candidate.excluded = Condition::kTried;
     } else if (all[s].invalid) {
-      exclude_invalid(entry, *all[s].invalid);
+      exclude_invalid(weighed, *all[s].invalid);
     } else if (all[s].is_withheld) {
-      entry.candidate.excluded = Condition::kWithheld;
-      entry.candidate.component = knowledge_.rules[all[s].strategy].components.front();
-      entry.candidate.remark = knowledge_.withheld[all[s].strategy.index].reason;
+      weighed.candidate.excluded = Condition::kWithheld;
+      weighed.candidate.component = knowledge_.rules[all[s].strategy].components.front();
+      weighed.candidate.remark = knowledge_.withheld[all[s].strategy.index].reason;
     } else {
-      entry.candidate.resolves = root * all[s].chance;
-      entry.candidate.value = root * std::min(1.0, helps) * stakes_[failure];
-      entry.candidate.cost = costs[next];
-      entry.place = next++;
-      entry.worth = worth(entry.candidate.value, entry.candidate.cost, root * index(tries[s]));
-      exclude(entry, all[s].chance);
+      weighed.candidate.resolves = root * all[s].chance;
+      weighed.candidate.value = root * std::min(1.0, helps) * stakes_[failure];
+      weighed.candidate.cost = costs[next];
+      weighed.place = next++;
+      weighed.worth =
+          worth(weighed.candidate.value, weighed.candidate.cost, root * index(tries[s]));
+      exclude(weighed, all[s].chance);
     }
   }
 }
 
-std::vector<Option> PlanningStep::options(std::size_t failure,
-                                          const std::vector<Remedy>& remedies) const {
+std::vector<Try> PlanningStep::tries_of(std::size_t failure,
+                                        const std::vector<StrategyChance>& chances) const {
   const Duration latency = knowledge_.signals.latency(failures_[failure]);
-  std::vector<Option> all;
-  for (const Remedy& remedy : remedies) {
-    const Strategy& strategy = knowledge_.rules[remedy.strategy];
+  std::vector<Try> all;
+  for (const StrategyChance& each : chances) {
+    const Strategy& strategy = knowledge_.rules[each.strategy];
     const Effort effort{strategy.impact, latency, redeployments(strategy), disruption(strategy)};
-    all.push_back({remedy.chance, try_cost(effort, weights_, knowledge_.rules),
-                   time_cost(effort, weights_, knowledge_.rules), remedy.luck});
+    all.push_back({each.chance, try_cost(effort, weights_, knowledge_.rules),
+                   time_cost(effort, weights_, knowledge_.rules), each.luck});
   }
   return all;
 }
@@ -223,24 +225,24 @@ double PlanningStep::disruption(const Strategy& strategy) const {
   return std::min(1.0, static_cast<double>(down) / all);
 }
 
-void PlanningStep::exclude(Entry& entry, double chance) const {
-  const RuleId rule = failures_[entry.failure];
-  const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
+void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
+  const RuleId rule = failures_[weighed.failure];
+  const Strategy& strategy = knowledge_.rules[weighed.candidate.strategy];
   // What is known to be dead, and a safe stop, wait for nobody but who has the component already.
   if (only_revives(strategy, knowledge_) || strategy.is_last_resort) {
-    if (const auto held = surroundings_.reserved(strategy)) exclude(entry, *held);
+    if (const auto held = exclusions_.reserved(strategy)) exclude(weighed, *held);
     return;
   }
-  exclude_effect(entry);
-  if (entry.candidate.excluded) return;
-  const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
-  if (watchers_ && is_newborn(rule, knowledge_) && !needs_no_verdict &&
+  exclude_effect(weighed);
+  if (weighed.candidate.excluded) return;
+  const bool need_not_wait = chance >= kSure && !takes_down(strategy);
+  if (watchers_ && is_newborn(rule, knowledge_) && !need_not_wait &&
       watchers_->are_upstream_of(rule))
-    return exclude(entry, {Condition::kSuspect, likeliest_component(rule), rule});
-  if (const auto held = surroundings_.reserved(strategy)) return exclude(entry, *held);
+    return exclude(weighed, {Condition::kSuspect, likeliest_component(rule), rule});
+  if (const auto held = exclusions_.reserved(strategy)) return exclude(weighed, *held);
   for (const ComponentId c : strategy.components) {
-    if (const auto obstacle = surroundings_.obstacle(reach_.place_of(c), strategy, chance))
-      return exclude(entry, *obstacle);
+    if (const auto obstacle = exclusions_.obstacle(reach_.place_of(c), strategy, chance))
+      return exclude(weighed, *obstacle);
   }
   const auto& settling = knowledge_.states[rule].settling;
   const bool is_settling =
@@ -248,104 +250,106 @@ void PlanningStep::exclude(Entry& entry, double chance) const {
       !knowledge_.signals.is_read_since(rule, settling->since) &&
       knowledge_.couplings.of(settling->with, rule).mean(Coupling::kUsual) > 0.5;
   if (is_settling)
-    return exclude(entry,
+    return exclude(weighed,
                    {Condition::kSettling, likeliest_component(settling->with), settling->with});
 }
 
-void PlanningStep::exclude(Entry& entry, const Surroundings::Obstacle& obstacle) const {
-  entry.candidate.excluded = obstacle.condition;
-  entry.candidate.component = obstacle.component;
-  entry.candidate.failure = obstacle.because;
+void PlanningStep::exclude(WeighedCandidate& weighed, const Exclusions::Obstacle& obstacle) const {
+  weighed.candidate.excluded = obstacle.condition;
+  weighed.candidate.component = obstacle.component;
+  weighed.candidate.failure = obstacle.because;
 }
 
 // What makes no sense now may make sense once that is over which is being done to its component.
-void PlanningStep::exclude_invalid(Entry& entry, const Invalid& why) const {
-  const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
-  if (const auto held = surroundings_.reserved(strategy)) return exclude(entry, *held);
-  entry.candidate.excluded = Condition::kInvalid;
-  entry.candidate.component = why.component;
-  entry.candidate.remark = why.reason;
+void PlanningStep::exclude_invalid(WeighedCandidate& weighed, const Invalid& why) const {
+  const Strategy& strategy = knowledge_.rules[weighed.candidate.strategy];
+  if (const auto held = exclusions_.reserved(strategy)) return exclude(weighed, *held);
+  weighed.candidate.excluded = Condition::kInvalid;
+  weighed.candidate.component = why.component;
+  weighed.candidate.remark = why.reason;
 }
 
 // A failure that others more likely explain waits for them.
-void PlanningStep::exclude_effect(Entry& entry) const {
-  if (const auto cause = cause_of(entry.failure)) {
-    const bool goes_round = may_be_tried_beside_exhausted(entry.candidate.strategy, knowledge_) &&
+void PlanningStep::exclude_effect(WeighedCandidate& weighed) const {
+  if (const auto cause = cause_of(weighed.failure)) {
+    const bool goes_round = may_be_tried_beside_exhausted(weighed.candidate.strategy, knowledge_) &&
                             is_left_to_person(*cause);
-    if (!goes_round) exclude(entry, {Condition::kDependency, likeliest_component(*cause), *cause});
+    if (!goes_round)
+      exclude(weighed, {Condition::kDependency, likeliest_component(*cause), *cause});
     return;
   }
   // In a circle the members take turns, whoever is the likelier: what counts is what is outside.
   // But who is in a circle is only known when the failures are old enough.
-  if (!is_young(failures_[entry.failure], knowledge_)) return;
+  if (!is_young(failures_[weighed.failure], knowledge_)) return;
   std::int64_t most = 0;
   RuleId likeliest;
-  for (const std::size_t j : failures_.circles()[failures_.circle_of(entry.failure)]) {
-    if (j != entry.failure && parts(responsibility_.of(j)) > most)
+  for (const std::size_t j : failures_.circles()[failures_.circle_of(weighed.failure)]) {
+    if (j != weighed.failure && parts(responsibility_.of(j)) > most)
       std::tie(most, likeliest) = std::pair(parts(responsibility_.of(j)), failures_[j]);
   }
-  if (most > 0) exclude(entry, {Condition::kDependency, likeliest_component(likeliest), likeliest});
+  if (most > 0)
+    exclude(weighed, {Condition::kDependency, likeliest_component(likeliest), likeliest});
 }
 
 // The dead are replaced side by side, whatever depends on whatever and however critical it is.
 void PlanningStep::revive() {
-  for (Entry& entry : entries_) {
-    const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
-    if (entry.candidate.excluded || !only_revives(strategy, knowledge_)) continue;
-    if (has_choice_[entry.failure]) {
-      entry.candidate.excluded = Condition::kOneEach;
+  for (WeighedCandidate& weighed : weighed_) {
+    const Strategy& strategy = knowledge_.rules[weighed.candidate.strategy];
+    if (weighed.candidate.excluded || !only_revives(strategy, knowledge_)) continue;
+    if (has_choice_[weighed.failure]) {
+      weighed.candidate.excluded = Condition::kOneEach;
       continue;
     }
     for (const ComponentId c : strategy.components) {
-      if (const auto taken = surroundings_.taken(reach_.place_of(c))) exclude(entry, *taken);
+      if (const auto taken = exclusions_.taken(reach_.place_of(c))) exclude(weighed, *taken);
     }
-    if (!entry.candidate.excluded) choose(entry);
+    if (!weighed.candidate.excluded) choose(weighed);
   }
 }
 
-void PlanningStep::choose(const Entry& entry) {
-  has_choice_[entry.failure] = true;
-  sides_.push_back({tries_[entry.failure], {entry.place}});
-  surroundings_.add(knowledge_.rules[entry.candidate.strategy]);
+void PlanningStep::choose(const WeighedCandidate& weighed) {
+  has_choice_[weighed.failure] = true;
+  sides_.push_back({tries_[weighed.failure], {weighed.place}});
+  exclusions_.add(knowledge_.rules[weighed.candidate.strategy]);
 }
 
 // Does what was chosen before stand against it? Then it is excluded.
-bool PlanningStep::is_taken(Entry& entry) const {
-  if (has_choice_[entry.failure]) {
-    entry.candidate.excluded = Condition::kOneEach;
+bool PlanningStep::is_taken(WeighedCandidate& weighed) const {
+  if (has_choice_[weighed.failure]) {
+    weighed.candidate.excluded = Condition::kOneEach;
     return true;
   }
-  for (const ComponentId c : knowledge_.rules[entry.candidate.strategy].components) {
-    const auto conflict = surroundings_.conflict(reach_.place_of(c));
+  for (const ComponentId c : knowledge_.rules[weighed.candidate.strategy].components) {
+    const auto conflict = exclusions_.conflict(reach_.place_of(c));
     if (!conflict) continue;
-    exclude(entry, *conflict);
+    exclude(weighed, *conflict);
     return true;
   }
   return false;
 }
 
 void PlanningStep::select(Criticality level) {
-  std::vector<Entry*> open;
-  for (Entry& entry : entries_) {
-    const Strategy& strategy = knowledge_.rules[entry.candidate.strategy];
-    const bool is_next = !entry.candidate.excluded && levels_.of(strategy.rule) == level &&
+  std::vector<WeighedCandidate*> open;
+  for (WeighedCandidate& weighed : weighed_) {
+    const Strategy& strategy = knowledge_.rules[weighed.candidate.strategy];
+    const bool is_next = !weighed.candidate.excluded && levels_.of(strategy.rule) == level &&
                          !only_revives(strategy, knowledge_);
-    if (is_next && !is_taken(entry)) open.push_back(&entry);
+    if (is_next && !is_taken(weighed)) open.push_back(&weighed);
   }
 
-  const std::vector<Entry*> chosen = weigh_together(open, chosen_together(open));
-  for (const Entry* entry : chosen) choose(*entry);
-  for (Entry* entry : open) {
-    if (std::find(chosen.begin(), chosen.end(), entry) == chosen.end()) is_taken(*entry);
+  const std::vector<WeighedCandidate*> chosen = weigh_together(open, chosen_together(open));
+  for (const WeighedCandidate* weighed : chosen) choose(*weighed);
+  for (WeighedCandidate* weighed : open) {
+    if (std::find(chosen.begin(), chosen.end(), weighed) == chosen.end()) is_taken(*weighed);
   }
 }
 
 // The conflict-free ones of the highest total worth.
-std::vector<PlanningStep::Entry*> PlanningStep::chosen_together(
-    const std::vector<Entry*>& open) const {
+std::vector<PlanningStep::WeighedCandidate*> PlanningStep::chosen_together(
+    const std::vector<WeighedCandidate*>& open) const {
   BitRows takes(open.size(), reach_.size());
   BitRows near(open.size(), reach_.size());
-  std::vector<Choice> choices;
+  std::vector<Item> items;
   for (std::size_t e = 0; e < open.size(); ++e) {
     for (const ComponentId c : knowledge_.rules[open[e]->candidate.strategy].components) {
       const std::size_t place = reach_.place_of(c);
@@ -354,34 +358,37 @@ std::vector<PlanningStep::Entry*> PlanningStep::chosen_together(
       add(near[e], reach_.downstream(place));
     }
     add(near[e], takes[e]);
-    choices.push_back({open[e]->failure, open[e]->worth, takes[e], near[e]});
+    items.push_back({open[e]->failure, open[e]->worth, takes[e], near[e]});
   }
-  std::vector<Entry*> chosen;
-  for (const std::size_t e : best_conflict_free_set(choices)) chosen.push_back(open[e]);
+  std::vector<WeighedCandidate*> chosen;
+  for (const std::size_t e : best_conflict_free_set(items)) chosen.push_back(open[e]);
   return chosen;
 }
 
 // Of the same failures, at the same components, what costs the least beside each other.
-std::vector<PlanningStep::Entry*> PlanningStep::weigh_together(
-    const std::vector<Entry*>& open, const std::vector<Entry*>& chosen) const {
+std::vector<PlanningStep::WeighedCandidate*> PlanningStep::weigh_together(
+    const std::vector<WeighedCandidate*>& open,
+    const std::vector<WeighedCandidate*>& chosen) const {
   std::vector<Side> sides = sides_;
-  std::vector<std::vector<Entry*>> firsts;
-  for (Entry* usual : chosen) {
+  std::vector<std::vector<WeighedCandidate*>> firsts;
+  for (WeighedCandidate* usual : chosen) {
     auto& all = firsts.emplace_back(1, usual);
     const auto& components = knowledge_.rules[usual->candidate.strategy].components;
-    std::copy_if(open.begin(), open.end(), std::back_inserter(all), [&](const Entry* other) {
-      return other != usual && other->failure == usual->failure &&
-             knowledge_.rules[other->candidate.strategy].components == components;
-    });
+    std::copy_if(open.begin(), open.end(), std::back_inserter(all),
+                 [&](const WeighedCandidate* other) {
+                   return other != usual && other->failure == usual->failure &&
+                          knowledge_.rules[other->candidate.strategy].components == components;
+                 });
     Side& side = sides.emplace_back(Side{tries_[usual->failure], {}});
-    for (const Entry* entry : all) side.firsts.push_back(entry->place);
+    for (const WeighedCandidate* weighed : all) side.firsts.push_back(weighed->place);
   }
   const std::vector<std::size_t> begins = side_by_side(sides);
-  std::vector<Entry*> together;
+  std::vector<WeighedCandidate*> together;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const std::size_t place = begins[sides_.size() + i];
-    together.push_back(*std::find_if(firsts[i].begin(), firsts[i].end(),
-                                     [&](const Entry* entry) { return entry->place == place; }));
+    together.push_back(
+        *std::find_if(firsts[i].begin(), firsts[i].end(),
+                      [&](const WeighedCandidate* weighed) { return weighed->place == place; }));
   }
   return together;
 }
@@ -426,20 +433,20 @@ std::vector<Suspect> PlanningStep::suspects(std::size_t failure) const {
   return all;
 }
 
-std::vector<Verdict> PlanningStep::verdicts() {
-  std::vector<Verdict> found;
+std::vector<Decision> PlanningStep::decisions() {
+  std::vector<Decision> found;
   std::vector<std::size_t> place(failures_.size(), failures_.size());
-  for (Entry& entry : entries_) {
-    std::size_t& at = place[entry.failure];
+  for (WeighedCandidate& weighed : weighed_) {
+    std::size_t& at = place[weighed.failure];
     if (at == failures_.size()) {
       at = found.size();
-      found.push_back({failures_[entry.failure], {}, true, {}, suspects(entry.failure)});
+      found.push_back({failures_[weighed.failure], {}, true, {}, suspects(weighed.failure)});
     }
-    Verdict& verdict = found[at];
-    const auto& excluded = entry.candidate.excluded;
-    if (!excluded) verdict.chosen = entry.candidate.strategy;
-    verdict.is_spent &= excluded == Condition::kTried || excluded == Condition::kInvalid;
-    verdict.candidates.push_back(std::move(entry.candidate));
+    Decision& decision = found[at];
+    const auto& excluded = weighed.candidate.excluded;
+    if (!excluded) decision.chosen = weighed.candidate.strategy;
+    decision.is_spent &= excluded == Condition::kTried || excluded == Condition::kInvalid;
+    decision.candidates.push_back(std::move(weighed.candidate));
   }
   return found;
 }

@@ -7,7 +7,7 @@
 namespace culprit::plan {
 namespace {
 
-using Knot = Condensation::Knot;
+using Scc = Condensation::Scc;
 
 std::vector<ComponentId> each_once(std::vector<ComponentId> components) {
   std::sort(components.begin(), components.end());
@@ -37,17 +37,17 @@ class BitCounts {
   std::array<Word, 32> digits_{};
 };
 
-Reach::Knots knots_of(const Knowledge& knowledge) {
-  Reach::Knots knots(knowledge.rules.components.size());
-  for (std::size_t c = 0; c < knots.size(); ++c) knots[c] = knowledge.graph.knot_of(ComponentId(c));
-  return knots;
+Reach::Sccs sccs_of(const Knowledge& knowledge) {
+  Reach::Sccs sccs(knowledge.rules.components.size());
+  for (std::size_t c = 0; c < sccs.size(); ++c) sccs[c] = knowledge.graph.scc_of(ComponentId(c));
+  return sccs;
 }
 
-// Components, by knot.
-std::vector<std::uint32_t> members_of(std::size_t size, const Reach::Knots& knots) {
+// Components, by SCC.
+std::vector<std::uint32_t> members_of(std::size_t size, const Reach::Sccs& sccs) {
   std::vector<std::uint32_t> members(size, 0);
-  for (const auto knot : knots) {
-    if (knot) ++members[*knot];
+  for (const auto scc : sccs) {
+    if (scc) ++members[*scc];
   }
   return members;
 }
@@ -56,12 +56,12 @@ std::vector<std::uint32_t> members_of(std::size_t size, const Reach::Knots& knot
 
 Reach::Reach(const Knowledge& knowledge, std::vector<ComponentId> components)
     : Reach(std::move(components)) {
-  find(knowledge.graph.condensation(), knots_of(knowledge));
+  find(knowledge.graph.condensation(), sccs_of(knowledge));
 }
 
-Reach::Reach(const Condensation& graph, const Knots& knots, std::vector<ComponentId> components)
+Reach::Reach(const Condensation& graph, const Sccs& sccs, std::vector<ComponentId> components)
     : Reach(std::move(components)) {
-  find(graph, knots);
+  find(graph, sccs);
 }
 
 Reach::Reach(std::vector<ComponentId> components)
@@ -71,39 +71,39 @@ Reach::Reach(std::vector<ComponentId> components)
       dependents_(components_.size(), 0) {}
 
 template <class Graph>
-void Reach::find(const Graph& graph, const Knots& knots) {
-  const std::vector<std::uint32_t> members = members_of(graph.size(), knots);
-  // By the order of their knots, so that a pass can begin at its first.
+void Reach::find(const Graph& graph, const Sccs& sccs) {
+  const std::vector<std::uint32_t> members = members_of(graph.size(), sccs);
+  // By the order of their SCCs, so that a pass can begin at its first.
   std::vector<std::size_t> order;
   for (std::size_t p = 0; p < components_.size(); ++p) {
-    if (knots[components_[p].index]) order.push_back(p);
+    if (sccs[components_[p].index]) order.push_back(p);
   }
-  const auto knot_at = [&](std::size_t place) { return *knots[components_[place].index]; };
+  const auto scc_at = [&](std::size_t place) { return *sccs[components_[place].index]; };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(graph.place_of(knot_at(a)), a) < std::pair(graph.place_of(knot_at(b)), b);
+    return std::pair(graph.place_of(scc_at(a)), a) < std::pair(graph.place_of(scc_at(b)), b);
   });
 
-  std::vector<Word> own(graph.size(), 0);      // which of the 64 are in the knot
+  std::vector<Word> own(graph.size(), 0);      // which of the 64 are in the SCC
   std::vector<Word> reached(graph.size(), 0);  // which are in it or upstream of it
   for (std::size_t begin = 0; begin < order.size(); begin += kWordBits) {
     const std::size_t end = std::min(order.size(), begin + kWordBits);
-    for (std::size_t i = begin; i < end; ++i) own[knot_at(order[i])] |= Word{1} << (i - begin);
-    const std::size_t first = graph.place_of(knot_at(order[begin]));
+    for (std::size_t i = begin; i < end; ++i) own[scc_at(order[i])] |= Word{1} << (i - begin);
+    const std::size_t first = graph.place_of(scc_at(order[begin]));
     std::fill(reached.begin(), reached.end(), 0);
     BitCounts counts;
     for (std::size_t place = first; place < graph.places(); ++place) {
-      const Knot knot = graph.at(place);
-      if (knot == Graph::kNone) continue;
-      Word bits = own[knot];
-      for (const Knot producer : graph.producers(knot)) bits |= reached[producer];
-      reached[knot] = bits;
-      for (std::uint32_t m = 0; m < members[knot]; ++m) counts.add(bits);
+      const Scc scc = graph.at(place);
+      if (scc == Graph::kNone) continue;
+      Word bits = own[scc];
+      for (const Scc producer : graph.producers(scc)) bits |= reached[producer];
+      reached[scc] = bits;
+      for (std::uint32_t m = 0; m < members[scc]; ++m) counts.add(bits);
     }
     for (std::size_t i = begin; i < end; ++i) dependents_[order[i]] = counts.of(i - begin) - 1;
     for (const std::size_t consumer : order) {
-      const Knot knot = knot_at(consumer);
-      Word bits = reached[knot];
-      if (members[knot] == 1) bits &= ~own[knot];
+      const Scc scc = scc_at(consumer);
+      Word bits = reached[scc];
+      if (members[scc] == 1) bits &= ~own[scc];
       for (; bits != 0; bits &= bits - 1) {
         const std::size_t producer =
             order[begin + static_cast<std::size_t>(std::countr_zero(bits))];
@@ -111,7 +111,7 @@ void Reach::find(const Graph& graph, const Knots& knots) {
         set(downstream_[producer], consumer);
       }
     }
-    for (std::size_t i = begin; i < end; ++i) own[knot_at(order[i])] = 0;
+    for (std::size_t i = begin; i < end; ++i) own[scc_at(order[i])] = 0;
   }
 }
 

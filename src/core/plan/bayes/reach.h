@@ -16,9 +16,9 @@ class Reach {
  public:
   // In the whole graph. `components` may hold some more than once.
   Reach(const Knowledge& knowledge, std::vector<ComponentId> components);
-  // In another: `knots` says for each component of the rule set where it is.
-  using Knots = std::vector<std::optional<Condensation::Knot>>;
-  Reach(const Condensation& graph, const Knots& knots, std::vector<ComponentId> components);
+  // In another: `SCCs` says for each component of the rule set where it is.
+  using Sccs = std::vector<std::optional<Condensation::Scc>>;
+  Reach(const Condensation& graph, const Sccs& sccs, std::vector<ComponentId> components);
 
   std::size_t size() const { return components_.size(); }
   ComponentId operator[](std::size_t place) const { return components_[place]; }
@@ -35,7 +35,7 @@ class Reach {
  private:
   explicit Reach(std::vector<ComponentId> components);
   template <class Graph>
-  void find(const Graph& graph, const Knots& knots);
+  void find(const Graph& graph, const Sccs& sccs);
 
   std::vector<ComponentId> components_;  // ascending, each once
   BitRows upstream_;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plan/bayes/remedies.h"
 #include "plan/bayes/seen_down.h"
+#include "plan/bayes/strategy_chances.h"
 
 namespace culprit::plan {
 

@@ -22,7 +22,7 @@
 //     R_i     = P(root i) (omega_i + (1 - omega_i) pi)
 //
 //   a_i                 how likely what is wrong at i would still be there after all that was tried
-//                       there (plan/bayes/remedies.h): who was adapted in vain is less likely the
+//                       there (plan/bayes/strategy_chances.h): who was adapted in vain is less likely the
 //                       cause
 //   delay_i             how much later than the first of the circle it was detected (before it
 //                       came back, if it comes and goes), in cycles

@@ -20,7 +20,7 @@ double responsibility(Scene& scene, const std::string& rule) {
     all.insert(all.end(), touched.begin(), touched.end());
   }
   const Reach reach(*scene, all);
-  const Failures failures(*scene, reach, Ways(*scene, reach));
+  const Failures failures(*scene, reach, FailurePaths(*scene, reach));
   return Responsibility(*scene, failures).of(failures.index_of(scene.rule(rule)));
 }
 
@@ -39,11 +39,12 @@ TEST(Reach, CountsWhoDependsOnAComponent) {
 }
 
 // However many read it: what is ill of them speaks for the way, not against it.
-TEST(Ways, AManyReadTopicCarriesFailuresWhereAllOfItsReadersAreIll) {
+TEST(FailurePaths, AManyReadTopicCarriesFailuresWhereAllOfItsReadersAreIll) {
   std::string rules = failure_of("producer", "P") + failure_of("aside", "X");
   for (char c = 'a'; c < 'k'; ++c) rules += failure_of({c}, "R" + std::string(1, c));
   Scene scene(rules);
-  scene->states.state(scene.rule("X")).trigger = Slot::of(false);  // it is seen to be well
+  scene->states.state(scene.rule("X")).detection.trigger =
+      Slot::of(false);  // it is seen to be well
   scene.fail("P", -1h);
   for (char c = 'a'; c < 'k'; ++c) {
     scene.link("producer", {c});
@@ -133,7 +134,7 @@ TEST(Responsibility, SharesWhatIsExplained) {
   scene.fail("A").fail("B").fail("C");
   std::vector<ComponentId> all{scene.component("a"), scene.component("b"), scene.component("c")};
   const Reach reach(*scene, all);
-  const Failures failures(*scene, reach, Ways(*scene, reach));
+  const Failures failures(*scene, reach, FailurePaths(*scene, reach));
   const Responsibility r(*scene, failures);
   EXPECT_NEAR(r.share(0, 2) + r.share(1, 2), 1 - r.of(2), 1e-12);
   EXPECT_NEAR(r.share(0, 2) / r.share(1, 2), r.of(0) / r.of(1), 1e-9);

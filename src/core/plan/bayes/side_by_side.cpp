@@ -15,7 +15,7 @@ constexpr std::size_t kFew = 256;
 constexpr std::size_t kMany = 64;
 
 // The try of a round: the first comes before all others, which keep their order.
-const Option& try_of(const Side& side, std::size_t begin, std::size_t round) {
+const Try& try_of(const Side& side, std::size_t begin, std::size_t round) {
   if (round == 0) return side.tries[begin];
   return side.tries[round <= begin ? round - 1 : round];
 }
@@ -28,9 +28,9 @@ std::vector<std::size_t> usual(std::span<const Side> sides) {
 
 // What the side would begin with if time cost nothing, because others take longer anyway.
 std::size_t timeless(Side side) {
-  for (Option& option : side.tries) {
-    option.cost -= option.time;
-    option.time = 0;
+  for (Try& tried : side.tries) {
+    tried.cost -= tried.time;
+    tried.time = 0;
   }
   const auto cost = [&](std::size_t first) {
     return parts(joint_cost(std::span(&side, 1), std::span(&first, 1)));
@@ -113,11 +113,11 @@ double joint_cost(std::span<const Side> sides, std::span<const std::size_t> begi
     times.clear();
     for (std::size_t i = 0; i < sides.size(); ++i) {
       if (round >= sides[i].tries.size()) continue;
-      const Option& option = try_of(sides[i], begins[i], round);
+      const Try& tried = try_of(sides[i], begins[i], round);
       const double chance = still_there[i].chance();
-      sum += chance * (option.cost - option.time);
-      times.emplace_back(option.time, chance);
-      still_there[i].fails(option);
+      sum += chance * (tried.cost - tried.time);
+      times.emplace_back(tried.time, chance);
+      still_there[i].fails(tried);
     }
     std::sort(times.begin(), times.end(), std::greater<>());
     double nobody_longer = 1;

@@ -23,7 +23,7 @@ namespace culprit::plan {
 
 // A failure that is to be repaired.
 struct Side {
-  std::vector<Option> tries;        // all that is left, in the order of u/c
+  std::vector<Try> tries;           // all that is left, in the order of u/c
   std::vector<std::size_t> firsts;  // of these, what it may begin with; the usual one first
 };
 

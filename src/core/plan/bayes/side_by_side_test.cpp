@@ -12,8 +12,8 @@ namespace {
 using testing::ElementsAre;
 
 // Chance, cost and the part of it that its time is.
-const Option kQuick{0.5, 0.11, 0.1};
-const Option kThorough{0.9, 0.31, 0.3};
+const Try kQuick{0.5, 0.11, 0.1};
+const Try kThorough{0.9, 0.31, 0.3};
 
 TEST(JointCost, OfOneSideIsItsExpectedCost) {
   const std::vector<Side> one = {{{kQuick, kThorough}, {0, 1}}};
@@ -44,7 +44,7 @@ TEST(SideBySide, TakesWhatHelpsWhileTheRobotWaitsAnyway) {
 
 // Alone each would be tried quickly first; neither alone is better, both are.
 TEST(SideBySide, ReplacesTwoAtOnce) {
-  const Option quick{0.55, 0.16, 0.15};
+  const Try quick{0.55, 0.16, 0.15};
   const std::vector<Side> sides = {{{quick, kThorough}, {0, 1}}, {{quick, kThorough}, {0, 1}}};
   EXPECT_THAT(side_by_side(std::span(sides).first(1)), ElementsAre(0));
   const std::vector<std::size_t> usual = {0, 0};

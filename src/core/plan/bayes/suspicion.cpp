@@ -17,14 +17,15 @@ bool is_unusual(InputId id, const Knowledge& knowledge) {
 bool is_silent(const Input& input, const Knowledge& knowledge) {
   if (!watches_a_topic(input)) return false;
   const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
-  return rhythm.last && rhythm.silence > Duration::zero() &&
-         knowledge.now > later(*rhythm.last, kSuspiciousSilences * rhythm.silence);
+  return rhythm.last && rhythm.gap > Duration::zero() &&
+         knowledge.now > later(*rhythm.last, kSuspiciousGaps * rhythm.gap);
 }
 
 // With HOLD one reading proves little.
 bool is_coming(const RuleState& state, const Policies& policies) {
-  if (state.history.empty()) return state.trigger.known && state.trigger.b;
-  return 2 * state.true_in_history > policies.hold_needed;
+  if (state.detection.history.empty())
+    return state.detection.trigger.known && state.detection.trigger.b;
+  return 2 * state.detection.true_in_history > policies.hold_needed;
 }
 
 // With HOLD a failure may be seen earlier or later by as many evaluations as may be missed.
@@ -82,7 +83,8 @@ bool looks_well(RuleId rule, const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[rule];
   if (state.phase != RulePhase::kQuiet) return false;
   // In its COOLDOWN, or after ON_CHANGE.
-  const bool is_true = state.history.empty() && state.trigger.known && state.trigger.b;
+  const bool is_true =
+      state.detection.history.empty() && state.detection.trigger.known && state.detection.trigger.b;
   return !is_true && !is_suspicious(rule, knowledge);
 }
 

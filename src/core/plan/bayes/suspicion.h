@@ -1,4 +1,4 @@
-// Is a verdict pending? A rule that has not fired may be about to: what it watches looks ill
+// Is a failure about to be detected? A rule that has not fired may be about to: what it watches looks ill
 // already.
 //
 // The failure downstream is often seen first, because its detector is faster or its last sample
@@ -9,9 +9,9 @@
 
 namespace culprit::plan {
 
-// A topic is suspicious when it is silent for so many times as long as it usually is.
-inline constexpr int kSuspiciousSilences = 2;
-// A failure waits for verdicts on others no longer than so many cycles after its detection, or so
+// A topic is suspicious when its gap is this many times as long as usual.
+inline constexpr int kSuspiciousGaps = 2;
+// A failure waits for suspicious others no longer than so many cycles after its detection, or so
 // many times the latency of the signals of suspicious rules if that is longer.
 inline constexpr Cycles kLongestWait{5};
 inline constexpr int kLongestWaitLatencies = 3;
@@ -28,7 +28,7 @@ inline constexpr double kSure = 0.9;
 //   - a component of it is known to be gone or stopped.
 bool is_suspicious(RuleId rule, const Knowledge& knowledge);
 
-// What a rule sees of a failure. The former has early signs (a topic's silence), the latter has
+// What a rule sees of a failure. The former has early signs (a topic that sends nothing), the latter has
 // none.
 enum class Symptom : std::uint8_t {
   kOutage,  // its trigger reads topics' ages, rates, or who is alive
@@ -37,7 +37,7 @@ enum class Symptom : std::uint8_t {
 Symptom symptom_of(RuleId rule, const Knowledge& knowledge);
 
 // How long a topic of the dead must be silent until the rule's trigger tells: as long as the
-// trigger says, or, while nobody can judge the silence yet, and otherwise at most,
+// trigger says, or, while nobody can judge the gap yet, and otherwise at most,
 // kLongestSilence. Zero if it reads no topic's silence.
 Duration silence_to_tell(RuleId rule, const Knowledge& knowledge);
 inline constexpr Duration kLongestSilence = std::chrono::seconds(10);

@@ -36,7 +36,7 @@ Scene& Scene::link(const std::string& producer, const std::string& consumer) {
 Scene& Scene::fail(const std::string& name, Duration delay) {
   RuleState& state = knowledge_->states.state(rule(name));
   state.failing_since = Time(std::chrono::seconds(90)) + delay;
-  state.trigger = Slot::of(true);
+  state.detection.trigger = Slot::of(true);
   knowledge_->states.enter(rule(name), RulePhase::kFailing);
   return *this;
 }
@@ -99,11 +99,11 @@ std::string Scene::plan(const Planner& planner) {
   for (const RuleId id : knowledge_->states.active()) {
     if (knowledge_->states[id].phase == RulePhase::kFailing) failures.push_back(id);
   }
-  verdicts_ = planner.plan(failures, *knowledge_);
+  decisions_ = planner.plan(failures, *knowledge_);
   std::vector<std::string> chosen;
-  for (const Verdict& verdict : verdicts_) {
-    if (verdict.chosen)
-      chosen.push_back((*rules_)[verdict.rule].name + "." + (*rules_)[*verdict.chosen].name);
+  for (const Decision& decision : decisions_) {
+    if (decision.chosen)
+      chosen.push_back((*rules_)[decision.rule].name + "." + (*rules_)[*decision.chosen].name);
   }
   std::sort(chosen.begin(), chosen.end());
   std::string out;
@@ -111,16 +111,16 @@ std::string Scene::plan(const Planner& planner) {
   return out;
 }
 
-const Verdict& Scene::verdict(const std::string& name) const {
-  for (const Verdict& verdict : verdicts_) {
-    if (verdict.rule == rule(name)) return verdict;
+const Decision& Scene::decision(const std::string& name) const {
+  for (const Decision& decision : decisions_) {
+    if (decision.rule == rule(name)) return decision;
   }
-  throw std::logic_error("no verdict on " + name);
+  throw std::logic_error("no decision on " + name);
 }
 
 const Candidate& Scene::candidate(const std::string& name) const {
   const StrategyId id = strategy(name);
-  for (const Candidate& candidate : verdict((*rules_)[(*rules_)[id].rule].name).candidates) {
+  for (const Candidate& candidate : decision((*rules_)[(*rules_)[id].rule].name).candidates) {
     if (candidate.strategy == id) return candidate;
   }
   throw std::logic_error("no candidate " + name);

@@ -33,8 +33,8 @@ class Scene {
   // "A.restart C.redeploy": what is chosen for the failures without a strategy under way, by name.
   std::string plan(const Planner& planner);
   // Of the last plan.
-  const std::vector<Verdict>& verdicts() const { return verdicts_; }
-  const Verdict& verdict(const std::string& rule) const;
+  const std::vector<Decision>& decisions() const { return decisions_; }
+  const Decision& decision(const std::string& rule) const;
   const Candidate& candidate(const std::string& strategy) const;
 
   const RuleSet& rules() const { return *rules_; }
@@ -44,7 +44,7 @@ class Scene {
  private:
   std::unique_ptr<RuleSet> rules_;
   std::unique_ptr<Knowledge> knowledge_;
-  std::vector<Verdict> verdicts_;
+  std::vector<Decision> decisions_;
 };
 
 // A rule of this name and level whose failure is on `component`, with two strategies: restart (50

@@ -17,22 +17,22 @@ double try_cost(const Effort& effort, const CostWeights& weights, const RuleSet&
          weights.redeployment * effort.redeployments + weights.disruption * effort.disruption;
 }
 
-void StillThere::fails(const Option& tried) {
+void StillThere::fails(const Try& tried) {
   const double own = tried.luck < 1 ? (tried.chance - tried.luck) / (1 - tried.luck) : 0;
   left_ = std::max(0.0, left_ - own);
   unlucky_ *= 1 - tried.luck;
 }
 
-std::vector<double> expected_costs(std::span<const Option> options) {
+std::vector<double> expected_costs(std::span<const Try> tries) {
   std::vector<double> expected;
-  for (std::size_t s = 0; s < options.size(); ++s) {
-    double cost = options[s].cost;
+  for (std::size_t s = 0; s < tries.size(); ++s) {
+    double cost = tries[s].cost;
     StillThere still_there;
-    still_there.fails(options[s]);
-    for (std::size_t k = 0; k < options.size() && still_there.chance() > 0; ++k) {
+    still_there.fails(tries[s]);
+    for (std::size_t k = 0; k < tries.size() && still_there.chance() > 0; ++k) {
       if (k == s) continue;
-      cost += options[k].cost * still_there.chance();
-      still_there.fails(options[k]);
+      cost += tries[k].cost * still_there.chance();
+      still_there.fails(tries[k]);
     }
     expected.push_back(cost);
   }

@@ -14,7 +14,7 @@
 //
 //     E_s = c_s + sum_k c_k a(s and all before k),    a(T) = (1 - sum_{t in T} v_t) prod (1 - q_t)
 //
-//   v, q   of the chances of the strategies (plan/bayes/remedies.h): the probability that one is
+//   v, q   of the chances of the strategies (plan/bayes/strategy_chances.h): the probability that one is
 //          what would fix it, and its luck otherwise. a(T): still there after all of T
 //
 // Without luck that order is the cheapest for one failure (Smith's rule; exchange two neighbours
@@ -53,7 +53,7 @@ struct Effort {
 double try_cost(const Effort& effort, const CostWeights& weights, const RuleSet& rules);
 double time_cost(const Effort& effort, const CostWeights& weights, const RuleSet& rules);
 
-struct Option {
+struct Try {
   double chance = 0;  // u
   double cost = 0;    // c > 0
   double time = 0;    // the part of it that its time costs
@@ -64,7 +64,7 @@ struct Option {
 class StillThere {
  public:
   double chance() const { return left_ * unlucky_; }
-  void fails(const Option& tried);
+  void fails(const Try& tried);
 
  private:
   double left_ = 1;
@@ -72,8 +72,8 @@ class StillThere {
 };
 
 // u/c
-inline double index(const Option& option) { return option.chance / option.cost; }
-// E_s for each of `options`, which are in the order of their indices, highest first.
-std::vector<double> expected_costs(std::span<const Option> options);
+inline double index(const Try& tried) { return tried.chance / tried.cost; }
+// E_s for each of `tries`, which are in the order of their indices, highest first.
+std::vector<double> expected_costs(std::span<const Try> tries);
 
 }  // namespace culprit::plan

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "plan/bayes/remedies.h"
+#include "plan/bayes/strategy_chances.h"
 #include "plan/bayes/test_scene.h"
 
 namespace culprit::plan {
@@ -17,16 +17,17 @@ using namespace std::chrono_literals;
 
 std::vector<double> chances(const Scene& scene, Knowledge& knowledge, const std::string& rule) {
   std::vector<double> all;
-  for (const Remedy& remedy : remedies(scene.rule(rule), knowledge)) all.push_back(remedy.chance);
+  for (const StrategyChance& each : strategy_chances(scene.rule(rule), knowledge))
+    all.push_back(each.chance);
   return all;
 }
 
-TEST(Remedies, AreTheBeliefsWhileNothingWasTried) {
+TEST(StrategyChances, AreTheBeliefsWhileNothingWasTried) {
   Scene scene(failure_of("a", "A"));
   EXPECT_EQ(chances(scene, *scene, "A"), (std::vector<double>{0.5, 0.9}));
 }
 
-TEST(Remedies, GrowLikelierWithEachThatFailed) {
+TEST(StrategyChances, GrowLikelierWithEachThatFailed) {
   Scene scene(
       "COMPONENT a NODE /a\nRULE A\nPOLICIES ERROR\nTRIGGER x > 1\n"
       "STRATEGY s 60 10\nADAPTATION a set_parameter p 1 2\n"
@@ -46,7 +47,7 @@ const std::string kOverlapping =
     "STRATEGY restart 43 10\nADAPTATION a restart 5\n"
     "STRATEGY redeploy 90 10\nADAPTATION a redeploy 15\n";
 
-TEST(Remedies, HelpLessOnceOneFailedThatHelpsAgainstTheSame) {
+TEST(StrategyChances, HelpLessOnceOneFailedThatHelpsAgainstTheSame) {
   Scene scene(kOverlapping);
   EXPECT_THAT(chances(scene, *scene, "A"),
               testing::ElementsAre(testing::DoubleNear(0.28, 1e-9), testing::DoubleNear(0.43, 1e-9),
@@ -57,7 +58,7 @@ TEST(Remedies, HelpLessOnceOneFailedThatHelpsAgainstTheSame) {
   EXPECT_NEAR(left[1], 0.69, 0.01);
 }
 
-TEST(Remedies, SayHowLikelyWhatIsWrongOutlivesThem) {
+TEST(StrategyChances, SayHowLikelyWhatIsWrongOutlivesThem) {
   Scene scene(kOverlapping);
   EXPECT_DOUBLE_EQ(still_there(scene.rule("A"), *scene), 1);
   scene.tried("A.redeploy");
@@ -70,7 +71,7 @@ TEST(Remedies, SayHowLikelyWhatIsWrongOutlivesThem) {
   EXPECT_NEAR(still_there(again.rule("A"), *again), 0.72 * 0.57 * 0.1, 1e-9);
 }
 
-TEST(Remedies, ReplaceAProcessThatIsDown) {
+TEST(StrategyChances, ReplaceAProcessThatIsDown) {
   Scene scene(
       "COMPONENT a NODE /a LAUNCH \"a\"\nCOMPONENT b NODE /b\nRULE A\nPOLICIES ERROR\n"
       "TRIGGER x > 1\n"
@@ -89,8 +90,8 @@ TEST(TryCost, AddsWhatAStrategyTakes) {
 }
 
 TEST(ExpectedCosts, CountTheOthersAsLongAsTheyFail) {
-  const std::vector<Option> options{{0.5, 1}, {0.3, 2}, {0.1, 4}};
-  const auto costs = expected_costs(options);
+  const std::vector<Try> tries{{0.5, 1}, {0.3, 2}, {0.1, 4}};
+  const auto costs = expected_costs(tries);
   EXPECT_DOUBLE_EQ(costs[0], 1 + 0.5 * 2 + 0.2 * 4);
   EXPECT_DOUBLE_EQ(costs[1], 2 + 0.7 * 1 + 0.2 * 4);
   EXPECT_DOUBLE_EQ(costs[2], 4 + 0.9 * 1 + 0.4 * 2);
@@ -98,7 +99,7 @@ TEST(ExpectedCosts, CountTheOthersAsLongAsTheyFail) {
 
 TEST(ExpectedCosts, CountThatOneMayHelpByLuck) {
   StillThere still_there;
-  const Option lucky{0.6, 1, 0, 0.2};  // its own: 0.5
+  const Try lucky{0.6, 1, 0, 0.2};  // its own: 0.5
   still_there.fails(lucky);
   EXPECT_DOUBLE_EQ(still_there.chance(), 0.4);
   still_there.fails({0.5, 1, 0, 0.2});  // its own: 0.375
@@ -108,28 +109,28 @@ TEST(ExpectedCosts, CountThatOneMayHelpByLuck) {
 // The p/c index: no order of the strategies is cheaper than that of u/c. Every order is tried.
 RC_GTEST_PROP(ExpectedCosts, AreLowestInTheOrderOfTheIndex, ()) {
   const int count = *rc::gen::inRange(1, 6);
-  std::vector<Option> options;
+  std::vector<Try> tries;
   double left = 1;
   for (int i = 0; i < count; ++i) {
     const double chance = left * *rc::gen::inRange(1, 100) / 100.0;
     left -= chance;
-    options.push_back({chance, *rc::gen::inRange(1, 100) / 10.0});
+    tries.push_back({chance, *rc::gen::inRange(1, 100) / 10.0});
   }
-  std::sort(options.begin(), options.end(),
-            [](const Option& a, const Option& b) { return index(a) > index(b); });
-  std::vector<std::size_t> order(options.size());
+  std::sort(tries.begin(), tries.end(),
+            [](const Try& a, const Try& b) { return index(a) > index(b); });
+  std::vector<std::size_t> order(tries.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   double cheapest = 1e9;
   do {
     double cost = 0;
     double still_there = 1;
     for (const std::size_t i : order) {
-      cost += still_there * options[i].cost;
-      still_there -= options[i].chance;
+      cost += still_there * tries[i].cost;
+      still_there -= tries[i].chance;
     }
     cheapest = std::min(cheapest, cost);
   } while (std::next_permutation(order.begin(), order.end()));
-  const auto costs = expected_costs(options);
+  const auto costs = expected_costs(tries);
   RC_ASSERT(std::abs(costs.front() - cheapest) < 1e-9);
   RC_ASSERT(
       std::is_sorted(costs.begin(), costs.end(), [](double a, double b) { return a < b - 1e-9; }) ||

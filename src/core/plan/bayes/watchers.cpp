@@ -11,22 +11,22 @@ Watchers::Watchers(const Knowledge& knowledge, Time until)
   const LiveCondensation& graph = knowledge.graph.condensation();
   const RuleSet& rules = knowledge.rules;
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
-    if (const auto knot = knowledge.graph.knot_of(ComponentId(c))) ++places_[*knot].components;
+    if (const auto scc = knowledge.graph.scc_of(ComponentId(c))) ++places_[*scc].components;
   }
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     if (symptom_of(RuleId(r), knowledge) != Symptom::kValue ||
         !is_heard_by(until, RuleId(r), knowledge))
       continue;
     for (const ComponentId c : rules.rules[r].components) {
-      if (const auto knot = knowledge.graph.knot_of(c)) ++places_[*knot].rules;
+      if (const auto scc = knowledge.graph.scc_of(c)) ++places_[*scc].rules;
     }
   }
   for (std::size_t place = 0; place < graph.places(); ++place) {
-    const LiveCondensation::Knot knot = graph.at(place);
-    if (knot == LiveCondensation::kNone) continue;
-    for (const LiveCondensation::Knot producer : graph.producers(knot)) {
+    const LiveCondensation::Scc scc = graph.at(place);
+    if (scc == LiveCondensation::kNone) continue;
+    for (const LiveCondensation::Scc producer : graph.producers(scc)) {
       const Place& before = places_[producer];
-      places_[knot].is_below_one |= before.is_below_one || before.rules > 0;
+      places_[scc].is_below_one |= before.is_below_one || before.rules > 0;
     }
   }
 }
@@ -34,9 +34,9 @@ Watchers::Watchers(const Knowledge& knowledge, Time until)
 bool Watchers::are_upstream_of(RuleId failure) const {
   const Rule& rule = knowledge_.rules[failure];
   return std::any_of(rule.components.begin(), rule.components.end(), [&](ComponentId c) {
-    const auto knot = knowledge_.graph.knot_of(c);
-    if (!knot) return false;
-    const Place& place = places_[*knot];
+    const auto scc = knowledge_.graph.scc_of(c);
+    if (!scc) return false;
+    const Place& place = places_[*scc];
     return place.is_below_one || (place.components > 1 && place.rules > 1);
   });
 }

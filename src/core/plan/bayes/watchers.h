@@ -27,7 +27,7 @@ class Watchers {
   };
 
   const Knowledge& knowledge_;
-  std::vector<Place> places_;  // by knot
+  std::vector<Place> places_;  // by SCC
 };
 
 }  // namespace culprit::plan

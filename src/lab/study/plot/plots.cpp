@@ -52,7 +52,7 @@ Expected<void> write_plots(const Findings& findings, const std::filesystem::path
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
   if (problem) return Error{folder.string() + ": the folder cannot be made: " + problem.message()};
-  const std::string style = plot_style(Surroundings::kLight);
+  const std::string style = plot_style(ColorScheme::kLight);
   for (const NamedPlot& plot : plots(findings)) {
     const std::filesystem::path path = folder / (plot.id + ".svg");
     if (const auto written = write_text(path, plot.svg.file(style)); !written) return written;

@@ -22,7 +22,7 @@ struct NamedPlot {
 std::vector<NamedPlot> plots(const Findings& findings);
 
 // Writes each plot as <id>.svg into the folder, which is made if it is not there. In the colours of
-// light surroundings: for papers.
+// light scheme: for papers.
 Expected<void> write_plots(const Findings& findings, const std::filesystem::path& folder);
 
 }  // namespace culprit::study

@@ -26,8 +26,8 @@ constexpr Palette kDark = {"#e6e9ed", "#9ba4af",
 
 }  // namespace
 
-std::string plot_style(Surroundings surroundings) {
-  const Palette& palette = surroundings == Surroundings::kLight ? kLight : kDark;
+std::string plot_style(ColorScheme scheme) {
+  const Palette& palette = scheme == ColorScheme::kLight ? kLight : kDark;
   std::string style = fmt::format(
       ".plot text{{font:12px system-ui,sans-serif;fill:{0}}}\n"
       ".plot .small{{font-size:11px;fill:{1}}}\n"

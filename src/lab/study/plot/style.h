@@ -1,4 +1,4 @@
-// How plots look: one style sheet, with the colours of light or dark surroundings.
+// How plots look: one style sheet, with the colours of light or dark scheme.
 //
 // The colours of curves are Okabe and Ito's, which people with any colour vision tell apart.
 #pragma once
@@ -9,8 +9,8 @@ namespace culprit::study {
 
 inline constexpr int kCurveColours = 5;  // classes curve0..., band0..., name0...
 
-enum class Surroundings { kLight, kDark };
+enum class ColorScheme { kLight, kDark };
 
-std::string plot_style(Surroundings surroundings);
+std::string plot_style(ColorScheme scheme);
 
 }  // namespace culprit::study

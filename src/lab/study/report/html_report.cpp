@@ -39,7 +39,7 @@ std::string agreement_html(const Ablation& ablation) {
                      score(count.means_within, count.means, "means within the paper's mean ± 1 sd"),
                      score(count.significant_signs, count.significant,
                            "significant effects with the paper's sign"),
-                     score(count.same_verdicts, count.effects,
+                     score(count.same_significance, count.effects,
                            "effects with the paper's verdict (better, worse, not significant)"));
 }
 

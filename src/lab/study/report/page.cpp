@@ -10,8 +10,8 @@ namespace culprit::study {
 namespace {
 
 std::string style() {
-  return "<style>\n" + std::string(kReportStyle) + plot_style(Surroundings::kLight) +
-         "@media (prefers-color-scheme: dark) {\n" + plot_style(Surroundings::kDark) +
+  return "<style>\n" + std::string(kReportStyle) + plot_style(ColorScheme::kLight) +
+         "@media (prefers-color-scheme: dark) {\n" + plot_style(ColorScheme::kDark) +
          "}\n</style>\n";
 }
 

@@ -38,13 +38,13 @@ std::string_view name(published::Factor factor) {
   return "";
 }
 
-Shade shade(published::Verdict verdict) {
-  switch (verdict) {
-    case published::Verdict::kNotSignificant:
+Shade shade(published::Significance significance) {
+  switch (significance) {
+    case published::Significance::kNotSignificant:
       return Shade::kNotSignificant;
-    case published::Verdict::kBetter:
+    case published::Significance::kBetter:
       return Shade::kBetter;
-    case published::Verdict::kWorse:
+    case published::Significance::kWorse:
       return Shade::kWorse;
   }
   return Shade::kNone;
@@ -60,7 +60,7 @@ Largest largest(const Ablation& ablation, std::size_t metric) {
   Largest largest;
   for (const Effect& effect : ablation.effects) {
     const Change& change = effect.changes[metric];
-    if (change.verdict != published::Verdict::kNotSignificant && change.percent)
+    if (change.significance != published::Significance::kNotSignificant && change.percent)
       largest.ours = std::max(largest.ours, std::abs(*change.percent));
     if (change.is_significant_for_them())
       largest.theirs = std::max(largest.theirs, std::abs(change.theirs.percent));
@@ -68,9 +68,10 @@ Largest largest(const Ablation& ablation, std::size_t metric) {
   return largest;
 }
 
-Cell change_cell(std::optional<double> percent, published::Verdict verdict, double largest) {
-  Cell cell{percent ? number(*percent) : "–", shade(verdict), 0, false};
-  if (verdict != published::Verdict::kNotSignificant)
+Cell change_cell(std::optional<double> percent, published::Significance significance,
+                 double largest) {
+  Cell cell{percent ? number(*percent) : "–", shade(significance), 0, false};
+  if (significance != published::Significance::kNotSignificant)
     cell.strength = percent && largest > 0 ? std::max(0.25, std::abs(*percent) / largest) : 1;
   return cell;
 }
@@ -180,17 +181,17 @@ Table effects_table(const Ablation& ablation) {
     for (std::size_t i = 0; i < kPublishedMetrics.size(); ++i) {
       const Change& change = effect.changes[i];
       const Largest scale = largest(ablation, i);
-      cells.push_back(change_cell(change.percent, change.verdict, scale.ours));
-      cells.push_back(change_cell(change.theirs.percent, change.theirs.verdict, scale.theirs));
+      cells.push_back(change_cell(change.percent, change.significance, scale.ours));
+      cells.push_back(change_cell(change.theirs.percent, change.theirs.significance, scale.theirs));
     }
     table.rows.push_back(std::move(cells));
   }
   const Agreement count = agreement(ablation);
-  table.notes.push_back(
-      fmt::format("Tukey's HSD among the eight configurations at 95 %. Of the {} effects that are "
-                  "significant in "
-                  "the paper, {} have the same sign here; {} of all {} have the same verdict.",
-                  count.significant, count.significant_signs, count.same_verdicts, count.effects));
+  table.notes.push_back(fmt::format(
+      "Tukey's HSD among the eight configurations at 95 %. Of the {} effects that are "
+      "significant in "
+      "the paper, {} have the same sign here; {} of all {} have the same verdict.",
+      count.significant, count.significant_signs, count.same_significance, count.effects));
   table.notes.push_back(anova_note(ablation));
   return table;
 }

@@ -30,7 +30,7 @@ namespace culprit::plan {
 // Of a strategy that leaves a dead process as it is.
 inline constexpr double kUnlikely = 0.05;
 
-struct Remedy {
+struct StrategyChance {
   StrategyId strategy;
   bool is_tried = false;
   std::optional<Invalid> invalid;
@@ -42,7 +42,7 @@ struct Remedy {
 };
 
 // Of all strategies of the rule, in their order.
-std::vector<Remedy> remedies(RuleId rule, const Knowledge& knowledge);
+std::vector<StrategyChance> strategy_chances(RuleId rule, const Knowledge& knowledge);
 
 // The probability that what is wrong would still be there after all that was tried at the rule's
 // component:

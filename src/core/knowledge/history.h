@@ -19,6 +19,6 @@
 
 namespace culprit {
 
-using Past = std::vector<Event>;
+using History = std::vector<Event>;
 
 }  // namespace culprit

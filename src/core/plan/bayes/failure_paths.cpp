@@ -1,4 +1,4 @@
-#include "plan/bayes/ways.h"
+#include "plan/bayes/failure_paths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ std::vector<Signs> signs_of(const Knowledge& knowledge) {
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
     const RuleId rule(r);
     const bool is_ill = !looks_well(rule, knowledge);
-    const bool is_seen = is_ill || knowledge.states[rule].trigger.known;
+    const bool is_seen = is_ill || knowledge.states[rule].detection.trigger.known;
     const auto symptom = static_cast<std::size_t>(symptom_of(rule, knowledge));
     for (const ComponentId c : knowledge.rules[rule].components) {
       signs[c.index].has_ill[symptom] = signs[c.index].has_ill[symptom] || is_ill;
@@ -80,14 +80,14 @@ class Narrowing {
           if (!consumers.empty() && can_carry(well, ill)) edges.add(producers, consumers);
         });
     const Condensation graph(edges.vertices(), edges.edges());
-    Reach::Knots knots(knowledge_.rules.components.size());
-    for (std::size_t c = 0; c < knots.size(); ++c) {
+    Reach::Sccs sccs(knowledge_.rules.components.size());
+    for (std::size_t c = 0; c < sccs.size(); ++c) {
       const auto vertex = knowledge_.graph.vertex_of(ComponentId(c));
-      if (vertex && place_[*vertex] != kOut) knots[c] = graph.knot_of(place_[*vertex]);
+      if (vertex && place_[*vertex] != kOut) sccs[c] = graph.scc_of(place_[*vertex]);
     }
     std::vector<ComponentId> components;
     for (std::size_t p = 0; p < whole.size(); ++p) components.push_back(whole[p]);
-    return {graph, knots, std::move(components)};
+    return {graph, sccs, std::move(components)};
   }
 
  private:
@@ -101,7 +101,8 @@ class Narrowing {
 
 }  // namespace
 
-Ways::Ways(const Knowledge& knowledge, const Reach& whole) : knowledge_(knowledge), whole_(whole) {
+FailurePaths::FailurePaths(const Knowledge& knowledge, const Reach& whole)
+    : knowledge_(knowledge), whole_(whole) {
   std::array<bool, 2> is_needed{};
   for (const RuleId rule : knowledge.states.active()) {
     if (!is_young(rule, knowledge))
@@ -118,7 +119,7 @@ Ways::Ways(const Knowledge& knowledge, const Reach& whole) : knowledge_(knowledg
   }
 }
 
-std::span<const Word> Ways::upstream(std::size_t place, RuleId rule) const {
+std::span<const Word> FailurePaths::upstream(std::size_t place, RuleId rule) const {
   const auto& narrowed = narrowed_[static_cast<std::size_t>(symptom_of(rule, knowledge_))];
   const bool is_whole = !narrowed || is_young(rule, knowledge_);
   return (is_whole ? whole_ : *narrowed).upstream(place);

@@ -1,4 +1,4 @@
-#include "journal/past.h"
+#include "journal/history.h"
 
 #include <algorithm>
 
@@ -20,7 +20,7 @@ const What* order_of(const Event& event) {
 
 // Of each component only the last event of this kind counts.
 template <class What>
-bool replaces_older(const Event& event, Past& kept) {
+bool replaces_older(const Event& event, History& kept) {
   const auto* newer = std::get_if<What>(&event.what);
   if (newer == nullptr) return false;
   std::erase_if(kept, [&](const Event& old) {
@@ -32,7 +32,7 @@ bool replaces_older(const Event& event, Past& kept) {
 }
 
 // The oldest outcome of the strategy that waits does so no longer.
-void forget_pending(StrategyId strategy, Past& kept) {
+void forget_pending(StrategyId strategy, History& kept) {
   const auto oldest = std::find_if(kept.begin(), kept.end(), [&](const Event& event) {
     const auto* pending = std::get_if<OutcomePending>(&event.what);
     return pending != nullptr && pending->strategy == strategy;
@@ -58,7 +58,7 @@ std::optional<RuleId> searched(const Event& event, const RuleSet& rules) {
 bool is_long_gone(const Event& event, Time now) { return later(event.at, kPastCounts) <= now; }
 
 // By rule: from which event on its failure is there, or may still come back; past.size() if not.
-std::vector<std::size_t> open_since(const Past& past, Time now, const RuleSet& rules) {
+std::vector<std::size_t> open_since(const History& past, Time now, const RuleSet& rules) {
   std::vector<std::size_t> since(rules.rules.size(), past.size());
   for (std::size_t i = 0; i < past.size(); ++i) {
     if (const auto* e = std::get_if<FailureDetected>(&past[i].what))
@@ -79,7 +79,7 @@ std::optional<RuleId> went(const Event& event) {
 }
 
 // What each process says anew of a failure that is still there. @pre its failure is there
-bool is_said_again(const Event& event, const Past& kept, const RuleSet& rules) {
+bool is_said_again(const Event& event, const History& kept, const RuleSet& rules) {
   if (!is_any_of<FailureDetected, LastResortReached, RuleExhausted>(event)) return false;
   const auto rule = searched(event, rules);
   for (auto old = kept.rbegin(); old != kept.rend(); ++old) {
@@ -100,9 +100,9 @@ bool is_remembered(const Event& event) {
          order_of<LiftSilence>(event) != nullptr;
 }
 
-Past still_counting(const Past& past, Time now, const RuleSet& rules) {
+History still_counting(const History& past, Time now, const RuleSet& rules) {
   const std::vector<std::size_t> open = open_since(past, now, rules);
-  Past kept;
+  History kept;
   for (std::size_t i = 0; i < past.size(); ++i) {
     const Event& event = past[i];
     const auto* silence = order_of<Silence>(event);
@@ -137,8 +137,8 @@ Past still_counting(const Past& past, Time now, const RuleSet& rules) {
   return kept;
 }
 
-Past of_people(const Past& past, Duration shift) {
-  Past kept;
+History of_people(const History& past, Duration shift) {
+  History kept;
   for (const Event& event : past) {
     if (order_of<Silence>(event) == nullptr && order_of<LiftSilence>(event) == nullptr) continue;
     kept.push_back(event);
@@ -147,7 +147,7 @@ Past of_people(const Past& past, Duration shift) {
   return kept;
 }
 
-Json to_json(const Past& past, const RuleSet& rules) {
+Json to_json(const History& past, const RuleSet& rules) {
   Json json = Json::array();
   for (const Event& event : past) {
     json.push_back(to_json(event, rules));
@@ -157,8 +157,8 @@ Json to_json(const Past& past, const RuleSet& rules) {
   return json;
 }
 
-Past past_from_json(const Json& json, const RuleSet& rules) {
-  Past past;
+History history_from_json(const Json& json, const RuleSet& rules) {
+  History past;
   if (!json.is_array()) return past;
   for (const Json& each : json) {
     auto event = event_from_json(each, rules);

@@ -1,4 +1,4 @@
-#include "plan/bayes/surroundings.h"
+#include "plan/bayes/exclusions.h"
 
 #include <algorithm>
 #include <iterator>
@@ -7,11 +7,6 @@
 #include "plan/bayes/suspicion.h"
 
 namespace culprit::plan {
-namespace {
-
-constexpr std::size_t kLevels = 3;
-
-}  // namespace
 
 bool takes_down(const Adaptation& adaptation) {
   switch (adaptation.type) {
@@ -66,8 +61,8 @@ std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
   return all;
 }
 
-Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach, const Levels& levels,
-                           std::span<const RuleId> failures, std::span<const RuleId> suspicious)
+Exclusions::Exclusions(const Knowledge& knowledge, const Reach& reach, const Levels& levels,
+                       std::span<const RuleId> failures, std::span<const RuleId> suspicious)
     : knowledge_(knowledge),
       reach_(reach),
       levels_(levels),
@@ -121,7 +116,7 @@ Surroundings::Surroundings(const Knowledge& knowledge, const Reach& reach, const
   }
 }
 
-std::optional<Surroundings::Obstacle> Surroundings::reserved(const Strategy& strategy) const {
+std::optional<Exclusions::Obstacle> Exclusions::reserved(const Strategy& strategy) const {
   const Marks& marks = holding_[level_of(strategy.rule)];
   for (const ComponentId c : strategy.components) {
     const std::size_t place = reach_.place_of(c);
@@ -130,27 +125,27 @@ std::optional<Surroundings::Obstacle> Surroundings::reserved(const Strategy& str
   return std::nullopt;
 }
 
-std::optional<Surroundings::Obstacle> Surroundings::obstacle(std::size_t place,
-                                                             const Strategy& strategy,
-                                                             double chance) const {
+std::optional<Exclusions::Obstacle> Exclusions::obstacle(std::size_t place,
+                                                         const Strategy& strategy,
+                                                         double chance) const {
   const std::size_t level = level_of(strategy.rule);
   if (auto held = found(Condition::kDownstream, reach_.upstream(place), holding_[level]))
     return held;
-  if (auto pending = pending_verdict(place, strategy, chance)) return pending;
+  if (auto pending = pending_suspicion(place, strategy, chance)) return pending;
   if (auto urgent = in_the_way(place, urgent_[level])) return urgent;
   // What is sure and takes nothing down is over before they would have their turn downstream.
   if (auto next = in_the_way(place, planned_[level])) {
-    const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
-    if (!needs_no_verdict || has(planned_[level].bits(), place)) return next;
+    const bool need_not_wait = chance >= kSure && !takes_down(strategy);
+    if (!need_not_wait || has(planned_[level].bits(), place)) return next;
   }
   return takes_down(strategy) ? in_the_way(place, judged_[level]) : std::nullopt;
 }
 
 // What looks ill upstream may be the cause; what does at the same component, and is more critical,
 // would have to wait. What does downstream may be the effect: nobody waits for it.
-std::optional<Surroundings::Obstacle> Surroundings::pending_verdict(std::size_t place,
-                                                                    const Strategy& strategy,
-                                                                    double chance) const {
+std::optional<Exclusions::Obstacle> Exclusions::pending_suspicion(std::size_t place,
+                                                                  const Strategy& strategy,
+                                                                  double chance) const {
   const Time since = knowledge_.states[strategy.rule].failing_since;
   const auto is_awaited = [&](std::size_t p) {
     return knowledge_.now < later(since, patience_[p]);
@@ -162,41 +157,41 @@ std::optional<Surroundings::Obstacle> Surroundings::pending_verdict(std::size_t 
   });
   if (suspect) return suspect;
   const Marks& pending = pending_[level_of(strategy.rule)];
-  const bool needs_no_verdict = chance >= kSure && !takes_down(strategy);
-  if (needs_no_verdict || !has(pending.bits(), place) || !is_awaited(place)) return std::nullopt;
+  const bool need_not_wait = chance >= kSure && !takes_down(strategy);
+  if (need_not_wait || !has(pending.bits(), place) || !is_awaited(place)) return std::nullopt;
   return Obstacle{Condition::kInTheWay, reach_[place], pending.failure[place]};
 }
 
 // Does what is at `place`, or depends on it, belong to one of the failures?
-std::optional<Surroundings::Obstacle> Surroundings::in_the_way(std::size_t place,
-                                                               const Marks& marks) const {
+std::optional<Exclusions::Obstacle> Exclusions::in_the_way(std::size_t place,
+                                                           const Marks& marks) const {
   if (has(marks.bits(), place))
     return Obstacle{Condition::kInTheWay, reach_[place], marks.failure[place]};
   return found(Condition::kInTheWay, reach_.downstream(place), marks);
 }
 
-void Surroundings::add(const Strategy& strategy) {
+void Exclusions::add(const Strategy& strategy) {
   for (const ComponentId c : strategy.components) {
     added_.mark(reach_.place_of(c), strategy.rule);
     if (!only_revives(strategy, knowledge_)) guarded_.mark(reach_.place_of(c), strategy.rule);
   }
 }
 
-std::optional<Surroundings::Obstacle> Surroundings::taken(std::size_t place) const {
+std::optional<Exclusions::Obstacle> Exclusions::taken(std::size_t place) const {
   if (!has(added_.bits(), place)) return std::nullopt;
   return Obstacle{Condition::kAffected, reach_[place], added_.failure[place]};
 }
 
-std::optional<Surroundings::Obstacle> Surroundings::conflict(std::size_t place) const {
+std::optional<Exclusions::Obstacle> Exclusions::conflict(std::size_t place) const {
   if (auto by_another = taken(place)) return by_another;
   if (auto upstream = found(Condition::kDownstream, reach_.upstream(place), added_))
     return upstream;
   return found(Condition::kInTheWay, reach_.downstream(place), guarded_);
 }
 
-std::optional<Surroundings::Obstacle> Surroundings::found(Condition condition,
-                                                          std::span<const Word> where,
-                                                          const Marks& marks) const {
+std::optional<Exclusions::Obstacle> Exclusions::found(Condition condition,
+                                                      std::span<const Word> where,
+                                                      const Marks& marks) const {
   const auto place = first_common(where, marks.bits());
   if (!place) return std::nullopt;
   return Obstacle{condition, reach_[*place], marks.failure[*place]};

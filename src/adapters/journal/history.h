@@ -1,9 +1,9 @@
-// What runs of culprit did on this robot, as the next one remembers it (knowledge/past.h): gathered
+// What runs of culprit did on this robot, as the next one remembers it (knowledge/history.h): gathered
 // from rows, and carried on from session to session until it no longer counts.
 #pragma once
 
 #include "journal/json.h"
-#include "knowledge/past.h"
+#include "knowledge/history.h"
 
 namespace culprit::journal {
 
@@ -11,18 +11,18 @@ namespace culprit::journal {
 // and of each component its last process and its intended lifecycle.
 inline constexpr Duration kPastCounts = std::chrono::hours(1);
 
-// Is it one that the next run is told of (knowledge/past.h)?
+// Is it one that the next run is told of (knowledge/history.h)?
 bool is_remembered(const Event& event);
 
 // Leaves out what does not count at `now` any more.
-Past still_counting(const Past& past, Time now, const RuleSet& rules);
+History still_counting(const History& past, Time now, const RuleSet& rules);
 
 // Only what holds on another robot, and on this one after a restart of the machine, whose clock
 // then begins anew: silences. `shift` is added to their times.
-Past of_people(const Past& past, Duration shift);
+History of_people(const History& past, Duration shift);
 
-Json to_json(const Past& past, const RuleSet& rules);
+Json to_json(const History& past, const RuleSet& rules);
 // Leaves out what `rules` does not have.
-Past past_from_json(const Json& json, const RuleSet& rules);
+History history_from_json(const Json& json, const RuleSet& rules);
 
 }  // namespace culprit::journal

@@ -1,5 +1,5 @@
 // What of earlier runs still counts.
-#include "journal/past.h"
+#include "journal/history.h"
 
 #include <gtest/gtest.h>
 
@@ -21,29 +21,29 @@ RuleSet rules() {
 Event at(Duration when, decltype(Event::what) what) { return {Time(when), std::move(what)}; }
 
 template <class What>
-std::size_t count(const Past& past) {
+std::size_t count(const History& past) {
   std::size_t found = 0;
   for (const Event& event : past) found += std::holds_alternative<What>(event.what) ? 1 : 0;
   return found;
 }
 
-TEST(Past, AnOutcomeWaitsUntilItIsDueOrCounted) {
+TEST(History, AnOutcomeWaitsUntilItIsDueOrCounted) {
   const RuleSet r = rules();
   const StrategyId s(0);
-  const Past past = {at(1s, OutcomePending{s, true, Time(61s)})};
+  const History past = {at(1s, OutcomePending{s, true, Time(61s)})};
   EXPECT_EQ(count<OutcomePending>(still_counting(past, Time(60s), r)), 1u);
   EXPECT_EQ(count<OutcomePending>(still_counting(past, Time(61s), r)), 0u) << "nobody looked on";
-  Past counted = past;
+  History counted = past;
   counted.push_back(at(30s, OutcomeCounted{s, OutcomeCounted::As::kNothing}));
   EXPECT_EQ(count<OutcomePending>(still_counting(counted, Time(60s), r)), 0u);
 }
 
-TEST(Past, OutcomesAreReadBackAsTheyWereWritten) {
+TEST(History, OutcomesAreReadBackAsTheyWereWritten) {
   const RuleSet r = rules();
-  const Past past = {
+  const History past = {
       at(1s, OutcomePending{StrategyId(1), true, Time(61s)}),
       at(2s, FailureResolved{RuleId(0), FailureResolved::How::kByStrategy, StrategyId(1), 1s})};
-  const Past again = past_from_json(to_json(past, r), r);
+  const History again = history_from_json(to_json(past, r), r);
   ASSERT_EQ(again.size(), 2u);
   const auto& pending = std::get<OutcomePending>(again[0].what);
   EXPECT_EQ(pending.strategy, StrategyId(1));
@@ -52,22 +52,22 @@ TEST(Past, OutcomesAreReadBackAsTheyWereWritten) {
   EXPECT_EQ(std::get<FailureResolved>(again[1].what).strategy, StrategyId(1));
 }
 
-TEST(Past, OfEachComponentHowItCameUpLastIsReadBack) {
+TEST(History, OfEachComponentHowItCameUpLastIsReadBack) {
   const RuleSet r = rules();
   ASSERT_FALSE(r.components.empty());
   const ComponentId c(0);
   const ComingUp how{ComingUp::Driver::kOther, 300ms, 2500ms};
-  const Past past = {at(1s, CameUp{c, {ComingUp::Driver::kCulprit, 1s, 1s}}),
-                     at(2s, CameUp{c, how})};
-  const Past kept = still_counting(past, Time(48h), r);
+  const History past = {at(1s, CameUp{c, {ComingUp::Driver::kCulprit, 1s, 1s}}),
+                        at(2s, CameUp{c, how})};
+  const History kept = still_counting(past, Time(48h), r);
   ASSERT_EQ(kept.size(), 1u);
-  const Past again = past_from_json(to_json(kept, r), r);
+  const History again = history_from_json(to_json(kept, r), r);
   ASSERT_EQ(again.size(), 1u);
   EXPECT_EQ(std::get<CameUp>(again[0].what).how, how);
 }
 
 // Journals of before outcomes waited.
-TEST(Past, OldRowsAreStillRead) {
+TEST(History, OldRowsAreStillRead) {
   const RuleSet r = rules();
   const auto resolved = event_from_json(
       from_text(R"({"type":"failure_resolved","rule":"R","reaction_s":1,"time":5})"), r);
@@ -75,15 +75,15 @@ TEST(Past, OldRowsAreStillRead) {
   EXPECT_FALSE(std::get<FailureResolved>(resolved->what).strategy);
 }
 
-TEST(Past, WhatWasTriedCountsUntilTheFailureStayedAway) {
+TEST(History, WhatWasTriedCountsUntilTheFailureStayedAway) {
   const RuleSet r = rules();
-  const Past past = {at(1s, FailureDetected{RuleId(0)}),
-                     at(2s, StrategyFailed{StrategyId(0), ""}),
-                     at(3s, FailureResolved{RuleId(0), {}, {}, {}}),
-                     at(5s, FailureDetected{RuleId(0)}),
-                     at(6s, StrategyFailed{StrategyId(1), ""}),
-                     at(7s, FailureResolved{RuleId(0), {}, {}, {}})};
-  const Past soon = still_counting(past, Time(10s), r);
+  const History past = {at(1s, FailureDetected{RuleId(0)}),
+                        at(2s, StrategyFailed{StrategyId(0), ""}),
+                        at(3s, FailureResolved{RuleId(0), {}, {}, {}}),
+                        at(5s, FailureDetected{RuleId(0)}),
+                        at(6s, StrategyFailed{StrategyId(1), ""}),
+                        at(7s, FailureResolved{RuleId(0), {}, {}, {}})};
+  const History soon = still_counting(past, Time(10s), r);
   EXPECT_EQ(count<FailureDetected>(soon), 2u) << "it came back";
   EXPECT_EQ(count<StrategyFailed>(soon), 2u);
   EXPECT_EQ(count<StrategyFailed>(still_counting(past, Time(2h), r)), 0u);

@@ -1,4 +1,4 @@
-#include "plan/bayes/remedies.h"
+#include "plan/bayes/strategy_chances.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,34 +14,33 @@ double luck_of(double chance, double own) { return own < 1 ? (chance - own) / (1
 
 }  // namespace
 
-std::vector<Remedy> remedies(RuleId rule, const Knowledge& knowledge) {
+std::vector<StrategyChance> strategy_chances(RuleId rule, const Knowledge& knowledge) {
   const auto& strategies = knowledge.rules[rule].strategies;
   const RuleState& state = knowledge.states[rule];
   const bool is_down = is_seen_down(rule, knowledge);
-  std::vector<Remedy> all;
+  std::vector<StrategyChance> all;
   double sum = 0;
   for (std::size_t s = 0; s < strategies.size(); ++s) {
     const Strategy& strategy = knowledge.rules[strategies[s]];
-    Remedy remedy{
+    StrategyChance each{
         strategies[s], state.search.tried[s], {}, knowledge.beliefs[strategies[s]].mean().value};
-    if (is_down && !revives(strategy, knowledge)) remedy.chance *= kUnlikely;
-    if (!remedy.is_tried) remedy.invalid = invalidity(strategy, knowledge);
-    remedy.is_withheld =
-        !remedy.is_out() && !knowledge.withheld[strategies[s].index].reason.empty();
-    sum += remedy.chance;
-    all.push_back(std::move(remedy));
+    if (is_down && !revives(strategy, knowledge)) each.chance *= kUnlikely;
+    if (!each.is_tried) each.invalid = invalidity(strategy, knowledge);
+    each.is_withheld = !each.is_out() && !knowledge.withheld[strategies[s].index].reason.empty();
+    sum += each.chance;
+    all.push_back(std::move(each));
   }
   const double causes = std::max(1.0, sum);
   double left = 1;
-  for (const Remedy& remedy : all) {
-    if (remedy.is_out()) left -= remedy.chance / causes;
+  for (const StrategyChance& each : all) {
+    if (each.is_out()) left -= each.chance / causes;
   }
-  for (Remedy& remedy : all) {
-    const double own = remedy.chance / causes;
-    remedy.luck = luck_of(std::exchange(remedy.chance, 0), own);
-    if (remedy.is_out() || own == 0) continue;
+  for (StrategyChance& each : all) {
+    const double own = each.chance / causes;
+    each.luck = luck_of(std::exchange(each.chance, 0), own);
+    if (each.is_out() || own == 0) continue;
     const double now = own / std::max(own, left);
-    remedy.chance = now + (1 - now) * remedy.luck;
+    each.chance = now + (1 - now) * each.luck;
   }
   return all;
 }

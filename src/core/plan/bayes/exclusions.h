@@ -1,4 +1,4 @@
-// What else is going on around the components that a plan may adapt.
+// What excludes a strategy from a plan: what else is going on around the components that it adapts.
 #pragma once
 
 #include <array>
@@ -9,28 +9,28 @@
 namespace culprit::plan {
 
 // Which components a plan looks at: those that active and exhausted rules touch, and those of
-// suspicious rules while anyone waits for a verdict.
+// suspicious rules while anyone waits to see whether they fail.
 std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
                                                 std::span<const RuleId> suspicious);
 
-// The rules whose verdict is pending; none once no failure of `failures` waits for verdicts any
-// more.
+// The rules of which it is not known yet whether they fail; none once no failure of `failures` waits
+// for that any more.
 std::vector<RuleId> suspicious_rules(std::span<const RuleId> failures, const Knowledge& knowledge);
 
 // Does it take a component down, if only for a moment?
 bool takes_down(const Adaptation& adaptation);
 bool takes_down(const Strategy& strategy);
 
-// How long a failure waits, from its detection on, for the verdict on a suspicious rule.
+// How long a failure waits, from its detection on, to see whether a suspicious rule fails.
 Duration longest_wait(RuleId suspicious, const Knowledge& knowledge);
 
 // Places (see Reach) where something stands against adapting them, and why.
-class Surroundings {
+class Exclusions {
  public:
   // `failures` are those to be decided about; what waits for a person is not among them: whoever
   // made way for it would wait as long.
-  Surroundings(const Knowledge& knowledge, const Reach& reach, const Levels& levels,
-               std::span<const RuleId> failures, std::span<const RuleId> suspicious);
+  Exclusions(const Knowledge& knowledge, const Reach& reach, const Levels& levels,
+             std::span<const RuleId> failures, std::span<const RuleId> suspicious);
 
   struct Obstacle {
     Condition condition = Condition::kAdapting;
@@ -40,7 +40,7 @@ class Surroundings {
   // Who has a component of the strategy, if anybody does that need not give way to it.
   std::optional<Obstacle> reserved(const Strategy& strategy) const;
   // What else stands against adapting the component at `place` by this strategy, if anything does.
-  // `chance` is u of the strategy (plan/bayes/remedies.h).
+  // `chance` is u of the strategy (plan/bayes/strategy_chances.h).
   std::optional<Obstacle> obstacle(std::size_t place, const Strategy& strategy,
                                    double chance) const;
 
@@ -66,8 +66,8 @@ class Surroundings {
     std::vector<RuleId> failure;
   };
   std::optional<Obstacle> in_the_way(std::size_t place, const Marks& marks) const;
-  std::optional<Obstacle> pending_verdict(std::size_t place, const Strategy& strategy,
-                                          double chance) const;
+  std::optional<Obstacle> pending_suspicion(std::size_t place, const Strategy& strategy,
+                                            double chance) const;
   std::size_t level_of(RuleId rule) const { return static_cast<std::size_t>(levels_.of(rule)); }
   std::optional<Obstacle> found(Condition condition, std::span<const Word> where,
                                 const Marks& marks) const;
@@ -85,7 +85,7 @@ class Surroundings {
   std::vector<Marks> judged_;       // by level: of those whose strategy waits for its verdict
   std::vector<Marks> pending_;      // by level: of suspicious rules that are more critical
   Marks suspects_;                  // of suspicious rules
-  std::vector<Duration> patience_;  // by place: how long a failure waits for the verdicts on them
+  std::vector<Duration> patience_;  // by place: how long a failure waits for the suspicious there
   Marks added_;
   Marks guarded_;  // of those added, what may not be disturbed from upstream
 };

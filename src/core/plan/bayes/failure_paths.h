@@ -25,10 +25,10 @@ namespace culprit::plan {
 inline constexpr double kSpared = 0.25;
 inline constexpr double kDeviations = 3;
 
-class Ways {
+class FailurePaths {
  public:
   // Both must outlive it. `whole` has the components that matter, by the whole graph.
-  Ways(const Knowledge& knowledge, const Reach& whole);
+  FailurePaths(const Knowledge& knowledge, const Reach& whole);
 
   // The places from which the failure of `rule` at `place` can have come.
   std::span<const Word> upstream(std::size_t place, RuleId rule) const;
