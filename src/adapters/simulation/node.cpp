@@ -24,9 +24,8 @@ Node::~Node() {
 // ---- the process
 
 void Node::launch() {
-  if (process_ != ProcessState::kGone) return;
-  process_ = ProcessState::kRunning;
-  pid_ = world_.new_pid();
+  if (body_.process != ProcessState::kGone) return;
+  body_.start(world_.new_pid());
   world_.show([&](Watcher& watcher) { watcher.on_process(*this, ""); });
   while_alive(traits_.start.draw(random_), [this] {
     if (failing_starts_ > 0) {
@@ -39,9 +38,9 @@ void Node::launch() {
 }
 
 void Node::appear() {
-  lifecycle_ = Lifecycle::kUnconfigured;
-  parameters_ = defaults_;
-  is_in_graph_ = true;
+  body_.state = Lifecycle::kUnconfigured;
+  body_.parameters = defaults_;
+  body_.is_in_graph = true;
   world_.show([&](Watcher& watcher) { watcher.on_node(*this, true); });
   on_start();
   for (Endpoint* endpoint : endpoints_) endpoint->report();
@@ -58,15 +57,14 @@ void Node::bring_up() {
 }
 
 void Node::disappear() {
-  if (!is_in_graph_) return;
+  if (!body_.is_in_graph) return;
   for (Endpoint* endpoint : endpoints_) endpoint->report();
-  is_in_graph_ = false;
+  body_.is_in_graph = false;
   world_.show([&](Watcher& watcher) { watcher.on_node(*this, false); });
 }
 
 void Node::lose_process(const std::string& remark) {
-  process_ = ProcessState::kGone;
-  is_hung_ = false;
+  body_.end();
   waiting_.clear();
   for (Endpoint* endpoint : endpoints_) endpoint->forget();
   free_at_ = {};
@@ -74,9 +72,9 @@ void Node::lose_process(const std::string& remark) {
 }
 
 void Node::terminate(Action done) {
-  if (process_ == ProcessState::kGone) return done();
-  world_.after(traits_.end.draw(random_), [this, pid = pid_, done = std::move(done)] {
-    if (pid_ == pid && process_ != ProcessState::kGone) {
+  if (body_.process == ProcessState::kGone) return done();
+  world_.after(traits_.end.draw(random_), [this, pid = body_.pid, done = std::move(done)] {
+    if (body_.pid == pid && body_.process != ProcessState::kGone) {
       lose_process("stopped");
       disappear();
     }
@@ -85,28 +83,28 @@ void Node::terminate(Action done) {
 }
 
 void Node::kill() {
-  if (process_ == ProcessState::kGone) return;
+  if (body_.process == ProcessState::kGone) return;
   lose_process("killed by signal 9");
-  world_.after(kLease, [this, pid = pid_] {
-    if (pid_ == pid) disappear();
+  world_.after(kLease, [this, pid = body_.pid] {
+    if (body_.pid == pid) disappear();
   });
 }
 
 void Node::stop() {
-  if (process_ != ProcessState::kRunning) return;
-  process_ = ProcessState::kStopped;
+  if (body_.process != ProcessState::kRunning) return;
+  body_.process = ProcessState::kStopped;
   world_.show([&](Watcher& watcher) { watcher.on_process(*this, ""); });
 }
 
 void Node::resume() {
-  if (process_ != ProcessState::kStopped) return;
-  process_ = ProcessState::kRunning;
+  if (body_.process != ProcessState::kStopped) return;
+  body_.process = ProcessState::kRunning;
   world_.show([&](Watcher& watcher) { watcher.on_process(*this, ""); });
   drain();
 }
 
 void Node::hang() {
-  if (process_ != ProcessState::kGone) is_hung_ = true;
+  if (body_.process != ProcessState::kGone) body_.answers = false;
 }
 
 void Node::for_each_endpoint(
@@ -119,19 +117,19 @@ void Node::for_each_endpoint(
 // ---- the executor
 
 void Node::while_alive(Duration delay, Action action) {
-  world_.after(delay, [this, pid = pid_, action = std::move(action)] {
-    if (pid_ == pid && process_ != ProcessState::kGone) action();
+  world_.after(delay, [this, pid = body_.pid, action = std::move(action)] {
+    if (body_.pid == pid && body_.process != ProcessState::kGone) action();
   });
 }
 
 void Node::post(Action work) {
-  if (process_ == ProcessState::kGone || !is_in_graph_) return;
+  if (body_.process == ProcessState::kGone || !body_.is_in_graph) return;
   waiting_.push_back(std::move(work));
   drain();
 }
 
 void Node::drain() {
-  while (!waiting_.empty() && process_ == ProcessState::kRunning && !is_hung_ && !is_in_callback_) {
+  while (!waiting_.empty() && body_.can_answer() && !is_in_callback_) {
     if (world_.now() < free_at_) {
       if (std::exchange(is_waking_, true)) return;
       world_.at(free_at_, [this] {
@@ -162,40 +160,29 @@ void Node::tick(Duration period, const Action& action) {
 // ---- lifecycle, parameters
 
 void Node::become(Lifecycle lifecycle) {
-  lifecycle_ = lifecycle;
+  body_.state = lifecycle;
   for (Endpoint* endpoint : endpoints_) endpoint->report();
   world_.show([&](Watcher& watcher) { watcher.on_lifecycle(*this); });
 }
 
 bool Node::change(Transition transition) {
-  using enum Lifecycle;
-  if (transition == Transition::kConfigure && lifecycle_ == kUnconfigured) {
+  const auto next = after(transition, body_.state);
+  if (!next) return false;
+  if (transition == Transition::kConfigure) {
     occupy(traits_.configure);
     on_configure();
-    become(kInactive);
-  } else if (transition == Transition::kActivate && lifecycle_ == kInactive) {
+  } else if (transition == Transition::kActivate) {
     on_activate();
-    become(kActive);
-  } else if (transition == Transition::kDeactivate && lifecycle_ == kActive) {
+  } else if (transition == Transition::kDeactivate) {
     on_deactivate();
-    become(kInactive);
-  } else if (transition == Transition::kCleanup && lifecycle_ == kInactive) {
-    become(kUnconfigured);
-  } else {
-    return false;
   }
+  become(*next);
   return true;
 }
 
-const Value* Node::parameter(const std::string& name) const {
-  const auto found = parameters_.find(name);
-  return found == parameters_.end() ? nullptr : &found->second;
-}
-
 bool Node::set_parameter(const std::string& name, const Value& value) {
-  const auto found = parameters_.find(name);
-  if (found == parameters_.end() || found->second.index() != value.index() || !on_set(name, value))
-    return false;
+  const Value* held = parameter(name);
+  if (held == nullptr || held->index() != value.index() || !on_set(name, value)) return false;
   assign(name, value);
   return true;
 }
@@ -205,14 +192,14 @@ bool Node::on_set(const std::string&, const Value&) { return true; }
 bool Node::call(const std::string&) { return false; }
 
 void Node::declare(std::string name, Value value) {
-  parameters_[name] = value;
+  body_.parameters[name] = value;
   defaults_[std::move(name)] = std::move(value);
 }
 
 void Node::set_default(const std::string& name, Value value) { defaults_[name] = std::move(value); }
 
 void Node::assign(const std::string& name, Value value) {
-  Value& held = parameters_[name];
+  Value& held = body_.parameters[name];
   held = std::move(value);
   world_.show([&](Watcher& watcher) { watcher.on_parameter(*this, name, held); });
 }

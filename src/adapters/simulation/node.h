@@ -13,7 +13,7 @@
 #include <map>
 #include <string>
 
-#include "robot/command.h"
+#include "simulation/body.h"
 #include "simulation/world.h"
 
 namespace culprit::simulation {
@@ -58,9 +58,9 @@ class Node {
 
   // ---- the process
 
-  ProcessState process() const { return process_; }
-  int pid() const { return pid_; }
-  bool is_in_graph() const { return is_in_graph_; }
+  ProcessState process() const { return body_.process; }
+  int pid() const { return body_.pid; }
+  bool is_in_graph() const { return body_.is_in_graph; }
   // Starts the process if it is gone. The node comes into the graph after traits().start.
   void launch();
   // Asks the process to end. `done` is called when it is gone, at once if it was.
@@ -81,21 +81,23 @@ class Node {
   // When the callback under way is over; now if there is none.
   Time free_at() const { return std::max(world_.now(), free_at_); }
 
-  Lifecycle lifecycle() const { return lifecycle_; }
+  Lifecycle lifecycle() const { return body_.state; }
   // Gives whether the transition is possible and was made.
   bool change(Transition transition);
 
   // Whether its processes have a parameter of this name.
   bool has(const std::string& parameter) const { return defaults_.contains(parameter); }
   // Null if there is none of this name.
-  const Value* parameter(const std::string& name) const;
-  const std::map<std::string, Value>& parameters() const { return parameters_; }
+  const Value* parameter(const std::string& name) const { return body_.parameter(name); }
+  const std::map<std::string, Value>& parameters() const { return body_.parameters; }
+  // What it answers to ReadLifecycle and ReadParameter.
+  Answer read(const decltype(Command::what)& request) { return body_.answer(request); }
   // Gives whether the node has it, and accepts the value.
   bool set_parameter(const std::string& name, const Value& value);
   // Gives whether it has such a routine, and it succeeded.
   virtual bool call(const std::string& service);
 
-  bool is_active() const { return lifecycle_ == Lifecycle::kActive; }
+  bool is_active() const { return body_.state == Lifecycle::kActive; }
 
  protected:
   // What a model does. Called while the process runs.
@@ -137,10 +139,11 @@ class Node {
   NodeTraits traits_;
   Random random_;
 
-  ProcessState process_ = ProcessState::kGone;
-  int pid_ = 0;
-  bool is_in_graph_ = false;
-  bool is_hung_ = false;
+  Body body_{.process = ProcessState::kGone,
+             .is_in_graph = false,
+             .state = Lifecycle::kUnconfigured,
+             .parameters = {},
+             .mode = {}};
   int failing_starts_ = 0;
 
   Time free_at_{};  // when the callback under way is over
@@ -148,9 +151,7 @@ class Node {
   bool is_in_callback_ = false;
   bool is_waking_ = false;  // drain() is due at free_at_
 
-  Lifecycle lifecycle_ = Lifecycle::kUnconfigured;
   std::map<std::string, Value> defaults_;
-  std::map<std::string, Value> parameters_;
   std::vector<Endpoint*> endpoints_;
 };
 

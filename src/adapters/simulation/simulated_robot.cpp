@@ -204,14 +204,10 @@ void SimulatedRobot::serve(const Command& command, Node& node) {
     done_if(node.set_parameter(set->name, set->value));
   } else if (const auto* call = std::get_if<CallService>(&command.what)) {
     done_if(node.call(call->service));
-  } else if (std::holds_alternative<ReadLifecycle>(command.what)) {
-    answer(command, node, Outcome::kDone, node.lifecycle());
-  } else if (const auto* read = std::get_if<ReadParameter>(&command.what)) {
-    if (const Value* value = node.parameter(read->name)) {
-      answer(command, node, Outcome::kDone, *value);
-    } else {
-      answer(command, node, Outcome::kRefused, {}, "no parameter " + read->name);
-    }
+  } else if (std::holds_alternative<ReadLifecycle>(command.what) ||
+             std::holds_alternative<ReadParameter>(command.what)) {
+    Answer read = node.read(command.what);
+    answer(command, node, read.outcome, std::move(read.value), std::move(read.text));
   } else {
     serve_modes(command, node);
   }

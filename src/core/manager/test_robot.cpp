@@ -22,7 +22,7 @@ void TestRobot::replace_manager(std::unique_ptr<Manager> manager) {
   manager_ = std::move(manager);
   inbox_.clear();
   for (const auto& [name, component] : components_) {
-    if (component.process == ProcessState::kRunning) appear(component);
+    if (component.process == ProcessState::kRunning && component.is_in_graph) appear(component);
   }
   show_ends();
 }
@@ -77,8 +77,8 @@ bool TestRobot::works(const std::string& name) const {
   std::vector<std::string> needed{name};
   for (std::size_t next = 0; next < needed.size(); ++next) {
     const Component& c = components_.at(needed[next]);
-    if (c.process != ProcessState::kRunning || c.state != Lifecycle::kActive || !c.fault.empty())
-      return false;
+    const bool is_up = c.process == ProcessState::kRunning && c.is_in_graph;
+    if (!is_up || c.state != Lifecycle::kActive || !c.fault.empty()) return false;
     for (const std::string& n : c.needs) {
       if (std::find(needed.begin(), needed.end(), n) == needed.end()) needed.push_back(n);
     }
@@ -109,7 +109,7 @@ void TestRobot::stop(const std::string& name) {
 
 void TestRobot::start_by_hand(const std::string& name) {
   Component& component = components_.at(name);
-  component.pid = ++last_pid_;
+  component.start(++last_pid_);
   come_up(component);
   step();
 }
@@ -176,65 +176,53 @@ void TestRobot::reply(const Command& command, Outcome outcome, decltype(Reply::v
 void TestRobot::serve(const Command& command) {
   Component& c = components_.at(rules_->components[command.component.index].name);
   if (std::holds_alternative<StopProcess>(command.what)) {
-    const bool was_there = c.process != ProcessState::kGone;
-    c.process = ProcessState::kGone;
-    if (was_there) observe(ProcessSeen{command.component, ProcessState::kGone, c.pid, "stopped"});
+    if (c.end()) observe(ProcessSeen{command.component, ProcessState::kGone, c.pid, "stopped"});
     return reply(command, Outcome::kDone);
   }
   if (std::holds_alternative<StartProcess>(command.what)) return start(c, command);
-  const bool hears = c.process == ProcessState::kRunning && c.answers;
-  if (!hears) {
+  if (!c.can_answer()) {
     return later(command.timeout + c.lateness,
                  [this, command] { reply(command, Outcome::kTimedOut); });
   }
-  if (const auto* change = std::get_if<ChangeLifecycle>(&command.what)) {
-    return change_lifecycle(c, command, change->transition);
-  }
-  if (std::holds_alternative<ReadLifecycle>(command.what))
-    return reply(command, Outcome::kDone, c.state);
-  if (const auto* read = std::get_if<ReadParameter>(&command.what)) {
-    const auto found = c.parameters.find(read->name);
-    if (found == c.parameters.end())
-      return reply(command, Outcome::kRefused, {}, "no parameter " + read->name);
-    return reply(command, Outcome::kDone, found->second);
-  }
-  if (const auto* set = std::get_if<SetParameter>(&command.what)) {
-    if (c.refuses) return reply(command, Outcome::kRefused, {}, "read-only");
-    if (!c.ignores_parameters) c.parameters[set->name] = set->value;
-    if (c.fault == set->name + "=" + to_string(set->value)) c.fault.clear();
-    if (c.loses_replies)
-      return later(command.timeout, [this, command] { reply(command, Outcome::kTimedOut); });
-    return reply(command, Outcome::kDone);
-  }
-  reply(command, c.refuses ? Outcome::kRefused : Outcome::kDone);
+  simulation::Answer result = answer(c, command);
+  resolve_fault(c, command, result.outcome == Outcome::kDone);
+  const bool is_lost = c.loses_replies && result.outcome == Outcome::kDone && !is_read(command);
+  if (is_lost)
+    return later(command.timeout, [this, command] { reply(command, Outcome::kTimedOut); });
+  reply(command, result.outcome, std::move(result.value), std::move(result.text));
 }
 
-void TestRobot::change_lifecycle(Component& c, const Command& command, Transition transition) {
-  using enum Lifecycle;
-  const bool legal = (transition == Transition::kConfigure && c.state == kUnconfigured) ||
-                     (transition == Transition::kActivate && c.state == kInactive) ||
-                     (transition == Transition::kDeactivate && c.state == kActive);
-  if (c.refuses || !legal)
-    return reply(command, Outcome::kRefused, {}, "the transition is not possible");
-  if (c.fails_to_activate && transition == Transition::kActivate) {
-    c.state = kUnconfigured;
+simulation::Answer TestRobot::answer(Component& c, const Command& command) {
+  const bool is_set = std::holds_alternative<SetParameter>(command.what);
+  const auto* change = std::get_if<ChangeLifecycle>(&command.what);
+  if (c.refuses && !is_read(command)) return {Outcome::kRefused, {}, is_set ? "read-only" : ""};
+  if (is_set && c.ignores_parameters) return {};
+  const bool fails = change != nullptr && change->transition == Transition::kActivate &&
+                     c.state == Lifecycle::kInactive && c.fails_to_activate;
+  simulation::Answer result =
+      fails ? simulation::Answer{Outcome::kRefused} : c.answer(command.what);
+  if (fails) c.state = Lifecycle::kUnconfigured;
+  if (fails || (change != nullptr && result.outcome == Outcome::kDone))
     observe(LifecycleRead{command.component, c.state});
-    return reply(command, Outcome::kRefused, {}, "");
-  }
-  c.state = transition == Transition::kActivate ? kActive : kInactive;
-  if (transition == Transition::kActivate && c.fault == "restart") c.fault.clear();
-  observe(LifecycleRead{command.component, c.state});
-  if (c.loses_replies)
-    return later(command.timeout, [this, command] { reply(command, Outcome::kTimedOut); });
-  reply(command, Outcome::kDone);
+  return result;
+}
+
+void TestRobot::resolve_fault(Component& c, const Command& command, bool is_done) {
+  const auto* change = std::get_if<ChangeLifecycle>(&command.what);
+  const auto* set = std::get_if<SetParameter>(&command.what);
+  if (!is_done) return;
+  if (change != nullptr && change->transition == Transition::kActivate && c.fault == "restart")
+    c.fault.clear();
+  if (set != nullptr && c.fault == set->name + "=" + to_string(set->value)) c.fault.clear();
 }
 
 void TestRobot::start(Component& c, const Command& command) {
-  c.pid = ++last_pid_;
+  c.start(++last_pid_);
   reply(command, Outcome::kDone, Value(std::int64_t{c.pid}));
   observe(ProcessSeen{command.component, ProcessState::kRunning, c.pid, ""});
   if (c.dies_at_start) {
     return later(50ms, [this, &c, command] {
+      c.end();
       observe(ProcessSeen{command.component, ProcessState::kGone, c.pid, "exit code 1"});
     });
   }
@@ -242,9 +230,8 @@ void TestRobot::start(Component& c, const Command& command) {
 }
 
 void TestRobot::come_up(Component& c) {
-  c.process = ProcessState::kRunning;
+  c.is_in_graph = true;
   c.state = c.state_at_start;
-  c.answers = true;
   if (c.fault == "restart" || c.fault == "redeploy") c.fault.clear();
   appear(c);
   if (c.activates_itself_after > Duration::zero())

@@ -16,6 +16,7 @@
 #include "language/checker.h"
 #include "manager/manager.h"
 #include "plan/bayes/bayes_planner.h"
+#include "simulation/body.h"
 
 namespace culprit::test {
 
@@ -31,18 +32,13 @@ class TestRobot {
   TestRobot(const std::string& rules, std::unique_ptr<const Planner> planner,
             Manager::Options options);
 
-  struct Component {
+  struct Component : simulation::Body {
     std::string name;
-    int pid = 0;
-    ProcessState process = ProcessState::kRunning;
-    Lifecycle state = Lifecycle::kActive;
     bool has_lifecycle = true;
-    std::map<std::string, Value> parameters;
     std::vector<std::string> needs;
     std::vector<std::string> hears{};  // what it subscribes to, and can do without
     std::string fault;  // "", or what resolves it: "restart", "redeploy", or "parameter=value"
     // How it fails to serve.
-    bool answers = true;
     bool refuses = false;
     bool ignores_parameters = false;  // says yes and does nothing
     bool loses_replies = false;       // does it, and the answer is lost
@@ -120,7 +116,8 @@ class TestRobot {
   void serve(const Command& command);
   void reply(const Command& command, Outcome outcome, decltype(Reply::value) value = {},
              std::string text = "");
-  void change_lifecycle(Component& component, const Command& command, Transition transition);
+  simulation::Answer answer(Component& component, const Command& command);
+  void resolve_fault(Component& component, const Command& command, bool is_done);
   void start(Component& component, const Command& command);
   void come_up(Component& component);
   void appear(const Component& component);

@@ -9,6 +9,7 @@ using namespace std::chrono_literals;
 
 constexpr Duration kAnswer = 5ms;  // of a request that takes no time
 constexpr Duration kEnding = 200ms;
+const std::string kTuning = "tuning";
 
 std::string node_of(const RcaComponent& component) { return "/" + component.name; }
 
@@ -20,12 +21,16 @@ RcaRobot::RcaRobot(const RcaScenario& scenario, const RuleSet& rules, Duration q
       plant_(scenario),
       noise_(simulation::mix(scenario.seed + 1)),
       luck_(simulation::mix(scenario.seed + 2)),
-      processes_(scenario.components.size()),
+      bodies_(scenario.components.size()),
       parameters_(scenario.components.size()) {
   plant_.on_fault = [this](std::size_t c) { on_fault(c); };
   for (std::size_t p = 0; p < rules.parameters.size(); ++p)
     parameters_[rules.parameters[p].component.index] = ParameterId(p);
-  for (std::size_t c = 0; c < processes_.size(); ++c) appear(c);
+  for (std::size_t c = 0; c < bodies_.size(); ++c) {
+    bodies_[c].parameters[kTuning] = 1.0;
+    bodies_[c].start(++last_pid_);
+    appear(c);
+  }
   for (const RcaTopic& topic : scenario.topics) {
     for (const std::size_t p : topic.publishers)
       tell(EndpointAppeared{node_of(scenario.components[p]), EndpointKind::kPublisher, topic.name});
@@ -43,18 +48,20 @@ void RcaRobot::observe(Time until, std::vector<Observation>& observations) {
 }
 
 void RcaRobot::appear(std::size_t component) {
-  Process& process = processes_[component];
-  process = {++last_pid_, process.is_hung, Lifecycle::kActive, process.tuning};
+  simulation::Body& body = bodies_[component];
+  body.is_in_graph = true;
+  body.state = Lifecycle::kActive;
   const ComponentId id(component);
-  tell(ProcessSeen{id, ProcessState::kRunning, process.pid, ""});
-  tell(NodeAppeared{node_of(scenario_.components[component]), process.pid});
-  tell(LifecycleRead{id, process.lifecycle});
-  if (parameters_[component]) tell(ParameterRead{*parameters_[component], Value(process.tuning)});
+  tell(ProcessSeen{id, ProcessState::kRunning, body.pid, ""});
+  tell(NodeAppeared{node_of(scenario_.components[component]), body.pid});
+  tell(LifecycleRead{id, body.state});
+  if (parameters_[component])
+    tell(ParameterRead{*parameters_[component], *body.parameter(kTuning)});
 }
 
 // All at once, and so is the end of the episode seen.
 void RcaRobot::read_detectors() {
-  for (std::size_t c = 0; c < processes_.size(); ++c) {
+  for (std::size_t c = 0; c < bodies_.size(); ++c) {
     const Detector& detector = scenario_.components[c].detector;
     const bool looks_ill = plant_.looks_ill(c);
     const bool is_wrong = noise_.chance(looks_ill ? detector.miss : detector.false_alarm);
@@ -70,22 +77,22 @@ void RcaRobot::read_detectors() {
 void RcaRobot::on_fault(std::size_t component) {
   const FaultKind kind = *plant_.fault(component);
   if (kind == FaultKind::kCrash) lose(component, "killed by signal 11");
-  if (kind == FaultKind::kHang) processes_[component].is_hung = true;
-  if (kind == FaultKind::kWrongParameter) processes_[component].tuning = 0;
+  if (kind == FaultKind::kHang) bodies_[component].answers = false;
+  if (kind == FaultKind::kWrongParameter) bodies_[component].parameters[kTuning] = 0.0;
 }
 
 void RcaRobot::lose(std::size_t component, const std::string& remark) {
-  Process& process = processes_[component];
-  if (process.pid == 0) return;
-  tell(ProcessSeen{ComponentId(component), ProcessState::kGone, process.pid, remark});
+  simulation::Body& body = bodies_[component];
+  if (!body.is_in_graph) return;
+  body.end();
+  body.is_in_graph = false;
+  tell(ProcessSeen{ComponentId(component), ProcessState::kGone, body.pid, remark});
   tell(NodeVanished{node_of(scenario_.components[component])});
-  process.pid = 0;
 }
 
 void RcaRobot::execute(const Command& command) {
   open_.insert(command.id);
   const std::size_t component = command.component.index;
-  Process& process = processes_[component];
   if (std::holds_alternative<StopProcess>(command.what)) {
     plant_.set_down(component, true);
     plant_.after(kEnding, [this, component, id = command.id] {
@@ -94,37 +101,32 @@ void RcaRobot::execute(const Command& command) {
     });
   } else if (std::holds_alternative<StartProcess>(command.what)) {
     start(command);
-  } else if (process.pid == 0) {
+  } else if (!bodies_[component].is_in_graph) {
     plant_.after(kAnswer, [this, id = command.id] { reply(id, Outcome::kUnreachable); });
   } else {
     plant_.after(command.timeout, [this, id = command.id] { reply(id, Outcome::kTimedOut); });
     plant_.after(kAnswer, [this, command] {
-      const Process& asked = processes_[command.component.index];
-      if (asked.pid != 0 && !asked.is_hung) serve(command);
+      if (bodies_[command.component.index].can_answer()) serve(command);
     });
   }
 }
 
+// What changes something takes its time; the rest is answered at once.
 void RcaRobot::serve(const Command& command) {
   const std::size_t component = command.component.index;
-  Process& process = processes_[component];
   if (const auto* transition = std::get_if<ChangeLifecycle>(&command.what)) {
     change(command, transition->transition);
-  } else if (std::holds_alternative<ReadLifecycle>(command.what)) {
-    reply(command.id, Outcome::kDone, process.lifecycle);
-  } else if (std::holds_alternative<ReadParameter>(command.what)) {
-    reply(command.id, Outcome::kDone, Value(process.tuning));
   } else if (const auto* set = std::get_if<SetParameter>(&command.what)) {
-    const auto* value = std::get_if<double>(&set->value);
-    const bool is_repair = value != nullptr && *value == 1;
-    if (value != nullptr) process.tuning = *value;
+    const simulation::Answer said = bodies_[component].answer(command.what);
+    const bool is_repair = said.outcome == Outcome::kDone && set->value == Value(1.0);
     plant_.after(duration(component, Repair::kConfigure),
-                 [this, component, is_repair, id = command.id] {
+                 [this, component, is_repair, outcome = said.outcome, id = command.id] {
                    if (is_repair) take_effect(component, Repair::kConfigure);
-                   reply(id, Outcome::kDone);
+                   reply(id, outcome);
                  });
   } else {
-    reply(command.id, Outcome::kRefused);
+    simulation::Answer said = bodies_[component].answer(command.what);
+    reply(command.id, said.outcome, std::move(said.value));
   }
 }
 
@@ -134,15 +136,15 @@ void RcaRobot::change(const Command& command, Transition transition) {
   const bool is_up = transition == Transition::kActivate;
   if (!is_up) plant_.set_down(component, true);
   plant_.after(duration(component, Repair::kRestart) / 2,
-               [this, component, is_up, id = command.id, pid = processes_[component].pid] {
-                 Process& process = processes_[component];
-                 if (process.pid != pid || process.is_hung) return;
-                 process.lifecycle = is_up ? Lifecycle::kActive : Lifecycle::kInactive;
+               [this, component, is_up, id = command.id, transition, pid = bodies_[component].pid] {
+                 simulation::Body& body = bodies_[component];
+                 if (body.pid != pid || !body.can_answer()) return;
+                 if (!body.change(transition)) return reply(id, Outcome::kRefused);
                  if (is_up) {
                    take_effect(component, Repair::kRestart);
                    plant_.set_down(component, false);
                  }
-                 tell(LifecycleRead{ComponentId(component), process.lifecycle});
+                 tell(LifecycleRead{ComponentId(component), body.state});
                  reply(id, Outcome::kDone);
                });
 }
@@ -150,12 +152,14 @@ void RcaRobot::change(const Command& command, Transition transition) {
 void RcaRobot::start(const Command& command) {
   const std::size_t component = command.component.index;
   plant_.set_down(component, true);
-  reply(command.id, Outcome::kDone, Value(std::int64_t{last_pid_ + 1}));
+  bodies_[component].start(++last_pid_);
+  reply(command.id, Outcome::kDone, Value(std::int64_t{bodies_[component].pid}));
   const Duration takes = duration(component, Repair::kRedeploy) - kEnding;
   plant_.after(std::max(takes, kAnswer), [this, component] {
     take_effect(component, Repair::kRedeploy);
-    processes_[component].is_hung = plant_.fault(component) == FaultKind::kHang;
-    processes_[component].tuning = plant_.fault(component) == FaultKind::kWrongParameter ? 0 : 1;
+    bodies_[component].answers = plant_.fault(component) != FaultKind::kHang;
+    bodies_[component].parameters[kTuning] =
+        plant_.fault(component) == FaultKind::kWrongParameter ? 0.0 : 1.0;
     appear(component);
     plant_.set_down(component, false);
     if (plant_.fault(component) == FaultKind::kCrash)

@@ -11,6 +11,7 @@
 
 #include "rca_study/plant.h"
 #include "robot/robot.h"
+#include "simulation/body.h"
 
 namespace culprit::study::rca {
 
@@ -34,13 +35,6 @@ class RcaRobot : public Robot {
   const std::atomic<bool>& is_over() const { return is_over_; }
 
  private:
-  struct Process {
-    int pid = 0;  // 0: gone
-    bool is_hung = false;
-    Lifecycle lifecycle = Lifecycle::kActive;
-    double tuning = 1;
-  };
-
   void appear(std::size_t component);
   void read_detectors();
   void on_fault(std::size_t component);
@@ -62,7 +56,7 @@ class RcaRobot : public Robot {
   Plant plant_;
   simulation::Random noise_;
   simulation::Random luck_;
-  std::vector<Process> processes_;
+  std::vector<simulation::Body> bodies_;
   std::vector<std::optional<ParameterId>> parameters_;  // "tuning", by component
   std::set<CommandId> open_;
   std::vector<Observation> inbox_;

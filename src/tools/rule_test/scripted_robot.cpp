@@ -67,9 +67,9 @@ void ScriptedRobot::build_components(const Scenario& scenario) {
   }
   for (const InitialState& state : scenario.states) {
     Component& component = components_[state.component.index];
-    component.is_there = state.presence == Presence::kThere;
-    component.process = component.is_there ? ProcessState::kRunning : ProcessState::kGone;
-    component.lifecycle = component.lifecycle_at_start = state.lifecycle;
+    component.is_in_graph = state.presence == Presence::kThere;
+    component.process = component.is_in_graph ? ProcessState::kRunning : ProcessState::kGone;
+    component.state = component.state_at_start = state.lifecycle;
   }
   for (const Need& need : scenario.needs)
     components_[need.consumer.index].needs.push_back(need.producer);
@@ -129,7 +129,7 @@ void ScriptedRobot::set_default_parameters() {
 }
 
 KnownRobot ScriptedRobot::declared() const {
-  const auto is_absent = [this](ComponentId id) { return !components_[id.index].is_there; };
+  const auto is_absent = [this](ComponentId id) { return !components_[id.index].is_in_graph; };
   KnownRobot known;
   for (std::size_t c = 0; c < rules_.components.size(); ++c) {
     if (!is_absent(ComponentId(c)))
@@ -209,8 +209,8 @@ void ScriptedRobot::refresh_voices() {
 std::vector<bool> ScriptedRobot::working() const {
   std::vector<bool> works;
   for (const Component& c : components_) {
-    const bool is_active = c.lifecycle == Lifecycle::kActive || c.lifecycle == Lifecycle::kUnknown;
-    works.push_back(c.hears() && is_active);
+    const bool is_active = c.state == Lifecycle::kActive || c.state == Lifecycle::kUnknown;
+    works.push_back(c.can_answer() && is_active);
   }
   std::vector<bool> is_mute(components_.size());
   for (const Voice& voice : voices_) {
@@ -235,10 +235,10 @@ std::vector<bool> ScriptedRobot::working() const {
 
 void ScriptedRobot::appear(ComponentId id) {
   const Component& component = components_[id.index];
-  if (!component.is_there) return;
+  if (!component.is_in_graph) return;
   tell(ProcessSeen{id, ProcessState::kRunning, component.pid, ""});
   tell(NodeAppeared{component.node, component.pid});
-  if (component.lifecycle != Lifecycle::kUnknown) tell(LifecycleRead{id, component.lifecycle});
+  if (component.state != Lifecycle::kUnknown) tell(LifecycleRead{id, component.state});
 }
 
 void ScriptedRobot::incident(const Incident& incident) {
@@ -247,8 +247,8 @@ void ScriptedRobot::incident(const Incident& incident) {
   if (component.process == ProcessState::kGone) return;
   switch (incident.kind) {
     case Incident::Kind::kKilled:
-      component.process = ProcessState::kGone;
-      component.is_there = false;
+      component.end();
+      component.is_in_graph = false;
       tell(ProcessSeen{incident.component, ProcessState::kGone, component.pid,
                        "killed by signal 9"});
       break;
@@ -262,8 +262,8 @@ void ScriptedRobot::incident(const Incident& incident) {
       probe(incident.component, component.pid);
       break;
     case Incident::Kind::kState:
-      component.lifecycle = incident.lifecycle;
-      tell(LifecycleRead{incident.component, component.lifecycle});
+      component.state = incident.lifecycle;
+      tell(LifecycleRead{incident.component, component.state});
       break;
   }
 }
@@ -350,7 +350,7 @@ void ScriptedRobot::serve(const Command& command) {
   if (std::holds_alternative<StartProcess>(command.what))
     return start(command, how.takes.value_or(kStartTime));
   const bool stops = std::holds_alternative<StopProcess>(command.what);
-  if (!stops && !c.hears()) return time_out(command);
+  if (!stops && !c.can_answer()) return time_out(command);
   if (!how.takes) return stops ? stop(command) : carry_out(command);
   // What takes longer than the manager waits is done all the same, and nobody hears of it.
   const bool is_late = *how.takes > command.timeout;
@@ -360,60 +360,28 @@ void ScriptedRobot::serve(const Command& command) {
 }
 
 void ScriptedRobot::carry_out(const Command& command) {
-  Component& c = components_[command.component.index];
-  if (const auto* change = std::get_if<ChangeLifecycle>(&command.what)) {
-    change_lifecycle(command, change->transition);
-  } else if (std::holds_alternative<ReadLifecycle>(command.what)) {
-    reply(command, Outcome::kDone, c.lifecycle);
+  simulation::Answer answer = components_[command.component.index].answer(command.what);
+  if (answer.outcome == Outcome::kDone) tell_change(command);
+  reply(command, answer.outcome, std::move(answer.value), std::move(answer.text));
+}
+
+void ScriptedRobot::tell_change(const Command& command) {
+  if (std::holds_alternative<ChangeLifecycle>(command.what)) {
+    has_changed_ = true;
+    tell(LifecycleRead{command.component, components_[command.component.index].state});
   } else if (const auto* set = std::get_if<SetParameter>(&command.what)) {
-    set_parameter(command, *set);
-  } else if (const auto* read = std::get_if<ReadParameter>(&command.what)) {
-    const auto found = c.parameters.find(read->name);
-    if (found == c.parameters.end())
-      return reply(command, Outcome::kRefused, {}, "no parameter " + read->name);
-    reply(command, Outcome::kDone, found->second);
-  } else if (const auto* mode = std::get_if<ChangeMode>(&command.what)) {
-    c.mode = mode->mode;
-    reply(command, Outcome::kDone);
-  } else if (std::holds_alternative<ReadMode>(command.what)) {
-    reply(command, Outcome::kDone, Value(c.mode));
-  } else {
-    reply(command, Outcome::kDone);  // a routine that says it succeeded
+    for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
+      const Parameter& parameter = rules_.parameters[p];
+      if (parameter.component == command.component && parameter.name == set->name)
+        tell(ParameterRead{ParameterId(p), set->value});
+    }
   }
-}
-
-void ScriptedRobot::set_parameter(const Command& command, const SetParameter& set) {
-  components_[command.component.index].parameters[set.name] = set.value;
-  for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
-    const Parameter& parameter = rules_.parameters[p];
-    if (parameter.component == command.component && parameter.name == set.name)
-      tell(ParameterRead{ParameterId(p), set.value});
-  }
-  reply(command, Outcome::kDone);
-}
-
-void ScriptedRobot::change_lifecycle(const Command& command, Transition transition) {
-  using enum Lifecycle;
-  Component& c = components_[command.component.index];
-  const bool is_possible = (transition == Transition::kConfigure && c.lifecycle == kUnconfigured) ||
-                           (transition == Transition::kCleanup && c.lifecycle == kInactive) ||
-                           (transition == Transition::kActivate && c.lifecycle == kInactive) ||
-                           (transition == Transition::kDeactivate && c.lifecycle == kActive);
-  if (!is_possible) return reply(command, Outcome::kRefused, {}, "the transition is not possible");
-  c.lifecycle = transition == Transition::kActivate  ? kActive
-                : transition == Transition::kCleanup ? kUnconfigured
-                                                     : kInactive;
-  has_changed_ = true;
-  tell(LifecycleRead{command.component, c.lifecycle});
-  reply(command, Outcome::kDone);
 }
 
 void ScriptedRobot::stop(const Command& command) {
   Component& c = components_[command.component.index];
-  if (c.process != ProcessState::kGone)
-    tell(ProcessSeen{command.component, ProcessState::kGone, c.pid, "stopped"});
-  c.process = ProcessState::kGone;
-  c.is_there = false;
+  if (c.end()) tell(ProcessSeen{command.component, ProcessState::kGone, c.pid, "stopped"});
+  c.is_in_graph = false;
   has_changed_ = true;
   reply(command, Outcome::kDone);
 }
@@ -422,16 +390,14 @@ void ScriptedRobot::stop(const Command& command) {
 // had at the start of the test.
 void ScriptedRobot::start(const Command& command, Duration takes) {
   Component& c = components_[command.component.index];
-  c.process = ProcessState::kRunning;
-  c.pid = ++last_pid_;
+  c.start(++last_pid_);
   reply(command, Outcome::kDone, Value(std::int64_t{c.pid}));
   tell(ProcessSeen{command.component, ProcessState::kRunning, c.pid, ""});
   plan(later(now_, takes), [this, id = command.component, pid = c.pid] {
     Component& started = components_[id.index];
     if (started.pid != pid || started.process == ProcessState::kGone) return;
-    started.is_there = true;
-    started.answers = true;
-    started.lifecycle = started.lifecycle_at_start;
+    started.is_in_graph = true;
+    started.state = started.state_at_start;
     has_changed_ = true;
     appear(id);
   });

@@ -18,6 +18,7 @@
 #include "knowledge/known_robot.h"
 #include "robot/robot.h"
 #include "rule_test/scenario.h"
+#include "simulation/body.h"
 
 namespace culprit::rule_test {
 
@@ -45,20 +46,11 @@ class ScriptedRobot : public Robot {
   void hear(const Event& event);
 
  private:
-  struct Component {
+  struct Component : simulation::Body {
     std::string node;
-    int pid = 0;
-    bool is_there = true;
-    ProcessState process = ProcessState::kRunning;
-    Lifecycle lifecycle = Lifecycle::kActive;
-    Lifecycle lifecycle_at_start = Lifecycle::kActive;
-    bool answers = true;
-    std::string mode;
-    std::map<std::string, Value> parameters;
+    Lifecycle state_at_start = Lifecycle::kActive;
     std::optional<StrategyId> adapted_by;
     std::vector<ComponentId> needs;
-
-    bool hears() const { return is_there && process == ProcessState::kRunning && answers; }
   };
   struct Voice {
     Subject subject;
@@ -90,8 +82,7 @@ class ScriptedRobot : public Robot {
   Conduct conduct(const Command& command) const;
   void serve(const Command& command);
   void carry_out(const Command& command);
-  void set_parameter(const Command& command, const SetParameter& set);
-  void change_lifecycle(const Command& command, Transition transition);
+  void tell_change(const Command& command);
   void start(const Command& command, Duration takes);
   void stop(const Command& command);
   void time_out(const Command& command);
