@@ -1,6 +1,7 @@
 #include "owners/container_clients.h"
 
 #include "base/live_clock.h"
+#include "base/units.h"
 #include "owners/parameter_file.h"
 #include "owners/plugin_index.h"
 #include "ros2/names.h"
@@ -86,7 +87,7 @@ std::variant<Bytes, ContainerAnswer> ContainerClients::call(const std::string& c
                            [&] { return is_ending_ || under_way->outcome; });
   if (!under_way->outcome || *under_way->outcome == CallOutcome::kTimedOut)
     return ContainerAnswer{Outcome::kTimedOut,
-                           container + " did not answer within " + to_string(patience)};
+                           container + " did not answer within " + culprit::to_string(patience)};
   if (*under_way->outcome == CallOutcome::kUnreachable)
     return ContainerAnswer{Outcome::kUnreachable,
                            container + " offers no services of a container that answer"};
