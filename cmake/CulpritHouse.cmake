@@ -7,6 +7,9 @@
 add_library(culprit_options INTERFACE)
 target_compile_options(culprit_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                                  -Wold-style-cast -Wcast-qual)
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  target_compile_options(culprit_options INTERFACE -Wthread-safety) # base/mutex.h
+endif()
 if(CULPRIT_WERROR)
   target_compile_options(culprit_options INTERFACE -Werror)
 endif()

@@ -1,7 +1,6 @@
 #include "terminal/console.h"
 
 #include <cstdlib>
-#include <mutex>
 #include <pthread.h>
 #include <signal.h>
 #include <unistd.h>
@@ -76,18 +75,18 @@ StopSignals::~StopSignals() {
 }
 
 void StopSignals::on_stop(std::function<void()> stop) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   stop_ = std::move(stop);
   if (stopped_ && stop_) stop_();
 }
 
 void StopSignals::on_reload(std::function<void()> reload) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   reload_ = std::move(reload);
 }
 
 void StopSignals::stop() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   stopped_ = true;
   stopped_.notify_all();
   if (stop_) stop_();
@@ -120,7 +119,7 @@ void StopSignals::wait() {
       stop();
       continue;
     }
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (reload_) reload_();
   }
 }

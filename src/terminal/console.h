@@ -4,13 +4,13 @@
 #include <atomic>
 #include <cstdio>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "base/mutex.h"
 #include "knowledge/event_words.h"
 #include "language/diagnostic.h"
 
@@ -67,9 +67,9 @@ class StopSignals {
   std::atomic<Duration> patience_ = Duration::max();
   const bool has_terminal_;
   std::atomic<bool> stopped_ = false;
-  std::mutex mutex_;
-  std::function<void()> stop_;
-  std::function<void()> reload_;
+  Mutex mutex_;
+  std::function<void()> stop_ CULPRIT_GUARDED_BY(mutex_);
+  std::function<void()> reload_ CULPRIT_GUARDED_BY(mutex_);
   std::thread thread_;
 };
 

@@ -1,11 +1,14 @@
 #include "web/connection_threads.h"
 
+#include <utility>
+
 namespace culprit::web {
 
 void ConnectionThreads::enqueue(std::function<void()> connection) {
-  std::unique_lock lock(mutex_);
-  something_changed_.wait(
-      lock, [&] { return is_ending_ || waiting_.size() < idle_ || threads_.size() < most_; });
+  MutexLock lock(mutex_);
+  something_changed_.wait(lock, [&]() CULPRIT_REQUIRES(mutex_) {
+    return is_ending_ || waiting_.size() < idle_ || threads_.size() < most_;
+  });
   waiting_.push_back(std::move(connection));
   if (waiting_.size() > idle_ && threads_.size() < most_)
     threads_.emplace_back([this] { serve(); });
@@ -13,11 +16,12 @@ void ConnectionThreads::enqueue(std::function<void()> connection) {
 }
 
 void ConnectionThreads::serve() {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (true) {
     ++idle_;
     something_changed_.notify_all();  // somebody may wait for an idle thread
-    something_changed_.wait(lock, [&] { return is_ending_ || !waiting_.empty(); });
+    something_changed_.wait(
+        lock, [&]() CULPRIT_REQUIRES(mutex_) { return is_ending_ || !waiting_.empty(); });
     --idle_;
     if (waiting_.empty()) return;
     const std::function<void()> connection = std::move(waiting_.front());
@@ -29,12 +33,14 @@ void ConnectionThreads::serve() {
 }
 
 void ConnectionThreads::shutdown() {
+  std::vector<std::thread> threads;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_ending_ = true;
+    threads = std::exchange(threads_, {});
   }
   something_changed_.notify_all();
-  for (std::thread& thread : threads_) thread.join();
+  for (std::thread& thread : threads) thread.join();
 }
 
 }  // namespace culprit::web

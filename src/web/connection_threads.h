@@ -5,13 +5,13 @@
 // and refuses the rest.
 #pragma once
 
-#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <httplib.h>
-#include <mutex>
 #include <thread>
 #include <vector>
+
+#include "base/mutex.h"
 
 namespace culprit::web {
 
@@ -27,12 +27,12 @@ class ConnectionThreads : public httplib::TaskQueue {
   void serve();
 
   const std::size_t most_;
-  std::mutex mutex_;
-  std::condition_variable something_changed_;
-  std::deque<std::function<void()>> waiting_;
-  std::vector<std::thread> threads_;
-  std::size_t idle_ = 0;
-  bool is_ending_ = false;
+  Mutex mutex_;
+  ConditionVariable something_changed_;
+  std::deque<std::function<void()>> waiting_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<std::thread> threads_ CULPRIT_GUARDED_BY(mutex_);
+  std::size_t idle_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace culprit::web

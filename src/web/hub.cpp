@@ -21,7 +21,7 @@ Hub::Reader::Reader(Hub& hub) : hub_(hub) {
 void Hub::publish(Kind kind, std::string data) {
   const auto shared = std::make_shared<const std::string>(std::move(data));
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const Message message{++last_, kind, shared};
     if (kind == Kind::kEvent) {
       events_.push_back(message);
@@ -39,8 +39,9 @@ void Hub::publish(Kind kind, std::string data) {
 }
 
 Hub::Batch Hub::wait(std::uint64_t after, std::chrono::milliseconds patience) {
-  std::unique_lock lock(mutex_);
-  something_came_.wait_for(lock, patience, [&] { return is_closed_ || last_ > after; });
+  MutexLock lock(mutex_);
+  something_came_.wait_for(lock, patience,
+                           [&]() CULPRIT_REQUIRES(mutex_) { return is_closed_ || last_ > after; });
   return is_closed_ ? Batch{} : collect(after);
 }
 
@@ -61,18 +62,18 @@ Hub::Batch Hub::collect(std::uint64_t after) const {
 }
 
 std::shared_ptr<const std::string> Hub::latest(Kind kind) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return latest_[static_cast<std::size_t>(kind)].data;
 }
 
 std::uint64_t Hub::last() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return last_;
 }
 
 void Hub::close() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_closed_ = true;
   }
   something_came_.notify_all();

@@ -10,15 +10,15 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/mutex.h"
 
 namespace culprit::web {
 
@@ -84,20 +84,21 @@ class Hub {
   bool is_closed() const { return is_closed_; }
 
  private:
-  Batch collect(std::uint64_t after) const;
+  Batch collect(std::uint64_t after) const CULPRIT_REQUIRES(mutex_);
 
   const std::string name_;
   const std::function<void()> wake_;
   std::atomic<int> readers_ = 0;
   std::atomic<bool> is_closed_ = false;
 
-  mutable std::mutex mutex_;  // guards what follows
-  std::condition_variable something_came_;
-  std::uint64_t last_ = 0;
-  std::array<Message, kKinds> latest_;  // number 0: none yet
-  std::deque<Message> events_;
-  std::size_t bytes_ = 0;
-  std::uint64_t forgotten_ = 0;  // number of the newest event that is kept no more
+  mutable Mutex mutex_;
+  ConditionVariable something_came_;
+  std::uint64_t last_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::array<Message, kKinds> latest_ CULPRIT_GUARDED_BY(mutex_);  // number 0: none yet
+  std::deque<Message> events_ CULPRIT_GUARDED_BY(mutex_);
+  std::size_t bytes_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::uint64_t forgotten_ CULPRIT_GUARDED_BY(mutex_) =
+      0;  // number of the newest event that is kept no more
 };
 
 }  // namespace culprit::web

@@ -51,7 +51,7 @@ constexpr std::string_view kPlanResults[] = {"chosen", "advised", "approval_aske
 
 void Metrics::watch(const Manager& manager) {
   const RuleSet& rules = manager.knowledge().rules;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     for (Series* series : {&counts_.detected, &counts_.resolved, &counts_.exhausted})
       series->try_emplace(of_rule(RuleId(r), rules), 0);
@@ -80,7 +80,7 @@ void Metrics::stepped(Duration took, std::size_t observations, const Manager& ma
   hears_ = manager.hears();
   is_discovered_ = manager.knowledge().now >= manager.discovered();
   if (!manager.events().empty()) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const Event& event : manager.events()) count(event, manager.knowledge().rules, counts_);
     look(manager, counts_);
   }
@@ -146,7 +146,7 @@ void Metrics::look(const Manager& manager, Counts& counts) {
 std::string Metrics::text() const {
   Counts counts;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     counts = counts_;
   }
   std::string out;

@@ -10,9 +10,9 @@
 #include <atomic>
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <string>
 
+#include "base/mutex.h"
 #include "manager/manager.h"
 
 namespace culprit::web {
@@ -68,8 +68,8 @@ class Metrics {
   std::atomic<bool> is_discovered_ = false;
   std::atomic<bool> hears_ = true;
 
-  mutable std::mutex mutex_;
-  Counts counts_;  // guarded by mutex_
+  mutable Mutex mutex_;
+  Counts counts_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 }  // namespace culprit::web

@@ -101,14 +101,14 @@ const RuleSet& no_rules() {
 }  // namespace
 
 void OrderDesk::open(const RuleSet& rules, std::function<void(Order)> submit) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   rules_ = &rules;
   submit_ = std::move(submit);
   if (waiting_) submit_(*std::exchange(waiting_, std::nullopt));
 }
 
 void OrderDesk::close() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   rules_ = nullptr;
   submit_ = nullptr;
 }
@@ -120,7 +120,7 @@ void OrderDesk::submit(Order order) {
 
 Answer OrderDesk::take(const Json& body) {
   // The rules that an order was read with must still be those of the manager that gets it.
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   const RuleSet& rules = rules_ == nullptr ? no_rules() : *rules_;
   auto order = read_order(body, rules, last_ + 1);
   const bool is_pause = order && std::holds_alternative<Pause>(order->what);
@@ -141,7 +141,7 @@ Answer OrderDesk::take(const Json& body) {
 // have been replaced before the order is given: it is read anew.
 Answer OrderDesk::keep(const KeepOrder& keep, const Json& body, std::uint64_t number) {
   const Kept kept = keep([&] {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     auto order = read_order(body, rules_ == nullptr ? no_rules() : *rules_, number);
     if (order) submit(std::move(*order));
   });

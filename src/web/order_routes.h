@@ -2,8 +2,8 @@
 #pragma once
 
 #include <functional>
-#include <mutex>
 
+#include "base/mutex.h"
 #include "language/rule_set.h"
 #include "live/order_keeper.h"
 #include "robot/order.h"
@@ -26,14 +26,14 @@ class OrderDesk : public OrderTaker {
 
  private:
   Answer keep(const KeepOrder& keep, const Json& body, std::uint64_t number);
-  void submit(Order order);
+  void submit(Order order) CULPRIT_REQUIRES(mutex_);
 
   const KeepOrders keeping_;
-  std::mutex mutex_;
-  const RuleSet* rules_ = nullptr;  // null: nobody manages now
-  std::function<void(Order)> submit_;
-  std::optional<Order> waiting_;  // a pause, for whoever manages next
-  std::uint64_t last_ = 0;        // number of the last order
+  Mutex mutex_;
+  const RuleSet* rules_ CULPRIT_GUARDED_BY(mutex_) = nullptr;  // null: nobody manages now
+  std::function<void(Order)> submit_ CULPRIT_GUARDED_BY(mutex_);
+  std::optional<Order> waiting_ CULPRIT_GUARDED_BY(mutex_);  // a pause, for whoever manages next
+  std::uint64_t last_ CULPRIT_GUARDED_BY(mutex_) = 0;        // number of the last order
 };
 
 // `desk` must outlive the routes.

@@ -5,7 +5,7 @@
 namespace culprit::web {
 
 bool RateLimit::allows(const std::string& client, Clock::time_point now) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (buckets_.size() >= kMostClients && !buckets_.contains(client)) buckets_.clear();
   Bucket& bucket = buckets_.try_emplace(client, Bucket{burst_, now}).first->second;
   const double passed = std::chrono::duration<double>(now - bucket.filled).count();

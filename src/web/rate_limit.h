@@ -2,9 +2,10 @@
 #pragma once
 
 #include <chrono>
-#include <mutex>
 #include <string>
 #include <unordered_map>
+
+#include "base/mutex.h"
 
 namespace culprit::web {
 
@@ -28,8 +29,8 @@ class RateLimit {
   };
   const double per_second_;
   const double burst_;
-  std::mutex mutex_;
-  std::unordered_map<std::string, Bucket> buckets_;
+  Mutex mutex_;
+  std::unordered_map<std::string, Bucket> buckets_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 }  // namespace culprit::web

@@ -31,7 +31,7 @@ std::variant<std::string, RuleDesk::Refusal> RuleDesk::save(const std::string& t
   if (fixed_)
     return Refusal{Problem::kNotWritten,
                    path_ + " is part of the program; save the text elsewhere"};
-  const std::lock_guard lock(saving_);
+  const MutexLock lock(saving_);
   const auto now = read();
   if (!now) return Refusal{Problem::kNotWritten, now.error()};
   if (now->version != version)

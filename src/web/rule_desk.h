@@ -2,12 +2,12 @@
 // says which version was changed, so that nobody overwrites what another has written.
 #pragma once
 
-#include <mutex>
 #include <optional>
 #include <string>
 #include <variant>
 
 #include "base/expected.h"
+#include "base/mutex.h"
 
 namespace culprit::web {
 
@@ -41,7 +41,7 @@ class RuleDesk {
  private:
   const std::string path_;
   const std::optional<std::string> fixed_;
-  std::mutex saving_;
+  Mutex saving_;
 };
 
 }  // namespace culprit::web

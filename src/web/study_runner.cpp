@@ -56,7 +56,7 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> last_progress(const std::
 }
 
 Expected<void> StudyRunner::start(const Studies::Campaign& campaign) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   look();
   if (pid_ != 0) return Error{"a campaign is running already; stop it first"};
   const auto laboratory = find_laboratory();
@@ -76,7 +76,7 @@ Expected<void> StudyRunner::start(const Studies::Campaign& campaign) {
 }
 
 void StudyRunner::stop() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   look();
   if (pid_ == 0) return;
   kill(-pid_, SIGKILL);
@@ -101,13 +101,13 @@ void StudyRunner::look() {
 }
 
 std::optional<Studies::Progress> StudyRunner::progress() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   look();
   return last_;
 }
 
 Expected<std::string> StudyRunner::finished(const char* name) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   look();
   if (!last_ || last_->state != "done") return Error{"no campaign has ended well yet"};
   return read_text(file(name).string());

@@ -4,8 +4,8 @@
 
 #include <chrono>
 #include <filesystem>
-#include <mutex>
 
+#include "base/mutex.h"
 #include "web/study_routes.h"
 
 namespace culprit::web {
@@ -33,15 +33,15 @@ class StudyRunner {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void look();  // whether the process has ended
+  void look() CULPRIT_REQUIRES(mutex_);  // whether the process has ended
   std::filesystem::path file(const char* name) const { return folder_ / name; }
   Expected<std::string> finished(const char* name);
 
   const std::filesystem::path folder_;
-  std::mutex mutex_;  // guards what follows
-  std::optional<Studies::Progress> last_;
-  int pid_ = 0;  // 0: none runs
-  Clock::time_point begin_;
+  Mutex mutex_;
+  std::optional<Studies::Progress> last_ CULPRIT_GUARDED_BY(mutex_);
+  int pid_ CULPRIT_GUARDED_BY(mutex_) = 0;  // 0: none runs
+  Clock::time_point begin_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 // How many of how many: what the last line of progress in `log` says.

@@ -76,7 +76,7 @@ Recorder::~Recorder() { finish(); }
 Expected<void> Recorder::end(Ending ending) {
   hand_over(Urgency::kNone);
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     Pending& pending = queue_.next();
     pending.wall = options_.wall_clock();
     pending.end = ending;
@@ -91,7 +91,7 @@ void Recorder::finish() {
   if (!thread_.joinable()) return;
   hand_over(Urgency::kNone);
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_ending_ = true;
   }
   work_.notify_one();
@@ -138,7 +138,7 @@ void Recorder::hand_over(Urgency urgency) {
   const auto kept = std::span(places_).first(std::exchange(kept_, 0));
   const std::int64_t wall_offset =
       options_.wall_clock() - kept.back().now.time_since_epoch().count();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (queue_.used == 0) first_queued_ = kept.front().now;
   for (Pending& step : kept) {
     if (queued_observations_ > kMaxQueued && step.decided == nullptr) {
@@ -189,9 +189,10 @@ std::optional<KnownRobot> Recorder::newly_known(Time now) {
 
 void Recorder::wait_until_written() {
   work_.notify_one();
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   const std::uint64_t mine = handed_over_;
-  done_.wait_for(lock, kPatience, [&] { return written_ >= mine || is_failing_; });
+  done_.wait_for(lock, kPatience,
+                 [&]() CULPRIT_REQUIRES(mutex_) { return written_ >= mine || is_failing_; });
 }
 
 Learned Recorder::changes() {
@@ -221,13 +222,15 @@ Learned Recorder::changes() {
 void Recorder::run() {
   Queue taken;
   auto written_at = std::chrono::steady_clock::now() - kSoon;
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (true) {
-    const auto is_wanted = [this](Urgency urgency) {
+    const auto is_wanted = [this](Urgency urgency) CULPRIT_REQUIRES(mutex_) {
       return is_ending_ || (urgency_ >= urgency && !is_failing_);
     };
-    work_.wait_for(lock, is_failing_ ? kRetry : kPeriod, [&] { return is_wanted(Urgency::kSoon); });
-    work_.wait_until(lock, written_at + kSoon, [&] { return is_wanted(Urgency::kNow); });
+    work_.wait_for(lock, is_failing_ ? kRetry : kPeriod,
+                   [&]() CULPRIT_REQUIRES(mutex_) { return is_wanted(Urgency::kSoon); });
+    work_.wait_until(lock, written_at + kSoon,
+                     [&]() CULPRIT_REQUIRES(mutex_) { return is_wanted(Urgency::kNow); });
     std::swap(taken, queue_);
     queued_observations_ = 0;
     const std::uint64_t upto = handed_over_;
@@ -389,7 +392,7 @@ Expected<void> Recorder::write(bool is_durable) {
   unsaved_bytes_ = 0;
   bool was_failing = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     was_failing = std::exchange(is_failing_, false);
   }
   if (was_failing && options_.on_trouble) options_.on_trouble("the journal is written again");
@@ -416,7 +419,7 @@ Expected<void> Recorder::failed(Error error) {
   bound_unsaved();
   bool is_new = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_new = !std::exchange(is_failing_, true);
   }
   if (is_new && options_.on_trouble)

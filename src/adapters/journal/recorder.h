@@ -13,15 +13,14 @@
 #pragma once
 
 #include <array>
-#include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <thread>
 #include <unordered_map>
 
+#include "base/mutex.h"
 #include "journal/known_robot.h"
 #include "journal/session.h"
 #include "journal/step_codec.h"
@@ -158,19 +157,19 @@ class Recorder {
   std::array<Pending, kMaxKept> places_;
 
   // Of both threads, under the mutex.
-  alignas(64) std::mutex mutex_;
-  Urgency urgency_ = Urgency::kNone;
-  Time first_queued_{};  // steps that wait, from here
-  Time now_of_queue_{};  // to here
-  Queue queue_;
-  std::size_t queued_observations_ = 0;
-  std::uint64_t handed_over_ = 0;
-  std::uint64_t lost_steps_ = 0;
-  std::uint64_t written_ = 0;
-  std::condition_variable work_;
-  std::condition_variable done_;
-  bool is_failing_ = false;
-  bool is_ending_ = false;
+  alignas(64) Mutex mutex_;
+  Urgency urgency_ CULPRIT_GUARDED_BY(mutex_) = Urgency::kNone;
+  Time first_queued_ CULPRIT_GUARDED_BY(mutex_){};  // steps that wait, from here
+  Time now_of_queue_ CULPRIT_GUARDED_BY(mutex_){};  // to here
+  Queue queue_ CULPRIT_GUARDED_BY(mutex_);
+  std::size_t queued_observations_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::uint64_t handed_over_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::uint64_t lost_steps_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::uint64_t written_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  ConditionVariable work_;
+  ConditionVariable done_;
+  bool is_failing_ CULPRIT_GUARDED_BY(mutex_) = false;
+  bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
 
   // Of the recorder's thread.
   std::optional<Writer> writer_;

@@ -26,7 +26,7 @@ struct Session {
   double forgetting = 1;
   Learned learned;                   // what was known at the start
   Json interrupted = Json::array();  // what the run before left behind (requests.h)
-  Json past = Json::array();         // what earlier runs did that still counts (past.h)
+  Json past = Json::array();         // what earlier runs did that still counts (history.h)
   Json known_robot;                  // what they saw of this robot (known_robot.h)
   // By a person's order in the run before, which goes on: said anew with the first step.
   bool is_paused = false;

@@ -65,7 +65,7 @@ ComponentLink::ComponentLink(NodeEntry& self, ComponentId component, std::string
 
 void ComponentLink::service_seen(const std::string& service, const std::string& type) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     services_[service] = type;
   }
   if (service == node_ + "/change_state") {
@@ -81,7 +81,7 @@ void ComponentLink::service_seen(const std::string& service, const std::string& 
 ServiceClient* ComponentLink::make(std::unique_ptr<ServiceClient>& client,
                                    const std::string& service, std::string_view type,
                                    const Qos& qos, std::optional<ServiceClient::Probe> probe) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (client) return client.get();
   const ServiceName name{service, std::string(type)};
   auto made = probe ? ServiceClient::create(self_, name, qos, std::move(*probe))
@@ -131,7 +131,7 @@ ServiceClient* ComponentLink::modes() {
 ServiceClient* ComponentLink::routine(const std::string& service, const std::string& type) {
   std::unique_ptr<ServiceClient>* place = nullptr;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     place = &routines_[service];
   }
   return make(*place, service, type, qos::kServices,
@@ -142,7 +142,7 @@ ServiceClient* ComponentLink::routine(const std::string& service, const std::str
 // ---- what is read without being commanded
 
 bool ComponentLink::has_lifecycle() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return lifecycle_ || lifecycle_reader_;
 }
 
@@ -168,7 +168,7 @@ void ComponentLink::tell(Lifecycle state, Told told) {
 }
 
 void ComponentLink::watch_transitions() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (transitions_) return;
   constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 10};
   auto subscription =
@@ -206,7 +206,7 @@ void ComponentLink::check_parameters() {
   if (!misses_parameter_.exchange(false)) return;
   ServiceClient* client = nullptr;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!parameter_names_) {
       const ServiceName name{node_ + "/list_parameters", std::string(srv::ListParameters::kType)};
       auto made = ServiceClient::create(self_, name, qos::kParameterServices);
@@ -331,7 +331,7 @@ void ComponentLink::run(const Command& command, const ReadParameter& what) {
 void ComponentLink::run(const Command& command, const CallService& what) {
   std::string type;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto known = services_.find(what.service);
     if (known != services_.end()) type = known->second;
   }

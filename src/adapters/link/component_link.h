@@ -11,10 +11,10 @@
 #include <atomic>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 
+#include "base/mutex.h"
 #include "language/rule_set.h"
 #include "link/component_needs.h"
 #include "robot/command.h"
@@ -101,15 +101,17 @@ class ComponentLink {
   std::atomic<Lifecycle> told_ = Lifecycle::kUnknown;
   std::atomic<bool> misses_parameter_ = false;  // found since it was asked for its names
 
-  std::mutex mutex_;  // guards what follows; never held while calling
+  Mutex mutex_;  // never held while calling
+  // The clients are made with it, by make(), and stay.
   std::unique_ptr<ServiceClient> lifecycle_;
   std::unique_ptr<ServiceClient> lifecycle_reader_;  // where the rules only look
   std::unique_ptr<ServiceClient> parameters_;
   std::unique_ptr<ServiceClient> parameter_reader_;  // likewise
   std::unique_ptr<ServiceClient> parameter_names_;   // if one was missing
   std::unique_ptr<ServiceClient> modes_;
-  std::map<std::string, std::unique_ptr<ServiceClient>> routines_;
-  std::map<std::string, std::string> services_;  // that the node offers: name -> type
+  std::map<std::string, std::unique_ptr<ServiceClient>> routines_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<std::string, std::string> services_
+      CULPRIT_GUARDED_BY(mutex_);  // that the node offers: name -> type
   std::unique_ptr<RawSubscription> transitions_;
 };
 

@@ -195,8 +195,13 @@ Expected<void> Link::start() {
 Expected<void> Link::claim_lease() {
   constexpr Qos kLeaseQos{.reliability = Reliability::kBestEffort, .depth = 10};
   if (!options_.claim) return {};
-  lease_.emplace(*options_.claim, context_->participant().guid().prefix());
-  for (std::string& announcement : lease_->announcements()) {
+  std::vector<std::string> announcements;
+  {
+    const MutexLock lock(lease_mutex_);
+    lease_.emplace(*options_.claim, context_->participant().guid().prefix());
+    announcements = lease_->announcements();
+  }
+  for (std::string& announcement : announcements) {
     auto writer = context_->participant().create_writer({.topic = ManagerLease::kTopic,
                                                          .type = ManagerLease::kType,
                                                          .qos = kLeaseQos,
@@ -222,7 +227,7 @@ Expected<void> Link::claim_lease() {
 
 void Link::on_lease(const DiscoveryEvent& event) {
   constexpr std::size_t kMost = 1000;
-  const std::lock_guard lock(lease_mutex_);
+  const MutexLock lock(lease_mutex_);
   lease_->apply(event, live_now());
   if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
     const GuidPrefix prefix = info->guid.prefix();
@@ -245,47 +250,49 @@ std::string Link::host_of(const GuidPrefix& participant) const {
 }
 
 std::optional<std::string> Link::elder() const {
-  const std::lock_guard lock(lease_mutex_);
+  const MutexLock lock(lease_mutex_);
   if (!lease_) return std::nullopt;
-  const auto elder = lease_->elder(live_now(), [this](const GuidPrefix& p) { return is_here(p); });
+  const auto elder = lease_->elder(live_now(), [this](const GuidPrefix& p) CULPRIT_REQUIRES(
+                                                   lease_mutex_) { return is_here(p); });
   return elder ? std::optional(host_of(*elder)) : std::nullopt;
 }
 
 std::optional<std::string> Link::elder_at(const std::string& node) const {
-  const std::lock_guard lock(lease_mutex_);
+  const MutexLock lock(lease_mutex_);
   if (!lease_) return std::nullopt;
-  const auto elder =
-      lease_->elder_at(node, live_now(), [this](const GuidPrefix& p) { return is_here(p); });
+  const auto elder = lease_->elder_at(node, live_now(),
+                                      [this](const GuidPrefix& p)
+                                          CULPRIT_REQUIRES(lease_mutex_) { return is_here(p); });
   return elder ? std::optional(host_of(*elder)) : std::nullopt;
 }
 
 std::vector<std::string> Link::lease_strangers() const {
-  const std::lock_guard lock(lease_mutex_);
+  const MutexLock lock(lease_mutex_);
   std::vector<std::string> hosts;
   if (!lease_) return hosts;
-  for (const GuidPrefix& each :
-       lease_->strangers([this](const GuidPrefix& p) { return is_here(p); }))
+  for (const GuidPrefix& each : lease_->strangers(
+           [this](const GuidPrefix& p) CULPRIT_REQUIRES(lease_mutex_) { return is_here(p); }))
     hosts.push_back(host_of(each));
   return hosts;
 }
 
 std::optional<std::string> Link::told_orders() const {
-  const std::lock_guard lock(lease_mutex_);
+  const MutexLock lock(lease_mutex_);
   return lease_ ? lease_->told_orders() : std::nullopt;
 }
 
 std::int64_t Link::highest_term() const {
-  const std::lock_guard lock(lease_mutex_);
+  const MutexLock lock(lease_mutex_);
   return lease_ ? lease_->highest_term() : 0;
 }
 
 void Link::say_lease() {
-  if (!lease_) return;
   const bool hears = hearing_->doubtful() > live_now();
   const std::string orders = options_.told_orders ? options_.told_orders() : "";
   std::optional<std::string> beat;
   {
-    const std::lock_guard lock(lease_mutex_);
+    const MutexLock lock(lease_mutex_);
+    if (!lease_) return;
     beat = lease_->beat(live_now(), hears, options_.manages, orders);
   }
   if (!beat) return;
@@ -297,18 +304,18 @@ void Link::say_lease() {
 void Link::on_beat(const Sample& sample) {
   CdrReader message(sample.payload);
   const std::string_view beat = message.read_string();
-  const std::lock_guard lock(lease_mutex_);
+  const MutexLock lock(lease_mutex_);
   lease_->hear(sample.identity.writer.prefix(), beat, live_now());
 }
 
 Time Link::doubtful() const {
   const Time heard = hearing_->doubtful();
-  const std::lock_guard lock(lease_mutex_);
+  const MutexLock lock(lease_mutex_);
   return lease_ ? std::min(heard, lease_->sure_until(live_now())) : heard;
 }
 
 std::string Link::doubt() const {
-  const std::lock_guard lock(lease_mutex_);
+  const MutexLock lock(lease_mutex_);
   const Time now = live_now();
   return lease_ && lease_->sure_until(now) <= now
              ? "culprit was away so long that another one may manage this robot by now; it listens"
@@ -364,7 +371,7 @@ void Link::on_namesakes(const NodeNamesakes& seen) {
       [&](const Component& c) { return c.composed && c.composed->container == seen.node; });
   if (!is_container && !binding_.bind(seen.node)) return;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (seen.others == 0) {
       contested_.erase(seen.node);
       return;
@@ -376,7 +383,7 @@ void Link::on_namesakes(const NodeNamesakes& seen) {
 }
 
 std::map<std::string, std::string> Link::contested() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::map<std::string, std::string> all;
   for (const auto& [node, contest] : contested_) all[node] = contest.text;
   return all;
@@ -387,7 +394,7 @@ void Link::remind() {
   const Time now = live_now();
   std::vector<std::string> due;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (auto& [node, contest] : contested_) {
       if (contest.told != kLongAgo && now < later(contest.told, kReminder)) continue;
       contest.told = now;
@@ -492,12 +499,12 @@ void Link::tell_of_refused() {
 // ---- commands
 
 ComponentLink* Link::link_of(ComponentId component) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return links_[component.index].get();
 }
 
 ComponentLink* Link::make_link(ComponentId component, const std::string& node) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   auto& link = links_[component.index];
   if (!link)
     link = std::make_unique<ComponentLink>(node_->entry(), component, node, rules_, inbox_);
@@ -517,7 +524,7 @@ void Link::execute(const Command& command) {
 
 void Link::publish(std::vector<Health> health) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     health_ = std::move(health);
   }
   publish_again();
@@ -527,7 +534,7 @@ void Link::publish_again() {
   msg::DiagnosticArray message;
   message.header.stamp = msg::to_time(std::chrono::system_clock::now());
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const Health& h : health_) {
       msg::DiagnosticStatus status{h.level, h.name, h.message, "culprit", {}};
       for (const auto& [key, value] : h.values) status.values.push_back({key, value});

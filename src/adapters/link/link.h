@@ -11,13 +11,13 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "base/mutex.h"
 #include "language/rule_set.h"
 #include "link/component_link.h"
 #include "link/diagnostics_watch.h"
@@ -102,8 +102,8 @@ class Link {
   Expected<void> watch_parameter_events();
 
   // @pre the mutex is held.
-  bool is_here(const GuidPrefix& participant) const;
-  std::string host_of(const GuidPrefix& participant) const;
+  bool is_here(const GuidPrefix& participant) const CULPRIT_REQUIRES(lease_mutex_);
+  std::string host_of(const GuidPrefix& participant) const CULPRIT_REQUIRES(lease_mutex_);
 
   // On the executor's thread.
   void on_lease(const DiscoveryEvent& event);
@@ -152,23 +152,25 @@ class Link {
   std::unique_ptr<Reader> lease_reader_;
   std::unique_ptr<Timer> lease_timer_;
 
-  mutable std::mutex lease_mutex_;  // guards the next; the middleware is not called under it
+  mutable Mutex lease_mutex_;  // the middleware is not called under it
   struct Neighbour {
     std::string host;
     bool is_here = false;  // on this machine
   };
-  std::optional<ManagerLease> lease_;
-  std::map<GuidPrefix, Neighbour> neighbours_;  // of those that can be discovered
+  std::optional<ManagerLease> lease_ CULPRIT_GUARDED_BY(lease_mutex_);
+  std::map<GuidPrefix, Neighbour> neighbours_
+      CULPRIT_GUARDED_BY(lease_mutex_);  // of those that can be discovered
 
-  mutable std::mutex mutex_;  // guards what follows; a link that is made stays
+  mutable Mutex mutex_;
   // A component's node that others have the name of.
   struct Contest {
     std::string text;
     Time told = kLongAgo;
   };
-  std::map<std::string, Contest> contested_;  // by node
-  std::vector<Health> health_;
-  std::vector<std::unique_ptr<ComponentLink>> links_;  // by component
+  std::map<std::string, Contest> contested_ CULPRIT_GUARDED_BY(mutex_);  // by node
+  std::vector<Health> health_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<std::unique_ptr<ComponentLink>> links_
+      CULPRIT_GUARDED_BY(mutex_);  // by component; one that is made stays
 
   std::thread thread_;
 };

@@ -13,7 +13,7 @@ constexpr Duration kAnswerPatience = std::chrono::seconds(5);
 }  // namespace
 
 LiveInventory::Node NodeReading::told() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return told_;
 }
 
@@ -37,7 +37,7 @@ void NodeReading::list_parameters() {
 void NodeReading::get_parameters(std::vector<std::string> names) {
   names.resize(std::min(names.size(), kMaxParameters));
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     told_.parameters.emplace();
     for (const std::string& name : names) (*told_.parameters)[name];
   }
@@ -49,14 +49,14 @@ void NodeReading::get_parameters(std::vector<std::string> names) {
              [this, names](const Client<srv::GetParameters>::Answer& answer) {
                if (!answer.response) return;
                const auto& values = answer.response->values;
-               const std::lock_guard lock(mutex_);
+               const MutexLock lock(mutex_);
                for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i)
                  (*told_.parameters)[names[i]] = to_value(values[i]);
              });
 }
 
 void NodeReading::parameters_changed(const msg::ParameterEvent& event) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!told_.parameters) return;  // they will be read as they are then
   for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
     for (const msg::Parameter& changed : *changes) {
@@ -88,7 +88,7 @@ void NodeReading::read_lifecycle() {
 void NodeReading::set_lifecycle(std::uint8_t state) {
   const auto known = lifecycle_states();
   const auto found = std::find(known.begin(), known.end(), static_cast<LifecycleState>(state));
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   told_.lifecycle = found == known.end() ? "" : label_of(*found);
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "base/mutex.h"
 #include "language/live_inventory.h"
 #include "ros2/node.h"
 #include "ros2/services.h"
@@ -38,8 +39,8 @@ class NodeReading {
 
   Node& self_;
   const std::string node_;
-  mutable std::mutex mutex_;  // guards told_
-  LiveInventory::Node told_;
+  mutable Mutex mutex_;
+  LiveInventory::Node told_ CULPRIT_GUARDED_BY(mutex_);
   std::unique_ptr<Client<srv::ListParameters>> list_;
   std::unique_ptr<Client<srv::GetParameters>> get_;
   std::unique_ptr<Client<srv::GetState>> state_;

@@ -67,7 +67,7 @@ void Survey::ask_for(LiveInterest interest) {
 
 LiveInventory Survey::inventory() const {
   LiveInventory all;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& [node, services] : services_) {
     all.nodes[node];
     all.services.insert(services.begin(), services.end());
@@ -90,12 +90,12 @@ void Survey::on_change(const GraphChange& change) {
   if (const auto* joined = std::get_if<NodeJoined>(&change)) {
     if (joined->node.name == options_.name.full()) return;
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       services_[joined->node.name];
     }
     read_node(joined->node.name);
   } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     services_.erase(left->node);
     nodes_read_.erase(left->node);
   } else if (const auto* endpoint = std::get_if<EndpointJoined>(&change)) {
@@ -109,7 +109,7 @@ void Survey::on_endpoint(const std::string& node, const GraphEndpoint& endpoint)
   if (endpoint.kind == EndpointKind::kClient) return;
   if (endpoint.kind == EndpointKind::kServer) {
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       services_[node][endpoint.name] = endpoint.type;
     }
     const auto reading = nodes_read_.find(node);
@@ -117,7 +117,7 @@ void Survey::on_endpoint(const std::string& node, const GraphEndpoint& endpoint)
     return;
   }
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     TopicUse& use = topics_[endpoint.name];
     const bool publishes = endpoint.kind == EndpointKind::kPublisher;
     if (publishes || use.type.empty()) use.type = endpoint.type;
@@ -131,7 +131,7 @@ void Survey::on_endpoint(const std::string& node, const GraphEndpoint& endpoint)
 }
 
 void Survey::on_endpoint_left(const EndpointLeft& gone) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (gone.kind == EndpointKind::kServer) {
     const auto node = services_.find(gone.node);
     if (node != services_.end()) node->second.erase(gone.name);
@@ -154,7 +154,7 @@ void Survey::on_endpoint_left(const EndpointLeft& gone) {
 void Survey::on_interest(LiveInterest interest) {
   const LiveInterest before = std::exchange(interest_, std::move(interest));
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     std::erase_if(nodes_read_, [&](const auto& n) { return !interest_.includes_node(n.first); });
     std::erase_if(topics_read_, [&](const auto& t) {
       const auto wanted = interest_.fields_of_topics.find(t.first);
@@ -170,7 +170,7 @@ void Survey::read_node(const std::string& node) {
   if (!interest_.includes_node(node) || nodes_read_.contains(node)) return;
   auto reading = std::make_unique<NodeReading>(*node_, node);
   for (const auto& [service, type] : services_[node]) reading->service_seen(service);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   nodes_read_.emplace(node, std::move(reading));
 }
 
@@ -183,7 +183,7 @@ void Survey::read_topic(const std::string& topic) {
   auto reading =
       TopicReading::open(node_->entry(), topic, use->second.type, wanted->second, library_);
   if (!reading) return;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   topics_read_.emplace(topic, std::move(reading));
 }
 
@@ -193,7 +193,7 @@ void Survey::on_parameter_event(const msg::ParameterEvent& event) {
 }
 
 void Survey::on_diagnostics(const msg::DiagnosticArray& message) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const msg::DiagnosticStatus& heard : message.status) {
     const StatusKey key{heard.name, heard.hardware_id};
     if (statuses_.size() >= kMaxStatuses && !statuses_.contains(key)) continue;

@@ -8,12 +8,12 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "base/mutex.h"
 #include "language/live_inventory.h"
 #include "link/node_reading.h"
 #include "link/topic_reading.h"
@@ -73,10 +73,11 @@ class Survey {
   std::unique_ptr<Subscription> diagnostics_;
 
   // Guards what follows, which only the executor's thread changes: it may read without it.
-  mutable std::mutex mutex_;
+  // Its thread changes these four with the mutex, and reads them without; others read with it.
+  mutable Mutex mutex_;
   std::map<std::string, std::map<std::string, std::string>> services_;  // of each node, with types
   std::map<std::string, TopicUse> topics_;
-  std::map<StatusKey, LiveInventory::Status> statuses_;
+  std::map<StatusKey, LiveInventory::Status> statuses_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, std::unique_ptr<NodeReading>> nodes_read_;
   std::map<std::string, std::unique_ptr<TopicReading>> topics_read_;
 

@@ -28,7 +28,7 @@ std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::str
 void TopicReading::on_sample(const Sample& sample) {
   constexpr std::size_t kMaxArrivals = 100'000;  // a flood must not eat the memory
   const Time now = live_now();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   arrivals_.push_back(now);
   while (arrivals_.front() < now - kWindow || arrivals_.size() > kMaxArrivals)
     arrivals_.pop_front();
@@ -41,7 +41,7 @@ void TopicReading::on_sample(const Sample& sample) {
 
 void TopicReading::tell(LiveInventory::Topic& topic) const {
   const Time now = live_now();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   topic.fields = values_;
   if (now - since_ < kWindow) return;  // too early to tell
   const auto recent = std::count_if(arrivals_.begin(), arrivals_.end(),

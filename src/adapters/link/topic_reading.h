@@ -5,11 +5,11 @@
 
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "base/mutex.h"
 #include "base/time.h"
 #include "language/live_inventory.h"
 #include "ros2/field_reader.h"
@@ -43,9 +43,9 @@ class TopicReading {
 
   std::vector<Field> readers_;
   Time since_{};
-  mutable std::mutex mutex_;  // guards the two below
-  std::deque<Time> arrivals_;
-  std::map<std::string, Value> values_;
+  mutable Mutex mutex_;
+  std::deque<Time> arrivals_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<std::string, Value> values_ CULPRIT_GUARDED_BY(mutex_);
   std::unique_ptr<RawSubscription> subscription_;
 };
 

@@ -67,7 +67,7 @@ Expected<void> Context::open(const ParticipantOptions& options) {
   if (!reader) return Error{reader.error()};
   info_reader_ = std::move(*reader);
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_open_ = true;
   }
   schedule_announcement();  // the first peer may have come meanwhile
@@ -79,7 +79,7 @@ Context::~Context() { tasks_.close(); }
 std::string Context::unique_id() {
   std::uint32_t number = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     number = next_id_++;
   }
   Guid id = participant_->guid();
@@ -104,18 +104,18 @@ void Context::forget_ended_namesakes() {
 }
 
 void Context::watch_servers(const void* owner, std::string service, std::function<void()> on_left) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   watches_.insert_or_assign(owner, ServerWatch{std::move(service), std::move(on_left)});
 }
 
 void Context::unwatch_servers(const void* owner) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   watches_.erase(owner);
 }
 
 // With the mutex, so that nobody is called whose unwatch_servers has returned.
 void Context::on_server_left(const std::string& service) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& [owner, watch] : watches_) {
     if (watch.service == service) watch.on_left();
   }
@@ -151,7 +151,7 @@ void Context::decide(GidSize size) {
 
 void Context::schedule_announcement() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (std::exchange(is_scheduled_, true)) return;
   }
   tasks_.post([this] { announce(); });
@@ -160,7 +160,7 @@ void Context::schedule_announcement() {
 void Context::announce() {
   DiscoveryInfo info;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_scheduled_ = false;
     if (!is_open_ || !gid_size_) return;  // without a peer there is nobody to read it
     info.participant = participant_->guid();
@@ -177,7 +177,7 @@ void Context::announce() {
 
 NodeEntry::NodeEntry(Context& context, NodeName name) : context_(context), name_(std::move(name)) {
   {
-    const std::lock_guard lock(context_.mutex_);
+    const MutexLock lock(context_.mutex_);
     context_.nodes_.insert(this);
   }
   context_.schedule_announcement();
@@ -185,7 +185,7 @@ NodeEntry::NodeEntry(Context& context, NodeName name) : context_(context), name_
 
 NodeEntry::~NodeEntry() {
   {
-    const std::lock_guard lock(context_.mutex_);
+    const MutexLock lock(context_.mutex_);
     context_.nodes_.erase(this);
   }
   context_.schedule_announcement();
@@ -193,7 +193,7 @@ NodeEntry::~NodeEntry() {
 
 void NodeEntry::add(const Guid& endpoint) {
   {
-    const std::lock_guard lock(context_.mutex_);
+    const MutexLock lock(context_.mutex_);
     endpoints_.insert(endpoint);
   }
   context_.schedule_announcement();
@@ -201,7 +201,7 @@ void NodeEntry::add(const Guid& endpoint) {
 
 void NodeEntry::remove(const Guid& endpoint) {
   {
-    const std::lock_guard lock(context_.mutex_);
+    const MutexLock lock(context_.mutex_);
     endpoints_.erase(endpoint);
   }
   context_.schedule_announcement();

@@ -14,12 +14,12 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 
 #include "base/expected.h"
+#include "base/mutex.h"
 #include "ros2/discovery_info.h"
 #include "ros2/executor.h"
 #include "ros2/graph.h"
@@ -90,12 +90,13 @@ class Context {
   bool is_deciding_ = false;
   DiscoveryCallback discovery_listener_;  // may be empty
 
-  std::mutex mutex_;      // guards the rest of this block
-  bool is_open_ = false;  // the members below are set, and stay as they are
-  std::set<NodeEntry*> nodes_;
-  std::map<const void*, ServerWatch> watches_;
-  bool is_scheduled_ = false;
-  std::uint32_t next_id_ = 1;
+  Mutex mutex_;
+  bool is_open_ CULPRIT_GUARDED_BY(mutex_) =
+      false;  // the members below are set, and stay as they are
+  std::set<NodeEntry*> nodes_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<const void*, ServerWatch> watches_ CULPRIT_GUARDED_BY(mutex_);
+  bool is_scheduled_ CULPRIT_GUARDED_BY(mutex_) = false;
+  std::uint32_t next_id_ CULPRIT_GUARDED_BY(mutex_) = 1;
 
   TaskGroup tasks_;  // outlives those that post to it
   std::unique_ptr<Participant> participant_;

@@ -95,7 +95,7 @@ ByteView DatagramFilter::pass(ByteView datagram, Bytes& scratch, Clock::time_poi
   std::vector<OnUnheard> unheard;
   ByteView passed;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     passed = look_at(datagram, scratch, now);
     unheard.swap(unheard_);
   }
@@ -364,7 +364,7 @@ void DatagramFilter::came_by(const Guid& writer, std::int64_t sequence) {
 }
 
 void DatagramFilter::delivered(const Guid& writer) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = readers_.find(writer);
   if (found != readers_.end()) found->second.unheard = 0;
 }
@@ -378,7 +378,7 @@ void DatagramFilter::drop(const Guid& guid) {
 }
 
 void DatagramFilter::begin_hearing(const Guid& writer, Reading how, OnUnheard on_unheard) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (how == Reading::kReliable && !is_reliable(writer)) drop(writer);
   Readers& readers = readers_[writer];
   ++(how == Reading::kReliable ? readers.reliable : readers.best_effort);
@@ -386,7 +386,7 @@ void DatagramFilter::begin_hearing(const Guid& writer, Reading how, OnUnheard on
 }
 
 void DatagramFilter::end_hearing(const Guid& writer, Reading how) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = readers_.find(writer);
   if (found == readers_.end()) return;
   Readers readers = found->second;
@@ -401,13 +401,13 @@ void DatagramFilter::end_hearing(const Guid& writer, Reading how) {
 }
 
 void DatagramFilter::know(const GuidPrefix& participant) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   participants_.insert(participant);
 }
 
 void DatagramFilter::forget(const GuidPrefix& participant) {
-  const std::lock_guard lock(mutex_);
-  std::erase_if(writers_, [&](const auto& each) {
+  const MutexLock lock(mutex_);
+  std::erase_if(writers_, [&](const auto& each) CULPRIT_REQUIRES(mutex_) {
     if (each.first.prefix() != participant) return false;
     total(each.first) -= each.second.reserved;
     return true;
@@ -417,7 +417,7 @@ void DatagramFilter::forget(const GuidPrefix& participant) {
 }
 
 DatagramFilter::Refused DatagramFilter::refused() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return refused_;
 }
 

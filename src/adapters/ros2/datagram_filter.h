@@ -22,12 +22,12 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
+#include "base/mutex.h"
 #include "ros2/cdr.h"
 #include "ros2/guid.h"
 
@@ -93,14 +93,20 @@ class DatagramFilter {
   };
   class Submessage;
 
-  ByteView look_at(ByteView datagram, Bytes& scratch, Clock::time_point now);
-  const char* objection(const Submessage& submessage, Clock::time_point now);
-  const char* objection_to_data(const Submessage& submessage, Clock::time_point now);
-  const char* objection_to_fragment(const Submessage& submessage, Clock::time_point now);
-  const char* objection_to_heartbeat(const Submessage& submessage, Clock::time_point now);
-  const char* objection_to_gap(const Submessage& submessage, Clock::time_point now);
+  ByteView look_at(ByteView datagram, Bytes& scratch, Clock::time_point now)
+      CULPRIT_REQUIRES(mutex_);
+  const char* objection(const Submessage& submessage, Clock::time_point now)
+      CULPRIT_REQUIRES(mutex_);
+  const char* objection_to_data(const Submessage& submessage, Clock::time_point now)
+      CULPRIT_REQUIRES(mutex_);
+  const char* objection_to_fragment(const Submessage& submessage, Clock::time_point now)
+      CULPRIT_REQUIRES(mutex_);
+  const char* objection_to_heartbeat(const Submessage& submessage, Clock::time_point now)
+      CULPRIT_REQUIRES(mutex_);
+  const char* objection_to_gap(const Submessage& submessage, Clock::time_point now)
+      CULPRIT_REQUIRES(mutex_);
   const char* reserve(const Guid& guid, std::int64_t sequence, const Assembly& wanted,
-                      std::uint32_t first, std::uint32_t count);
+                      std::uint32_t first, std::uint32_t count) CULPRIT_REQUIRES(mutex_);
 
   struct Readers {
     int best_effort = 0;
@@ -109,23 +115,28 @@ class DatagramFilter {
     std::int64_t sample = 0;  // of which something came by last
     int unheard = 0;          // so many in a row were not delivered
   };
-  bool is_heard(const Guid& writer) const;
-  bool is_reliable(const Guid& writer) const;
-  bool is_far(const Guid& writer, std::int64_t sequence, Clock::time_point now) const;
-  void learn(const Guid& writer, std::int64_t sequence, Clock::time_point now);
-  void drop(const Guid& writer);
-  void came_by(const Guid& writer, std::int64_t sequence);
-  void release(const Guid& guid, Writer& writer, std::map<std::int64_t, Assembly>::iterator which);
-  std::size_t& total(const Guid& writer);
+  bool is_heard(const Guid& writer) const CULPRIT_REQUIRES(mutex_);
+  bool is_reliable(const Guid& writer) const CULPRIT_REQUIRES(mutex_);
+  bool is_far(const Guid& writer, std::int64_t sequence, Clock::time_point now) const
+      CULPRIT_REQUIRES(mutex_);
+  void learn(const Guid& writer, std::int64_t sequence, Clock::time_point now)
+      CULPRIT_REQUIRES(mutex_);
+  void drop(const Guid& writer) CULPRIT_REQUIRES(mutex_);
+  void came_by(const Guid& writer, std::int64_t sequence) CULPRIT_REQUIRES(mutex_);
+  void release(const Guid& guid, Writer& writer, std::map<std::int64_t, Assembly>::iterator which)
+      CULPRIT_REQUIRES(mutex_);
+  std::size_t& total(const Guid& writer) CULPRIT_REQUIRES(mutex_);
 
-  mutable std::mutex mutex_;                     // guards all that follows
-  std::unordered_map<Guid, Writer> writers_;     // that are heard
-  std::unordered_map<Guid, Readers> readers_;    // by writer that they hear
-  std::unordered_set<GuidPrefix> participants_;  // that are there
-  std::size_t reserved_reliable_ = 0;
-  std::size_t reserved_best_effort_ = 0;
-  Refused refused_;
-  std::vector<OnUnheard> unheard_;  // to be called when this datagram was looked at
+  mutable Mutex mutex_;
+  std::unordered_map<Guid, Writer> writers_ CULPRIT_GUARDED_BY(mutex_);  // that are heard
+  std::unordered_map<Guid, Readers> readers_
+      CULPRIT_GUARDED_BY(mutex_);  // by writer that they hear
+  std::unordered_set<GuidPrefix> participants_ CULPRIT_GUARDED_BY(mutex_);  // that are there
+  std::size_t reserved_reliable_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::size_t reserved_best_effort_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  Refused refused_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<OnUnheard> unheard_
+      CULPRIT_GUARDED_BY(mutex_);  // to be called when this datagram was looked at
 };
 
 }  // namespace culprit::ros2

@@ -16,13 +16,13 @@
 
 #include <cstdint>
 #include <list>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "base/mutex.h"
 #include "base/time.h"
 #include "ros2/guid.h"
 
@@ -72,14 +72,15 @@ class DatagramSources {
     std::list<GuidPrefix>::iterator place;  // in others_, unless it is kept
   };
 
-  void note(const GuidPrefix& participant, const UdpAddress& from);
+  void note(const GuidPrefix& participant, const UdpAddress& from) CULPRIT_REQUIRES(mutex_);
 
-  mutable std::mutex mutex_;
-  std::unordered_map<GuidPrefix, Entry> entries_;
-  std::list<GuidPrefix> others_;  // those that are not kept, oldest first
-  std::optional<GuidPrefix> self_;
-  std::vector<std::pair<std::uint16_t, Time>>
-      ports_;  // when datagrams of our own came through last
+  mutable Mutex mutex_;
+  std::unordered_map<GuidPrefix, Entry> entries_ CULPRIT_GUARDED_BY(mutex_);
+  std::list<GuidPrefix> others_
+      CULPRIT_GUARDED_BY(mutex_);  // those that are not kept, oldest first
+  std::optional<GuidPrefix> self_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<std::pair<std::uint16_t, Time>> ports_
+      CULPRIT_GUARDED_BY(mutex_);  // when datagrams of our own came through last
 };
 
 }  // namespace culprit::ros2

@@ -38,7 +38,7 @@ Expected<void> Executor::stop_on(std::initializer_list<int> signals) {
 }
 
 void Executor::run() {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   thread_ = std::this_thread::get_id();
   while (!stopped_) {
     collect_due();
@@ -52,12 +52,12 @@ void Executor::run() {
 }
 
 void Executor::stop() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   stopped_ = true;
   wake();
 }
 
-// With the lock. A system call only when it is needed.
+// A system call only when it is needed.
 void Executor::wake() {
   if (!sleeping_) return;
   sleeping_ = false;
@@ -74,7 +74,7 @@ void Executor::collect_due() {
   }
 }
 
-void Executor::run_front(std::unique_lock<std::mutex>& lock) {
+void Executor::run_front(MutexLock& lock) {
   {
     const Entry entry = std::move(ready_.front());
     ready_.pop_front();
@@ -95,7 +95,7 @@ bool Executor::take_signal() const {
   return signal_fd_ >= 0 && read(signal_fd_, &info, sizeof info) == sizeof info;
 }
 
-void Executor::sleep(std::unique_lock<std::mutex>& lock) {
+void Executor::sleep(MutexLock& lock) {
   sleeping_ = true;
   timespec timeout{};
   const bool has_timeout = !timers_.empty();
@@ -117,7 +117,7 @@ void Executor::sleep(std::unique_lock<std::mutex>& lock) {
 }
 
 void TaskGroup::close() {
-  std::unique_lock lock(executor_.mutex_);
+  MutexLock lock(executor_.mutex_);
   closed_ = true;
   std::erase_if(executor_.ready_, [this](const auto& entry) { return entry.owner == this; });
   std::erase_if(executor_.timers_,
@@ -128,18 +128,19 @@ void TaskGroup::close() {
     if (executor_.running_ == this) executor_.running_ = nullptr;
     return;
   }
-  executor_.finished_.wait(lock, [this] { return executor_.running_ != this; });
+  executor_.finished_.wait(
+      lock, [this]() CULPRIT_REQUIRES(executor_.mutex_) { return executor_.running_ != this; });
 }
 
 void TaskGroup::post(Executor::Task task) {
-  const std::lock_guard lock(executor_.mutex_);
+  const MutexLock lock(executor_.mutex_);
   if (closed_) return;
   executor_.ready_.push_back({this, std::move(task)});
   executor_.wake();
 }
 
 TaskGroup::TimerId TaskGroup::post_at(Executor::Clock::time_point at, Executor::Task task) {
-  const std::lock_guard lock(executor_.mutex_);
+  const MutexLock lock(executor_.mutex_);
   const TimerId timer{at, executor_.next_number_++};
   if (closed_) return timer;
   const auto added = executor_.timers_.emplace(Executor::Due{timer.at, timer.number},
@@ -150,7 +151,7 @@ TaskGroup::TimerId TaskGroup::post_at(Executor::Clock::time_point at, Executor::
 
 void TaskGroup::cancel(TimerId timer) {
   Executor::Task dropped;  // released without the lock
-  const std::lock_guard lock(executor_.mutex_);
+  const MutexLock lock(executor_.mutex_);
   const auto found = executor_.timers_.find(Executor::Due{timer.at, timer.number});
   if (found == executor_.timers_.end()) return;
   dropped = std::move(found->second.task);

@@ -9,18 +9,17 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <csignal>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <initializer_list>
 #include <map>
-#include <mutex>
 #include <thread>
 #include <utility>
 
 #include "base/expected.h"
+#include "base/mutex.h"
 
 namespace culprit::ros2 {
 
@@ -55,24 +54,25 @@ class Executor {
     Task task;
   };
 
-  void wake();
-  void collect_due();
-  void run_front(std::unique_lock<std::mutex>& lock);
-  void sleep(std::unique_lock<std::mutex>& lock);
+  void wake() CULPRIT_REQUIRES(mutex_);
+  void collect_due() CULPRIT_REQUIRES(mutex_);
+  // Both let go of the lock in between, which the analysis cannot follow.
+  void run_front(MutexLock& lock) CULPRIT_REQUIRES(mutex_) CULPRIT_NOT_ANALYZED;
+  void sleep(MutexLock& lock) CULPRIT_REQUIRES(mutex_) CULPRIT_NOT_ANALYZED;
   bool take_signal() const;
 
   int wake_fd_;
   int signal_fd_ = -1;
 
-  std::mutex mutex_;  // guards everything below
-  std::deque<Entry> ready_;
-  std::map<Due, Entry> timers_;
-  std::uint64_t next_number_ = 1;
-  bool stopped_ = false;
-  bool sleeping_ = false;
-  const TaskGroup* running_ = nullptr;  // whose task runs now
-  std::thread::id thread_;              // that of run()
-  std::condition_variable finished_;    // a task has
+  Mutex mutex_;
+  std::deque<Entry> ready_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<Due, Entry> timers_ CULPRIT_GUARDED_BY(mutex_);
+  std::uint64_t next_number_ CULPRIT_GUARDED_BY(mutex_) = 1;
+  bool stopped_ CULPRIT_GUARDED_BY(mutex_) = false;
+  bool sleeping_ CULPRIT_GUARDED_BY(mutex_) = false;
+  const TaskGroup* running_ CULPRIT_GUARDED_BY(mutex_) = nullptr;  // whose task runs now
+  std::thread::id thread_ CULPRIT_GUARDED_BY(mutex_);              // that of run()
+  ConditionVariable finished_;                                     // a task has
 };
 
 // Tasks of one owner on an executor. Thread-safe.

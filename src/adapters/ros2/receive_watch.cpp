@@ -68,12 +68,12 @@ ReceiveWatch::Arrival ReceiveWatch::first_unread(int descriptor) {
 }
 
 void ReceiveWatch::opened(std::uint16_t port) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   ports_.insert(port);
 }
 
 void ReceiveWatch::look(Time now) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const std::vector<Socket> before = std::exchange(sockets_, {});
   for (const int descriptor : descriptors()) {
     const auto port = udp_port_of(descriptor);
@@ -89,7 +89,7 @@ void ReceiveWatch::look(Time now) {
 }
 
 Time ReceiveWatch::attended() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Time oldest = kNever;
   for (const Socket& each : sockets_) oldest = std::min(oldest, each.attended);
   return oldest;

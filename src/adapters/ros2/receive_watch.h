@@ -7,10 +7,10 @@
 #pragma once
 
 #include <cstdint>
-#include <mutex>
 #include <set>
 #include <vector>
 
+#include "base/mutex.h"
 #include "base/time.h"
 
 namespace culprit::ros2 {
@@ -40,9 +40,9 @@ class ReceiveWatch {
   };
   static Arrival first_unread(int descriptor);
 
-  mutable std::mutex mutex_;  // guards all that follows
-  std::set<std::uint16_t> ports_;
-  std::vector<Socket> sockets_;
+  mutable Mutex mutex_;
+  std::set<std::uint16_t> ports_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<Socket> sockets_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 }  // namespace culprit::ros2

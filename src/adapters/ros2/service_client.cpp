@@ -73,7 +73,7 @@ Expected<void> ServiceClient::open(const ServiceName& service, const Qos& qos) {
   const Guid guid = (*writer)->guid();
   node_.add(guid);
   {
-    const std::lock_guard lock(mutex_);  // from now on a server may match, and a task of ours send
+    const MutexLock lock(mutex_);  // from now on a server may match, and a task of ours send
     request_writer_ = std::move(*writer);
     reader_id_ = reply_reader_->guid();
     writer_id_ = guid;
@@ -87,7 +87,7 @@ Expected<void> ServiceClient::open_probe(Probe probe) {
   auto client = create(node_, probe.service);
   if (!client) return Error{client.error()};
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     probe_request_ = std::move(probe.request);
     probe_ = std::move(*client);
   }
@@ -106,7 +106,7 @@ ServiceClient::~ServiceClient() {
 }
 
 void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callback callback) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const CallNumber number = ++last_call_;
   Call& call = calls_[number];
   call.request = std::move(request);
@@ -121,7 +121,7 @@ void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callbac
 }
 
 bool ServiceClient::is_ready() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return server_for(Repeat::kNever) != nullptr;
 }
 
@@ -170,7 +170,7 @@ void ServiceClient::on_reply(const Sample& sample) {
   }
   std::optional<Call> call;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const bool is_ours =
         split ? split->header.client == header_id_
               : sample.related.writer == reader_id_ || sample.related.writer == writer_id_;
@@ -188,7 +188,7 @@ void ServiceClient::on_request_reader(const Guid& reader, Match match) {
     request_readers_.emplace(reader, ++matches_);
     // What a dead server did not acknowledge must not come between its successor and us
     // (service_mapping.h).
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (request_writer_) request_writer_->forget_unacknowledged();
   } else {
     request_readers_.erase(reader);
@@ -217,7 +217,7 @@ void ServiceClient::update_servers() {
     }
   }
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto is_known = [](const std::vector<Server>& servers, const GuidPrefix& participant) {
       return std::ranges::find(servers, participant, &Server::participant) != servers.end();
     };
@@ -241,7 +241,7 @@ void ServiceClient::update_servers() {
 // Perhaps it was ours, and dead. If it lives, it will prove it.
 void ServiceClient::on_server_left() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     lose_proof();
   }
   tasks_.post([this] { start_probe(); });
@@ -260,7 +260,7 @@ bool ServiceClient::is_pair(const Guid& reader, const Guid& writer) const {
 }
 
 void ServiceClient::send_waiting() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!request_writer_) return;
   for (auto& [number, call] : calls_) {
     if (!call.is_sent && server_for(call.repeat) != nullptr) send(number, call);
@@ -275,7 +275,7 @@ void ServiceClient::lose_proof() {
 void ServiceClient::start_probe() {
   std::uint64_t round = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (probe_ == nullptr || is_probing_ || servers_.empty() || proven_) return;
     round = proof_round_;
   }
@@ -293,7 +293,7 @@ void ServiceClient::on_probe(std::uint64_t round, CallOutcome outcome,
   is_probing_ = false;
   if (outcome != CallOutcome::kAnswered) return start_probe();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (round != proof_round_) return tasks_.post([this] { start_probe(); });
     const auto server = std::ranges::find(servers_, participant, &Server::participant);
     if (server != servers_.end()) proven_ = *server;
@@ -305,7 +305,7 @@ void ServiceClient::on_probe(std::uint64_t round, CallOutcome outcome,
 }
 
 void ServiceClient::on_send_again(CallNumber number) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = calls_.find(number);
   if (found == calls_.end()) return;
   if (server_for(Repeat::kUntilAnswered) != nullptr) send(number, found->second);
@@ -316,7 +316,7 @@ void ServiceClient::on_send_again(CallNumber number) {
 void ServiceClient::on_deadline(CallNumber number) {
   std::optional<Call> call;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     call = take(number);
   }
   if (!call) return;

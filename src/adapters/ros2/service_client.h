@@ -22,13 +22,13 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/expected.h"
+#include "base/mutex.h"
 #include "base/units.h"
 #include "ros2/cdr.h"
 #include "ros2/context.h"
@@ -124,10 +124,10 @@ class ServiceClient {
   void on_deadline(CallNumber number);
 
   // With mutex_.
-  const Server* server_for(Repeat repeat) const;
-  void lose_proof();
-  void send(CallNumber number, Call& call);
-  std::optional<Call> take(CallNumber number);
+  const Server* server_for(Repeat repeat) const CULPRIT_REQUIRES(mutex_);
+  void lose_proof() CULPRIT_REQUIRES(mutex_);
+  void send(CallNumber number, Call& call) CULPRIT_REQUIRES(mutex_);
+  std::optional<Call> take(CallNumber number) CULPRIT_REQUIRES(mutex_);
 
   NodeEntry& node_;
   // What replies name us by. Copies: a reply may come while reader and writer are being destroyed.
@@ -141,14 +141,16 @@ class ServiceClient {
   std::uint64_t matches_ = 0;
   bool is_probing_ = false;
 
-  mutable std::mutex mutex_;       // guards the rest of this block
-  std::vector<Server> servers_;    // both endpoints matched; the newest last
-  std::optional<Server> proven_;   // with a probe: the one that knows us
-  std::uint64_t proof_round_ = 0;  // counts the times that a proof was lost
-  std::map<CallNumber, Call> calls_;
-  std::map<RequestId, CallNumber> requests_;
-  CallNumber last_call_ = 0;
-  std::int64_t header_sequence_ = 0;
+  mutable Mutex mutex_;
+  std::vector<Server> servers_
+      CULPRIT_GUARDED_BY(mutex_);  // both endpoints matched; the newest last
+  std::optional<Server> proven_ CULPRIT_GUARDED_BY(mutex_);  // with a probe: the one that knows us
+  std::uint64_t proof_round_ CULPRIT_GUARDED_BY(mutex_) =
+      0;  // counts the times that a proof was lost
+  std::map<CallNumber, Call> calls_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<RequestId, CallNumber> requests_ CULPRIT_GUARDED_BY(mutex_);
+  CallNumber last_call_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::int64_t header_sequence_ CULPRIT_GUARDED_BY(mutex_) = 0;
 
   TaskGroup tasks_;  // outlives those that post to it
 

@@ -58,7 +58,7 @@ Expected<void> ServiceServer::open(const ServiceName& service, const Qos& qos) {
        .on_match = {}},
       [this](const Sample& sample) {
         {
-          const std::lock_guard lock(mutex_);
+          const MutexLock lock(mutex_);
           if (requests_.size() >= depth_) requests_.pop_front();  // as a history of that depth does
           requests_.push_back(
               {{sample.payload.begin(), sample.payload.end()}, sample.identity, sample.related});
@@ -82,7 +82,7 @@ ServiceServer::~ServiceServer() {
 void ServiceServer::handle_next() {
   Request request;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (requests_.empty()) return;
     request = std::move(requests_.front());
     requests_.pop_front();

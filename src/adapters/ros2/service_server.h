@@ -10,13 +10,13 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 #include <variant>
 
 #include "base/expected.h"
+#include "base/mutex.h"
 #include "ros2/cdr.h"
 #include "ros2/context.h"
 #include "ros2/executor.h"
@@ -79,8 +79,8 @@ class ServiceServer {
   std::map<std::uint64_t, Reply> waiting_;
   std::uint64_t next_waiting_ = 1;
 
-  std::mutex mutex_;  // guards the requests
-  std::deque<Request> requests_;
+  Mutex mutex_;
+  std::deque<Request> requests_ CULPRIT_GUARDED_BY(mutex_);
 
   TaskGroup tasks_;  // outlives those that post to it
   std::unique_ptr<Writer> reply_writer_;

@@ -93,7 +93,7 @@ Subscription::~Subscription() { tasks_.close(); }
 
 void Subscription::on_sample(const Sample& sample) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (payloads_.size() >= depth_) payloads_.pop_front();
     payloads_.emplace_back(sample.payload.begin(), sample.payload.end());
   }
@@ -103,7 +103,7 @@ void Subscription::on_sample(const Sample& sample) {
 void Subscription::deliver_next() {
   Bytes payload;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (payloads_.empty()) return;
     payload = std::move(payloads_.front());
     payloads_.pop_front();

@@ -5,11 +5,11 @@
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string_view>
 #include <utility>
 
 #include "base/expected.h"
+#include "base/mutex.h"
 #include "ros2/cdr.h"
 #include "ros2/context.h"
 #include "ros2/executor.h"
@@ -78,8 +78,8 @@ class Subscription {
 
   const std::size_t depth_;
   const Callback callback_;
-  std::mutex mutex_;  // guards the payloads
-  std::deque<Bytes> payloads_;
+  Mutex mutex_;
+  std::deque<Bytes> payloads_ CULPRIT_GUARDED_BY(mutex_);
   TaskGroup tasks_;  // outlives the one that posts to it
   std::unique_ptr<RawSubscription> raw_;
 };

@@ -34,14 +34,14 @@ Time Runtime::next_deadline() const {
 
 void Runtime::submit(Order order) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     orders_.push_back(std::move(order));
   }
   robot_.interrupt();
 }
 
 void Runtime::take_orders(std::vector<Observation>& observations) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (Order& order : orders_) observations.push_back({robot_.now(), std::move(order)});
   orders_.clear();
 }

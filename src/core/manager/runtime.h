@@ -7,9 +7,9 @@
 
 #include <atomic>
 #include <functional>
-#include <mutex>
 #include <vector>
 
+#include "base/mutex.h"
 #include "manager/managing_system.h"
 #include "robot/robot.h"
 
@@ -60,8 +60,8 @@ class Runtime {
   ManagingSystem& manager_;
   Robot& robot_;
   Time stepped_ = kLongAgo;  // when the last step began
-  std::mutex mutex_;
-  std::vector<Order> orders_;  // guarded by mutex_
+  Mutex mutex_;
+  std::vector<Order> orders_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 }  // namespace culprit

@@ -17,7 +17,7 @@ Steady::time_point as_steady(Time time) {
 void Inbox::put(Observation observation, Urgency urgency) {
   bool wake = false;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (waiting_.size() >= kMaxWaiting) {
       const auto oldest = std::find_if(waiting_.begin(), waiting_.end(), [](const Observation& o) {
         return !std::holds_alternative<Reply>(o.what);
@@ -34,7 +34,7 @@ void Inbox::put(Observation observation, Urgency urgency) {
 }
 
 void Inbox::take(Time until, std::vector<Observation>& observations) {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (!is_urgent_ && !is_interrupted_) {
     const Time end = waiting_.empty() ? until : std::min(until, waiting_.front().at + kSoon);
     if (end == kNever) {
@@ -52,14 +52,14 @@ void Inbox::take(Time until, std::vector<Observation>& observations) {
 
 void Inbox::interrupt() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_interrupted_ = true;
   }
   something_came_.notify_all();
 }
 
 std::size_t Inbox::dropped() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return dropped_;
 }
 

@@ -2,11 +2,10 @@
 // it out.
 #pragma once
 
-#include <condition_variable>
-#include <mutex>
 #include <vector>
 
 #include "base/live_clock.h"
+#include "base/mutex.h"
 #include "robot/observation.h"
 
 namespace culprit {
@@ -44,12 +43,12 @@ class Inbox {
   std::size_t dropped() const;
 
  private:
-  mutable std::mutex mutex_;
-  std::condition_variable something_came_;
-  std::vector<Observation> waiting_;
-  bool is_urgent_ = false;
-  std::size_t dropped_ = 0;
-  bool is_interrupted_ = false;
+  mutable Mutex mutex_;
+  ConditionVariable something_came_;
+  std::vector<Observation> waiting_ CULPRIT_GUARDED_BY(mutex_);
+  bool is_urgent_ CULPRIT_GUARDED_BY(mutex_) = false;
+  std::size_t dropped_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  bool is_interrupted_ CULPRIT_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace culprit
