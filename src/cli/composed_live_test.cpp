@@ -143,6 +143,10 @@ TEST_F(Composed, NothingIsUnloadedThatCouldNotBeLoadedAgain) {
       << culprit.output();
   EXPECT_TRUE(culprit.prints("DetectorWeak is exhausted")) << culprit.output();
   EXPECT_THAT(container.output(), Not(HasSubstr("unloaded")));
+  TestProgram check(world, {"culprit", "check", "--robot",
+                            world.write("typo.rules", rules("", "peer::Nodde") + kWeak)});
+  EXPECT_EQ(check.wait(), 0);
+  EXPECT_THAT(check.output(), HasSubstr("PLUGIN: the package peer has no component peer::Nodde"));
 }
 
 TEST_F(Composed, AContainerThatIsKilledComesBackOnceWithAllThatItHad) {
@@ -204,8 +208,10 @@ TEST_F(Composed, WhoOnlyOffersTheServicesOfAContainerIsNotBelieved) {
       });
   ASSERT_TRUE(unload) << unload.error();
   std::thread thread([&] { executor.run(); });
+  const std::string gone = kGone;
+  const auto culprit = run(rules("") + gone.substr(0, gone.find("RULE TrackerGone")));
+  ASSERT_TRUE(culprit.prints("tracker is there (process ")) << culprit.output();
   container.signal(SIGSTOP);  // so that only the forger answers
-  const auto culprit = run(rules("") + kGone);
   EXPECT_TRUE(culprit.prints("somebody else answers for the container /box")) << culprit.output();
   container.signal(SIGCONT);
   EXPECT_FALSE(container.wait(100ms)) << "the container was ended";

@@ -9,6 +9,7 @@
 
 #include "base/environment.h"
 #include "owners/proc.h"
+#include "owners/test_engine.h"
 #include "owners/test_systemd.h"
 #include "ros2/options.h"
 #include "terminal/test_program.h"
@@ -163,6 +164,42 @@ TEST_F(NodesOfARealSystemd, ThatItHasNotAreToldBeforeAnythingBreaks) {
   EXPECT_EQ(check.wait(), 0);
   EXPECT_THAT(check.output(),
               HasSubstr("the user's systemd has no lydar.service; did you mean lidar.service?"));
+}
+
+// The engine is a stand-in that speaks the Docker Engine API.
+TEST(NodesOfAStandInForDocker, ThatHangOrAreKilledAreStartedOnceByIt) {
+  const TestWorld world;
+  owners::TestEngine engine;
+  engine.add("lidar_1",
+             {.policy = "always",
+              .command = {(own_folder() / "ros2_peer_node").string(),
+                          std::to_string(ros2::options_from_environment()->domain), "/lidar"}});
+  const int first = engine.start("lidar_1");
+  const auto rules = world.write(
+      "container.rules",
+      "COMPONENT lidar NODE /lidar CONTAINER docker lidar_1\nRULE LidarGone\n  POLICIES ERROR\n"
+      "  TRIGGER alive(lidar) == false\n    STRATEGY lidar_redeploy 90 10\n"
+      "      ADAPTATION lidar redeploy 5\n");
+  const TestProgram culprit(world, {"culprit", "run", rules, "--settle", "0.2", "--state-dir",
+                                    (world.folder() / "state").string()});
+  ASSERT_TRUE(culprit.prints("lidar is there (process " + std::to_string(first) + ")"))
+      << culprit.output();
+  kill(first, SIGSTOP);
+  EXPECT_TRUE(culprit.prints("LidarGone resolved by lidar_redeploy")) << culprit.output();
+  EXPECT_THAT(engine.asked(), testing::ElementsAre("restart lidar_1"));
+  const int second = engine.pid_of("lidar_1");
+  EXPECT_TRUE(culprit.prints("lidar is there (process " + std::to_string(second) + ")"))
+      << culprit.output();
+  kill(second, SIGKILL);  // the engine starts it again by itself
+  EXPECT_TRUE(culprit.prints("lidar is lost")) << culprit.output();
+  for (const Time end = later(live_now(), TestProgram::kPatience);
+       live_now() < end && engine.pid_of("lidar_1") == second;)
+    std::this_thread::sleep_for(20ms);
+  EXPECT_TRUE(
+      culprit.prints("lidar is there (process " + std::to_string(engine.pid_of("lidar_1")) + ")"))
+      << culprit.output();
+  EXPECT_THAT(engine.asked(), testing::ElementsAre("restart lidar_1"));
+  EXPECT_THAT(culprit.output(), Not(HasSubstr("several nodes")));
 }
 
 }  // namespace

@@ -118,6 +118,18 @@ TEST(UnitSettings, WhatSystemdStartsAndEndsTakesARightAndNothingElse) {
   EXPECT_THAT(text, HasSubstr("User= needs the right to (docs/security.md): camera."));
 }
 
+TEST(UnitSettings, WhatAnEngineOrAContainerStartsIsNoProgramOfCulprits) {
+  const std::string rules =
+      "COMPONENT slam CONTAINER docker slam\nCOMPONENT box NODE /box LAUNCH \"box\"\n"
+      "COMPONENT part NODE /part IN /box PLUGIN p::P\n"
+      "RULE r\n POLICIES ERROR\n TRIGGER age(/rgb) > 1s\n"
+      "  STRATEGY a 50 10\n   ADAPTATION slam redeploy 1\n   ADAPTATION part redeploy 1\n";
+  const std::string text = unit_settings(*check(Source("test.rules", rules)).rules, {"/r"});
+  EXPECT_THAT(text, HasSubstr("User= needs their sockets (docs/security.md): slam."));
+  EXPECT_THAT(text, HasSubstr("box"));
+  EXPECT_THAT(text, Not(HasSubstr("part")));
+}
+
 TEST(UnitSettings, OtherUsersProcessesTakeCapabilities) {
   const UnitOptions options{"/r", NodeOwner::kOtherUsers};
   EXPECT_THAT(settings("stop", "redeploy", options),

@@ -13,7 +13,16 @@ struct Processes {
   std::vector<std::string> started;
   std::vector<std::string> ended;
   std::vector<std::string> of_systemd;  // that is asked to do it
+  std::vector<std::string> of_engines;  // likewise
 };
+
+// The component whose process it lives in: its container's, if that is one.
+ComponentId process_of(ComponentId component, const RuleSet& rules) {
+  for (std::size_t c = 0; rules[component].composed && c < rules.components.size(); ++c) {
+    if (rules.components[c].node == rules[component].composed->container) return ComponentId(c);
+  }
+  return component;
+}
 
 Processes processes_of(const RuleSet& rules) {
   Processes processes;
@@ -30,10 +39,14 @@ Processes processes_of(const RuleSet& rules) {
         add(processes.of_systemd, adaptation.component);
         continue;
       }
-      if (redeploys || adaptation.type == AdaptationType::kStart)
-        add(processes.started, adaptation.component);
-      if (redeploys || adaptation.type == AdaptationType::kStop)
-        add(processes.ended, adaptation.component);
+      if (starts_or_ends && rules[adaptation.component].engine) {
+        add(processes.of_engines, adaptation.component);
+        continue;
+      }
+      // For what a container loads it may be replaced itself.
+      const ComponentId component = process_of(adaptation.component, rules);
+      if (redeploys || adaptation.type == AdaptationType::kStart) add(processes.started, component);
+      if (redeploys || adaptation.type == AdaptationType::kStop) add(processes.ended, component);
     }
   }
   return processes;
@@ -77,7 +90,9 @@ std::string end_settings(const Processes& processes, NodeOwner nodes) {
     if (ends)
       return fmt::format("# These are ended, so User= has to be whoever runs them: {}.\n",
                          fmt::join(processes.ended, ", "));
-    if (!processes.started.empty() || !processes.of_systemd.empty()) return "";
+    if (!processes.started.empty() || !processes.of_systemd.empty() ||
+        !processes.of_engines.empty())
+      return "";
     return "# No process is ever ended or started: it need not be anybody.\n"
            "User=\n"
            "DynamicUser=yes\n";
@@ -111,6 +126,11 @@ std::string unit_settings(const RuleSet& rules, const UnitOptions& options) {
         "\n# systemd is asked to start and end these, so User= needs the right to "
         "(docs/security.md): {}.\n",
         fmt::join(processes.of_systemd, ", "));
+  if (!processes.of_engines.empty())
+    text += fmt::format(
+        "\n# Container engines are asked to start and end these, so User= needs their sockets "
+        "(docs/security.md): {}.\n",
+        fmt::join(processes.of_engines, ", "));
   const std::string more = end_settings(processes, options.nodes);
   return more.empty() ? text : text + "\n" + more;
 }

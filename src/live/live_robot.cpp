@@ -67,6 +67,7 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
     if (!component) continue;
     supervisor_->adopt(*component, appeared->pid, observations[i].at);
     units_.found(*component, appeared->pid);
+    engines_.found(*component, appeared->pid);
   }
 }
 
@@ -124,6 +125,7 @@ void LiveRobot::start(CommandId command, ComponentId component, Duration patienc
 
 void LiveRobot::start_process(CommandId command, ComponentId component) {
   if (rules_[component].unit) return units_.start(command, component);
+  if (rules_[component].engine) return engines_.start(command, component);
   supervisor_->start(command, component);
 }
 
@@ -151,12 +153,26 @@ void LiveRobot::stop_process(const Command& command) {
                                 "COMPONENT with NODE " +
                                 home->container + " and a LAUNCH"});
   }
+  // systemd and engines know themselves what they run.
+  const auto lost = containers_.would_lose(component);
+  if (lost && !rules_[component].has_owner() && !supervisor_->has_started(component)) {
+    const std::string& name = rules_[component].name;
+    const std::string& other = rules_[*lost].name;
+    return inbox_.put(Reply{command.id,
+                            Outcome::kRefused,
+                            {},
+                            name + " lives in one process with " + other +
+                                ", which would end with it and is started otherwise. If a "
+                                "container loads them, declare that: IN /container PLUGIN "
+                                "package::Class; if one program makes both, leave LAUNCH to one"});
+  }
   end_process(command.id, component, stop.pid, ending, hangs);
 }
 
 void LiveRobot::end_process(CommandId command, ComponentId component, int pid,
                             owners::Ending ending, owners::Hangs hangs) {
   if (rules_[component].unit) return units_.stop(command, component, pid, ending);
+  if (rules_[component].engine) return engines_.stop(command, component, pid, ending);
   supervisor_->stop(command, component, ending, hangs);
 }
 

@@ -51,7 +51,11 @@ class LiveRobot : public Robot {
 
  private:
   explicit LiveRobot(const RuleSet& rules)
-      : rules_(rules), binding_(rules), containers_(rules), units_(rules, inbox_) {}
+      : rules_(rules),
+        binding_(rules),
+        containers_(rules),
+        units_(rules, inbox_),
+        engines_(rules, inbox_, owners::Units::Of::kEngines) {}
 
   void listen(Time until, std::vector<Observation>& observations);
   void witness(std::size_t before, std::vector<Observation>& observations);
@@ -65,6 +69,7 @@ class LiveRobot : public Robot {
   ComponentBinding binding_;
   owners::ComponentContainers containers_;
   owners::Units units_;
+  owners::Units engines_;
   std::unique_ptr<owners::Supervisor> supervisor_;
   std::unique_ptr<ros2::Link> link_;
   std::unique_ptr<owners::ContainerClients> container_clients_;

@@ -8,6 +8,9 @@
 #include "language/live_findings.h"
 #include "live/robot_survey.h"
 #include "live/setups.h"
+#include "owners/found_owner.h"
+#include "owners/parameter_file.h"
+#include "owners/plugin_index.h"
 #include "owners/units.h"
 #include "robot/inbox.h"
 
@@ -82,6 +85,44 @@ std::string nobody_on(std::uint32_t domain) {
   return fmt::format("no nodes were seen on domain {}; is ROS_DOMAIN_ID the robot's?", domain);
 }
 
+namespace {
+
+// Who runs what the rules do not say the owner of.
+void find_owners(const RuleSet& rules, LiveInventory& robot) {
+  for (const Component& component : rules.components) {
+    const std::string node = robot.node_of(component);
+    if (node.empty() || component.can_start_again()) continue;
+    LiveInventory::Node& it = robot.nodes.at(node);
+    std::string loader;
+    for (const auto& [other, what] : robot.nodes) {
+      if (other != node && what.pid == it.pid &&
+          robot.services.contains(other + "/_container/load_node"))
+        loader = other;
+    }
+    if (const auto owner = owners::found_owner(it.pid, loader))
+      it.owner = owner->who + ": " + owner->declare;
+  }
+}
+
+// What its container, where that runs, could not load.
+void find_composition_troubles(const Component& component, LiveInventory& robot) {
+  using Clause = LiveInventory::LaunchTrouble::Clause;
+  const Composition& how = *component.composed;
+  const auto container = robot.nodes.find(how.container);
+  if (container != robot.nodes.end() && container->second.pid != 0) {
+    const auto found = owners::find_plugin(container->second.pid, how.package, how.plugin);
+    if (!found)
+      robot.launch_troubles.push_back(
+          {component.name, Clause::kPlugin, how.plugin, "PLUGIN: " + found.error()});
+  }
+  if (how.parameters.empty()) return;
+  if (const auto read = owners::read_parameter_file(how.parameters, component.node); !read)
+    robot.launch_troubles.push_back(
+        {component.name, Clause::kParameters, how.parameters, read.error()});
+}
+
+}  // namespace
+
 LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& survey,
                        Duration wait, const std::stop_token& stop) {
   LiveInterest interest;
@@ -100,13 +141,20 @@ LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& s
   look_until(all_found, later(live_now(), wait), stop);
   LiveInventory robot = survey.inventory();
   for (const RuleSet* each : rules) {
+    find_owners(*each, robot);
     for (const Component& component : each->components) {
-      if (!component.unit || stop.stop_requested()) continue;
+      if (stop.stop_requested()) continue;
+      if (component.engine) {
+        if (const auto could = owners::could_manage(*component.engine); !could)
+          robot.container_troubles.push_back({*component.engine, could.error()});
+      }
+      if (!component.unit) continue;
       if (const auto could = owners::could_manage(*component.unit); !could)
         robot.unit_troubles.push_back({*component.unit, could.error()});
     }
     for (const Component& component : each->components) {
       if (stop.stop_requested()) break;
+      if (component.composed) find_composition_troubles(component, robot);
       if (auto trouble = launch_trouble(component))
         robot.launch_troubles.push_back(std::move(*trouble));
     }

@@ -1,5 +1,7 @@
 #include "link/survey.h"
 
+#include "ros2/process_finder.h"
+
 namespace culprit::ros2 {
 namespace {
 
@@ -34,6 +36,9 @@ Survey::~Survey() {
 Expected<void> Survey::start() {
   Graph::Options graph;
   graph.listener = [this](const GraphChange& change) { on_change(change); };
+  graph.find_process = [finder = ProcessFinder()](const ParticipantInfo& participant) {
+    return finder.find(participant);
+  };
   auto context = Context::create(executor_, options_.participant, std::move(graph));
   if (!context) return Error{context.error()};
   context_ = std::move(*context);
@@ -73,6 +78,9 @@ LiveInventory Survey::inventory() const {
     all.services.insert(services.begin(), services.end());
   }
   for (const auto& [node, reading] : nodes_read_) all.nodes[node] = reading->told();
+  for (const auto& [node, pid] : pids_) {
+    if (const auto found = all.nodes.find(node); found != all.nodes.end()) found->second.pid = pid;
+  }
   for (const auto& [topic, use] : topics_) {
     LiveInventory::Topic& entry = all.topics[topic];
     entry.type = use.type;
@@ -92,11 +100,13 @@ void Survey::on_change(const GraphChange& change) {
     {
       const MutexLock lock(mutex_);
       services_[joined->node.name];
+      pids_[joined->node.name] = joined->node.pid;
     }
     read_node(joined->node.name);
   } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
     const MutexLock lock(mutex_);
     services_.erase(left->node);
+    pids_.erase(left->node);
     nodes_read_.erase(left->node);
   } else if (const auto* endpoint = std::get_if<EndpointJoined>(&change)) {
     if (endpoint->node != options_.name.full()) on_endpoint(endpoint->node, endpoint->endpoint);

@@ -78,6 +78,7 @@ class Survey {
   std::map<std::string, std::map<std::string, std::string>> services_;  // of each node, with types
   std::map<std::string, TopicUse> topics_;
   std::map<StatusKey, LiveInventory::Status> statuses_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<std::string, int> pids_ CULPRIT_GUARDED_BY(mutex_);  // of the nodes that are there
   std::map<std::string, std::unique_ptr<NodeReading>> nodes_read_;
   std::map<std::string, std::unique_ptr<TopicReading>> topics_read_;
 

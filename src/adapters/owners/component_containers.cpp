@@ -39,4 +39,22 @@ std::optional<ComponentContainers::Home> ComponentContainers::home_of(ComponentI
   return home.container.empty() ? std::nullopt : std::optional(home);
 }
 
+std::optional<ComponentId> ComponentContainers::would_lose(ComponentId component) const {
+  const auto last = last_.find(component);
+  if (last == last_.end() || last->second == 0) return std::nullopt;
+  if (containers_.contains(binding_.node_of(component))) return std::nullopt;
+  const Component& one = rules_[component];
+  for (const auto& [other, process] : last_) {
+    const Component& another = rules_[other];
+    const auto is_there = processes_.find(binding_.node_of(other));
+    if (other == component || process != last->second || is_there == processes_.end() ||
+        is_there->second != process)
+      continue;
+    const bool is_same = !one.launch.empty() && one.launch == another.launch;
+    const bool are_respawned = one.is_respawned && another.is_respawned;
+    if (another.can_start_again() && !is_same && !are_respawned) return other;
+  }
+  return std::nullopt;
+}
+
 }  // namespace culprit::owners

@@ -19,7 +19,7 @@ namespace culprit::owners {
 
 class ComponentContainers {
  public:
-  explicit ComponentContainers(const RuleSet& rules) : binding_(rules) {}
+  explicit ComponentContainers(const RuleSet& rules) : rules_(rules), binding_(rules) {}
 
   void observe(const Observation& observation);
 
@@ -31,7 +31,13 @@ class ComponentContainers {
   // own, or the process is not known, or it is the container.
   std::optional<Home> home_of(ComponentId component) const;
 
+  // Another component in the same process that would not come back with this one, for the rules start
+  // it in another way. One that they do not start is taken for the same program's. Nothing: there is
+  // none, or the component is the container that the others live in.
+  std::optional<ComponentId> would_lose(ComponentId component) const;
+
  private:
+  const RuleSet& rules_;
   ComponentBinding binding_;
   std::map<std::string, int> processes_;  // of the nodes of the graph; 0: not known
   std::set<std::string> containers_;      // among them

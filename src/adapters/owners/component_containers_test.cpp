@@ -78,5 +78,29 @@ TEST_F(ComponentContainersTest, BelieveNoServiceOfAnotherProcessOrName) {
   EXPECT_FALSE(home_of(0));
 }
 
+TEST(ComponentsOfOneProcess, EndTogetherOnlyIfTheyComeBackTogether) {
+  const RuleSet rules = *check(Source("shared.rules",
+                                      "COMPONENT a NODE /a LAUNCH \"both\"\n"
+                                      "COMPONENT b NODE /b LAUNCH \"both\"\n"
+                                      "COMPONENT helper NODE /helper\n"
+                                      "COMPONENT other NODE /other LAUNCH \"other\"\n"))
+                             .rules;
+  ComponentContainers containers(rules);
+  const auto appear = [&](const char* node, int pid) {
+    containers.observe({Time(), NodeAppeared{node, pid}});
+  };
+  appear("/a", 7);
+  appear("/b", 7);
+  appear("/helper", 7);
+  appear("/other", 8);
+  EXPECT_FALSE(containers.would_lose(ComponentId(0)));
+  appear("/other", 7);
+  EXPECT_EQ(containers.would_lose(ComponentId(0)), ComponentId(3));
+  containers.observe({Time(), NodeVanished{"/other"}});
+  EXPECT_FALSE(containers.would_lose(ComponentId(0))) << "it is not there any more";
+  appear("/a", 0);
+  EXPECT_FALSE(containers.would_lose(ComponentId(0))) << "whose process is not known";
+}
+
 }  // namespace
 }  // namespace culprit::owners

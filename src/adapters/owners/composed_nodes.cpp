@@ -11,6 +11,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint64_t kFirstRequest = std::uint64_t{1} << 62;  // the manager's begin at 1
+// Until a container's owner answers: longer than any of them takes.
+constexpr Duration kOwner = 15s;
 
 bool has_process(int pid) { return pid != 0 && state_letter(pid).value_or('Z') != 'Z'; }
 
@@ -229,13 +231,13 @@ ComposedNodes::Answer ComposedNodes::stop_container(Container& container, const 
   const Process process = process_of(container.node);
   const bool is_to_replace = errand.ending == Ending::kToStartAgain;
   // It was started for one of its components.
-  if (is_to_replace && !process.is_there && live_now() < container.coming_up) return {};
+  if (is_to_replace && !process.is_there && is_coming(container)) return {};
   if (is_to_replace && errand.pid != 0 && process.pid != 0 && process.pid != errand.pid) return {};
   return ask_owner(
       [&](CommandId id) {
         owner_.stop(id, errand.component, errand.pid, errand.ending, errand.hangs);
       },
-      Supervisor::kTrial + 10s);
+      kOwner);
 }
 
 ComposedNodes::Answer ComposedNodes::stop_part(Container& container, const Errand& errand) {
@@ -345,7 +347,7 @@ ComposedNodes::Answer ComposedNodes::replace(Container& container, int pid, Hang
       [&](CommandId id) {
         owner_.stop(id, *container.component, pid, Ending::kToStartAgain, hangs);
       },
-      Supervisor::kTrial + 10s);
+      kOwner);
   if (answer.outcome != Outcome::kDone)
     return {answer.outcome, rules_[*container.component].name + ": " + answer.text};
   container.unanswered.clear();
@@ -354,14 +356,22 @@ ComposedNodes::Answer ComposedNodes::replace(Container& container, int pid, Hang
 
 // ---- starting
 
+bool ComposedNodes::is_coming(const Container& container) {
+  return live_now() < container.coming_up &&
+         (container.coming_pid == 0 || has_process(container.coming_pid));
+}
+
+ComposedNodes::Answer ComposedNodes::begin(Container& container) {
+  Answer started = ask_owner([&](CommandId id) { owner_.start(id, *container.component); }, kOwner);
+  container.unanswered.clear();
+  if (started.outcome != Outcome::kDone) return started;
+  container.coming_up = later(live_now(), kComingUp);
+  container.coming_pid = started.pid;
+  return started;
+}
+
 // Waits until the container is there, and starts it if it is not.
 ComposedNodes::Answer ComposedNodes::ensure(Container& container, Duration patience) {
-  const auto come = [&](Duration how_long) {
-    return wait(later(live_now(), how_long), [&] {
-      const auto found = nodes_.find(container.node);
-      return found != nodes_.end() && has_process(found->second);
-    });
-  };
   if (!process_of(container.node).is_there) {
     const std::string& name =
         container.component ? rules_[*container.component].name : container.node;
@@ -369,16 +379,19 @@ ComposedNodes::Answer ComposedNodes::ensure(Container& container, Duration patie
       return {Outcome::kRefused, "its container " + container.node +
                                      " is not there, and the rules do not say who starts it; "
                                      "declare a COMPONENT with that NODE and a LAUNCH or a UNIT"};
-    if (live_now() >= container.coming_up) {
-      const Answer started =
-          ask_owner([&](CommandId id) { owner_.start(id, *container.component); }, 10s);
-      container.unanswered.clear();
+    if (!is_coming(container)) {
+      const Answer started = begin(container);
       if (started.outcome != Outcome::kDone)
         return {started.outcome, "its container " + name + " was not started: " + started.text};
-      container.coming_up = later(live_now(), kComingUp);
     }
-    if (!come(std::max(patience, Duration(1s))))
-      return {Outcome::kTimedOut, "its container " + name + " is not there yet"};
+    wait(later(live_now(), patience), [&] {
+      const auto found = nodes_.find(container.node);
+      return (found != nodes_.end() && has_process(found->second)) || !is_coming(container);
+    });
+    if (!process_of(container.node).is_there)
+      return {Outcome::kTimedOut, is_coming(container)
+                                      ? "its container " + name + " is not there yet"
+                                      : "its container " + name + " ended at once"};
   }
   container.coming_up = kLongAgo;
   const Process process = process_of(container.node);
@@ -390,20 +403,16 @@ ComposedNodes::Answer ComposedNodes::ensure(Container& container, Duration patie
 }
 
 void ComposedNodes::start_part(Container& container, const Errand& errand) {
-  const Time began = live_now();
   if (errand.component == container.component) {
     // The answer is its process's; that its components come back, too, is nobody's to wait for.
     if (process_of(container.node).is_there) {
       reply(errand.command, {Outcome::kDone, "", process_of(container.node).pid});
-    } else if (began < container.coming_up) {
+    } else if (is_coming(container)) {
       reply(errand.command, {Outcome::kDone, "it was started for one of its components"});
     } else {
-      const Answer started =
-          ask_owner([&](CommandId id) { owner_.start(id, errand.component); }, 10s);
-      container.unanswered.clear();
+      const Answer started = begin(container);
       reply(errand.command, started);
       if (started.outcome != Outcome::kDone) return;
-      container.coming_up = later(live_now(), kComingUp);
     }
     if (const Answer there = ensure(container, kComingUp); there.outcome == Outcome::kDone)
       load_all(container, there.pid, errand);

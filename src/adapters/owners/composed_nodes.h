@@ -99,6 +99,7 @@ class ComposedNodes {
     std::optional<std::set<std::string>> listed{};  // what it said last that it has
     int listed_by = 0;                              // the process that said so
     Time coming_up = kLongAgo;                      // until when, since it was started here
+    int coming_pid = 0;                             // its process then; 0: not known
     std::thread thread{};
   };
   // Where a part lives, or lived last.
@@ -125,6 +126,8 @@ class ComposedNodes {
   Answer replace(Container& container, int pid, Hangs hangs);
   std::string why_not_replace(const Container& container, int pid) const;
   Answer ensure(Container& container, Duration patience);
+  Answer begin(Container& container);
+  static bool is_coming(const Container& container);
   void load_all(Container& container, int pid, const Errand& errand);
   Answer load(Container& container, ComponentId part, int pid, Duration patience);
   ContainerAnswer list(Container& container, int pid, Duration patience);

@@ -109,7 +109,7 @@ ParameterValue scalar(const YAML::Node& node) {
 }
 
 // All of one type, but that whole numbers may stand among others.
-ParameterValue list(const YAML::Node& node) {
+ParameterValue list_value(const YAML::Node& node) {
   ParameterValue value;
   std::set<ParameterType> types;
   std::vector<ParameterValue> all;
@@ -157,7 +157,7 @@ void take_values(const YAML::Node& node, const std::string& name, int depth, Par
     throw WrongFile(node.Mark(),
                     name.empty() ? "parameters are a mapping" : name + " has no value");
   } else {
-    into[name] = node.IsSequence() ? list(node) : scalar(node);
+    into[name] = node.IsSequence() ? list_value(node) : scalar(node);
   }
 }
 

@@ -123,6 +123,22 @@ std::optional<SystemdUnit> unit_started_as(int pid) {
   return std::nullopt;
 }
 
+std::string container_of(int pid) {
+  constexpr std::size_t kId = 64;
+  std::ifstream groups("/proc/" + std::to_string(pid) + "/cgroup");
+  std::string id;
+  for (std::string line; std::getline(groups, line);) {
+    // "/docker/<id>", "docker-<id>.scope", "libpod-<id>.scope/container": the innermost counts.
+    for (std::size_t begin = 0; begin < line.size();) {
+      const std::size_t end = line.find_first_not_of("0123456789abcdef", begin);
+      const std::size_t length = std::min(end, line.size()) - begin;
+      if (length == kId) id = line.substr(begin, kId);
+      begin += length + 1;
+    }
+  }
+  return id;
+}
+
 std::optional<Time> started_at(int pid) {
   std::istringstream rest(stat_after_command(pid));
   std::string skipped;

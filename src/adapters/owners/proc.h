@@ -46,6 +46,10 @@ std::string to_string(const Identity& identity);
 // process that such a one started has none, nor has what a person started.
 std::optional<SystemdUnit> unit_started_as(int pid);
 
+// The container of an engine (docker, podman) that it lives in, by its control group: its id, 64
+// digits. Empty: in none that can be told.
+std::string container_of(int pid);
+
 struct Relative {
   int pid = 0;
   std::string command;  // as the kernel shortens it

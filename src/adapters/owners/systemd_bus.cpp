@@ -74,6 +74,16 @@ constexpr const char* kRight =
 
 }  // namespace
 
+std::string SystemdBus::name() const {
+  return whose_ == Whose::kUser ? "the user's systemd" : "systemd";
+}
+
+std::string SystemdBus::where_to_look(const std::string& unit) const {
+  return std::string("journalctl ") + (whose_ == Whose::kUser ? "--user -u " : "-u ") + unit;
+}
+
+std::string SystemdBus::what_lists_all() const { return "systemctl list-unit-files"; }
+
 void SystemdBus::Closing::operator()(sd_bus* bus) const { sd_bus_close_unref(bus); }
 
 SystemdBus::Message::~Message() { sd_bus_message_unref(it); }

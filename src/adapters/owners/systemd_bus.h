@@ -13,6 +13,7 @@
 #include "base/expected.h"
 #include "base/time.h"
 #include "language/rule_set.h"
+#include "owners/service_owner.h"
 
 struct sd_bus;
 struct sd_bus_message;
@@ -21,27 +22,7 @@ namespace culprit::owners {
 
 struct BusError;
 
-// What systemd says of a service.
-struct UnitState {
-  enum class Activity : std::uint8_t {
-    kActive,
-    kActivating,  // it is being started, also by Restart=
-    kDeactivating,
-    kInactive,
-    kFailed
-  };
-  bool is_loaded = false;  // there is such a unit, and its file makes sense
-  Activity activity = Activity::kInactive;
-  bool has_job = false;    // it is asked for something that is not done yet
-  int main_pid = 0;        // 0: none
-  int last_main_pid = 0;   // of this boot; 0: none
-  std::string load_state;  // "loaded", "not-found", "masked", ...
-  std::string result;      // how it ended: "success", "exit-code", "start-limit-hit", ...
-
-  bool is_over() const { return activity == Activity::kInactive || activity == Activity::kFailed; }
-};
-
-class SystemdBus {
+class SystemdBus : public ServiceOwner {
  public:
   enum class Whose : std::uint8_t { kSystem, kUser };
   static constexpr Duration kPatience = std::chrono::seconds(2);
@@ -49,19 +30,23 @@ class SystemdBus {
   explicit SystemdBus(Whose whose) : whose_(whose) {}
 
   // Errors say what is wrong and what to do. Where systemd refused, nothing was done.
-  Expected<UnitState> state_of(const std::string& unit);
-  Expected<void> start(const std::string& unit) { return ask("StartUnit", unit); }
-  Expected<void> stop(const std::string& unit) { return ask("StopUnit", unit); }
-  Expected<void> restart(const std::string& unit) { return ask("RestartUnit", unit); }
+  Expected<UnitState> state_of(const std::string& unit) override;
+  Expected<void> start(const std::string& unit) override { return ask("StartUnit", unit); }
+  Expected<void> stop(const std::string& unit) override { return ask("StopUnit", unit); }
+  Expected<void> restart(const std::string& unit) override { return ask("RestartUnit", unit); }
   // SIGKILL to all processes of the unit.
-  Expected<void> kill(const std::string& unit);
+  Expected<void> kill(const std::string& unit) override;
 
   // Whether the process is of that unit.
-  Expected<bool> runs(const std::string& unit, int pid);
+  Expected<bool> runs(const std::string& unit, int pid) override;
   // The services that systemd has loaded, or could load.
-  Expected<std::vector<std::string>> services();
+  Expected<std::vector<std::string>> services() override;
   // Whether culprit has the right to start and to end it. Errors: it has not.
-  Expected<void> may_manage(const std::string& unit);
+  Expected<void> may_manage(const std::string& unit) override;
+
+  std::string name() const override;
+  std::string where_to_look(const std::string& unit) const override;
+  std::string what_lists_all() const override;
 
  private:
   struct Closing {

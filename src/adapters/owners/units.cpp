@@ -33,25 +33,32 @@ std::string in_words(const UnitState& state, const std::string& unit) {
   return unit + " is inactive";
 }
 
-Error not_loaded(const SystemdUnit& unit, const UnitState& state, SystemdBus& bus) {
-  const std::string owner = unit.is_of_user ? "the user's systemd" : "systemd";
+Error not_loaded(const std::string& name, const UnitState& state, ServiceOwner& owner) {
   if (state.load_state != "not-found")
-    return Error{owner + " cannot use " + unit.name + " (" + state.load_state +
+    return Error{owner.name() + " cannot use " + name + " (" + state.load_state +
                  "); systemctl status says why"};
   std::string near;
-  if (const auto all = bus.services()) {
-    near = closest(unit.name, std::vector<std::string_view>(all->begin(), all->end()));
+  if (const auto all = owner.services()) {
+    near = closest(name, std::vector<std::string_view>(all->begin(), all->end()));
   }
-  return Error{owner + " has no " + unit.name +
-               (near.empty() ? "; systemctl list-unit-files says what it has"
+  return Error{owner.name() + " has no " + name +
+               (near.empty() ? "; " + owner.what_lists_all() + " says what it has"
                              : "; did you mean " + near + "?")};
+}
+
+Expected<void> could_manage_with(ServiceOwner& owner, const std::string& name) {
+  const auto state = owner.state_of(name);
+  if (!state) return Error{state.error()};
+  if (!state->is_loaded) return not_loaded(name, *state, owner);
+  return owner.may_manage(name);
 }
 
 }  // namespace
 
-Units::Units(const RuleSet& rules, Inbox& inbox) : rules_(rules), inbox_(inbox) {
+Units::Units(const RuleSet& rules, Inbox& inbox, Of whose)
+    : rules_(rules), inbox_(inbox), whose_(whose) {
   for (std::size_t c = 0; c < rules_.components.size(); ++c) {
-    if (rules_.components[c].unit) components_.push_back(ComponentId(c));
+    if (is_ours(ComponentId(c))) components_.push_back(ComponentId(c));
   }
   if (!components_.empty()) thread_ = std::thread([this] { run(); });
 }
@@ -64,6 +71,23 @@ Units::~Units() {
   }
   something_came_.notify_all();
   thread_.join();
+}
+
+bool Units::is_ours(ComponentId component) const {
+  const Component& what = rules_[component];
+  return whose_ == Of::kSystemd ? what.unit.has_value() : what.engine.has_value();
+}
+
+const std::string& Units::name_of(ComponentId component) const {
+  const Component& what = rules_[component];
+  return whose_ == Of::kSystemd ? what.unit->name : what.engine->name;
+}
+
+ServiceOwner& Units::owner_of(ComponentId component) {
+  const Component& what = rules_[component];
+  if (whose_ == Of::kEngines)
+    return what.engine->engine == EngineContainer::Engine::kDocker ? docker_ : podman_;
+  return what.unit->is_of_user ? user_ : system_;
 }
 
 void Units::found(ComponentId component, int pid) {
@@ -121,8 +145,8 @@ void Units::run() {
 // active before: it may have been stopped on purpose before anybody looked.
 void Units::look_at_all() {
   for (const ComponentId component : components_) {
-    const std::string& name = unit_of(component).name;
-    const auto state = bus_of(component).state_of(name);
+    const std::string& name = name_of(component);
+    const auto state = owner_of(component).state_of(name);
     if (!state || !state->is_loaded) continue;
     const auto before = before_.find(component);
     const bool is_first = before == before_.end();
@@ -140,8 +164,8 @@ void Units::look_at_all() {
 
 void Units::note(const Found& found) {
   last_found_[found.component] = found;
-  if (!rules_[found.component].unit) return;
-  const auto state = bus_of(found.component).state_of(unit_of(found.component).name);
+  if (!is_ours(found.component)) return;
+  const auto state = owner_of(found.component).state_of(name_of(found.component));
   if (state && state->main_pid != 0 && is_running(found.pid, found.began))
     found_with_[found.component] = {found.pid, state->main_pid};
 }
@@ -154,15 +178,15 @@ bool Units::answer(const Errand& errand, Outcome outcome, std::string text, int 
 }
 
 bool Units::advance(Errand& errand) {
-  const SystemdUnit& unit = unit_of(errand.component);
-  SystemdBus& bus = bus_of(errand.component);
-  const auto state = bus.state_of(unit.name);
+  const std::string& name = name_of(errand.component);
+  ServiceOwner& owner = owner_of(errand.component);
+  const auto state = owner.state_of(name);
   if (!state) {
     if (errand.was_asked && live_now() < errand.until) return false;
     return answer(errand, errand.was_asked ? Outcome::kTimedOut : Outcome::kRefused, state.error());
   }
   if (!state->is_loaded)
-    return answer(errand, Outcome::kRefused, not_loaded(unit, *state, bus).message);
+    return answer(errand, Outcome::kRefused, not_loaded(name, *state, owner).message);
   const bool is_start = errand.kind == Errand::Kind::kStart;
   if (!errand.was_asked) return is_start ? begin_start(errand, *state) : begin_end(errand, *state);
   return is_start ? watch_start(errand, *state) : watch_end(errand, *state);
@@ -171,13 +195,16 @@ bool Units::advance(Errand& errand) {
 // ---- starting
 
 bool Units::begin_start(Errand& errand, const UnitState& state) {
-  const std::string& name = unit_of(errand.component).name;
+  const std::string& name = name_of(errand.component);
   // systemd has not noticed yet.
   if (state.main_pid != 0 && has_ended(state.main_pid) && live_now() < errand.until) return false;
   if (!state.is_over() && state.activity != Activity::kDeactivating)
-    return answer(errand, Outcome::kDone, "systemd has started " + name, state.main_pid);
-  if (state.has_job) return answer(errand, Outcome::kDone, "systemd is about to start " + name);
-  if (const auto asked = bus_of(errand.component).start(name); !asked)
+    return answer(errand, Outcome::kDone,
+                  owner_of(errand.component).name() + " has started " + name, state.main_pid);
+  if (state.has_job)
+    return answer(errand, Outcome::kDone,
+                  owner_of(errand.component).name() + " is about to start " + name);
+  if (const auto asked = owner_of(errand.component).start(name); !asked)
     return answer(errand, Outcome::kRefused, asked.error());
   errand.was_asked = true;
   errand.until = later(live_now(), kStart);
@@ -185,16 +212,16 @@ bool Units::begin_start(Errand& errand, const UnitState& state) {
 }
 
 bool Units::watch_start(Errand& errand, const UnitState& state) {
-  const std::string& name = unit_of(errand.component).name;
+  const std::string& name = name_of(errand.component);
   if (state.main_pid != 0) return answer(errand, Outcome::kDone, "", state.main_pid);
   if (!state.has_job && state.is_over())
     return answer(errand, Outcome::kRefused,
-                  "systemd could not start it: " + in_words(state, name) + "; journalctl " +
-                      (unit_of(errand.component).is_of_user ? "--user -u " : "-u ") + name +
-                      " says why");
+                  owner_of(errand.component).name() +
+                      " could not start it: " + in_words(state, name) + "; " +
+                      owner_of(errand.component).where_to_look(name) + " says why");
   // What it does before its main process may take long.
   return live_now() >= errand.until &&
-         answer(errand, Outcome::kDone, "systemd is starting " + name);
+         answer(errand, Outcome::kDone, owner_of(errand.component).name() + " is starting " + name);
 }
 
 // ---- ending
@@ -203,15 +230,15 @@ bool Units::watch_start(Errand& errand, const UnitState& state) {
 std::optional<std::string> Units::who_else_would_end(ComponentId component) {
   for (const auto& [other, found] : last_found_) {
     if (other == component || !is_running(found.pid, found.began)) continue;
-    const auto is_its = bus_of(component).runs(unit_of(component).name, found.pid);
+    const auto is_its = owner_of(component).runs(name_of(component), found.pid);
     if (is_its && *is_its) return rules_[other].name;
   }
   return std::nullopt;
 }
 
 bool Units::begin_end(Errand& errand, const UnitState& state) {
-  const std::string& name = unit_of(errand.component).name;
-  SystemdBus& bus = bus_of(errand.component);
+  const std::string& name = name_of(errand.component);
+  ServiceOwner& bus = owner_of(errand.component);
   const bool runs = is_running(errand.pid, errand.began);
   if (runs) {
     const auto is_its = bus.runs(name, errand.pid);
@@ -221,7 +248,7 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
                     "process " + std::to_string(errand.pid) + " is not ended: it is not of " +
                         name +
                         ", which was not asked to end either; end it by hand, or correct "
-                        "the UNIT of " +
+                        "the rules of " +
                         rules_[errand.component].name);
   }
   // systemd has not noticed yet.
@@ -235,7 +262,7 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
     const auto found = found_with_.find(errand.component);
     const bool is_left = found != found_with_.end() && state.main_pid != 0 &&
                          found->second == std::pair(errand.pid, state.main_pid);
-    if (!is_left) return answer(errand, Outcome::kDone, "systemd starts it again");
+    if (!is_left) return answer(errand, Outcome::kDone, bus.name() + " starts it again");
   }
   if (const auto other = who_else_would_end(errand.component))
     return answer(errand, Outcome::kRefused,
@@ -252,7 +279,7 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
 }
 
 bool Units::watch_end(Errand& errand, const UnitState& state) {
-  const std::string& name = unit_of(errand.component).name;
+  const std::string& name = name_of(errand.component);
   const bool is_left_by_systemd = errand.kind == Errand::Kind::kEnd
                                       ? state.is_over() && !state.has_job
                                       : state.main_pid != errand.main_pid || state.is_over();
@@ -262,15 +289,16 @@ bool Units::watch_end(Errand& errand, const UnitState& state) {
   if (now >= errand.until) {
     return answer(errand, Outcome::kTimedOut,
                   runs && is_left_by_systemd
-                      ? "process " + std::to_string(errand.pid) +
-                            " goes on although systemd ended " + name + "; what is its KillMode=?"
-                      : "systemd did not end " + name + " in time");
+                      ? "process " + std::to_string(errand.pid) + " goes on although " +
+                            owner_of(errand.component).name() + " ended " + name +
+                            (whose_ == Of::kSystemd ? "; what is its KillMode=?" : "")
+                      : owner_of(errand.component).name() + " did not end " + name + " in time");
   }
   // Never the successor: only while the process is still the one that is to end.
   if (now >= errand.escalate && !is_left_by_systemd && errand.main_pid != 0 &&
       state.main_pid == errand.main_pid) {
     errand.escalate = later(now, kPolite);
-    if (const auto killed = bus_of(errand.component).kill(name); !killed)
+    if (const auto killed = owner_of(errand.component).kill(name); !killed)
       inbox_.put(LinkTrouble{killed.error()});
   }
   return false;
@@ -280,10 +308,12 @@ bool Units::watch_end(Errand& errand, const UnitState& state) {
 
 Expected<void> could_manage(const SystemdUnit& unit) {
   SystemdBus bus(unit.is_of_user ? SystemdBus::Whose::kUser : SystemdBus::Whose::kSystem);
-  const auto state = bus.state_of(unit.name);
-  if (!state) return Error{state.error()};
-  if (!state->is_loaded) return not_loaded(unit, *state, bus);
-  return bus.may_manage(unit.name);
+  return could_manage_with(bus, unit.name);
+}
+
+Expected<void> could_manage(const EngineContainer& container) {
+  Engine engine(container.engine);
+  return could_manage_with(engine, container.name);
 }
 
 }  // namespace culprit::owners

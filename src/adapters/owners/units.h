@@ -1,5 +1,6 @@
-// Components that systemd runs (UNIT): systemd is asked to start and to end them, and what it says
-// of them is proof.
+// Components that systemd runs (UNIT), or the engine of a container (CONTAINER): it is asked to start
+// and to end them, and what it says of them is proof. What follows is said of systemd, and holds of
+// an engine likewise, whose containers are its units.
 //
 // To redeploy is RestartUnit: systemd starts the unit again by itself, also if culprit ends in
 // between. A unit that systemd started again already (Restart=), or is about to, is not ended and
@@ -21,6 +22,7 @@
 #include <vector>
 
 #include "language/rule_set.h"
+#include "owners/engine.h"
 #include "owners/supervisor.h"
 #include "owners/systemd_bus.h"
 #include "robot/command.h"
@@ -39,9 +41,12 @@ class Units {
   static constexpr Duration kPeriod = std::chrono::milliseconds(50);
   static constexpr Duration kIdlePeriod = std::chrono::seconds(1);
 
+  // An engine answers a restart when it is done, so systemd's units do not wait for its containers.
+  enum class Of : std::uint8_t { kSystemd, kEngines };
+
   // `rules` and `inbox` must outlive this. Nothing is asked, and no thread is started, if no
-  // component has a UNIT.
-  Units(const RuleSet& rules, Inbox& inbox);
+  // component has such an owner.
+  Units(const RuleSet& rules, Inbox& inbox, Of whose = Of::kSystemd);
   ~Units();
 
   // The component's node runs in this process now; of components without a UNIT, too: a unit that
@@ -88,18 +93,20 @@ class Units {
   std::optional<std::string> who_else_would_end(ComponentId component);
   bool answer(const Errand& errand, Outcome outcome, std::string text, int pid = 0);
 
-  const SystemdUnit& unit_of(ComponentId component) const { return *rules_[component].unit; }
-  SystemdBus& bus_of(ComponentId component) {
-    return unit_of(component).is_of_user ? user_ : system_;
-  }
+  bool is_ours(ComponentId component) const;
+  const std::string& name_of(ComponentId component) const;
+  ServiceOwner& owner_of(ComponentId component);
 
   const RuleSet& rules_;
   Inbox& inbox_;
-  std::vector<ComponentId> components_;  // those with a unit
+  const Of whose_;
+  std::vector<ComponentId> components_;  // those with such an owner
 
   // Of the thread.
   SystemdBus system_{SystemdBus::Whose::kSystem};
   SystemdBus user_{SystemdBus::Whose::kUser};
+  Engine docker_{EngineContainer::Engine::kDocker};
+  Engine podman_{EngineContainer::Engine::kPodman};
   std::map<ComponentId, UnitState::Activity> before_;
   // The node's process, and the main process of the unit then: `ros2 run` is another one.
   std::map<ComponentId, std::pair<int, int>> found_with_;
@@ -113,8 +120,9 @@ class Units {
   std::thread thread_;
 };
 
-// Whether culprit could start and end this unit. Errors: systemd cannot be asked, has no such unit,
-// or refuses. Waits for systemd, SystemdBus::kPatience for each of a few calls.
+// Whether culprit could start and end it. Errors: its owner cannot be asked, has no such one, or
+// refuses. Waits for the owner, SystemdBus::kPatience for each of a few calls.
 Expected<void> could_manage(const SystemdUnit& unit);
+Expected<void> could_manage(const EngineContainer& container);
 
 }  // namespace culprit::owners

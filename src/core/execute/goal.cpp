@@ -150,7 +150,7 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       // systemd may be faster than the news of the end; and a container may be replaced for one of
       // those that it loads.
       const Component& component = knowledge.rules[adaptation.component];
-      if (component.unit || component.composed ||
+      if (component.has_owner() || component.composed ||
           is_container(adaptation.component, knowledge.rules)) {
         gone.pid = state.known_pid();
         back.instead_of = gone.pid;

@@ -266,7 +266,7 @@ std::optional<Pursuit::Request> Pursuit::pursue(const GoneGoal& goal, const Know
   const bool was_ended = answer_ && answer_->outcome == Outcome::kDone;
   if (is_replaced && (!has_changed_anything() || was_ended)) return reach();
   // systemd knows it by its unit, also if it is another user's.
-  if (state.in_graph && state.known_pid() == 0 && !knowledge.rules[component_].unit)
+  if (state.in_graph && state.known_pid() == 0 && !knowledge.rules[component_].has_owner())
     return give_up("its process is not known; is it on another machine?");
   if (!has_changed_anything())
     return change(StopProcess{goal.pid != 0 ? goal.pid : state.known_pid(), state.hangs()}, now);

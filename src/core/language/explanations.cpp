@@ -213,9 +213,10 @@ std::vector<Explanation> rule_explanations() {
                                                                     "ADAPTATION camera stop 5"),
        "COMPONENT camera NODE /robot/camera REQUIRED\n" + rule_with("rate(/robot/image) < 1")},
       {Code::kTwoOwners, "it is not clear who starts and ends a component",
-       "Who starts a component is asked to end it, too: culprit itself (LAUNCH), systemd (UNIT) or "
-       "a launcher that respawns it (RESPAWNED). Two of them would start it twice; and a unit that "
-       "runs two components cannot be restarted for one of them.",
+       "Who starts a component is asked to end it, too: culprit itself (LAUNCH), systemd (UNIT), "
+       "a container engine (CONTAINER), a component container (IN) or a launcher that respawns it "
+       "(RESPAWNED). Two of them would start it twice; and a unit that runs two components cannot "
+       "be restarted for one of them.",
        "COMPONENT camera NODE /robot/camera UNIT camera.service LAUNCH \"camera_driver\"\n",
        "COMPONENT camera NODE /robot/camera UNIT camera.service\n"},
       {Code::kAlwaysTrue, "a trigger reads nothing and is always true",
@@ -345,9 +346,10 @@ std::vector<Explanation> robot_explanations() {
                     rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY calibrate 50 10",
                               "ADAPTATION camera call ~/recalibrate 5")),
       against_robot(Code::kNoSuchUnit, "culprit could not start and end this unit",
-                    "Whoever runs the component has to be asked, and systemd cannot be reached, "
-                    "has no such unit, or does not let culprit's user manage it "
-                    "(docs/security.md). Nothing would be ended when the rule fires, and nothing "
+                    "Whoever runs the component has to be asked, and systemd or the engine of "
+                    "its container cannot be reached, has no such one, or does not let culprit's "
+                    "user manage it (docs/security.md). Nothing would be ended when the rule "
+                    "fires, and nothing "
                     "started.",
                     "COMPONENT camera NODE /robot/camera UNIT camra.service\n",
                     "COMPONENT camera NODE /robot/camera UNIT camera.service\n"),

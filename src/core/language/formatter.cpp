@@ -33,10 +33,12 @@ struct Line {
 struct Table {
   std::string_view keyword;
   std::string_view separator;
-  std::array<std::pair<std::string_view, std::size_t>, 5> columns;
+  std::array<std::pair<std::string_view, std::size_t>, 6> columns;
 };
 constexpr std::array kTables = {
-    Table{"COMPONENT", "  ", {{{"NODE", 1}, {"LAUNCH", 2}, {"UNIT", 2}, {"IN", 2}}}},
+    Table{"COMPONENT",
+          "  ",
+          {{{"NODE", 1}, {"LAUNCH", 2}, {"UNIT", 2}, {"CONTAINER", 2}, {"IN", 2}}}},
     Table{"SIGNAL",
           "  ",
           {{{"DIAGNOSTIC", 1}, {"TOPIC", 1}, {"PARAMETER", 1}, {"STALE", 2}, {"RANGE", 3}}}},

@@ -91,14 +91,21 @@ class LiveChecks {
     for (const LiveInventory::UnitTrouble& each : robot_.unit_troubles) {
       if (each.unit == c->unit) warn(Code::kNoSuchUnit, written.unit->span, each.why, "");
     }
+    for (const LiveInventory::ContainerTrouble& each : robot_.container_troubles) {
+      if (each.container == c->engine)
+        warn(Code::kNoSuchUnit, written.engine_container->span, each.why, "");
+    }
     for (const LiveInventory::LaunchTrouble& each : robot_.launch_troubles) {
       if (each.component != c->name) continue;
       using Clause = LiveInventory::LaunchTrouble::Clause;
       const std::string program = c->launch.empty() ? "" : c->launch.front();
-      const auto& [place, text] = each.clause == Clause::kSetup ? std::pair(written.setup, c->setup)
-                                  : each.clause == Clause::kFolder
-                                      ? std::pair(written.folder, c->folder)
-                                      : std::pair(written.launch, program);
+      const Composition composed = c->composed.value_or(Composition{});
+      const auto& [place, text] =
+          each.clause == Clause::kSetup        ? std::pair(written.setup, c->setup)
+          : each.clause == Clause::kFolder     ? std::pair(written.folder, c->folder)
+          : each.clause == Clause::kPlugin     ? std::pair(written.plugin, composed.plugin)
+          : each.clause == Clause::kParameters ? std::pair(written.parameters, composed.parameters)
+                                               : std::pair(written.launch, program);
       if (place && text == each.text) warn(Code::kCannotLaunch, place->span, each.why, "");
     }
   }

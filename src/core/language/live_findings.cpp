@@ -24,7 +24,9 @@ std::string of_component(const Component& component, const LiveInventory& robot)
   const std::string node = robot.node_of(component);
   if (node.empty()) return "";
   const std::string& state = robot.nodes.at(node).lifecycle;
-  return component.name + " is " + node + (state.empty() ? "" : ", " + state) + kTick;
+  const std::string& owner = robot.nodes.at(node).owner;
+  return component.name + " is " + node + (state.empty() ? "" : ", " + state) +
+         (owner.empty() ? "" : ", run by " + owner) + kTick;
 }
 
 std::string of_topic(const std::string& name, const LiveInventory& robot) {

@@ -19,6 +19,10 @@ struct LiveInventory {
     // them.
     std::optional<std::map<std::string, std::optional<Value>>> parameters;
     std::string lifecycle;  // "active"; empty where it is not managed, or has not told
+    int pid = 0;            // on this machine; 0: it is not proven which
+    // Who runs it where the rules do not say so, and what to declare: "systemd as lidar.service: UNIT
+    // lidar.service". Empty: they do, or nobody can be told.
+    std::string owner{};
     bool operator==(const Node&) const = default;
   };
   struct Topic {
@@ -53,12 +57,19 @@ struct LiveInventory {
     bool operator==(const UnitTrouble&) const = default;
   };
   std::vector<UnitTrouble> unit_troubles{};
-  // The launch commands of the rules that could not run.
+  // Likewise its containers.
+  struct ContainerTrouble {
+    EngineContainer container;
+    std::string why;
+    bool operator==(const ContainerTrouble&) const = default;
+  };
+  std::vector<ContainerTrouble> container_troubles{};
+  // What of the rules could not be started: launch commands, and classes of containers.
   struct LaunchTrouble {
-    enum class Clause : std::uint8_t { kLaunch, kSetup, kFolder };
+    enum class Clause : std::uint8_t { kLaunch, kSetup, kFolder, kPlugin, kParameters };
     std::string component;
     Clause clause = Clause::kLaunch;
-    std::string text;  // of the clause: the program, the file, the folder
+    std::string text;  // of the clause: the program, the file, the folder, the class
     std::string why;
     bool operator==(const LaunchTrouble&) const = default;
   };

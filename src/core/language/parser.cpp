@@ -214,6 +214,12 @@ class Parser {
         if (!component.unit) return false;
         component.is_users_unit = s.peek().text == "USER";
         if (component.is_users_unit) s.next();
+      } else if (clause.text == "CONTAINER" && !component.engine) {
+        s.next();
+        component.engine = read_.name_or_text(s, "the engine: docker or podman");
+        if (!component.engine) return false;
+        component.engine_container = read_.name_or_text(s, "the container's name");
+        if (!component.engine_container) return false;
       } else if (clause.text == "IN" && !component.container) {
         s.next();
         component.container = read_.ros_name(s, "the full name of the node that loads it");
@@ -246,8 +252,8 @@ class Parser {
         if (!lifecycle(s, component)) return false;
       } else {
         return read_.unexpected_clause(
-            clause, {"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "IN", "PLUGIN", "PACKAGE",
-                     "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+            clause, {"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "CONTAINER", "IN", "PLUGIN",
+                     "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
       }
     }
     file_.components.push_back(std::move(component));

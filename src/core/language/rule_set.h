@@ -29,6 +29,14 @@ struct SystemdUnit {
   bool operator==(const SystemdUnit&) const = default;
 };
 
+// A container that an engine of this machine runs, by name or id.
+struct EngineContainer {
+  enum class Engine : std::uint8_t { kDocker, kPodman };
+  Engine engine = Engine::kDocker;
+  std::string name;
+  bool operator==(const EngineContainer&) const = default;
+};
+
 // How a node is loaded into the process of another one, a component container
 // (composition_interfaces).
 struct Composition {
@@ -59,8 +67,13 @@ struct Component {
 
   std::optional<Composition> composed{};  // its container is asked to load and to unload it
 
+  std::optional<EngineContainer> engine{};  // that runs it: its engine is asked likewise
+
+  // Whether somebody else runs it, whose word of its process is proof.
+  bool has_owner() const { return unit || engine; }
+
   // Whether it can be told to start.
-  bool can_start() const { return unit || composed || !launch.empty(); }
+  bool can_start() const { return has_owner() || composed || !launch.empty(); }
   // Whether somebody starts it again after its end.
   bool can_start_again() const { return is_respawned || can_start(); }
 };

@@ -112,6 +112,7 @@ void Symbols::declare_component(const syntax::Component& written) {
   }
   declare_launch(written, component);
   if (written.unit) component.unit = declared_unit(written);
+  declare_engine(written, component);
   declare_composition(written, component);
   declared_components_.push_back(components_.emplace(component.name, id).first->first);
   rules_.components.push_back(std::move(component));
@@ -146,6 +147,17 @@ void Symbols::declare_launch(const syntax::Component& written, Component& compon
   };
   if (is_for_launch("SETUP", written.setup)) component.setup = whole_path(*written.setup);
   if (is_for_launch("CWD", written.folder)) component.folder = whole_path(*written.folder);
+  const auto same =
+      std::find_if(rules_.components.begin(), rules_.components.end(), [&](const Component& c) {
+        return written.launch && !component.launch.empty() && c.declared &&
+               c.launch == component.launch;
+      });
+  if (same != rules_.components.end())
+    diagnostics_.push_back({Code::kTwoOwners, Severity::kWarning, written.launch->span,
+                            "component '" + same->name +
+                                "' is started by the same command: if it makes both nodes, there "
+                                "would be two of each",
+                            "leave LAUNCH to one of them, and redeploy that"});
   if (!is_for_launch("ENV", written.environment)) return;
   const auto variables = split_command(written.environment->text);
   if (variables && std::all_of(variables->begin(), variables->end(), is_assignment)) {
@@ -154,6 +166,46 @@ void Symbols::declare_launch(const syntax::Component& written, Component& compon
     report(*written.environment, "these are no variables",
            "write them as NAME=value, with blanks between them: ENV \"ROS_DOMAIN_ID=7 LANG=C\"");
   }
+}
+
+// One container runs one component, and nobody else does.
+void Symbols::declare_engine(const syntax::Component& written, Component& component) {
+  if (!written.engine) return;
+  const syntax::Name& name = *written.engine_container;
+  const auto report = [&](Code code, const syntax::Name& where, std::string cause,
+                          std::string remedy) {
+    diagnostics_.push_back(
+        {code, Severity::kError, where.span, std::move(cause), std::move(remedy)});
+  };
+  using Engine = EngineContainer::Engine;
+  const bool is_podman = written.engine->text == "podman";
+  EngineContainer container{is_podman ? Engine::kPodman : Engine::kDocker, name.text};
+  if (!is_podman && written.engine->text != "docker")
+    report(Code::kSyntax, *written.engine, "this is no engine that culprit knows",
+           "write docker or podman, and the container's name: CONTAINER podman slam");
+  const auto may_be_there = [](unsigned char c) {
+    return c < 128 && (std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-');
+  };
+  if (std::isalnum(static_cast<unsigned char>(container.name[0])) == 0 ||
+      !std::all_of(container.name.begin(), container.name.end(), may_be_there))
+    report(Code::kSyntax, name, "this is no name of a container",
+           "write it as " + written.engine->text + " ps shows it");
+  const char* other = written.launch         ? "LAUNCH"
+                      : written.unit         ? "UNIT"
+                      : written.is_respawned ? "RESPAWNED"
+                                             : nullptr;
+  if (other != nullptr)
+    report(Code::kTwoOwners, name,
+           "component '" + written.name.text + "' has a CONTAINER and " + other +
+               ", so it is not clear who starts it",
+           std::string("keep CONTAINER if its engine runs it, else ") + other);
+  const auto same = std::find_if(rules_.components.begin(), rules_.components.end(),
+                                 [&](const Component& c) { return c.engine == container; });
+  if (same != rules_.components.end())
+    report(Code::kTwoOwners, name,
+           "this container runs component '" + same->name + "' already, and would end with it",
+           "give each component a container of its own, or leave one of them without");
+  component.engine = std::move(container);
 }
 
 // PLUGIN, PACKAGE, PARAMETERS and REMAP say how it is loaded, and IN by whom; its NODE is the name
@@ -179,6 +231,7 @@ void Symbols::declare_composition(const syntax::Component& written, Component& c
   Composition composed{written.container->text, {}, {}};
   const char* other = written.launch         ? "LAUNCH"
                       : written.unit         ? "UNIT"
+                      : written.engine       ? "CONTAINER"
                       : written.is_respawned ? "RESPAWNED"
                                              : nullptr;
   if (other != nullptr)

@@ -93,6 +93,8 @@ struct Component {
   bool is_respawned = false;
   std::optional<Name> unit{};
   bool is_users_unit = false;
+  std::optional<Name> engine{};  // "docker" or "podman"
+  std::optional<Name> engine_container{};
   std::optional<Name> container{};  // the node that loads it
   std::optional<Name> plugin{};
   std::optional<Name> package{};

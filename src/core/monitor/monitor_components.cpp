@@ -186,7 +186,7 @@ void Monitor::note_end_of_start(ComponentId component, Time at) {
 void Monitor::on(Time at, const ProcessSeen& seen) {
   ComponentState& state = write_.components[seen.component];
   // What systemd says of its unit is proof, also if its node was never seen.
-  if (knowledge_.rules[seen.component].unit) write_.sightings.note(seen.component, at);
+  if (knowledge_.rules[seen.component].has_owner()) write_.sightings.note(seen.component, at);
   // A word about a process that the node no longer runs in says nothing about the node.
   const int present = state.node_pid != 0 ? state.node_pid : state.pid;
   const bool is_other = seen.pid != 0 && seen.pid != present;

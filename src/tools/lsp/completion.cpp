@@ -88,6 +88,7 @@ class Completion {
     if (statement == "ADAPTATION") return adaptation();
     if (statement == "COMPONENT") {
       if (words_.back() == "NODE" || words_.back() == "IN") return names(&live_nodes);
+      if (words_.back() == "CONTAINER") return keywords({"docker", "podman"});
       if (words_.back() == "LIFECYCLE") return keywords({"self", "managed", "launcher"});
       for (const char* takes_text :
            {"UNIT", "LAUNCH", "ENV", "SETUP", "CWD", "PLUGIN", "PACKAGE", "PARAMETERS", "REMAP"}) {
@@ -95,8 +96,8 @@ class Completion {
       }
       if (words_[words_.size() - 2] == "UNIT")
         return keywords({"USER", "NODE", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
-      return keywords({"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "IN", "PLUGIN", "PACKAGE",
-                       "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+      return keywords({"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "CONTAINER", "IN", "PLUGIN",
+                       "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
     }
     if (statement == "SIGNAL") return signal();
     if (statement == "IGNORE") {

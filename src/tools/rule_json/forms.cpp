@@ -25,6 +25,7 @@ std::vector<Form> table() {
         {"CWD", "cwd", kName},
         {"UNIT", "unit", kName},
         {"USER", "user", kFlag},
+        {"CONTAINER", "container", kNamePair},
         {"IN", "in", kName},
         {"PLUGIN", "plugin", kName},
         {"PACKAGE", "package", kName},

@@ -17,6 +17,7 @@ enum class Part : std::uint8_t {
   kType,        // one of the form's types: a string
   kName,        // a name of any kind: a string
   kNames,       // names up to the end of the line: an array of strings
+  kNamePair,    // two names, one behind the other: an array of two strings
   kText,        // a quoted text: a string
   kNumber,      // not negative: a number
   kDuration,    // a string

@@ -19,6 +19,8 @@ const char* describe(Part part) {
       return "a name: a text that is not empty";
     case Part::kNames:
       return "names: an array of texts that are not empty";
+    case Part::kNamePair:
+      return "two names: an array of two texts that are not empty";
     case Part::kText:
       return "a text";
     case Part::kNumber:
@@ -98,6 +100,8 @@ Words words(Part part, const Json& value) {
       return name_words(value);
     case Part::kNames:
       return names_words(value);
+    case Part::kNamePair:
+      return pair_words(value, name_words, " ");
     case Part::kText:
       return text_words(value);
     case Part::kNumber:

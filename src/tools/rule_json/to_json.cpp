@@ -70,6 +70,10 @@ class StatementReader {
         while (next_ < lexemes_.size()) names.push_back(name_to_json(take()));
         return names;
       }
+      case Part::kNamePair: {
+        Json first = name_to_json(take());
+        return Json::array({std::move(first), name_to_json(take())});
+      }
       case Part::kText:
         return text_to_json(take());
       case Part::kNumber:

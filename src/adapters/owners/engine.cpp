@@ -1,0 +1,274 @@
+#include "owners/engine.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/live_clock.h"
+#include "owners/file_descriptor.h"
+#include "owners/proc.h"
+
+namespace culprit::owners {
+namespace {
+
+using nlohmann::json;
+using Activity = UnitState::Activity;
+
+constexpr std::size_t kLongestAnswer = 4 << 20;  // bytes: a list of a thousand containers
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+// Where the engine listens: what its own tools take it from, or where its packages put it. Errors:
+// it is told to be elsewhere than on this machine.
+Expected<std::string> socket_of(EngineContainer::Engine engine) {
+  const bool is_docker = engine == EngineContainer::Engine::kDocker;
+  const char* name = is_docker ? "DOCKER_HOST" : "CONTAINER_HOST";
+  constexpr std::string_view kUnix = "unix://";
+  const std::string told = variable(name);
+  if (told.starts_with(kUnix)) return told.substr(kUnix.size());
+  if (!told.empty())
+    return Error{std::string(name) + " is " + told + ", and culprit uses a socket of this machine"};
+  if (is_docker) return std::string("/var/run/docker.sock");
+  const std::string own = variable("XDG_RUNTIME_DIR");
+  if (geteuid() == 0 || own.empty()) return std::string("/run/podman/podman.sock");
+  return own + "/podman/podman.sock";
+}
+
+bool wait_for(int descriptor, short what, Time end) {
+  pollfd file{descriptor, what, 0};
+  while (true) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - live_now()).count();
+    if (left <= 0) return false;
+    const int ready = poll(&file, 1, static_cast<int>(left));
+    if (ready > 0) return true;
+    if (ready == 0 || errno != EINTR) return false;
+  }
+}
+
+// What others wrote is data: one line, of a length to be read.
+std::string one_line(std::string text) {
+  constexpr std::size_t kLongest = 200;
+  text.resize(std::min(text.size(), kLongest));
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
+  }
+  return text;
+}
+
+std::string message_of(const std::string& body) {
+  const json document = json::parse(body, nullptr, false);
+  if (document.is_object() && document.contains("message") && document["message"].is_string())
+    return one_line(document["message"].get<std::string>());
+  return one_line(body);
+}
+
+template <class T>
+std::optional<T> member(const json& object, const char* name) {
+  if (!object.is_object() || !object.contains(name)) return std::nullopt;
+  const json& value = object[name];
+  if constexpr (std::is_same_v<T, bool>) {
+    if (!value.is_boolean()) return std::nullopt;
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    if (!value.is_string()) return std::nullopt;
+  } else {
+    if (!value.is_number_integer()) return std::nullopt;
+  }
+  return value.get<T>();
+}
+
+}  // namespace
+
+std::string Engine::name() const {
+  return which_ == EngineContainer::Engine::kDocker ? "docker" : "podman";
+}
+
+std::string Engine::where_to_look(const std::string& container) const {
+  return name() + " logs " + container;
+}
+
+std::string Engine::what_lists_all() const { return name() + " ps -a"; }
+
+Error Engine::no_form(const std::string& what) const {
+  return Error{name() + ": what it answers to " + what + " is not of the engine's API"};
+}
+
+// HTTP/1.0: one request on a connection, and the answer ends with it.
+Expected<Engine::Answer> Engine::ask(const std::string& method, const std::string& target,
+                                     Duration patience) {
+  const auto path = socket_of(which_);
+  if (!path) return Error{name() + ": " + path.error()};
+  const auto failed = [&](int error) {
+    if (error == EACCES || error == EPERM)
+      return Error{name() + ": culprit may not use " + *path +
+                   "; give its user the right (docs/security.md)"};
+    return Error{name() + ": it cannot be reached at " + *path + ": " + std::strerror(error) +
+                 "; is it running?"};
+  };
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path->size() >= sizeof address.sun_path) return failed(ENAMETOOLONG);
+  std::memcpy(address.sun_path, path->c_str(), path->size());
+  const FileDescriptor to(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!to) return failed(errno);
+  const Time end = later(live_now(), patience);
+  if (connect(to.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    return failed(errno);
+  const std::string request =
+      method + " " + target + " HTTP/1.0\r\nHost: engine\r\nContent-Length: 0\r\n\r\n";
+  for (std::size_t sent = 0; sent < request.size();) {
+    const ssize_t part = send(to.get(), request.data() + sent, request.size() - sent, MSG_NOSIGNAL);
+    if (part > 0) {
+      sent += static_cast<std::size_t>(part);
+    } else if (errno != EAGAIN && errno != EINTR) {
+      return failed(errno);
+    } else if (!wait_for(to.get(), POLLOUT, end)) {
+      return failed(ETIMEDOUT);
+    }
+  }
+  std::string text;
+  while (true) {
+    if (!wait_for(to.get(), POLLIN, end)) return Answer{};
+    char part[1 << 14];
+    const ssize_t size = recv(to.get(), part, sizeof part, 0);
+    if (size == 0) break;
+    if (size < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+    if (size < 0) return failed(errno);
+    text.append(part, static_cast<std::size_t>(size));
+    if (text.size() > kLongestAnswer) return no_form(method + " " + target);
+  }
+  // "HTTP/1.0 200 OK"
+  constexpr std::size_t kStatus = 9;
+  const std::size_t body = text.find("\r\n\r\n");
+  if (!text.starts_with("HTTP/1.") || text.size() < kStatus + 3 || body == std::string::npos)
+    return no_form(method + " " + target);
+  return Answer{std::atoi(text.substr(kStatus, 3).c_str()), text.substr(body + 4)};
+}
+
+Expected<UnitState> Engine::state_of(const std::string& container) {
+  const auto answer = ask("GET", "/containers/" + container + "/json", kPatience);
+  if (!answer) return Error{answer.error()};
+  UnitState state;
+  if (answer->status == 0) return Error{name() + ": it does not answer"};
+  if (answer->status == 404) {
+    state.load_state = "not-found";
+    return state;
+  }
+  if (answer->status != 200) return Error{name() + ": " + message_of(answer->body)};
+  const json document = json::parse(answer->body, nullptr, false);
+  const std::string what = "a look at " + container;
+  if (!document.is_object() || !document.contains("State")) return no_form(what);
+  const json& said = document["State"];
+  const auto status = member<std::string>(said, "Status");
+  const auto pid = member<std::int64_t>(said, "Pid");
+  const auto code = member<std::int64_t>(said, "ExitCode");
+  if (!status || !pid || !code || *pid < 0 || *pid > INT32_MAX) return no_form(what);
+  state.is_loaded = true;
+  state.load_state = "loaded";
+  state.main_pid = static_cast<int>(*pid);
+  if (*status == "paused")
+    return Error{container + " is paused, and is left to whoever did that: " + name() +
+                 " unpause " + container};
+  if (*status == "running") {
+    if (state.main_pid == 0) return no_form(what);
+    state.activity = Activity::kActive;
+    last_pids_[container] = state.main_pid;
+  } else if (*status == "restarting" || *status == "initialized") {
+    state.activity = Activity::kActivating;
+  } else if (*status == "removing" || *status == "stopping") {
+    state.activity = Activity::kDeactivating;
+  } else if (*status == "created" || *status == "configured" || *status == "exited" ||
+             *status == "stopped" || *status == "dead") {
+    // Signals are how somebody stops it on purpose, too.
+    constexpr std::array kBySignal = {130, 137, 143};
+    const bool is_out_of_memory = member<bool>(said, "OOMKilled").value_or(false);
+    const bool may_be_wanted =
+        *code == 0 || std::find(kBySignal.begin(), kBySignal.end(), *code) != kBySignal.end();
+    state.main_pid = 0;
+    state.activity = is_out_of_memory || !may_be_wanted ? Activity::kFailed : Activity::kInactive;
+    state.result = is_out_of_memory ? "out of memory" : "exit code " + std::to_string(*code);
+  } else {
+    return Error{name() + " says that " + container + " is '" + one_line(*status) +
+                 "', which culprit does not know"};
+  }
+  const auto last = last_pids_.find(container);
+  state.last_main_pid = last == last_pids_.end() ? 0 : last->second;
+  return state;
+}
+
+Expected<void> Engine::change(const std::string& container, const std::string& what,
+                              Duration patience) {
+  const auto answer = ask("POST", "/containers/" + container + "/" + what, patience);
+  if (!answer) return Error{answer.error()};
+  constexpr int kNotModified = 304;  // it is so already
+  if (answer->status == 0 || answer->status / 100 == 2 || answer->status == kNotModified) return {};
+  return Error{name() + ": " + message_of(answer->body)};
+}
+
+Expected<void> Engine::start(const std::string& container) {
+  return change(container, "start", kPatience);
+}
+
+Expected<void> Engine::stop(const std::string& container) {
+  const auto polite = std::chrono::duration_cast<std::chrono::seconds>(kPolite).count();
+  return change(container, "stop?t=" + std::to_string(polite), kPolite + kPatience);
+}
+
+Expected<void> Engine::restart(const std::string& container) {
+  const auto polite = std::chrono::duration_cast<std::chrono::seconds>(kPolite).count();
+  return change(container, "restart?t=" + std::to_string(polite), kPolite + kPatience);
+}
+
+Expected<void> Engine::kill(const std::string& container) {
+  return change(container, "kill?signal=SIGKILL", kPatience);
+}
+
+Expected<bool> Engine::runs(const std::string& container, int pid) {
+  const auto answer = ask("GET", "/containers/" + container + "/json", kPatience);
+  if (!answer) return Error{answer.error()};
+  const json document = json::parse(answer->body, nullptr, false);
+  const auto id = member<std::string>(document, "Id");
+  if (!id || id->empty() || !document.contains("State")) return no_form("a look at " + container);
+  if (container_of(pid) == *id) return true;
+  const auto first = member<std::int64_t>(document["State"], "Pid").value_or(0);
+  for (int each = pid; first > 1 && each > 1; each = parent_of(each).value_or(0)) {
+    if (each == first) return true;
+  }
+  return false;
+}
+
+Expected<std::vector<std::string>> Engine::services() {
+  const auto answer = ask("GET", "/containers/json?all=1", kPatience);
+  if (!answer) return Error{answer.error()};
+  const json document = json::parse(answer->body, nullptr, false);
+  if (!document.is_array()) return no_form("the list of its containers");
+  std::vector<std::string> names;
+  for (const json& each : document) {
+    if (!each.is_object() || !each.contains("Names") || !each["Names"].is_array()) continue;
+    for (const json& name : each["Names"]) {
+      if (!name.is_string()) continue;
+      const std::string text = name.get<std::string>();
+      names.push_back(text.starts_with('/') ? text.substr(1) : text);
+    }
+  }
+  return names;
+}
+
+// Whoever may use the socket may do all.
+Expected<void> Engine::may_manage(const std::string& container) {
+  const auto state = state_of(container);
+  return state ? Expected<void>() : Expected<void>(Error{state.error()});
+}
+
+}  // namespace culprit::owners

@@ -1,0 +1,55 @@
+// A container engine (docker, podman), asked over the REST API of its socket on this machine (Docker
+// Engine API; podman speaks the same).
+//
+// Every call has a time limit, and blocks its thread for so long at most. What comes back is not
+// trusted: it has the form that the API documents, or is an error. Whoever may use the socket may do
+// all that the engine can (docs/security.md).
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "language/rule_set.h"
+#include "owners/service_owner.h"
+
+namespace culprit::owners {
+
+class Engine : public ServiceOwner {
+ public:
+  static constexpr Duration kPatience = std::chrono::seconds(2);
+  // How long the engine gives a process to end before it kills it.
+  static constexpr Duration kPolite = std::chrono::seconds(3);
+
+  explicit Engine(EngineContainer::Engine which) : which_(which) {}
+
+  Expected<UnitState> state_of(const std::string& container) override;
+  Expected<void> start(const std::string& container) override;
+  Expected<void> stop(const std::string& container) override;
+  Expected<void> restart(const std::string& container) override;
+  Expected<void> kill(const std::string& container) override;
+  // By the control group that the kernel says it is in; or it is the first process of the container,
+  // or comes from that.
+  Expected<bool> runs(const std::string& container, int pid) override;
+  Expected<std::vector<std::string>> services() override;
+  Expected<void> may_manage(const std::string& container) override;
+
+  std::string name() const override;
+  std::string where_to_look(const std::string& container) const override;
+  std::string what_lists_all() const override;
+
+ private:
+  struct Answer {
+    int status = 0;
+    std::string body;
+  };
+  Expected<Answer> ask(const std::string& method, const std::string& target, Duration patience);
+  // Asks for a change. What is not answered in time may be done all the same.
+  Expected<void> change(const std::string& container, const std::string& what, Duration patience);
+  Error no_form(const std::string& what) const;
+
+  const EngineContainer::Engine which_;
+  std::map<std::string, int> last_pids_;  // the engine forgets them
+};
+
+}  // namespace culprit::owners

@@ -1,0 +1,60 @@
+// Who runs services by itself and is asked to start and to end them: systemd its units, a container
+// engine its containers.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/expected.h"
+
+namespace culprit::owners {
+
+// What the owner says of a service.
+struct UnitState {
+  enum class Activity : std::uint8_t {
+    kActive,
+    kActivating,  // it is being started, also by the owner itself
+    kDeactivating,
+    kInactive,
+    kFailed
+  };
+  bool is_loaded = false;  // there is such a one, and it can be started
+  Activity activity = Activity::kInactive;
+  bool has_job = false;    // it is asked for something that is not done yet
+  int main_pid = 0;        // 0: none
+  int last_main_pid = 0;   // of this boot; 0: none
+  std::string load_state;  // "loaded", "not-found", "masked", ...
+  std::string result;      // how it ended: "success", "exit-code", "start-limit-hit", ...
+
+  bool is_over() const { return activity == Activity::kInactive || activity == Activity::kFailed; }
+};
+
+// Every call has a time limit, and blocks its thread for so long at most. Errors say what is wrong
+// and what to do; nothing was done then.
+class ServiceOwner {
+ public:
+  virtual ~ServiceOwner() = default;
+
+  virtual Expected<UnitState> state_of(const std::string& service) = 0;
+  virtual Expected<void> start(const std::string& service) = 0;
+  virtual Expected<void> stop(const std::string& service) = 0;
+  virtual Expected<void> restart(const std::string& service) = 0;
+  // SIGKILL to all its processes.
+  virtual Expected<void> kill(const std::string& service) = 0;
+
+  // Whether the process is of that service.
+  virtual Expected<bool> runs(const std::string& service, int pid) = 0;
+  // All that it has, or could load.
+  virtual Expected<std::vector<std::string>> services() = 0;
+  // Whether culprit has the right to start and to end it. Errors: it has not.
+  virtual Expected<void> may_manage(const std::string& service) = 0;
+
+  // For people: "systemd", "docker".
+  virtual std::string name() const = 0;
+  // What says why a service failed: "journalctl -u lidar.service".
+  virtual std::string where_to_look(const std::string& service) const = 0;
+  // What says which services it has.
+  virtual std::string what_lists_all() const = 0;
+};
+
+}  // namespace culprit::owners

@@ -1,0 +1,189 @@
+#include "owners/test_engine.h"
+
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "owners/proc.h"
+
+namespace culprit::owners {
+namespace {
+
+std::string http(int status, const std::string& body) {
+  return "HTTP/1.0 " + std::to_string(status) +
+         " X\r\nContent-Type: application/json\r\nApi-Version: 1.41\r\n\r\n" + body;
+}
+
+std::string no_such(const std::string& name) {
+  return http(404, R"({"message":"No such container: )" + name + "\"}\n");
+}
+
+}  // namespace
+
+TestEngine::TestEngine() : listens_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::strncpy(address.sun_path, socket().c_str(), sizeof address.sun_path - 1);
+  if (bind(listens_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      listen(listens_.get(), 16) != 0)
+    std::abort();
+  setenv("DOCKER_HOST", ("unix://" + socket()).c_str(), 1);
+  thread_ = std::thread([this] { serve(); });
+}
+
+TestEngine::~TestEngine() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  thread_.join();
+  for (auto& [name, container] : containers_) end(container);
+  unsetenv("DOCKER_HOST");
+}
+
+void TestEngine::add(const std::string& name, TestContainer container) {
+  const std::lock_guard lock(mutex_);
+  containers_[name] = std::move(container);
+}
+
+int TestEngine::start(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  run(containers_[name]);
+  return containers_[name].pid;
+}
+
+int TestEngine::pid_of(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  return containers_[name].pid;
+}
+
+std::vector<std::string> TestEngine::asked() {
+  const std::lock_guard lock(mutex_);
+  return asked_;
+}
+
+void TestEngine::say(const std::string& answer) {
+  const std::lock_guard lock(mutex_);
+  answer_ = answer;
+}
+
+void TestEngine::hang(bool hangs) {
+  const std::lock_guard lock(mutex_);
+  hangs_ = hangs;
+}
+
+void TestEngine::run(TestContainer& container) {
+  if (container.is_broken) {
+    container.status = "exited";
+    container.code = 1;
+    return;
+  }
+  const int pid = fork();
+  if (pid == 0) {
+    if (!container.heeds_signals) signal(SIGTERM, SIG_IGN);
+    std::vector<char*> arguments;
+    for (std::string& each : container.command) arguments.push_back(each.data());
+    arguments.push_back(nullptr);
+    execvp(arguments[0], arguments.data());
+    _exit(127);
+  }
+  container.pid = pid;
+  container.status = "running";
+}
+
+void TestEngine::end(TestContainer& container) {
+  if (container.pid == 0) return;
+  kill(container.pid, SIGKILL);
+  waitpid(container.pid, nullptr, 0);
+  container.pid = 0;
+  container.code = 137;
+  container.status = "exited";
+}
+
+// What has ended by itself is started again where its policy says so.
+void TestEngine::notice(TestContainer& container) {
+  if (container.pid == 0 || state_letter(container.pid).value_or('Z') != 'Z') return;
+  end(container);
+  if (container.policy != "no") run(container);
+}
+
+void TestEngine::serve() {
+  while (true) {
+    pollfd file{listens_.get(), POLLIN, 0};
+    const bool has_come = poll(&file, 1, 20) > 0;
+    const std::lock_guard lock(mutex_);
+    if (is_ending_) return;
+    for (auto& [name, container] : containers_) notice(container);
+    if (!has_come || hangs_) continue;
+    const FileDescriptor peer(accept(listens_.get(), nullptr, nullptr));
+    std::string request;
+    char part[4096];
+    while (request.find("\r\n\r\n") == std::string::npos) {
+      const ssize_t size = recv(peer.get(), part, sizeof part, 0);
+      if (size <= 0) break;
+      request.append(part, static_cast<std::size_t>(size));
+    }
+    const std::size_t first = request.find(' ');
+    const std::size_t second = request.find(' ', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string answer =
+        answer_to(request.substr(0, first), request.substr(first + 1, second - first - 1));
+    (void)!::send(peer.get(), answer.data(), answer.size(), MSG_NOSIGNAL);
+  }
+}
+
+std::string TestEngine::look_at(const std::string& name) {
+  const TestContainer& container = containers_.at(name);
+  const nlohmann::json document = {
+      {"Id", std::string(64, 'c')},
+      {"Name", "/" + name},
+      {"RestartCount", 0},
+      {"State",
+       {{"Status", container.status},
+        {"Running", container.status == "running"},
+        {"Paused", container.status == "paused"},
+        {"Restarting", false},
+        {"OOMKilled", false},
+        {"Dead", false},
+        {"Pid", container.pid},
+        {"ExitCode", container.code},
+        {"Error", ""}}},
+      {"HostConfig", {{"RestartPolicy", {{"Name", container.policy}, {"MaximumRetryCount", 0}}}}}};
+  return http(200, document.dump());
+}
+
+std::string TestEngine::answer_to(const std::string& method, const std::string& target) {
+  if (!answer_.empty()) return answer_;
+  constexpr std::string_view kContainers = "/containers/";
+  if (!target.starts_with(kContainers)) return http(404, R"({"message":"page not found"})");
+  if (target == "/containers/json?all=1") {
+    nlohmann::json all = nlohmann::json::array();
+    for (const auto& [name, container] : containers_)
+      all.push_back({{"Id", std::string(64, 'c')}, {"Names", {"/" + name}}});
+    return http(200, all.dump());
+  }
+  const std::size_t slash = target.find('/', kContainers.size());
+  const std::string name = target.substr(kContainers.size(), slash - kContainers.size());
+  if (!containers_.contains(name)) return no_such(name);
+  TestContainer& container = containers_[name];
+  std::string what = slash == std::string::npos ? "" : target.substr(slash + 1);
+  if (method == "GET" && what == "json") return look_at(name);
+  what = what.substr(0, what.find('?'));
+  asked_.push_back(what + " " + name);
+  if (what == "start" && container.pid != 0) return http(304, "");
+  if (what == "stop" && container.pid == 0) return http(304, "");
+  if (what == "kill" && container.pid == 0)
+    return http(409, R"({"message":"Container is not running"})");
+  if (what != "start") end(container);
+  if (what == "start" || what == "restart") run(container);
+  return http(204, "");
+}
+
+}  // namespace culprit::owners

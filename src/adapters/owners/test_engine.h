@@ -1,0 +1,64 @@
+// A stand-in for a container engine, for tests: it speaks as much of the Docker Engine API as culprit
+// asks for, in the form that Docker 20.10 answers, on a unix socket. A container really runs a process.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/test_folder.h"
+#include "owners/file_descriptor.h"
+
+namespace culprit::owners {
+
+struct TestContainer {
+  std::string policy = "no";  // "always", "unless-stopped"
+  bool heeds_signals = true;  // ends when it is asked politely
+  bool is_broken = false;     // it ends at once, with exit code 1
+  std::string status = "created";
+  int pid = 0;
+  int code = 0;
+  std::vector<std::string> command{"sleep", "300"};
+};
+
+class TestEngine {
+ public:
+  // Whoever looks for docker meanwhile finds it.
+  TestEngine();
+  ~TestEngine();
+
+  std::string socket() const { return (own_.path() / "engine.sock").string(); }
+  void add(const std::string& name, TestContainer container = {});
+  // As `docker start`.
+  int start(const std::string& name);
+  int pid_of(const std::string& name);
+  // The changes that were asked for, in order: "restart slam".
+  std::vector<std::string> asked();
+
+  // What it answers in place of the truth; empty: the truth.
+  void say(const std::string& answer);
+  void hang(bool hangs);
+
+ private:
+  void serve();
+  std::string answer_to(const std::string& method, const std::string& target);
+  std::string look_at(const std::string& name);
+  void run(TestContainer& container);
+  void end(TestContainer& container);
+  void notice(TestContainer& container);
+
+  test::TestFolder own_;
+  FileDescriptor listens_;
+  std::mutex mutex_;
+  std::map<std::string, TestContainer> containers_;
+  std::vector<std::string> asked_;
+  std::string answer_;
+  bool hangs_ = false;
+  bool is_ending_ = false;
+  std::thread thread_;
+};
+
+}  // namespace culprit::owners
