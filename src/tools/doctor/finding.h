@@ -1,0 +1,25 @@
+// What is wrong with a robot, told as `culprit check` tells diagnostics: who, what is seen, why it
+// matters, and what to do.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace culprit::doctor {
+
+enum class Gravity : std::uint8_t {
+  kWarning,  // works for now, or for some
+  kError,    // something does not work
+};
+
+struct Finding {
+  std::string code;  // "D001": docs/doctor.md has a section for each
+  Gravity gravity = Gravity::kError;
+  std::string who;      // "/scan: /lidar_driver → /slam"
+  std::string seen;     // what was seen
+  std::string matters;  // what follows from it
+  std::string remedy;   // what to do
+};
+
+}  // namespace culprit::doctor
