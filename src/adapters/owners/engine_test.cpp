@@ -14,6 +14,7 @@
 #include "language/checker.h"
 #include "owners/proc.h"
 #include "owners/test_engine.h"
+#include "owners/test_process.h"
 #include "owners/units.h"
 
 namespace culprit::owners {
@@ -26,8 +27,6 @@ using testing::IsEmpty;
 
 constexpr Duration kLongEnough = 20s;
 constexpr ComponentId kSlam{0};
-
-bool lives(int pid) { return pid != 0 && state_letter(pid).value_or('Z') != 'Z'; }
 
 struct ContainersOnAStandInForDocker : testing::Test {
   void SetUp() override {
@@ -78,7 +77,7 @@ TEST_F(ContainersOnAStandInForDocker, AreStartedAndSayWhichProcess) {
   const Reply reply = start();
   EXPECT_EQ(reply.outcome, Outcome::kDone) << reply.text;
   EXPECT_EQ(reply.value, decltype(Reply::value)(Value(std::int64_t{engine.pid_of("slam")})));
-  EXPECT_TRUE(lives(engine.pid_of("slam")));
+  EXPECT_TRUE(is_alive(engine.pid_of("slam")));
   EXPECT_EQ(start().outcome, Outcome::kDone) << "it runs already";
   EXPECT_THAT(engine.asked(), ElementsAre("start slam"));
 }
@@ -87,7 +86,7 @@ TEST_F(ContainersOnAStandInForDocker, AreReplacedByOneRequest) {
   const int old = engine.start("slam");
   const Reply reply = stop(old);
   EXPECT_EQ(reply.outcome, Outcome::kDone) << reply.text;
-  EXPECT_FALSE(lives(old));
+  EXPECT_FALSE(is_alive(old));
   EXPECT_EQ(start().outcome, Outcome::kDone);
   EXPECT_NE(engine.pid_of("slam"), old);
   EXPECT_THAT(engine.asked(), ElementsAre("restart slam"));
@@ -97,12 +96,12 @@ TEST_F(ContainersOnAStandInForDocker, ThatTheEngineStartedAgainAreNotEndedNorDou
   for (const char* policy : {"always", "unless-stopped"}) {
     engine.add("slam", {.policy = policy});
     const int old = engine.start("slam");
-    kill(old, SIGKILL);
+    end(old);
     const Reply reply = stop(old);
     EXPECT_EQ(reply.outcome, Outcome::kDone) << reply.text;
     EXPECT_EQ(start().outcome, Outcome::kDone);
     EXPECT_NE(engine.pid_of("slam"), old);
-    kill(engine.pid_of("slam"), SIGKILL);
+    end(engine.pid_of("slam"));
   }
   EXPECT_THAT(engine.asked(), IsEmpty());
 }
@@ -110,11 +109,11 @@ TEST_F(ContainersOnAStandInForDocker, ThatTheEngineStartedAgainAreNotEndedNorDou
 TEST_F(ContainersOnAStandInForDocker, OfOthersProcessesAreNotEnded) {
   const int own = engine.start("slam");
   EXPECT_THAT(stop(getpid()).text, HasSubstr("it is not of slam"));
-  EXPECT_TRUE(lives(own));
+  EXPECT_TRUE(is_alive(own));
   units->found(kSlam, own);
   units->found(ComponentId(1), own);
   EXPECT_THAT(stop(own).text, HasSubstr("slam runs camera, too"));
-  EXPECT_TRUE(lives(own));
+  EXPECT_TRUE(is_alive(own));
   EXPECT_THAT(engine.asked(), IsEmpty());
 }
 
@@ -128,10 +127,10 @@ TEST_F(ContainersOnAStandInForDocker, ThatAreMistypedAreToldWithWhatWasMeant) {
 TEST_F(ContainersOnAStandInForDocker, ThatExitedAreDead) {
   const int pid = engine.start("slam");
   ASSERT_TRUE(stop(0, Ending::kForGood).outcome == Outcome::kDone);
-  EXPECT_FALSE(lives(pid));
+  EXPECT_FALSE(is_alive(pid));
   engine.start("slam");
   std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // it was seen
-  kill(engine.pid_of("slam"), SIGKILL);
+  end(engine.pid_of("slam"));
   const auto seen = wait_for<ProcessSeen>(
       [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
   ASSERT_TRUE(seen);
@@ -162,7 +161,7 @@ TEST_F(ContainersOnAStandInForDocker, AreNotEndedOnWordsThatMakeNoSense) {
     EXPECT_EQ(stop(pid).outcome, Outcome::kRefused) << answer;
   }
   engine.say("");
-  EXPECT_TRUE(lives(pid));
+  EXPECT_TRUE(is_alive(pid));
   EXPECT_THAT(engine.asked(), IsEmpty());
 }
 
@@ -177,7 +176,7 @@ TEST_F(ContainersOnAStandInForDocker, AreRefusedInTimeIfTheEngineHangsOrIsGone) 
   EXPECT_THAT(stop(pid).text, HasSubstr("is it running?"));
   setenv("DOCKER_HOST", "tcp://elsewhere:2375", 1);
   EXPECT_THAT(stop(pid).text, HasSubstr("a socket of this machine"));
-  EXPECT_TRUE(lives(pid));
+  EXPECT_TRUE(is_alive(pid));
 }
 
 }  // namespace

@@ -23,6 +23,7 @@
 #include "owners/bounded_log.h"
 #include "owners/proc.h"
 #include "owners/spawn.h"
+#include "owners/test_process.h"
 #include "owners/watched_process.h"
 
 namespace culprit::owners {
@@ -571,11 +572,6 @@ int start_by_others(const std::string& command) {
   return pid;
 }
 
-bool runs(int pid) {
-  const auto letter = state_letter(pid);
-  return letter && *letter != 'Z';
-}
-
 bool becomes(int pid, const std::string& program) {
   for (int tries = 0; tries < 3000; ++tries) {
     const auto identity = identity_of(pid);
@@ -646,7 +642,7 @@ TEST(Supervisor, DoesNotEndAnotherProgramThanTheComponentWas) {
   c.supervisor->adopt(ComponentId(0), node, live_now());
   c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
   EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
-  EXPECT_FALSE(runs(node));
+  EXPECT_FALSE(is_alive(node));
 
   c.supervisor->adopt(ComponentId(0), victim, live_now());
   c.supervisor->stop({3}, ComponentId(0), Ending::kForGood);
@@ -654,7 +650,7 @@ TEST(Supervisor, DoesNotEndAnotherProgramThanTheComponentWas) {
   EXPECT_EQ(reply.outcome, Outcome::kRefused);
   EXPECT_NE(reply.text.find("tail of user"), std::string::npos) << reply.text;
   EXPECT_NE(reply.text.find("sleep of user"), std::string::npos) << reply.text;
-  EXPECT_TRUE(runs(victim));
+  EXPECT_TRUE(is_alive(victim));
   kill(victim, SIGKILL);
 }
 
@@ -674,8 +670,8 @@ TEST(Supervisor, LeavesTheGroupOfSomebodyElseAloneAndSaysWhatStays) {
   const std::string told = c.trouble();
   EXPECT_EQ(told, "c was ended, and what it had started goes on: process " + std::to_string(child) +
                       " (sleep)");
-  EXPECT_FALSE(runs(node));
-  EXPECT_TRUE(runs(child));
+  EXPECT_FALSE(is_alive(node));
+  EXPECT_TRUE(is_alive(child));
   kill(child, SIGKILL);
 }
 
@@ -699,8 +695,9 @@ TEST(Supervisor, EndsTheGroupThatAnEarlierOneHadMade) {
   kill(node, SIGKILL);  // by itself, as a node crashes
   EXPECT_EQ(c.state(ProcessState::kGone).pid, node);
   for (const Relative& each : started) {
-    for (int tries = 0; tries < 3000 && runs(each.pid); ++tries) std::this_thread::sleep_for(10ms);
-    EXPECT_FALSE(runs(each.pid)) << "it would live on beside the successor";
+    for (int tries = 0; tries < 3000 && is_alive(each.pid); ++tries)
+      std::this_thread::sleep_for(10ms);
+    EXPECT_FALSE(is_alive(each.pid)) << "it would live on beside the successor";
   }
 }
 
@@ -714,7 +711,7 @@ TEST(Supervisor, AMarkCountsOnlyWhereItsNumberDoes) {
   ASSERT_TRUE(becomes(stranger, "sleep"));
   c.supervise();
   EXPECT_NE(c.start(), stranger);
-  EXPECT_TRUE(runs(stranger));
+  EXPECT_TRUE(is_alive(stranger));
   kill(stranger, SIGKILL);
 }
 
@@ -745,8 +742,8 @@ TEST(Supervisor, WaitsForNoFileSystemOfAProgram) {
   EXPECT_EQ(poll(&report, 1, 100), 0) << "it is not there yet, and we are here";
   const int pid = launch->pid();
   *launch = std::move(*Launch::begin({{"true"}, {}, c.folder() / "log"}, Until::kItCouldRun));
-  for (int tries = 0; tries < 3000 && runs(pid); ++tries) std::this_thread::sleep_for(10ms);
-  EXPECT_FALSE(runs(pid)) << "what is given up is killed";
+  for (int tries = 0; tries < 3000 && is_alive(pid); ++tries) std::this_thread::sleep_for(10ms);
+  EXPECT_FALSE(is_alive(pid)) << "what is given up is killed";
   EXPECT_TRUE(launch->outcome());
 }
 

@@ -14,6 +14,7 @@
 
 #include "language/checker.h"
 #include "owners/proc.h"
+#include "owners/test_process.h"
 #include "owners/test_systemd.h"
 
 namespace culprit::owners {
@@ -26,13 +27,6 @@ using testing::IsEmpty;
 
 constexpr Duration kPatience = 20s;
 constexpr ComponentId kLidar{0};
-
-bool is_alive(int pid) { return pid != 0 && state_letter(pid).value_or('Z') != 'Z'; }
-
-void end(int pid) {
-  kill(pid, SIGKILL);
-  while (is_alive(pid)) std::this_thread::sleep_for(1ms);
-}
 
 struct UnitsOnAStandInForSystemd : testing::Test {
   void SetUp() override {
