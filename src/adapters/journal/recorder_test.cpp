@@ -42,7 +42,7 @@ struct Recording : testing::Test {
   }
   void asks_for_a_stop(Recorder& recorder) {
     std::vector<Observation> none;
-    const std::vector<Command> commands{{CommandId(1), ComponentId(0), StopProcess{}, 1s}};
+    const std::vector<Command> commands{{CommandId{1}, ComponentId(0), StopProcess{}, 1s}};
     recorder.stepped(now, none, commands, {});
   }
   bool has(std::string_view kind) const {
