@@ -54,10 +54,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr Duration kShort = std::chrono::seconds(20);
   if (!diagnostics.empty() || moment > kShort || size > 2000) return 0;
   const rule_test::Watched watched = rule_test::watch(state, rules());
-  for (const plan::Decision& d :
+  for (const plan::ExplainedDecision& d :
        plan::decide(PaperPlanner(), watched.failures, *watched.knowledge)) {
     for (std::size_t i = 0; i < d.flips.size(); ++i) {
-      const StrategyId loser = d.verdict.candidates[i].strategy;
+      const StrategyId loser = d.decision.candidates[i].strategy;
       for (const plan::Change& change : d.flips[i])
         if (plan::describe(change, loser, *watched.knowledge).empty()) __builtin_trap();
     }
