@@ -127,7 +127,7 @@ class OneContainer : public ContainerServices {
   ContainerAnswer load(const Component& component, int of, Duration) override {
     if (of != pid) return {Outcome::kTimedOut, "it has ended"};
     did("load " + component.name);
-    if (loading.outcome != Outcome::kDone) return loading;
+    if (ContainerAnswer refused = loading_now(); refused.outcome != Outcome::kDone) return refused;
     const LoadedNode node = add(loads_as.empty() ? component.node : loads_as);
     appears(node.name);
     return {Outcome::kDone, "", {node}};
@@ -166,6 +166,18 @@ class OneContainer : public ContainerServices {
     const std::lock_guard lock(mutex);
     listing = std::move(answer);
   }
+  void loads(ContainerAnswer answer) {
+    const std::lock_guard lock(mutex);
+    loading = std::move(answer);
+  }
+  void unloads(ContainerAnswer answer) {
+    const std::lock_guard lock(mutex);
+    unloading = std::move(answer);
+  }
+  ContainerAnswer loading_now() {
+    const std::lock_guard lock(mutex);
+    return loading;
+  }
   void did(const std::string& what) {
     const std::lock_guard lock(mutex);
     done.push_back(what);
@@ -190,8 +202,8 @@ class OneContainer : public ContainerServices {
   std::atomic<int> pid = 0;
   std::uint64_t last = 0;
   std::uint64_t commands = 0;
-  int began = 0;  // processes of the container
-  int ended = 0;
+  std::atomic<int> began = 0;  // processes of the container
+  std::atomic<int> ended = 0;
   std::vector<LoadedNode> nodes;
   std::mutex mutex;
   std::vector<std::string> done;
@@ -213,7 +225,7 @@ TEST(ComposedNodes, NoneIsLoadedTwice) {
   OneContainer robot;
   robot.begin({"/detector"});
   EXPECT_EQ(robot.start(kDetector).text, "it is loaded already");
-  robot.loading = {Outcome::kTimedOut, "no answer"};
+  robot.loads({Outcome::kTimedOut, "no answer"});
   EXPECT_EQ(robot.start(kTracker).outcome, Outcome::kTimedOut);
   const Reply again = robot.start(kTracker);
   EXPECT_EQ(again.outcome, Outcome::kRefused);
@@ -225,10 +237,10 @@ TEST(ComposedNodes, AContainerThatDoesNotUnloadIsReplacedWithAllThatItHadInOrder
   for (const bool says_so : {true, false}) {
     OneContainer robot;
     robot.begin({"/tracker", "/detector"});
-    if (says_so) robot.unloading = {Outcome::kRefused, "cannot"};
+    if (says_so) robot.unloads({Outcome::kRefused, "cannot"});
     robot.keeps_nodes = !says_so;  // it says that it did
     EXPECT_EQ(robot.stop(kTracker).outcome, Outcome::kDone);
-    robot.unloading = {};
+    robot.unloads({});
     EXPECT_EQ(robot.start(kTracker).outcome, Outcome::kDone);
     robot.composed.reset();
     EXPECT_THAT(robot.what_was_done(), ElementsAre("begin", "unload /tracker", "end", "begin",
@@ -285,7 +297,7 @@ TEST(ComposedNodes, WhatAnEarlierRunSawInAProcessThatHasEndedIsLoadedToo) {
 TEST(ComposedNodes, NoneIsEndedThatCouldNotComeBack) {
   OneContainer robot;
   robot.begin({"/detector", "/planner"});
-  robot.unloading = {Outcome::kRefused, "cannot"};
+  robot.unloads({Outcome::kRefused, "cannot"});
   EXPECT_THAT(robot.stop(kDetector).text, HasSubstr("/planner lives there, too"));
   robot.is_loadable = false;
   EXPECT_THAT(robot.stop(kDetector).text, HasSubstr("no such class"));
@@ -342,7 +354,7 @@ TEST(ComposedNodes, WhatIsToEndForGoodIsUnloadedAndNotReplaced) {
   OneContainer robot;
   robot.begin({"/detector", "/tracker"});
   EXPECT_EQ(robot.stop(kDetector, Ending::kForGood).outcome, Outcome::kDone);
-  robot.unloading = {Outcome::kRefused, "cannot"};
+  robot.unloads({Outcome::kRefused, "cannot"});
   EXPECT_EQ(robot.stop(kTracker, Ending::kForGood).outcome, Outcome::kRefused);
   EXPECT_THAT(robot.what_was_done(), ElementsAre("begin", "unload /detector", "unload /tracker"));
 }
@@ -362,10 +374,10 @@ TEST(ComposedNodes, AreThereOnceAfterAnySequenceOfFaults) {
           if (robot.pid != 0) robot.end();
           break;
         case 1:
-          robot.unloading = {Outcome::kRefused, "cannot"};
+          robot.unloads({Outcome::kRefused, "cannot"});
           break;
         case 2:
-          robot.loading = {Outcome::kRefused, "cannot"};
+          robot.loads({Outcome::kRefused, "cannot"});
           break;
         case 3:
           robot.composed->stop(CommandId{++robot.commands}, part, 0, Ending::kToStartAgain,
@@ -381,12 +393,12 @@ TEST(ComposedNodes, AreThereOnceAfterAnySequenceOfFaults) {
         default:
           robot.stop(part);
           robot.start(part);
-          robot.unloading = {};
-          robot.loading = {};
+          robot.unloads({});
+          robot.loads({});
       }
     }
-    robot.unloading = {};
-    robot.loading = {};
+    robot.unloads({});
+    robot.loads({});
     for (const ComponentId each : {kDetector, kTracker}) {
       EXPECT_EQ(robot.stop(each).outcome, Outcome::kDone);
       const Reply reply = robot.start(each);
@@ -396,7 +408,7 @@ TEST(ComposedNodes, AreThereOnceAfterAnySequenceOfFaults) {
     std::vector<std::string> names;
     for (const LoadedNode& each : robot.nodes) names.push_back(each.name);
     EXPECT_THAT(names, testing::UnorderedElementsAre("/detector", "/tracker"));
-    EXPECT_EQ(robot.began, robot.ended + 1) << "containers that run";
+    EXPECT_EQ(robot.began.load(), robot.ended + 1) << "containers that run";
   }
 }
 
