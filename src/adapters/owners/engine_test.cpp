@@ -13,6 +13,7 @@
 #include "base/live_clock.h"
 #include "language/checker.h"
 #include "owners/proc.h"
+#include "owners/test_asked_owner.h"
 #include "owners/test_engine.h"
 #include "owners/test_process.h"
 #include "owners/units.h"
@@ -25,52 +26,19 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr Duration kLongEnough = 20s;
 constexpr ComponentId kSlam{0};
 
-struct ContainersOnAStandInForDocker : testing::Test {
+struct ContainersOnAStandInForDocker : AsksAnOwner {
   void SetUp() override {
     engine.add("slam");
     ask("slam");
   }
+  void TearDown() override { units.reset(); }  // before the engine that it asks
   void ask(const std::string& container) {
-    units.reset();
-    rules = *check(Source("test.rules", "COMPONENT slam NODE /slam CONTAINER docker " + container +
-                                            "\nCOMPONENT camera NODE /camera\n"))
-                 .rules;
-    units.emplace(rules, inbox, Units::Of::kEngines);
-  }
-  template <class What, class Fits>
-  std::optional<What> wait_for(Fits fits) {
-    for (const Time end = later(live_now(), kLongEnough); live_now() < end;) {
-      std::vector<Observation> seen;
-      inbox.take(std::min(end, later(live_now(), 1s)), seen);
-      for (const Observation& each : seen) {
-        const auto* what = std::get_if<What>(&each.what);
-        if (what != nullptr && fits(*what)) return *what;
-      }
-    }
-    return std::nullopt;
-  }
-  Reply answer() {
-    const auto reply =
-        wait_for<Reply>([&](const Reply& each) { return each.command == CommandId{count}; });
-    return reply ? *reply : Reply{{}, Outcome::kTimedOut, {}, "nothing was answered"};
-  }
-  Reply start() {
-    units->start(CommandId{++count}, kSlam);
-    return answer();
-  }
-  Reply stop(int pid, Ending ending = Ending::kToStartAgain) {
-    units->stop(CommandId{++count}, kSlam, pid, ending);
-    return answer();
+    manage("slam", "CONTAINER docker " + container, Units::Of::kEngines);
   }
 
   TestEngine engine;
-  Inbox inbox;
-  RuleSet rules;
-  std::optional<Units> units;
-  std::uint64_t count = 0;
 };
 
 TEST_F(ContainersOnAStandInForDocker, AreStartedAndSayWhichProcess) {
@@ -129,7 +97,9 @@ TEST_F(ContainersOnAStandInForDocker, ThatExitedAreDead) {
   ASSERT_TRUE(stop(0, Ending::kForGood).outcome == Outcome::kDone);
   EXPECT_FALSE(is_alive(pid));
   engine.start("slam");
-  std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // it was seen
+  // Once it looks again it has made something of the look before.
+  for (const int looks = engine.looks(); engine.looks() < looks + 2;)
+    std::this_thread::sleep_for(1ms);
   end(engine.pid_of("slam"));
   const auto seen = wait_for<ProcessSeen>(
       [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });

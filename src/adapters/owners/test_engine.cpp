@@ -174,7 +174,10 @@ std::string TestEngine::answer_to(const std::string& method, const std::string& 
   if (!containers_.contains(name)) return no_such(name);
   TestContainer& container = containers_[name];
   std::string what = slash == std::string::npos ? "" : target.substr(slash + 1);
-  if (method == "GET" && what == "json") return look_at(name);
+  if (method == "GET" && what == "json") {
+    ++looks_;
+    return look_at(name);
+  }
   what = what.substr(0, what.find('?'));
   asked_.push_back(what + " " + name);
   if (what == "start" && container.pid != 0) return http(304, "");

@@ -2,6 +2,7 @@
 // asks for, in the form that Docker 20.10 answers, on a unix socket. A container really runs a process.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -37,6 +38,8 @@ class TestEngine {
   int pid_of(const std::string& name);
   // The changes that were asked for, in order: "restart slam".
   std::vector<std::string> asked();
+  // How often it was asked how a container is.
+  int looks() const { return looks_; }
 
   // What it answers in place of the truth; empty: the truth.
   void say(const std::string& answer);
@@ -55,6 +58,7 @@ class TestEngine {
   std::mutex mutex_;
   std::map<std::string, TestContainer> containers_;
   std::vector<std::string> asked_;
+  std::atomic<int> looks_ = 0;
   std::string answer_;
   bool hangs_ = false;
   bool is_ending_ = false;

@@ -14,6 +14,7 @@
 
 #include "language/checker.h"
 #include "owners/proc.h"
+#include "owners/test_asked_owner.h"
 #include "owners/test_process.h"
 #include "owners/test_systemd.h"
 
@@ -25,57 +26,22 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr Duration kPatience = 20s;
 constexpr ComponentId kLidar{0};
 
-struct UnitsOnAStandInForSystemd : testing::Test {
+struct UnitsOnAStandInForSystemd : AsksAnOwner {
   void SetUp() override {
     systemd.add("lidar.service");
     ask();
   }
+  void TearDown() override { units.reset(); }  // before the bus that it asks
   void ask(const std::string& clauses = "UNIT lidar.service") {
-    units.reset();
-    rules = *check(Source("test.rules", "COMPONENT lidar NODE /lidar " + clauses +
-                                            "\nCOMPONENT camera NODE /camera\n"))
-                 .rules;
-    units.emplace(rules, inbox);
-  }
-
-  // What `wanted` finds in an observation.
-  template <class What, class Fits>
-  std::optional<What> wait_for(Fits fits) {
-    for (const Time end = later(live_now(), kPatience); live_now() < end;) {
-      std::vector<Observation> seen;
-      inbox.take(std::min(end, later(live_now(), 1s)), seen);
-      for (const Observation& each : seen) {
-        const auto* what = std::get_if<What>(&each.what);
-        if (what != nullptr && fits(*what)) return *what;
-      }
-    }
-    return std::nullopt;
-  }
-  Reply answer() {
-    const auto reply =
-        wait_for<Reply>([&](const Reply& each) { return each.command == CommandId{count}; });
-    return reply ? *reply : Reply{{}, Outcome::kTimedOut, {}, "nothing was answered"};
-  }
-  Reply start() {
-    units->start(CommandId{++count}, kLidar);
-    return answer();
-  }
-  Reply stop(int pid, Ending ending = Ending::kToStartAgain) {
-    units->stop(CommandId{++count}, kLidar, pid, ending);
-    return answer();
+    manage("lidar", clauses, Units::Of::kSystemd);
   }
   int running() { return systemd.start("lidar.service"); }
   int now_running() { return systemd.pid_of("lidar.service"); }
 
   TestBus bus;
   TestSystemd systemd{bus};
-  Inbox inbox;
-  RuleSet rules;
-  std::optional<Units> units;
-  std::uint64_t count = 0;
 };
 
 TEST_F(UnitsOnAStandInForSystemd, AreStartedAndSayWhichProcess) {

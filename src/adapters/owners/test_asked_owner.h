@@ -1,0 +1,63 @@
+// For tests of owners that are asked (systemd, a container engine): one component, the first of the
+// rules, and what culprit hears after it asked for something.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/live_clock.h"
+#include "language/checker.h"
+#include "owners/units.h"
+#include "robot/inbox.h"
+
+namespace culprit::owners {
+
+struct AsksAnOwner : testing::Test {
+  // `clauses` say who runs the component.
+  void manage(const std::string& name, const std::string& clauses, Units::Of whose) {
+    units.reset();
+    rules = *check(Source("test.rules", "COMPONENT " + name + " NODE /" + name + " " + clauses +
+                                            "\nCOMPONENT camera NODE /camera\n"))
+                 .rules;
+    units.emplace(rules, inbox, whose);
+  }
+
+  // The first observation of that kind that fits.
+  template <class What, class Fits>
+  std::optional<What> wait_for(Fits fits) {
+    for (const Time end = later(live_now(), std::chrono::seconds(20)); live_now() < end;) {
+      std::vector<Observation> seen;
+      inbox.take(std::min(end, later(live_now(), std::chrono::seconds(1))), seen);
+      for (const Observation& each : seen) {
+        const auto* what = std::get_if<What>(&each.what);
+        if (what != nullptr && fits(*what)) return *what;
+      }
+    }
+    return std::nullopt;
+  }
+  Reply answer() {
+    const auto reply =
+        wait_for<Reply>([&](const Reply& each) { return each.command == CommandId{count}; });
+    return reply ? *reply : Reply{{}, Outcome::kTimedOut, {}, "nothing was answered"};
+  }
+  Reply start() {
+    units->start(CommandId{++count}, ComponentId(0));
+    return answer();
+  }
+  Reply stop(int pid, Ending ending = Ending::kToStartAgain) {
+    units->stop(CommandId{++count}, ComponentId(0), pid, ending);
+    return answer();
+  }
+
+  Inbox inbox;
+  RuleSet rules;
+  std::optional<Units> units;
+  std::uint64_t count = 0;
+};
+
+}  // namespace culprit::owners
