@@ -4,7 +4,7 @@
 
 #include "base/text_file.h"
 #include "cli/commands.h"
-#include "modes/mode_manager.h"
+#include "mode_manager/mode_manager.h"
 #include "modes/read_model.h"
 #include "terminal/console.h"
 
@@ -34,7 +34,7 @@ int serve(const modes::Model& model, const std::string& file) {
   if (auto stops = executor.stop_on({SIGINT, SIGTERM}); !stops) return fail(stops.error());
   const auto participant = ros2::options_from_environment();
   if (!participant) return fail(participant.error(), kUsage);
-  modes::ModeManager::Options options;
+  mode_manager::ModeManager::Options options;
   options.participant = *participant;
   options.model_file = file;
   options.on_change = [](const modes::Inference::Change& change) {
@@ -42,7 +42,7 @@ int serve(const modes::Model& model, const std::string& file) {
         described(change.now));
   };
   options.on_trouble = [](const std::string& text) { say(stdout, "{}\n", text); };
-  const auto manager = modes::ModeManager::create(executor, model, std::move(options));
+  const auto manager = mode_manager::ModeManager::create(executor, model, std::move(options));
   if (!manager) return fail(manager.error());
   ::signal(SIGPIPE, SIG_IGN);  // as in StopSignals
   say(stdout, "culprit: /__mode_manager serves {} systems and nodes; Ctrl-C ends it\n",

@@ -88,10 +88,9 @@ Expected<std::string> systemd_form(const RuleSet& rules, const PolicyOptions& op
 int write_policy(PolicyOptions& options) {
   if (options.enclave.empty()) options.enclave = environment("ROS_SECURITY_ENCLAVE_OVERRIDE");
   if (options.enclave.empty()) options.enclave = "/culprit";
-  if (!ros2::is_valid_topic_name(options.enclave))
-    return fail(
-        "'" + ros2::printable(options.enclave) + "' is no enclave; it is a path such as /culprit",
-        kUsage);
+  if (!is_valid_topic_name(options.enclave))
+    return fail("'" + printable(options.enclave) + "' is no enclave; it is a path such as /culprit",
+                kUsage);
   auto loaded = read_rules(options.rules);
   if (loaded && options.improvise) loaded = improvised(std::move(*loaded), options.rules);
   if (!loaded) return fail(loaded.error());

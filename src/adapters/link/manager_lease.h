@@ -1,5 +1,5 @@
 // Which culprit manages a robot, of those on different machines in its DDS domain. (On one machine
-// a lock decides, cli/host_claim.h.)
+// a lock decides, live/host_claim.h.)
 //
 // Each announces that it would, by writers on the hidden topic /_culprit_lease that say in their
 // user data which robot, which nodes, since when, and in which term: one more than any before for

@@ -4,8 +4,6 @@
 
 namespace culprit::modes {
 
-using ros2::LifecycleState;
-
 void Inference::heard_state(const std::string& node, LifecycleState state) {
   if (model_.find(node) != nullptr) heard_[node].state = state;
 }

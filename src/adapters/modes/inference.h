@@ -18,13 +18,13 @@
 #include <string>
 #include <vector>
 
+#include "base/lifecycle_state.h"
 #include "modes/model.h"
-#include "ros2/lifecycle.h"
 
 namespace culprit::modes {
 
 struct Actual {
-  ros2::LifecycleState state = ros2::LifecycleState::kUnknown;
+  LifecycleState state = LifecycleState::kUnknown;
   std::string mode;  // empty: it fits none
   bool operator==(const Actual&) const = default;
 };
@@ -38,7 +38,7 @@ class Inference {
   explicit Inference(const Model& model) : model_(model), actual_(model.entities.size()) {}
 
   // Names that are not in the model are left out.
-  void heard_state(const std::string& node, ros2::LifecycleState state);
+  void heard_state(const std::string& node, LifecycleState state);
   void heard_parameter(const std::string& node, const std::string& parameter, const Value& value);
   // Its process is gone.
   void lost(const std::string& node);
@@ -59,7 +59,7 @@ class Inference {
 
  private:
   struct Heard {
-    ros2::LifecycleState state = ros2::LifecycleState::kUnknown;
+    LifecycleState state = LifecycleState::kUnknown;
     std::map<std::string, Value> parameters;
   };
 

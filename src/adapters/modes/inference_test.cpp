@@ -7,8 +7,6 @@
 namespace culprit::modes {
 namespace {
 
-using ros2::LifecycleState;
-
 constexpr const char* kPlant = R"(
 plant: {ros__parameters: {type: system, parts: [pump, lamp], modes: {
   __DEFAULT__: {pump: active.SLOW, lamp: inactive},

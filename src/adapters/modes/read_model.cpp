@@ -7,9 +7,9 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "base/name_grammar.h"
 #include "language/diagnostic.h"
 #include "modes/parts_first.h"
-#include "ros2/names.h"
 
 namespace culprit::modes {
 namespace {
@@ -73,8 +73,8 @@ YAML::Node needed(const YAML::Node& map, const std::string& name, const std::str
 std::string full_name(const std::string& name_space, const std::string& name,
                       const YAML::Node& at) {
   const std::string full = name.front() == '/' ? name : name_space + "/" + name;
-  if (!ros2::is_valid_topic_name(full))
-    fail(at, "'" + ros2::printable(name) + "' cannot be the name of a node");
+  if (!is_valid_topic_name(full))
+    fail(at, "'" + printable(name) + "' cannot be the name of a node");
   return full;
 }
 

@@ -11,23 +11,10 @@
 #include <span>
 #include <string_view>
 
+#include "base/lifecycle_state.h"
 #include "ros2/messages.h"
 
 namespace culprit::ros2 {
-
-enum class LifecycleState : std::uint8_t {
-  kUnknown = 0,
-  kUnconfigured = 1,
-  kInactive = 2,
-  kActive = 3,
-  kFinalized = 4,
-  kConfiguring = 10,
-  kCleaningUp = 11,
-  kShuttingDown = 12,
-  kActivating = 13,
-  kDeactivating = 14,
-  kErrorProcessing = 15
-};
 
 // Those that can be asked for.
 enum class TransitionId : std::uint8_t {

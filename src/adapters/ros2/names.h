@@ -1,4 +1,4 @@
-// How ROS 2 names appear on DDS, and which of them are well-formed.
+// How ROS 2 names appear on DDS.
 //
 //     topic   /a/b             ->  rt/a/b           pkg/msg/Type  ->  pkg::msg::dds_::Type_
 //     request of service /a/s  ->  rq/a/sRequest    pkg/srv/Type  ->  pkg::srv::dds_::Type_Request_
@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "base/expected.h"
+#include "base/name_grammar.h"
 
 namespace culprit::ros2 {
 
@@ -26,12 +27,6 @@ struct RosChannel {
   std::string name;  // of the topic or service, absolute
   bool operator==(const RosChannel&) const = default;
 };
-
-// "/a/b_1": absolute, tokens of letters, digits and underscores that do not start with a digit.
-bool is_valid_topic_name(std::string_view name);
-bool is_valid_node_name(std::string_view name);  // one token
-bool is_valid_namespace(std::string_view name);  // "/" or like a topic
-bool is_valid_type_name(std::string_view type);  // "package/msg/Type", also srv and action
 
 struct NodeName {
   std::string name_space = "/";  // "/" or "/a/b", no slash at the end
@@ -54,9 +49,5 @@ std::string mangle_type(Channel channel, std::string_view type);
 
 std::optional<RosChannel> demangle_topic(std::string_view dds_topic);
 std::optional<std::string> demangle_type(Channel channel, std::string_view dds_type);
-
-// What a stranger said, made safe for a message to people: printable ASCII only, cut at 80
-// characters.
-std::string printable(std::string_view text);
 
 }  // namespace culprit::ros2

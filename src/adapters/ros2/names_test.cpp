@@ -69,20 +69,6 @@ TEST(Names, SplitNodeNames) {
     EXPECT_FALSE(parse_node_name(bad)) << bad;
 }
 
-TEST(Names, ValidateTypes) {
-  EXPECT_TRUE(is_valid_type_name("std_msgs/msg/String"));
-  EXPECT_TRUE(is_valid_type_name("tf2_msgs/action/LookupTransform_SendGoal"));
-  for (const char* bad : {"", "String", "std_msgs/String", "std_msgs/msg/", "/msg/String",
-                          "a/idl/B", "../msg/B", "a/msg/../B", "a/msg/b/c", "a.b/msg/C"}) {
-    EXPECT_FALSE(is_valid_type_name(bad)) << bad;
-  }
-}
-
-TEST(Names, PrintableHidesControlCharactersAndCuts) {
-  EXPECT_EQ(printable("a\x1b[2Jb\n\xc3"), "a?[2Jb??");
-  EXPECT_EQ(printable(std::string(81, 'x')), std::string(80, 'x') + "...");
-}
-
 rc::Gen<std::string> any_token() {
   return rc::gen::map(rc::gen::nonEmpty(rc::gen::container<std::string>(
                           rc::gen::elementOf(std::string("abzAZ_09")))),

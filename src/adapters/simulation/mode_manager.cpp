@@ -1,67 +1,76 @@
 #include "simulation/mode_manager.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace culprit::simulation {
+namespace {
 
-ModeManager::ModeManager(World& world, std::string name, std::vector<ModeSystem> systems,
-                         NodeTraits traits)
-    : Node(world, std::move(name), traits), systems_(std::move(systems)) {
-  for (const ModeSystem& system : systems_) {
-    world.systems_.emplace(system.name, this);
-    for (const SystemMode& mode : system.modes) {
-      for (const PartMode& part : mode.parts) heard_[part.node];
-    }
+LifecycleState state_of(const Node& node) {
+  switch (node.lifecycle()) {
+    case Lifecycle::kUnconfigured:
+      return LifecycleState::kUnconfigured;
+    case Lifecycle::kInactive:
+      return LifecycleState::kInactive;
+    case Lifecycle::kActive:
+      return LifecycleState::kActive;
+    case Lifecycle::kFinalized:
+      return LifecycleState::kFinalized;
+    case Lifecycle::kTransition:
+    case Lifecycle::kUnknown:
+      break;
+  }
+  return LifecycleState::kUnknown;
+}
+
+}  // namespace
+
+ModeManager::ModeManager(World& world, std::string name, modes::Model model, NodeTraits traits)
+    : Node(world, std::move(name), traits), model_(std::move(model)), inference_(model_) {
+  for (const modes::Entity& entity : model_.entities) {
+    if (!entity.is_system) continue;
+    assert(std::none_of(entity.parts.begin(), entity.parts.end(),
+                        [&](const std::string& part) { return model_.find(part)->is_system; }));
+    world.systems_.emplace(entity.name, this);
   }
   world.watch(*this);
 }
 
 ModeManager::~ModeManager() {
   world().unwatch(*this);
-  for (const ModeSystem& system : systems_) world().systems_.erase(system.name);
+  for (const modes::Entity& entity : model_.entities) world().systems_.erase(entity.name);
 }
 
 void ModeManager::on_start() {
-  targets_.clear();
-  for (auto& [name, heard] : heard_) {
-    heard = {};
-    ask(name, [this](Node& part) {
-      hear(part.name(), [lifecycle = part.lifecycle(), all = part.parameters()](Heard& h) {
-        h.lifecycle = lifecycle;
-        h.parameters = all;
-      });
-    });
-  }
+  inference_.emplace(model_);
+  for (const modes::Entity& entity : model_.entities)
+    if (!entity.is_system) ask(entity.name, [this](Node& part) { hear_all_of(part); });
 }
 
 // ---- requests
 
-const ModeSystem& ModeManager::find(const std::string& system) const {
-  return *std::find_if(systems_.begin(), systems_.end(),
-                       [&](const ModeSystem& s) { return s.name == system; });
-}
-
 bool ModeManager::change_mode(const std::string& system, const std::string& mode) {
-  const ModeSystem& known = find(system);
-  const auto wanted = std::find_if(known.modes.begin(), known.modes.end(),
-                                   [&](const SystemMode& m) { return m.name == mode; });
-  if (wanted == known.modes.end()) return false;
+  const modes::Entity& known = *model_.find(system);
+  const modes::Mode* wanted = known.find(mode);
+  if (wanted == nullptr) return false;
   if (mode_of(system) == mode) return true;
-  targets_[system] = mode;
-  for (const PartMode& part : wanted->parts) command(part);
+  inference_->set_target(system, {true, mode});
+  for (const std::string& part : known.parts) aim(*model_.find(part), wanted->parts.at(part));
+  inference_->infer();
   return true;
 }
 
-void ModeManager::command(const PartMode& part) {
-  if (!part.is_active) {
-    ask(part.node, [](Node& node) { node.change(Transition::kDeactivate); });
+void ModeManager::aim(const modes::Entity& node, const modes::Target& target) {
+  inference_->set_target(node.name, target);
+  if (!target.is_active) {
+    ask(node.name, [](Node& part) { part.change(Transition::kDeactivate); });
     return;
   }
   // The state first, then the parameters. Activating what is active fails, and nobody minds.
-  ask(part.node, [parameters = part.parameters](Node& node) {
-    node.change(Transition::kActivate);
-    node.post([&node, parameters] {
-      for (const auto& [name, value] : parameters) node.set_parameter(name, value);
+  ask(node.name, [parameters = node.find(target.mode)->parameters](Node& part) {
+    part.change(Transition::kActivate);
+    part.post([&part, parameters] {
+      for (const auto& [name, value] : parameters) part.set_parameter(name, value);
     });
   });
 }
@@ -75,53 +84,44 @@ void ModeManager::ask(const std::string& node, std::function<void(Node&)> work) 
 
 // ---- inference
 
-bool ModeManager::fits(const SystemMode& mode) const {
-  return std::all_of(mode.parts.begin(), mode.parts.end(), [&](const PartMode& part) {
-    const Heard& heard = heard_.at(part.node);
-    if (!part.is_active)
-      return heard.lifecycle == Lifecycle::kInactive || heard.lifecycle == Lifecycle::kUnconfigured;
-    return heard.lifecycle == Lifecycle::kActive &&
-           std::all_of(part.parameters.begin(), part.parameters.end(), [&](const auto& wanted) {
-             const auto value = heard.parameters.find(wanted.first);
-             return value != heard.parameters.end() && value->second == wanted.second;
-           });
-  });
-}
-
 std::string ModeManager::mode_of(const std::string& system) const {
-  const ModeSystem& known = find(system);
-  const auto target = targets_.find(system);
-  const SystemMode* first = nullptr;
-  for (const SystemMode& mode : known.modes) {
-    if (!fits(mode)) continue;
-    if (target != targets_.end() && target->second == mode.name) return mode.name;
-    if (first == nullptr) first = &mode;
-  }
-  return first == nullptr ? kUnknownMode : first->name;
+  const std::string& mode = inference_->actual(system).mode;
+  return mode.empty() ? kUnknownMode : mode;
 }
 
 // A new process declares its parameters, and that is announced as well.
 void ModeManager::on_node(const Node& node, bool is_there) {
-  if (!is_there || !is_part(node.name())) return;
-  hear(node.name(), [lifecycle = node.lifecycle(), all = node.parameters()](Heard& h) {
-    h.lifecycle = lifecycle;
-    h.parameters = all;
-  });
+  if (is_there) hear_all_of(node);
 }
 
 void ModeManager::on_lifecycle(const Node& node) {
-  if (!is_part(node.name())) return;
-  hear(node.name(), [lifecycle = node.lifecycle()](Heard& h) { h.lifecycle = lifecycle; });
+  hear(node.name(), [name = node.name(), state = state_of(node)](modes::Inference& inference) {
+    inference.heard_state(name, state);
+  });
 }
 
 void ModeManager::on_parameter(const Node& node, const std::string& name, const Value& value) {
-  if (is_part(node.name()))
-    hear(node.name(), [name, value](Heard& h) { h.parameters[name] = value; });
+  hear(node.name(), [node = node.name(), name, value](modes::Inference& inference) {
+    inference.heard_parameter(node, name, value);
+  });
+}
+
+void ModeManager::hear_all_of(const Node& node) {
+  hear(node.name(), [name = node.name(), state = state_of(node),
+                     all = node.parameters()](modes::Inference& inference) {
+    inference.lost(name);
+    inference.heard_state(name, state);
+    for (const auto& [parameter, value] : all) inference.heard_parameter(name, parameter, value);
+  });
 }
 
 // News come to the executor like everything else: one that hangs hears nothing.
-void ModeManager::hear(const std::string& node, std::function<void(Heard&)> news) {
-  post([this, node, news = std::move(news)] { news(heard_.at(node)); });
+void ModeManager::hear(const std::string& node, std::function<void(modes::Inference&)> news) {
+  if (model_.find(node) == nullptr) return;
+  post([this, news = std::move(news)] {
+    news(*inference_);
+    inference_->infer();
+  });
 }
 
 }  // namespace culprit::simulation

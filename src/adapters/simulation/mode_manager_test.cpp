@@ -31,15 +31,23 @@ class Pump : public Node {
   }
 };
 
-std::vector<ModeSystem> pump_modes() {
-  const auto active = [](std::int64_t rate) {
-    return std::vector<PartMode>{{"/pump_node", true, {{"rate", rate}}}};
+modes::Model pump_modes() {
+  const auto sets = [](std::int64_t rate) { return std::map<std::string, Value>{{"rate", rate}}; };
+  const auto wants = [](const modes::Target& target) {
+    return std::map<std::string, modes::Target>{{"/pump_node", target}};
   };
-  return {{"/pump",
-           {{"__DEFAULT__", active(1)},
-            {"slow", active(1)},
-            {"fast", active(9)},
-            {"off", {{"/pump_node", false, {}}}}}}};
+  modes::Entity node;
+  node.name = "/pump_node";
+  node.modes = {{"__DEFAULT__", {}, sets(1)}, {"slow", {}, sets(1)}, {"fast", {}, sets(9)}};
+  modes::Entity system;
+  system.name = "/pump";
+  system.is_system = true;
+  system.parts = {node.name};
+  system.modes = {{"__DEFAULT__", wants({true, "__DEFAULT__"}), {}},
+                  {"slow", wants({true, "slow"}), {}},
+                  {"fast", wants({true, "fast"}), {}},
+                  {"off", wants({false, ""}), {}}};
+  return {{node, system}};
 }
 
 struct Plant {

@@ -79,11 +79,10 @@ void Experiment::poll_states() {
   for (const Member member : kManagedMembers) {
     bool& is_polled = is_polled_[static_cast<std::size_t>(member)];
     if (std::exchange(is_polled, true)) continue;
-    control(member).get_state(
-        [this, member, &is_polled](const Expected<ros2::LifecycleState>& state) {
-          is_polled = false;
-          observer_->on_state(member, state ? std::optional(*state) : std::nullopt);
-        });
+    control(member).get_state([this, member, &is_polled](const Expected<LifecycleState>& state) {
+      is_polled = false;
+      observer_->on_state(member, state ? std::optional(*state) : std::nullopt);
+    });
   }
 }
 
@@ -150,8 +149,8 @@ Expected<void> Experiment::clear(Member member) {
   if (member == Member::kCamera) {
     if (auto focused = focus(); !focused) return focused;
   }
-  return bring_to(member, member == Member::kImageEnhancement ? ros2::LifecycleState::kInactive
-                                                              : ros2::LifecycleState::kActive);
+  return bring_to(member, member == Member::kImageEnhancement ? LifecycleState::kInactive
+                                                              : LifecycleState::kActive);
 }
 
 // Not by clearing autofocus_needed: then the camera would never say that it is sharp again.
@@ -164,8 +163,7 @@ Expected<void> Experiment::focus() {
   return set(Member::kCamera, "perform_autofocus", true).get();
 }
 
-Expected<void> Experiment::bring_to(Member member, ros2::LifecycleState target) {
-  using ros2::LifecycleState;
+Expected<void> Experiment::bring_to(Member member, LifecycleState target) {
   using ros2::TransitionId;
   constexpr int kMostSteps = 2;  // configure, activate
   for (int step = 0; step <= kMostSteps; ++step) {
@@ -179,7 +177,7 @@ Expected<void> Experiment::bring_to(Member member, ros2::LifecycleState target) 
     auto done = ask<void>([&](auto then) { control(member).change_state(next, then); }).get();
     if (!done) return done;
   }
-  return Error{node_of(member).full() + " does not become " + std::string(label_of(target))};
+  return Error{node_of(member).full() + " does not become " + std::string(ros2::label_of(target))};
 }
 
 }  // namespace culprit::sunset

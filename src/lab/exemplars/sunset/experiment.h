@@ -66,7 +66,7 @@ class Experiment {
   Answer set(Member member, const std::string& parameter, const Value& value);
   Expected<void> clear(Member member);
   Expected<void> focus();
-  Expected<void> bring_to(Member member, ros2::LifecycleState target);
+  Expected<void> bring_to(Member member, LifecycleState target);
   void poll_states();
 
   const Options options_;

@@ -15,7 +15,7 @@ HealthWatch::HealthWatch(Time begin, Duration robot_second)
       last_segmentation_(begin),
       last_gap_(begin) {}
 
-void HealthWatch::on_state(Member member, std::optional<ros2::LifecycleState> state) {
+void HealthWatch::on_state(Member member, std::optional<LifecycleState> state) {
   states_[static_cast<std::size_t>(member)] = state;
 }
 
@@ -38,8 +38,8 @@ std::string HealthWatch::complaint(Time now) const {
     if (member == Member::kImageEnhancement) continue;
     const auto& state = states_[static_cast<std::size_t>(member)];
     if (!state) return std::string(name_of(member)) + " does not answer";
-    if (*state != ros2::LifecycleState::kActive) {
-      return std::string(name_of(member)) + " is " + std::string(label_of(*state));
+    if (*state != LifecycleState::kActive) {
+      return std::string(name_of(member)) + " is " + std::string(ros2::label_of(*state));
     }
   }
   if (now - last_segmentation_ > longest_gap_) {

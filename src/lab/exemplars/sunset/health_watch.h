@@ -28,7 +28,7 @@ class HealthWatch {
   HealthWatch(Time begin, Duration robot_second);
 
   // Times do not decrease.
-  void on_state(Member member, std::optional<ros2::LifecycleState> state);  // nothing: no answer
+  void on_state(Member member, std::optional<LifecycleState> state);  // nothing: no answer
   void on_segmentation(Time at);
   void on_entropy(double entropy, Time at);
   void on_iou(double iou, Time at);
@@ -47,7 +47,7 @@ class HealthWatch {
 
   Duration calm_;
   Duration longest_gap_;
-  std::array<std::optional<ros2::LifecycleState>, kMembers.size()> states_{};
+  std::array<std::optional<LifecycleState>, kMembers.size()> states_{};
   Time last_segmentation_;
   Time last_gap_;  // its end
   std::optional<Time> last_judgement_;

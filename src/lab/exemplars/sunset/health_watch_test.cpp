@@ -8,7 +8,6 @@ namespace culprit::sunset {
 namespace {
 
 using namespace std::chrono_literals;
-using ros2::LifecycleState;
 
 Time at(Duration since_begin) { return Time(Duration(100s)) + since_begin; }
 

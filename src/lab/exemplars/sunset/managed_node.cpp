@@ -7,7 +7,6 @@
 namespace culprit::sunset {
 
 namespace msg = ros2::msg;
-using ros2::LifecycleState;
 using ros2::Severity;
 using ros2::TransitionId;
 using ros2::TransitionResult;

@@ -77,11 +77,11 @@ void NodeControl::get_parameter(const std::string& name, Then<Value> then) {
       });
 }
 
-void NodeControl::get_state(Then<ros2::LifecycleState> then) {
+void NodeControl::get_state(Then<LifecycleState> then) {
   get_state_->call({}, Repeat::kUntilAnswered, kPatience,
                    [this, then = std::move(then)](const auto& answer) {
                      if (!answer.response) return then(trouble(answer.outcome));
-                     then(static_cast<ros2::LifecycleState>(answer.response->current_state.id));
+                     then(static_cast<LifecycleState>(answer.response->current_state.id));
                    });
 }
 

@@ -31,7 +31,7 @@ class NodeControl {
 
   void set_parameter(const std::string& name, const Value& value, Then<void> then);
   void get_parameter(const std::string& name, Then<Value> then);
-  void get_state(Then<ros2::LifecycleState> then);
+  void get_state(Then<LifecycleState> then);
   void change_state(ros2::TransitionId transition, Then<void> then);
 
  private:

@@ -64,7 +64,7 @@ Measurements Observer::measure() const {
   return result;
 }
 
-void Observer::on_state(Member member, std::optional<ros2::LifecycleState> state) {
+void Observer::on_state(Member member, std::optional<LifecycleState> state) {
   const std::lock_guard lock(mutex_);
   health_.on_state(member, state);
 }

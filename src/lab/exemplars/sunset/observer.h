@@ -35,7 +35,7 @@ class Observer {
   // From any thread.
   void restart();
   Measurements measure() const;
-  void on_state(Member member, std::optional<ros2::LifecycleState> state);
+  void on_state(Member member, std::optional<LifecycleState> state);
 
  private:
   struct Figures {

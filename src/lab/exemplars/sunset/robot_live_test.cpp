@@ -18,7 +18,6 @@ namespace culprit::sunset {
 namespace {
 
 using namespace std::chrono_literals;
-using ros2::LifecycleState;
 using ros2::TransitionId;
 
 // A robot that is up and well.

@@ -97,7 +97,7 @@ Expected<Scenario> find_scenario(std::string_view label_or_name) {
   for (Scenario& scenario : scenarios()) {
     if (scenario.label() == label_or_name || scenario.name() == label_or_name) return scenario;
   }
-  return Error{"there is no scenario '" + ros2::printable(label_or_name) +
+  return Error{"there is no scenario '" + printable(label_or_name) +
                "'; there are 001 to 018, or by name, such as " + scenarios().front().name()};
 }
 

@@ -210,12 +210,11 @@ std::optional<Value> LiveRobot::get(Member member, const std::string& parameter)
   return value ? std::optional(*value) : std::nullopt;
 }
 
-bool LiveRobot::becomes(Member member, ros2::LifecycleState state) {
+bool LiveRobot::becomes(Member member, LifecycleState state) {
   const auto until = std::chrono::steady_clock::now() + kPatience;
   while (std::chrono::steady_clock::now() < until) {
-    const auto now = ask<ros2::LifecycleState>([&](Then<ros2::LifecycleState> then) {
-      watcher_->control(member).get_state(std::move(then));
-    });
+    const auto now = ask<LifecycleState>(
+        [&](Then<LifecycleState> then) { watcher_->control(member).get_state(std::move(then)); });
     if (now && *now == state) return true;
     std::this_thread::sleep_for(20ms);
   }

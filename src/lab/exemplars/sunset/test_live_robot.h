@@ -89,7 +89,7 @@ class LiveRobot {
   void redeploy(Member member);
 
   std::optional<Value> get(Member member, const std::string& parameter);
-  bool becomes(Member member, ros2::LifecycleState state);  // within 30 s
+  bool becomes(Member member, LifecycleState state);  // within 30 s
 
  private:
   ros2::DomainLock domain_;

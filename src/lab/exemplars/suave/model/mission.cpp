@@ -5,31 +5,66 @@
 namespace culprit::suave::model {
 namespace {
 
-simulation::SystemMode mode(const char* name, const char* node, bool is_active,
-                            std::map<std::string, Value> parameters = {}) {
-  return {name, {{node, is_active, std::move(parameters)}}};
+namespace system_modes = culprit::modes;
+
+const system_modes::Target kInactive{false, ""};
+const system_modes::Target kActive{true, modes::kDefault};
+
+// A node with one mode, for it has no parameters to set.
+system_modes::Entity plain_node(const char* name) {
+  system_modes::Entity node;
+  node.name = name;
+  node.modes = {{modes::kDefault, {}, {}}};
+  return node;
+}
+
+system_modes::Entity search_node() {
+  system_modes::Entity node;
+  node.name = nodes::kSearch;
+  const auto add = [&](const char* mode, double altitude) {
+    node.modes.push_back({mode, {}, {{kAltitude, altitude}}});
+  };
+  add(modes::kDefault, kSearchModes.back().altitude);
+  for (const SearchMode& each : kSearchModes) add(each.name, each.altitude);
+  return node;
+}
+
+// A system of one part, with what each mode wants of it.
+system_modes::Entity system_of(const char* name, const char* node,
+                               std::vector<std::pair<const char*, system_modes::Target>> wanted) {
+  system_modes::Entity system;
+  system.name = name;
+  system.is_system = true;
+  system.parts = {node};
+  for (auto& [mode, target] : wanted) system.modes.push_back({mode, {{node, target}}, {}});
+  return system;
+}
+
+system_modes::Entity search_system() {
+  std::vector<std::pair<const char*, system_modes::Target>> wanted{{modes::kDefault, kActive}};
+  for (const SearchMode& each : kSearchModes) wanted.push_back({each.name, {true, each.name}});
+  wanted.push_back({modes::kOff, kInactive});
+  return system_of(systems::kSearch, nodes::kSearch, std::move(wanted));
 }
 
 }  // namespace
 
-std::vector<simulation::ModeSystem> mode_systems() {
+system_modes::Model mode_model() {
   using namespace modes;
-  simulation::ModeSystem search{
-      systems::kSearch,
-      {mode(kDefault, nodes::kSearch, true, {{kAltitude, kSearchModes.back().altitude}})}};
-  for (const SearchMode& each : kSearchModes)
-    search.modes.push_back(mode(each.name, nodes::kSearch, true, {{kAltitude, each.altitude}}));
-  search.modes.push_back(mode(kOff, nodes::kSearch, false));
-  return {std::move(search),
-          {systems::kFollow,
-           {mode(kDefault, nodes::kFollow, false), mode(kOff, nodes::kFollow, false),
-            mode(kFollow, nodes::kFollow, true)}},
-          {systems::kMotion,
-           {mode(kDefault, nodes::kMotion, true), mode(kRecover, nodes::kMotion, true),
-            mode(kAllThrusters, nodes::kMotion, false), mode(kOff, nodes::kMotion, false)}},
-          {systems::kRecharge,
-           {mode(kDefault, nodes::kRecharge, false), mode(kNoRecharge, nodes::kRecharge, false),
-            mode(kOff, nodes::kRecharge, false), mode(kRecharge, nodes::kRecharge, true)}}};
+  return {{plain_node(nodes::kFollow), search_node(), plain_node(nodes::kMotion),
+           plain_node(nodes::kRecharge), search_system(),
+           system_of(systems::kFollow, nodes::kFollow,
+                     {{kDefault, kInactive}, {kOff, kInactive}, {modes::kFollow, kActive}}),
+           system_of(systems::kMotion, nodes::kMotion,
+                     {{kDefault, kActive},
+                      {kRecover, kActive},
+                      {kAllThrusters, kInactive},
+                      {kOff, kInactive}}),
+           system_of(systems::kRecharge, nodes::kRecharge,
+                     {{kDefault, kInactive},
+                      {kNoRecharge, kInactive},
+                      {kOff, kInactive},
+                      {modes::kRecharge, kActive}})}};
 }
 
 Mission::Mission(simulation::World& world, Topics& topics, const Generation& generation,

@@ -17,8 +17,8 @@ enum class Leader : std::uint8_t {
   kManager   // a manager that also decides which task it is
 };
 
-// Which modes the systems have.
-std::vector<simulation::ModeSystem> mode_systems();
+// Which modes the systems and their nodes have.
+culprit::modes::Model mode_model();
 
 class Mission : public simulation::Node, private simulation::Watcher {
  public:

@@ -44,7 +44,7 @@ SuaveModel::SuaveModel(const Setting& setting, std::uint64_t seed)
       follow_(world_, topics_, setting.generation, *this),
       motion_(world_, setting.generation, *this),
       recharge_(world_, setting.generation, *this),
-      modes_(world_, nodes::kModeManager, mode_systems(), mode_manager()),
+      modes_(world_, nodes::kModeManager, mode_model(), mode_manager()),
       mission_(world_, topics_, setting.generation, setting.plan, setting.leader,
                autopilot_.guided(), *this),
       metrics_(world_, topics_) {

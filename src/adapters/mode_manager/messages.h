@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace culprit::modes::msg {
+namespace culprit::mode_manager::msg {
 
 struct Mode {
   static constexpr std::string_view kType = "system_modes_msgs/msg/Mode";
@@ -24,9 +24,9 @@ struct ModeEvent {
   }
 };
 
-}  // namespace culprit::modes::msg
+}  // namespace culprit::mode_manager::msg
 
-namespace culprit::modes::srv {
+namespace culprit::mode_manager::srv {
 
 struct GetAvailableModes {
   static constexpr std::string_view kType = "system_modes_msgs/srv/GetAvailableModes";
@@ -37,4 +37,4 @@ struct GetAvailableModes {
   };
 };
 
-}  // namespace culprit::modes::srv
+}  // namespace culprit::mode_manager::srv

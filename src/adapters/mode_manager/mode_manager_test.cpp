@@ -1,5 +1,5 @@
 // The mode manager against a managed node, both on DDS.
-#include "modes/mode_manager.h"
+#include "mode_manager/mode_manager.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,11 @@
 #include "ros2/lifecycle_node.h"
 #include "ros2/live_test.h"
 
-namespace culprit::modes {
+namespace culprit::mode_manager {
 namespace {
 
 using ros2::EventLog;
 using ros2::kPatience;
-using ros2::LifecycleState;
 
 constexpr const char* kManagedPlant = R"(
 plant: {ros__parameters: {type: system, parts: pump, modes: {
@@ -59,7 +58,7 @@ struct Manager {
   explicit Manager(const ros2::TestDomain& domain) {
     ModeManager::Options options;
     options.participant = domain.options();
-    options.on_change = [this](const Inference::Change& change) {
+    options.on_change = [this](const modes::Inference::Change& change) {
       told.add(change.entity->name + " " + std::string(ros2::label_of(change.now.state)) + " " +
                change.now.mode);
     };
@@ -74,7 +73,7 @@ struct Manager {
   bool tells(const std::string& what) {
     return told.wait_for_one([&](const std::string& text) { return text == what; });
   }
-  const Model model = *read_model("plant.yaml", kManagedPlant);
+  const modes::Model model = *modes::read_model("plant.yaml", kManagedPlant);
   EventLog<std::string> told;
   ros2::Executor executor;
   std::unique_ptr<ModeManager> manager;
@@ -157,4 +156,4 @@ TEST(ModeManager, KnowsTheModesThatAPredecessorSet) {
 }
 
 }  // namespace
-}  // namespace culprit::modes
+}  // namespace culprit::mode_manager

@@ -1,4 +1,4 @@
-#include "modes/mode_manager.h"
+#include "mode_manager/mode_manager.h"
 
 #include <algorithm>
 #include <chrono>
@@ -6,10 +6,9 @@
 
 #include "robot/command.h"
 
-namespace culprit::modes {
+namespace culprit::mode_manager {
 namespace {
 
-using ros2::LifecycleState;
 using ros2::TransitionId;
 using ros2::msg::TransitionEvent;
 
@@ -19,7 +18,7 @@ std::uint64_t now_ns() {
                                         .count());
 }
 
-std::string mode_label(const Actual& actual) {
+std::string mode_label(const modes::Actual& actual) {
   return actual.mode.empty() ? kUnknownMode : actual.mode;
 }
 
@@ -31,20 +30,21 @@ TransitionEvent transition(LifecycleState from, LifecycleState to) {
   return event;
 }
 
-LifecycleState state_of(const Target& target) {
+LifecycleState state_of(const modes::Target& target) {
   return target.is_active ? LifecycleState::kActive : LifecycleState::kInactive;
 }
 
 }  // namespace
 
 Expected<std::unique_ptr<ModeManager>> ModeManager::create(ros2::Executor& executor,
-                                                           const Model& model, Options options) {
+                                                           const modes::Model& model,
+                                                           Options options) {
   std::unique_ptr<ModeManager> manager(new ModeManager(executor, model, std::move(options)));
   if (auto opened = manager->open(executor); !opened) return Error{opened.error()};
   return manager;
 }
 
-ModeManager::ModeManager(ros2::Executor& executor, const Model& model, Options options)
+ModeManager::ModeManager(ros2::Executor& executor, const modes::Model& model, Options options)
     : model_(model), options_(std::move(options)), inference_(model), tasks_(executor) {}
 
 ModeManager::~ModeManager() { tasks_.close(); }
@@ -64,7 +64,7 @@ Expected<void> ModeManager::open(ros2::Executor& executor) {
           node_->parameters().declare("modelfile", Value(options_.model_file), read_only);
       !declared)
     return declared;
-  for (const Entity& entity : model_.entities) {
+  for (const modes::Entity& entity : model_.entities) {
     if (auto opened = open_voice(entity); !opened) return opened;
     if (!entity.is_system)
       if (auto opened = open_link(entity); !opened) return opened;
@@ -73,7 +73,7 @@ Expected<void> ModeManager::open(ros2::Executor& executor) {
   return watch_parameters();
 }
 
-Expected<void> ModeManager::open_voice(const Entity& entity) {
+Expected<void> ModeManager::open_voice(const modes::Entity& entity) {
   constexpr ros2::Qos kLast{.depth = 1};
   auto modes = node_->create_publisher<msg::ModeEvent>(entity.name + "/mode_event", kLast);
   if (!modes) return Error{modes.error()};
@@ -94,7 +94,7 @@ Expected<void> ModeManager::open_voice(const Entity& entity) {
   return {};
 }
 
-Expected<void> ModeManager::open_link(const Entity& node) {
+Expected<void> ModeManager::open_link(const modes::Entity& node) {
   auto link = NodeLink::create(*node_, node,
                                {[this, &node](LifecycleState state) {
                                   inference_.heard_state(node.name, state);
@@ -119,7 +119,7 @@ Expected<void> ModeManager::serve(const std::string& name, Handler handler) {
 }
 
 // change_mode comes last: whoever sees it can read the mode as well.
-Expected<void> ModeManager::open_services(const Entity& entity) {
+Expected<void> ModeManager::open_services(const modes::Entity& entity) {
   if (entity.is_system) {
     for (auto& opened :
          {serve<ros2::srv::ChangeState>(
@@ -150,7 +150,7 @@ Expected<void> ModeManager::open_services(const Entity& entity) {
         serve<srv::GetAvailableModes>(entity.name + "/get_available_modes",
                                       [&entity](const srv::GetAvailableModes::Request&) {
                                         srv::GetAvailableModes::Response response;
-                                        for (const Mode& mode : entity.modes)
+                                        for (const modes::Mode& mode : entity.modes)
                                           response.available_modes.push_back(mode.name);
                                         std::sort(response.available_modes.begin(),
                                                   response.available_modes.end());
@@ -200,17 +200,16 @@ void ModeManager::on_graph(const ros2::GraphChange& change) {
 
 // ---- what is asked
 
-bool ModeManager::change_mode(const Entity& entity, const std::string& mode) {
+bool ModeManager::change_mode(const modes::Entity& entity, const std::string& mode) {
   if (entity.find(mode) == nullptr) {
-    trouble(entity.name + " was asked for mode '" + ros2::printable(mode) +
-            "', which it does not have");
+    trouble(entity.name + " was asked for mode '" + printable(mode) + "', which it does not have");
     return false;
   }
   aim(entity, {true, mode});
   return true;
 }
 
-bool ModeManager::change_state(const Entity& system, const ros2::msg::Transition& asked) {
+bool ModeManager::change_state(const modes::Entity& system, const ros2::msg::Transition& asked) {
   const auto all = ros2::lifecycle_transitions();
   const auto wanted = std::find_if(all.begin(), all.end(), [&](const auto& known) {
     return asked.label.empty() ? known.id == asked.id : known.label == asked.label;
@@ -218,7 +217,7 @@ bool ModeManager::change_state(const Entity& system, const ros2::msg::Transition
   if (wanted == all.end()) return false;
   switch (static_cast<TransitionId>(wanted->id)) {
     case TransitionId::kActivate:
-      aim(system, {true, kDefaultMode});
+      aim(system, {true, modes::kDefaultMode});
       return true;
     case TransitionId::kDeactivate:
       aim(system, {false, ""});
@@ -235,13 +234,13 @@ bool ModeManager::change_state(const Entity& system, const ros2::msg::Transition
 }
 
 // Systems come after their parts in the model, so one walk back over it reaches them all.
-void ModeManager::aim(const Entity& entity, const Target& target) {
-  std::map<std::string, Target> wanted{{entity.name, target}};
+void ModeManager::aim(const modes::Entity& entity, const modes::Target& target) {
+  std::map<std::string, modes::Target> wanted{{entity.name, target}};
   const auto first = model_.entities.begin() + (&entity - model_.entities.data());
   for (auto each = std::make_reverse_iterator(first + 1); each != model_.entities.rend(); ++each) {
     const auto own = wanted.find(each->name);
     if (own == wanted.end()) continue;
-    const Target aimed = own->second;
+    const modes::Target aimed = own->second;
     announce(*each, aimed);
     inference_.set_target(each->name, aimed);
     watch_overdue(*each, aimed);
@@ -250,13 +249,14 @@ void ModeManager::aim(const Entity& entity, const Target& target) {
       continue;
     }
     for (const std::string& part : each->parts)
-      wanted[part] = aimed.is_active ? each->find(aimed.mode)->parts.at(part) : Target{false, ""};
+      wanted[part] =
+          aimed.is_active ? each->find(aimed.mode)->parts.at(part) : modes::Target{false, ""};
   }
   update();
 }
 
 // The state first, then the parameters, as the original does.
-void ModeManager::steer(const Entity& node, const Target& target) {
+void ModeManager::steer(const modes::Entity& node, const modes::Target& target) {
   NodeLink& link = *links_.at(node.name);
   const LifecycleState state = inference_.actual(node.name).state;
   if (!target.is_active) {
@@ -267,17 +267,17 @@ void ModeManager::steer(const Entity& node, const Target& target) {
   link.set(node.find(target.mode)->parameters);
 }
 
-void ModeManager::announce(const Entity& entity, const Target& target) {
-  const Actual& now = inference_.actual(entity.name);
+void ModeManager::announce(const modes::Entity& entity, const modes::Target& target) {
+  const modes::Actual& now = inference_.actual(entity.name);
   Voice& voice = voices_.at(entity.name);
   if (target.is_active) voice.mode_requests.publish({now_ns(), {mode_label(now)}, {target.mode}});
   voice.transition_requests.publish(transition(now.state, state_of(target)));
 }
 
-void ModeManager::watch_overdue(const Entity& entity, const Target& target) {
+void ModeManager::watch_overdue(const modes::Entity& entity, const modes::Target& target) {
   tasks_.post_at(ros2::Executor::Clock::now() + kOverdue, [this, &entity, target] {
     if (inference_.target(entity.name) != target || inference_.is_at(entity.name, target)) return;
-    const Actual& now = inference_.actual(entity.name);
+    const modes::Actual& now = inference_.actual(entity.name);
     trouble(entity.name + " was told to be " + to_string(target) + " and is " +
             std::string(ros2::label_of(now.state)) + ", mode " + mode_label(now));
   });
@@ -287,11 +287,11 @@ void ModeManager::watch_overdue(const Entity& entity, const Target& target) {
 
 void ModeManager::update() {
   const auto changes = inference_.infer();
-  for (const Inference::Change& change : changes) publish(change);
+  for (const modes::Inference::Change& change : changes) publish(change);
   apply_rules(changes);
 }
 
-void ModeManager::publish(const Inference::Change& change) {
+void ModeManager::publish(const modes::Inference::Change& change) {
   Voice& voice = voices_.at(change.entity->name);
   if (voice.transitions && change.before.state != change.now.state)
     voice.transitions->publish(transition(change.before.state, change.now.state));
@@ -302,19 +302,20 @@ void ModeManager::publish(const Inference::Change& change) {
 
 // Only where a part came to be what a rule is about: one that is not on its way yet is no
 // deviation. Not at once: what a rule aims at is a change of its own.
-void ModeManager::apply_rules(const std::vector<Inference::Change>& changes) {
-  const auto came_to = [&](const std::string& part, const Target& wanted) {
+void ModeManager::apply_rules(const std::vector<modes::Inference::Change>& changes) {
+  const auto came_to = [&](const std::string& part, const modes::Target& wanted) {
     return std::any_of(changes.begin(), changes.end(), [&](const auto& change) {
       return change.entity->name == part && is_at(change.now, wanted) &&
              !is_at(change.before, wanted);
     });
   };
-  for (const Entity& system : model_.entities) {
+  for (const modes::Entity& system : model_.entities) {
     const auto target = inference_.target(system.name);
     if (!target || inference_.is_at(system.name, *target)) continue;
-    const auto rule = std::find_if(system.rules.begin(), system.rules.end(), [&](const Rule& each) {
-      return each.if_target == *target && came_to(each.part, each.if_part);
-    });
+    const auto rule =
+        std::find_if(system.rules.begin(), system.rules.end(), [&](const modes::Rule& each) {
+          return each.if_target == *target && came_to(each.part, each.if_part);
+        });
     if (rule == system.rules.end()) continue;
     trouble(system.name + ": rule " + rule->name + " aims at " + to_string(rule->new_target));
     tasks_.post([this, &system, aimed = rule->new_target] { aim(system, aimed); });
@@ -326,4 +327,4 @@ void ModeManager::trouble(const std::string& text) {
   if (options_.on_trouble) options_.on_trouble(text);
 }
 
-}  // namespace culprit::modes
+}  // namespace culprit::mode_manager

@@ -1,8 +1,8 @@
-#include "modes/node_link.h"
+#include "mode_manager/node_link.h"
 
 #include "ros2/services.h"
 
-namespace culprit::modes {
+namespace culprit::mode_manager {
 namespace {
 
 using namespace std::chrono_literals;
@@ -15,14 +15,14 @@ constexpr Duration kPatience = 5s;
 
 }  // namespace
 
-Expected<std::unique_ptr<NodeLink>> NodeLink::create(ros2::Node& self, const Entity& node,
+Expected<std::unique_ptr<NodeLink>> NodeLink::create(ros2::Node& self, const modes::Entity& node,
                                                      Ears ears) {
   std::unique_ptr<NodeLink> link(new NodeLink(self, node, std::move(ears)));
   if (auto opened = link->open(self); !opened) return Error{opened.error()};
   return link;
 }
 
-NodeLink::NodeLink(ros2::Node& self, const Entity& node, Ears ears)
+NodeLink::NodeLink(ros2::Node& self, const modes::Entity& node, Ears ears)
     : node_(node), ears_(std::move(ears)), tasks_(self.context().executor()) {}
 
 Expected<void> NodeLink::open(ros2::Node& self) {
@@ -30,7 +30,7 @@ Expected<void> NodeLink::open(ros2::Node& self) {
       node_.name + "/transition_event", ros2::qos::kDefault,
       [this](const ros2::msg::TransitionEvent& event) {
         has_told_state_ = true;
-        ears_.on_state(static_cast<ros2::LifecycleState>(event.goal_state.id));
+        ears_.on_state(static_cast<LifecycleState>(event.goal_state.id));
       });
   if (!transitions) return Error{transitions.error()};
   transitions_ = std::move(*transitions);
@@ -64,7 +64,7 @@ void NodeLink::read() {
                               if (!response) return;
                               tasks_.post([this, id = response->current_state.id] {
                                 if (!has_told_state_)
-                                  ears_.on_state(static_cast<ros2::LifecycleState>(id));
+                                  ears_.on_state(static_cast<LifecycleState>(id));
                               });
                             });
   // One by one: a name that is not declared would leave all of them unanswered.
@@ -129,4 +129,4 @@ void NodeLink::set(const std::map<std::string, Value>& parameters) {
       });
 }
 
-}  // namespace culprit::modes
+}  // namespace culprit::mode_manager

@@ -6,7 +6,7 @@
 //   asked for, on mode_request_info and transition_request_info.
 //
 // What is accepted is not done: parts are told, and nobody waits for their answers; what came of it
-// is inferred (inference.h) from what the nodes announce, and published when it changes. What was
+// is inferred (modes/inference.h) from what the nodes announce, and published when it changes. What was
 // accepted and did not come about is told after kOverdue.
 //
 // Other than the original it publishes at once, not once a second; reads the nodes' states and
@@ -21,13 +21,13 @@
 #include <string>
 #include <vector>
 
+#include "mode_manager/messages.h"
+#include "mode_manager/node_link.h"
 #include "modes/inference.h"
-#include "modes/messages.h"
-#include "modes/node_link.h"
 #include "ros2/context.h"
 #include "ros2/services.h"
 
-namespace culprit::modes {
+namespace culprit::mode_manager {
 
 class ModeManager {
  public:
@@ -35,15 +35,16 @@ class ModeManager {
 
   struct Options {
     ros2::ParticipantOptions participant;
-    std::string model_file;                                   // shown as a parameter
-    std::function<void(const Inference::Change&)> on_change;  // each on the executor's thread
+    std::string model_file;  // shown as a parameter
+    std::function<void(const modes::Inference::Change&)>
+        on_change;  // each on the executor's thread
     std::function<void(const std::string&)> on_trouble;
   };
 
   // The executor and the model outlive the manager. Errors: the domain cannot be joined, or a name
   // of the model cannot be one of ROS 2.
-  static Expected<std::unique_ptr<ModeManager>> create(ros2::Executor& executor, const Model& model,
-                                                       Options options);
+  static Expected<std::unique_ptr<ModeManager>> create(ros2::Executor& executor,
+                                                       const modes::Model& model, Options options);
   ~ModeManager();
 
  private:
@@ -55,30 +56,30 @@ class ModeManager {
     ros2::Publisher<ros2::msg::TransitionEvent> transition_requests;
   };
 
-  ModeManager(ros2::Executor& executor, const Model& model, Options options);
+  ModeManager(ros2::Executor& executor, const modes::Model& model, Options options);
   Expected<void> open(ros2::Executor& executor);
-  Expected<void> open_voice(const Entity& entity);
-  Expected<void> open_services(const Entity& entity);
-  Expected<void> open_link(const Entity& node);
+  Expected<void> open_voice(const modes::Entity& entity);
+  Expected<void> open_services(const modes::Entity& entity);
+  Expected<void> open_link(const modes::Entity& node);
   Expected<void> watch_parameters();
   template <class Service, class Handler>
   Expected<void> serve(const std::string& name, Handler handler);
 
   void on_graph(const ros2::GraphChange& change);
-  bool change_mode(const Entity& entity, const std::string& mode);
-  bool change_state(const Entity& system, const ros2::msg::Transition& transition);
-  void aim(const Entity& entity, const Target& target);
-  void steer(const Entity& node, const Target& target);
-  void announce(const Entity& entity, const Target& target);
-  void watch_overdue(const Entity& entity, const Target& target);
+  bool change_mode(const modes::Entity& entity, const std::string& mode);
+  bool change_state(const modes::Entity& system, const ros2::msg::Transition& transition);
+  void aim(const modes::Entity& entity, const modes::Target& target);
+  void steer(const modes::Entity& node, const modes::Target& target);
+  void announce(const modes::Entity& entity, const modes::Target& target);
+  void watch_overdue(const modes::Entity& entity, const modes::Target& target);
   void update();
-  void publish(const Inference::Change& change);
-  void apply_rules(const std::vector<Inference::Change>& changes);
+  void publish(const modes::Inference::Change& change);
+  void apply_rules(const std::vector<modes::Inference::Change>& changes);
   void trouble(const std::string& text);
 
-  const Model& model_;
+  const modes::Model& model_;
   const Options options_;
-  Inference inference_;
+  modes::Inference inference_;
   std::unique_ptr<ros2::Context> context_;
   std::unique_ptr<ros2::Node> node_;
   std::map<std::string, Voice> voices_;                     // by entity
@@ -88,4 +89,4 @@ class ModeManager {
   ros2::TaskGroup tasks_;
 };
 
-}  // namespace culprit::modes
+}  // namespace culprit::mode_manager

@@ -14,18 +14,18 @@
 #include "ros2/lifecycle.h"
 #include "ros2/node.h"
 
-namespace culprit::modes {
+namespace culprit::mode_manager {
 
 class NodeLink {
  public:
   struct Ears {
-    std::function<void(ros2::LifecycleState)> on_state;
+    std::function<void(LifecycleState)> on_state;
     std::function<void(const std::string& parameter, const Value&)> on_parameter;
     std::function<void(std::string)> on_trouble;
   };
 
   // `self` outlives the link.
-  static Expected<std::unique_ptr<NodeLink>> create(ros2::Node& self, const Entity& node,
+  static Expected<std::unique_ptr<NodeLink>> create(ros2::Node& self, const modes::Entity& node,
                                                     Ears ears);
 
   // Reads its state and parameters, as soon as it answers.
@@ -36,11 +36,11 @@ class NodeLink {
   void set(const std::map<std::string, Value>& parameters);
 
  private:
-  NodeLink(ros2::Node& self, const Entity& node, Ears ears);
+  NodeLink(ros2::Node& self, const modes::Entity& node, Ears ears);
   Expected<void> open(ros2::Node& self);
   void read_parameter(const std::string& parameter);
 
-  const Entity& node_;
+  const modes::Entity& node_;
   const Ears ears_;
   // What was announced since the last read() began.
   bool has_told_state_ = false;
@@ -52,4 +52,4 @@ class NodeLink {
   std::unique_ptr<ros2::ServiceClient> parameters_;
 };
 
-}  // namespace culprit::modes
+}  // namespace culprit::mode_manager

@@ -1,0 +1,20 @@
+// Names that a stranger gave: whether ROS 2 takes them, and how to show one that may not be a name.
+// Source: design.ros2.org/articles/topic_and_service_names.html.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace culprit {
+
+// "/a/b_1": absolute, tokens of letters, digits and underscores that do not start with a digit.
+bool is_valid_topic_name(std::string_view name);
+bool is_valid_node_name(std::string_view name);  // one token
+bool is_valid_namespace(std::string_view name);  // "/" or like a topic
+bool is_valid_type_name(std::string_view type);  // "package/msg/Type", also srv and action
+
+// What a stranger said, made safe for a message to people: printable ASCII only, cut at 80
+// characters.
+std::string printable(std::string_view text);
+
+}  // namespace culprit

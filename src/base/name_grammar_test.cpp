@@ -1,0 +1,34 @@
+#include "base/name_grammar.h"
+
+#include <gtest/gtest.h>
+
+namespace culprit {
+namespace {
+
+TEST(NameGrammar, KnowsTypes) {
+  EXPECT_TRUE(is_valid_type_name("std_msgs/msg/String"));
+  EXPECT_TRUE(is_valid_type_name("tf2_msgs/action/LookupTransform_SendGoal"));
+  for (const char* bad : {"", "String", "std_msgs/String", "std_msgs/msg/", "/msg/String",
+                          "a/idl/B", "../msg/B", "a/msg/../B", "a/msg/b/c", "a.b/msg/C"}) {
+    EXPECT_FALSE(is_valid_type_name(bad)) << bad;
+  }
+}
+
+TEST(NameGrammar, PrintableHidesControlCharactersAndCuts) {
+  EXPECT_EQ(printable("a\x1b[2Jb\n\xc3"), "a?[2Jb??");
+  EXPECT_EQ(printable(std::string(81, 'x')), std::string(80, 'x') + "...");
+}
+
+TEST(NameGrammar, KnowsTopicsNodesAndNamespaces) {
+  EXPECT_TRUE(is_valid_topic_name("/a/b_1"));
+  EXPECT_TRUE(is_valid_node_name("camera_2"));
+  EXPECT_TRUE(is_valid_namespace("/"));
+  EXPECT_TRUE(is_valid_namespace("/robot1/arm"));
+  for (const char* bad : {"", "a", "/", "/a/", "//a", "/1", "/a b", "/a-b"})
+    EXPECT_FALSE(is_valid_topic_name(bad)) << bad;
+  for (const char* bad : {"", "1a", "a/b", "a-b", "\xc3\xa4"})
+    EXPECT_FALSE(is_valid_node_name(bad)) << bad;
+}
+
+}  // namespace
+}  // namespace culprit
