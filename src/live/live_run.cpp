@@ -16,9 +16,9 @@ constexpr Duration kDeafAtMost = std::chrono::seconds(20);
 
 // Who cannot tell whether a person has paused the robot is paused.
 std::optional<journal::StandingOrders> orders_for_successor(const RoleOfCulprit& role,
-                                                            const ros2::Link& link) {
+                                                            const ros2::LeaseLink* lease) {
   if (role.role() != Role::kManage) return std::nullopt;
-  auto told = role.told_orders(link);
+  auto told = role.told_orders(lease);
   if (told) return *told;
   journal::StandingOrders paused;
   paused.pause = journal::StandingOrders::Said{"culprit", told.error()};
@@ -114,12 +114,12 @@ void LiveRun::close(OrderTaker& desk) {
 void LiveRun::look_at_neighbours() {
   std::set<std::string> nodes;
   if (!frame_.advises) nodes = session_->adapted_nodes();
-  const auto elsewhere = role_.managed_elsewhere(nodes, session_->link());
+  const auto elsewhere = role_.managed_elsewhere(nodes, session_->lease());
   if (!frame_.advises) session_->leave_alone(elsewhere);
-  for (const std::string& warning : role_.warnings(session_->link()))
+  for (const std::string& warning : role_.warnings(session_->lease()))
     session_->announce(announcements::kNeighbour, warning);
   // One that was slow, or cut off, and is about to step back.
-  const auto told = role_.told_orders(session_->link());
+  const auto told = role_.told_orders(session_->lease());
   if (frame_.advises || !told || !*told) return;
   for (Order& order : frame_.orders.heed(**told, session_->rules(), session_->now()))
     session_->submit(std::move(order));
@@ -131,7 +131,7 @@ Expected<void> LiveRun::change_role(OrderTaker& desk, const std::atomic<bool>& s
   session_->say_lease();
   LoadedRules rules = session_->loaded_rules();
   const KnownRobot known = session_->known_robot();
-  frame_.told_orders = orders_for_successor(role_, session_->link());
+  frame_.told_orders = orders_for_successor(role_, session_->lease());
   session_->end(role_.role() == Role::kManage ? journal::Ending::kStopped
                                               : journal::Ending::kSteppedBack);
   session_.reset();
@@ -181,7 +181,7 @@ Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) 
   std::optional<Next> next;
   Time joined = session_->now();
   while (!stopped) {
-    if (role_.has_changed(session_->link(), session_->now(), joined)) {
+    if (role_.has_changed(session_->lease(), session_->now(), joined)) {
       if (auto changed = change_role(desk, stopped); !changed) return changed;
       joined = session_->now();
     }

@@ -156,12 +156,13 @@ std::vector<Observation> standing_orders(const Manager& manager, bool advised_at
 Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, LoadedRules rules) {
   LiveRobot::Options setup = frame.options.robot;
   std::unique_ptr<LiveSession> session(new LiveSession(frame, std::move(rules)));
-  setup.link.claim = frame.lease;
-  setup.link.manages = !frame.advises;
-  setup.link.told_orders = [&keeper = frame.orders] {
-    return journal::to_text(keeper.told(), journal::clocks_now(live_now()));
-  };
-  if (setup.link.claim) setup.link.claim->nodes = claimed_nodes(session->rules_);
+  if (frame.lease) {
+    setup.link.lease = {
+        .claim = *frame.lease, .manages = !frame.advises, .told_orders = [&keeper = frame.orders] {
+          return journal::to_text(keeper.told(), journal::clocks_now(live_now()));
+        }};
+    setup.link.lease->claim.nodes = claimed_nodes(session->rules_);
+  }
   session->domain_ = static_cast<int>(setup.link.participant.domain);
   setup.supervisor.robot =
       fmt::format("{}/{}", setup.link.participant.domain, session->rules_.robot);

@@ -99,10 +99,13 @@ class LiveSession {
   const RuleSet& rules() const { return rules_; }
   // For a session with the same.
   LoadedRules loaded_rules() const { return {rules_, rules_text_, ""}; }
-  const ros2::Link& link() const { return robot_->link(); }
+  // Null: this one would never manage.
+  const ros2::LeaseLink* lease() const { return robot_->link().lease(); }
   owners::Supervisor& supervisor() { return robot_->supervisor(); }
   // The last word to other culprits, of who steps back or ends.
-  void say_lease() { robot_->link().say_lease(); }
+  void say_lease() {
+    if (ros2::LeaseLink* lease = robot_->link().lease()) lease->say();
+  }
   Time now() const { return robot_->now(); }
   // Since when the robot cannot be heard; nothing: it can. On the thread of run().
   std::optional<Time> deaf_since() const { return robot_->deaf_since(); }

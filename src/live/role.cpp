@@ -37,9 +37,9 @@ RoleOfCulprit::RoleOfCulprit(const RuleSet& rules, std::uint32_t domain, std::st
 }
 
 Expected<std::optional<journal::StandingOrders>> RoleOfCulprit::told_orders(
-    const ros2::Link& link) const {
+    const ros2::LeaseLink* lease) const {
   using Told = std::optional<journal::StandingOrders>;
-  const auto text = link.told_orders();
+  const auto text = lease != nullptr ? lease->told_orders() : std::nullopt;
   if (!text && !had_elder_) return Told();
   const auto orders = text ? journal::orders_from_text(*text, journal::clocks_now(live_now()))
                            : Expected<journal::StandingOrders>(Error{"it was not heard"});
@@ -53,8 +53,8 @@ std::string RoleOfCulprit::name_of_claim(const std::string& what) const {
   return "manages-" + std::to_string(domain_) + "-" + what;
 }
 
-bool RoleOfCulprit::has_changed(const ros2::Link& link, Time now, Time joined) {
-  const auto elder = link.elder();
+bool RoleOfCulprit::has_changed(const ros2::LeaseLink* lease, Time now, Time joined) {
+  const auto elder = lease != nullptr ? lease->elder() : std::nullopt;
   const bool is_ours = claim_.look();
   const Role role = elder || !is_ours ? Role::kAdvise : Role::kManage;
   if (role == Role::kAdvise) manager_before_ = elder ? 0 : claim_.holder_pid();
@@ -63,7 +63,8 @@ bool RoleOfCulprit::has_changed(const ros2::Link& link, Time now, Time joined) {
     if (now < later(joined, Manager::kDiscovery)) return false;
     reason_ = "the other culprit is gone; this one manages the robot from now on";
     // More than any that it may be back with.
-    lease_.term = std::max(lease_.term, link.highest_term()) + 1;
+    if (lease != nullptr) lease_.term = std::max(lease_.term, lease->highest_term());
+    ++lease_.term;
   } else {
     had_elder_ = elder.has_value();
     reason_ = advising(elder ? ", on " + *elder : " (" + claim_.holder() + ")");
@@ -73,27 +74,28 @@ bool RoleOfCulprit::has_changed(const ros2::Link& link, Time now, Time joined) {
 }
 
 std::map<std::string, std::string> RoleOfCulprit::managed_elsewhere(
-    const std::set<std::string>& nodes, const ros2::Link& link) {
+    const std::set<std::string>& nodes, const ros2::LeaseLink* lease) {
   std::erase_if(node_claims_, [&](const auto& each) { return !nodes.contains(each.first); });
   std::map<std::string, std::string> elsewhere;
   for (const std::string& node : nodes) {
     HostClaim& claim = node_claims_.try_emplace(node, name_of_claim("node-" + node)).first->second;
     if (!claim.look()) {
       elsewhere[node] = claim.holder();
-    } else if (const auto host = link.elder_at(node)) {
+    } else if (const auto host = lease != nullptr ? lease->elder_at(node) : std::nullopt) {
       elsewhere[node] = "on " + *host;
     }
   }
   return elsewhere;
 }
 
-std::vector<std::string> RoleOfCulprit::warnings(const ros2::Link& link) {
+std::vector<std::string> RoleOfCulprit::warnings(const ros2::LeaseLink* lease) {
   std::vector<std::string> lines;
   const auto warn = [&](const std::string& line) {
     constexpr std::size_t kMost = 100;  // strangers choose what they are called
     if (warned_.size() < kMost && warned_.insert(line).second) lines.push_back(line);
   };
-  for (const std::string& host : link.lease_strangers())
+  const auto strangers = lease != nullptr ? lease->strangers() : std::vector<std::string>();
+  for (const std::string& host : strangers)
     warn("a culprit on " + host +
          " says that it manages this robot or a node of it, and does not " +
          (lease_.key.empty()

@@ -15,7 +15,7 @@
 #include "base/time.h"
 #include "journal/standing_orders.h"
 #include "language/rule_set.h"
-#include "link/link.h"
+#include "link/lease_link.h"
 #include "live/host_claim.h"
 
 namespace culprit {
@@ -35,8 +35,8 @@ class RoleOfCulprit {
   const ros2::LeaseClaim& lease() const { return lease_; }
 
   // Looks anew. Gives whether the role is another one now, which takes a new beginning. `joined`:
-  // when `link` joined the domain; an elder manager may take a while to be discovered.
-  bool has_changed(const ros2::Link& link, Time now, Time joined);
+  // when it joined the domain; an elder manager may take a while to be discovered.
+  bool has_changed(const ros2::LeaseLink* lease, Time now, Time joined);
   // For the user: why it has this role. Empty: it manages from the start.
   const std::string& reason() const { return reason_; }
 
@@ -46,15 +46,15 @@ class RoleOfCulprit {
 
   // What people have ordered of the robot, as told by the latest other culprit that managed it;
   // nothing: there was none. Error: there was one, and it could not be told what.
-  Expected<std::optional<journal::StandingOrders>> told_orders(const ros2::Link& link) const;
+  Expected<std::optional<journal::StandingOrders>> told_orders(const ros2::LeaseLink* lease) const;
 
   // Which of these nodes another culprit manages, and who that is. Looks anew; nodes that are no
   // longer among them are given up.
   std::map<std::string, std::string> managed_elsewhere(const std::set<std::string>& nodes,
-                                                       const ros2::Link& link);
+                                                       const ros2::LeaseLink* lease);
 
   // What a person should know of strangers: each line once.
-  std::vector<std::string> warnings(const ros2::Link& link);
+  std::vector<std::string> warnings(const ros2::LeaseLink* lease);
 
  private:
   std::string name_of_claim(const std::string& what) const;

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
-#include <ifaddrs.h>
 #include <iterator>
-#include <netinet/in.h>
 #include <set>
 #include <unistd.h>
 
@@ -36,30 +33,6 @@ bool is_for_management(std::string_view service) {
       "get_available_modes"};
   const std::string_view last = service.substr(service.rfind('/') + 1);
   return std::find(kNames.begin(), kNames.end(), last) != kNames.end();
-}
-
-// This machine's, as far as sockets go: of another container it is another one.
-std::set<std::array<std::uint8_t, 4>> own_addresses() {
-  std::set<std::array<std::uint8_t, 4>> own{{127, 0, 0, 1}};
-  ifaddrs* all = nullptr;
-  if (getifaddrs(&all) != 0) return own;
-  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(all, &freeifaddrs);
-  for (const ifaddrs* i = all; i != nullptr; i = i->ifa_next) {
-    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
-    const auto* address = reinterpret_cast<const sockaddr_in*>(i->ifa_addr);
-    std::array<std::uint8_t, 4> ip{};
-    std::memcpy(ip.data(), &address->sin_addr, ip.size());
-    own.insert(ip);
-  }
-  return own;
-}
-
-// All that it says must be ours: addresses of bridges are the same on many machines.
-bool is_on_this_machine(const ParticipantInfo& info) {
-  const auto own = own_addresses();
-  return !info.metatraffic.empty() &&
-         std::all_of(info.metatraffic.begin(), info.metatraffic.end(),
-                     [&](const UdpAddress& address) { return own.contains(address.ip); });
 }
 
 bool is_service(EndpointKind kind) {
@@ -136,15 +109,13 @@ Link::~Link() {
   // Clients and readers go before the node that they belong to.
   probing_.reset();
   publishing_.reset();
-  lease_timer_.reset();
-  lease_reader_.reset();
+  lease_.reset();
   hearing_.reset();
   parameter_events_.reset();
   diagnostics_watch_.reset();
   watches_.clear();
   links_.clear();
   diagnostics_.reset();
-  lease_writers_.clear();
   node_.reset();
   context_.reset();
 }
@@ -166,7 +137,6 @@ Expected<void> Link::start() {
   if (!publisher) return Error{publisher.error()};
   diagnostics_.emplace(std::move(*publisher));
   if (auto declared = declare_parameters(); !declared) return declared;
-  if (auto claimed = claim_lease(); !claimed) return claimed;
 
   for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
     watches_.emplace(rules_.topics[t].name,
@@ -184,138 +154,22 @@ Expected<void> Link::start() {
   auto hearing = Hearing::begin(context_->participant(), executor_);
   if (!hearing) return Error{hearing.error()};
   hearing_ = std::move(*hearing);
-  if (options_.claim)
-    lease_timer_ =
-        std::make_unique<Timer>(executor_, ManagerLease::kPeriod, [this] { say_lease(); });
+  if (options_.lease) {
+    auto lease = LeaseLink::open(*context_, *hearing_, executor_, *options_.lease);
+    if (!lease) return Error{lease.error()};
+    lease_ = std::move(*lease);
+  }
   probing_ = std::make_unique<Timer>(executor_, kProbePeriod, [this] { probe(); });
   thread_ = std::thread([this] { executor_.run(); });
   return {};
 }
 
-Expected<void> Link::claim_lease() {
-  constexpr Qos kLeaseQos{.reliability = Reliability::kBestEffort, .depth = 10};
-  if (!options_.claim) return {};
-  std::vector<std::string> announcements;
-  {
-    const MutexLock lock(lease_mutex_);
-    lease_.emplace(*options_.claim, context_->participant().guid().prefix());
-    announcements = lease_->announcements();
-  }
-  for (std::string& announcement : announcements) {
-    auto writer = context_->participant().create_writer({.topic = ManagerLease::kTopic,
-                                                         .type = ManagerLease::kType,
-                                                         .qos = kLeaseQos,
-                                                         .user_data = std::move(announcement),
-                                                         .on_match = {}});
-    if (!writer) return Error{writer.error()};
-    lease_writers_.push_back(std::move(*writer));
-  }
-  if (!options_.claim->key.empty()) {
-    auto reader =
-        context_->participant().create_reader({.topic = ManagerLease::kTopic,
-                                               .type = ManagerLease::kType,
-                                               .qos = kLeaseQos,
-                                               .user_data = {},
-                                               .on_match = {}},
-                                              [this](const Sample& sample) { on_beat(sample); });
-    if (!reader) return Error{reader.error()};
-    lease_reader_ = std::move(*reader);
-  }
-  context_->on_discovery([this](const DiscoveryEvent& event) { on_lease(event); });
-  return {};
-}
-
-void Link::on_lease(const DiscoveryEvent& event) {
-  constexpr std::size_t kMost = 1000;
-  const MutexLock lock(lease_mutex_);
-  lease_->apply(event, live_now());
-  if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
-    const GuidPrefix prefix = info->guid.prefix();
-    if (neighbours_.size() >= kMost && !neighbours_.contains(prefix)) return;
-    neighbours_[prefix] = {printable(info->host), is_on_this_machine(*info)};
-  } else if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
-    neighbours_.erase(gone->guid.prefix());
-  }
-}
-
-bool Link::is_here(const GuidPrefix& participant) const {
-  const auto found = neighbours_.find(participant);
-  return found != neighbours_.end() && found->second.is_here;
-}
-
-std::string Link::host_of(const GuidPrefix& participant) const {
-  const auto found = neighbours_.find(participant);
-  const bool is_known = found != neighbours_.end() && !found->second.host.empty();
-  return is_known ? found->second.host : "another machine";
-}
-
-std::optional<std::string> Link::elder() const {
-  const MutexLock lock(lease_mutex_);
-  if (!lease_) return std::nullopt;
-  const auto elder = lease_->elder(live_now(), [this](const GuidPrefix& p) CULPRIT_REQUIRES(
-                                                   lease_mutex_) { return is_here(p); });
-  return elder ? std::optional(host_of(*elder)) : std::nullopt;
-}
-
-std::optional<std::string> Link::elder_at(const std::string& node) const {
-  const MutexLock lock(lease_mutex_);
-  if (!lease_) return std::nullopt;
-  const auto elder = lease_->elder_at(node, live_now(),
-                                      [this](const GuidPrefix& p)
-                                          CULPRIT_REQUIRES(lease_mutex_) { return is_here(p); });
-  return elder ? std::optional(host_of(*elder)) : std::nullopt;
-}
-
-std::vector<std::string> Link::lease_strangers() const {
-  const MutexLock lock(lease_mutex_);
-  std::vector<std::string> hosts;
-  if (!lease_) return hosts;
-  for (const GuidPrefix& each : lease_->strangers(
-           [this](const GuidPrefix& p) CULPRIT_REQUIRES(lease_mutex_) { return is_here(p); }))
-    hosts.push_back(host_of(each));
-  return hosts;
-}
-
-std::optional<std::string> Link::told_orders() const {
-  const MutexLock lock(lease_mutex_);
-  return lease_ ? lease_->told_orders() : std::nullopt;
-}
-
-std::int64_t Link::highest_term() const {
-  const MutexLock lock(lease_mutex_);
-  return lease_ ? lease_->highest_term() : 0;
-}
-
-void Link::say_lease() {
-  const bool hears = hearing_->doubtful() > live_now();
-  const std::string orders = options_.told_orders ? options_.told_orders() : "";
-  std::optional<std::string> beat;
-  {
-    const MutexLock lock(lease_mutex_);
-    if (!lease_) return;
-    beat = lease_->beat(live_now(), hears, options_.manages, orders);
-  }
-  if (!beat) return;
-  CdrWriter message;
-  message.write_string(*beat);
-  lease_writers_.front()->write(message.take());
-}
-
-void Link::on_beat(const Sample& sample) {
-  CdrReader message(sample.payload);
-  const std::string_view beat = message.read_string();
-  const MutexLock lock(lease_mutex_);
-  lease_->hear(sample.identity.writer.prefix(), beat, live_now());
-}
-
 Time Link::doubtful() const {
   const Time heard = hearing_->doubtful();
-  const MutexLock lock(lease_mutex_);
   return lease_ ? std::min(heard, lease_->sure_until(live_now())) : heard;
 }
 
 std::string Link::doubt() const {
-  const MutexLock lock(lease_mutex_);
   const Time now = live_now();
   return lease_ && lease_->sure_until(now) <= now
              ? "culprit was away so long that another one may manage this robot by now; it listens"

@@ -21,7 +21,7 @@
 #include "language/rule_set.h"
 #include "link/component_link.h"
 #include "link/diagnostics_watch.h"
-#include "link/manager_lease.h"
+#include "link/lease_link.h"
 #include "link/topic_watch.h"
 #include "robot/command.h"
 #include "robot/component_binding.h"
@@ -52,10 +52,7 @@ class Link {
         parameters;  // what the node shows of itself, read-only
     // Announced to other culprits, of which one manages the robot (manager_lease.h). Nothing: this
     // one never will.
-    std::optional<LeaseClaim> claim{};
-    bool manages = false;  // now; needs a claim
-    // What people have ordered, for who takes over. Called on a thread of the link; must not wait.
-    std::function<std::string()> told_orders{};
+    std::optional<LeaseLink::Options> lease{};
   };
 
   // `rules` and `inbox` must outlive the link. Errors: the domain cannot be joined.
@@ -75,40 +72,21 @@ class Link {
   NodeEntry& entry() { return node_->entry(); }
 
   // Until when it is sure that what the robot says is heard (hearing.h), and that no other culprit
-  // manages it (manager_lease.h). From any thread, as the next.
+  // manages it (lease_link.h). From any thread, as the next.
   Time doubtful() const;
   // What is not sure, if that time has come.
   std::string doubt() const;
 
-  // Where the culprit runs, on another machine, that goes before this one for the robot, or for the
-  // node of this full name: a host's name, or "another machine" where it does not say. Nothing:
-  // there is none. From any thread, as the next.
-  std::optional<std::string> elder() const;
-  std::optional<std::string> elder_at(const std::string& node) const;
-  // Where those run that claim the same and do not prove it.
-  std::vector<std::string> lease_strangers() const;
-  // What the last one that managed this robot, on another machine or here, said of orders; empty:
-  // it did not say. Nothing: there was none.
-  std::optional<std::string> told_orders() const;
-  std::int64_t highest_term() const;
-  // Tells who takes over, now and not with the next beat: the last word of who steps back or ends.
-  void say_lease();
+  // Who manages the robot, of the culprits of the domain. Null: this one claims nothing.
+  LeaseLink* lease() { return lease_.get(); }
+  const LeaseLink* lease() const { return lease_.get(); }
 
  private:
   Link(const RuleSet& rules, Options options, Inbox& inbox);
   Expected<void> start();
   Expected<void> declare_parameters();
-  Expected<void> claim_lease();
   Expected<void> watch_parameter_events();
 
-  // @pre the mutex is held.
-  bool is_here(const GuidPrefix& participant) const CULPRIT_REQUIRES(lease_mutex_);
-  std::string host_of(const GuidPrefix& participant) const CULPRIT_REQUIRES(lease_mutex_);
-
-  // On the executor's thread.
-  void on_lease(const DiscoveryEvent& event);
-  // On a receive thread.
-  void on_beat(const Sample& sample);
   void on_change(const GraphChange& change);
   void on_joined(const GraphNode& node);
   void on_left(const std::string& node);
@@ -148,18 +126,7 @@ class Link {
   std::unique_ptr<Timer> publishing_;
   std::unique_ptr<Hearing> hearing_;
   std::uint64_t refused_ = 0;  // datagrams that were told of
-  std::vector<std::unique_ptr<Writer>> lease_writers_;
-  std::unique_ptr<Reader> lease_reader_;
-  std::unique_ptr<Timer> lease_timer_;
-
-  mutable Mutex lease_mutex_;  // the middleware is not called under it
-  struct Neighbour {
-    std::string host;
-    bool is_here = false;  // on this machine
-  };
-  std::optional<ManagerLease> lease_ CULPRIT_GUARDED_BY(lease_mutex_);
-  std::map<GuidPrefix, Neighbour> neighbours_
-      CULPRIT_GUARDED_BY(lease_mutex_);  // of those that can be discovered
+  std::unique_ptr<LeaseLink> lease_;
 
   mutable Mutex mutex_;
   // A component's node that others have the name of.

@@ -1,0 +1,183 @@
+#include "link/lease_link.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <ifaddrs.h>
+#include <netinet/in.h>
+#include <set>
+
+#include "base/live_clock.h"
+#include "ros2/cdr.h"
+
+namespace culprit::ros2 {
+namespace {
+
+constexpr Qos kLeaseQos{.reliability = Reliability::kBestEffort, .depth = 10};
+
+// This machine's, as far as sockets go: of another container it is another one.
+std::set<std::array<std::uint8_t, 4>> own_addresses() {
+  std::set<std::array<std::uint8_t, 4>> own{{127, 0, 0, 1}};
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return own;
+  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(all, &freeifaddrs);
+  for (const ifaddrs* i = all; i != nullptr; i = i->ifa_next) {
+    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
+    const auto* address = reinterpret_cast<const sockaddr_in*>(i->ifa_addr);
+    std::array<std::uint8_t, 4> ip{};
+    std::memcpy(ip.data(), &address->sin_addr, ip.size());
+    own.insert(ip);
+  }
+  return own;
+}
+
+// All that it says must be ours: addresses of bridges are the same on many machines.
+bool is_on_this_machine(const ParticipantInfo& info) {
+  const auto own = own_addresses();
+  return !info.metatraffic.empty() &&
+         std::all_of(info.metatraffic.begin(), info.metatraffic.end(),
+                     [&](const UdpAddress& address) { return own.contains(address.ip); });
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<LeaseLink>> LeaseLink::open(Context& context, const Hearing& hearing,
+                                                     Executor& executor, Options options) {
+  std::unique_ptr<LeaseLink> link(new LeaseLink(context, hearing, std::move(options)));
+  if (auto announced = link->announce(); !announced) return Error{announced.error()};
+  if (auto listening = link->listen(); !listening) return Error{listening.error()};
+  context.on_discovery(
+      [link = link.get()](const DiscoveryEvent& event) { link->on_discovery(event); });
+  link->timer_ = std::make_unique<Timer>(executor, ManagerLease::kPeriod,
+                                         [link = link.get()] { link->say(); });
+  return link;
+}
+
+LeaseLink::LeaseLink(Context& context, const Hearing& hearing, Options options)
+    : options_(std::move(options)),
+      context_(context),
+      hearing_(hearing),
+      lease_(options_.claim, context.participant().guid().prefix()) {}
+
+Expected<void> LeaseLink::announce() {
+  std::vector<std::string> announcements;
+  {
+    const MutexLock lock(mutex_);
+    announcements = lease_.announcements();
+  }
+  for (std::string& announcement : announcements) {
+    auto writer = context_.participant().create_writer({.topic = ManagerLease::kTopic,
+                                                        .type = ManagerLease::kType,
+                                                        .qos = kLeaseQos,
+                                                        .user_data = std::move(announcement),
+                                                        .on_match = {}});
+    if (!writer) return Error{writer.error()};
+    writers_.push_back(std::move(*writer));
+  }
+  return {};
+}
+
+// Without a key nobody's beats would be believed.
+Expected<void> LeaseLink::listen() {
+  if (options_.claim.key.empty()) return {};
+  auto reader =
+      context_.participant().create_reader({.topic = ManagerLease::kTopic,
+                                            .type = ManagerLease::kType,
+                                            .qos = kLeaseQos,
+                                            .user_data = {},
+                                            .on_match = {}},
+                                           [this](const Sample& sample) { on_beat(sample); });
+  if (!reader) return Error{reader.error()};
+  reader_ = std::move(*reader);
+  return {};
+}
+
+// ---- what others say
+
+void LeaseLink::on_discovery(const DiscoveryEvent& event) {
+  constexpr std::size_t kMost = 1000;
+  const MutexLock lock(mutex_);
+  lease_.apply(event, live_now());
+  if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
+    const GuidPrefix prefix = info->guid.prefix();
+    if (neighbours_.size() >= kMost && !neighbours_.contains(prefix)) return;
+    neighbours_[prefix] = {printable(info->host), is_on_this_machine(*info)};
+  } else if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
+    neighbours_.erase(gone->guid.prefix());
+  }
+}
+
+void LeaseLink::on_beat(const Sample& sample) {
+  CdrReader message(sample.payload);
+  const std::string_view beat = message.read_string();
+  const MutexLock lock(mutex_);
+  lease_.hear(sample.identity.writer.prefix(), beat, live_now());
+}
+
+bool LeaseLink::is_here(const GuidPrefix& participant) const {
+  const auto found = neighbours_.find(participant);
+  return found != neighbours_.end() && found->second.is_here;
+}
+
+std::string LeaseLink::host_of(const GuidPrefix& participant) const {
+  const auto found = neighbours_.find(participant);
+  const bool is_known = found != neighbours_.end() && !found->second.host.empty();
+  return is_known ? found->second.host : "another machine";
+}
+
+std::optional<std::string> LeaseLink::elder() const {
+  const MutexLock lock(mutex_);
+  const auto elder = lease_.elder(
+      live_now(), [this](const GuidPrefix& p) CULPRIT_REQUIRES(mutex_) { return is_here(p); });
+  return elder ? std::optional(host_of(*elder)) : std::nullopt;
+}
+
+std::optional<std::string> LeaseLink::elder_at(const std::string& node) const {
+  const MutexLock lock(mutex_);
+  const auto elder =
+      lease_.elder_at(node, live_now(),
+                      [this](const GuidPrefix& p) CULPRIT_REQUIRES(mutex_) { return is_here(p); });
+  return elder ? std::optional(host_of(*elder)) : std::nullopt;
+}
+
+std::vector<std::string> LeaseLink::strangers() const {
+  const MutexLock lock(mutex_);
+  std::vector<std::string> hosts;
+  for (const GuidPrefix& each : lease_.strangers(
+           [this](const GuidPrefix& p) CULPRIT_REQUIRES(mutex_) { return is_here(p); }))
+    hosts.push_back(host_of(each));
+  return hosts;
+}
+
+std::optional<std::string> LeaseLink::told_orders() const {
+  const MutexLock lock(mutex_);
+  return lease_.told_orders();
+}
+
+std::int64_t LeaseLink::highest_term() const {
+  const MutexLock lock(mutex_);
+  return lease_.highest_term();
+}
+
+Time LeaseLink::sure_until(Time now) const {
+  const MutexLock lock(mutex_);
+  return lease_.sure_until(now);
+}
+
+// ---- what is said
+
+void LeaseLink::say() {
+  const bool hears = hearing_.doubtful() > live_now();
+  const std::string orders = options_.told_orders ? options_.told_orders() : "";
+  std::optional<std::string> beat;
+  {
+    const MutexLock lock(mutex_);
+    beat = lease_.beat(live_now(), hears, options_.manages, orders);
+  }
+  if (!beat) return;
+  CdrWriter message;
+  message.write_string(*beat);
+  writers_.front()->write(message.take());
+}
+
+}  // namespace culprit::ros2

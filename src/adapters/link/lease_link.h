@@ -1,0 +1,81 @@
+// The lease's way to the wire: announces the claim of this culprit in the domain, says its beats, and
+// hears those of others (manager_lease.h).
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/mutex.h"
+#include "link/manager_lease.h"
+#include "ros2/context.h"
+#include "ros2/hearing.h"
+#include "ros2/timer.h"
+
+namespace culprit::ros2 {
+
+class LeaseLink {
+ public:
+  struct Options {
+    LeaseClaim claim;
+    bool manages = false;  // now
+    // What people have ordered, for who takes over. Called on a thread of the link; must not wait.
+    std::function<std::string()> told_orders{};
+  };
+
+  // All outlive it, and their executor does not run yet; it must not run when this one goes.
+  // Errors: the middleware, or the domain's permissions, refuse.
+  static Expected<std::unique_ptr<LeaseLink>> open(Context& context, const Hearing& hearing,
+                                                   Executor& executor, Options options);
+
+  // From any thread, all of these.
+
+  // Until when it is sure that no other culprit manages the robot. Not later than `now`: it is not.
+  Time sure_until(Time now) const;
+  // Where the culprit runs, on another machine, that goes before this one for the robot, or for the
+  // node of this full name: a host's name, or "another machine" where it does not say. Nothing:
+  // there is none.
+  std::optional<std::string> elder() const;
+  std::optional<std::string> elder_at(const std::string& node) const;
+  // Where those run that claim the same and do not prove it.
+  std::vector<std::string> strangers() const;
+  // What the last one that managed this robot, on another machine or here, said of orders; empty:
+  // it did not say. Nothing: there was none.
+  std::optional<std::string> told_orders() const;
+  std::int64_t highest_term() const;
+  // Tells who takes over, now and not with the next beat: the last word of who steps back or ends.
+  void say();
+
+ private:
+  LeaseLink(Context& context, const Hearing& hearing, Options options);
+  Expected<void> announce();
+  Expected<void> listen();
+
+  bool is_here(const GuidPrefix& participant) const CULPRIT_REQUIRES(mutex_);
+  std::string host_of(const GuidPrefix& participant) const CULPRIT_REQUIRES(mutex_);
+
+  void on_discovery(const DiscoveryEvent& event);  // on the executor's thread
+  void on_beat(const Sample& sample);              // on a receive thread
+
+  const Options options_;
+  Context& context_;
+  const Hearing& hearing_;
+  std::vector<std::unique_ptr<Writer>> writers_;  // the first says the beats
+
+  mutable Mutex mutex_;  // the middleware is not called under it
+  struct Neighbour {
+    std::string host;
+    bool is_here = false;  // on this machine
+  };
+  ManagerLease lease_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<GuidPrefix, Neighbour> neighbours_
+      CULPRIT_GUARDED_BY(mutex_);  // of those that can be discovered
+
+  std::unique_ptr<Reader> reader_;
+  std::unique_ptr<Timer> timer_;
+};
+
+}  // namespace culprit::ros2
