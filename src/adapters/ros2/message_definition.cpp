@@ -149,7 +149,9 @@ class Parser {
       if (is_bound || !size.empty()) {
         const auto count = parse_size(size);
         if (!count) return error("'" + printable(size) + "' is not the size of an array");
-        if (field.shape == Shape::kArray) field.count = *count;
+        field.count = *count;
+      } else {
+        field.count = 0;
       }
       text = text.substr(0, open);
     }
@@ -158,9 +160,11 @@ class Parser {
       if (element != "string" && element != "wstring") {
         return error("only strings have a bound, not '" + printable(element) + "'");
       }
-      if (!parse_size(text.substr(bound + 2))) {
+      const auto size = parse_size(text.substr(bound + 2));
+      if (!size) {
         return error("'" + printable(text.substr(bound + 2)) + "' is not the size of a string");
       }
+      field.text_bound = *size;
       text = element;
     }
     if (const auto primitive = find_primitive(text)) {

@@ -1,8 +1,9 @@
 // What a message type looks like, read from the text of its `.msg` file
 // (design.ros2.org/articles/legacy_interface_definition.html).
 //
-// Kept is what the wire needs: the fields, in order, with their types. Constants, default values,
-// bounds and comments are checked for form and dropped, for nothing of them is sent.
+// Kept is what the wire needs, the fields in order with their types, and the bounds, which are part
+// of a type's identity (type_hash.h). Constants, default values and comments are checked for form
+// and dropped, for nothing of them is sent.
 #pragma once
 
 #include <cstdint>
@@ -44,12 +45,17 @@ struct FieldDefinition {
   std::variant<Primitive, std::string>
       element;  // or the full name of a message, "package/msg/Type"
   Shape shape = Shape::kSingle;
-  std::uint32_t count = 1;  // of a kArray
+  std::uint32_t count = 1;       // of a kArray; the bound of a kSequence, 0 if it has none
+  std::uint32_t text_bound = 0;  // of a string: so many characters at most; 0: any
+
+  bool operator==(const FieldDefinition&) const = default;
 };
 
 struct MessageDefinition {
   std::string type;  // "package/msg/Type"
   std::vector<FieldDefinition> fields;
+
+  bool operator==(const MessageDefinition&) const = default;
 };
 
 // `text` defines `type`, a valid "package/msg/Type". Errors begin with "<file>:<line>: ".

@@ -1,16 +1,52 @@
 #include "ros2/message_library.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
+#include <fcntl.h>
+#include <linux/openat2.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include "ros2/names.h"
 #include "ros2/standard_messages.h"
 
 namespace culprit::ros2 {
+namespace {
 
-MessageLibrary::MessageLibrary(std::vector<std::filesystem::path> directories)
-    : directories_(std::move(directories)) {}
+constexpr off_t kMaxFileSize = 1 << 20;  // bytes; no .msg file has more
+constexpr std::size_t kMaxParts = 1000;
+
+// Opens `path` as somebody would whose root directory is `root`: links that are absolute, or lead
+// upwards, stay below it. Negative if that is impossible.
+int open_below(const std::filesystem::path& root, const std::filesystem::path& path) {
+  constexpr int kFlags = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+  if (root == "/") return open(path.c_str(), kFlags);
+  const int base = open(root.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+  if (base < 0) return -1;
+  open_how how{};
+  how.flags = kFlags;
+  how.resolve = RESOLVE_IN_ROOT | RESOLVE_NO_MAGICLINKS;
+  const long file = syscall(SYS_openat2, base, path.c_str(), &how, sizeof how);
+  close(base);
+  return static_cast<int>(file);
+}
+
+std::optional<std::string> read_whole(int file) {
+  struct stat about {};
+  if (fstat(file, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size > kMaxFileSize)
+    return std::nullopt;
+  std::string text(static_cast<std::size_t>(about.st_size), '\0');
+  const ssize_t size = ::read(file, text.data(), text.size());
+  if (size < 0) return std::nullopt;
+  text.resize(static_cast<std::size_t>(size));
+  return text;
+}
+
+}  // namespace
+
+MessageLibrary::MessageLibrary(std::vector<std::filesystem::path> directories,
+                               std::filesystem::path root)
+    : directories_(std::move(directories)), root_(std::move(root)) {}
 
 void MessageLibrary::learn(std::string_view type, std::string_view text) {
   static const std::string kSeparator = '\n' + std::string(80, '=') + '\n';
@@ -47,10 +83,7 @@ Expected<MessageDefinition> MessageLibrary::load(std::string_view type) const {
   const std::filesystem::path below = std::string(type) + ".msg";
   for (const auto& directory : directories_) {
     for (const auto& path : {directory / below, directory / "share" / below}) {
-      std::ifstream file(path);
-      if (!file) continue;
-      const std::string text(std::istreambuf_iterator<char>(file), {});
-      return parse_message_definition(text, type, path.string());
+      if (const auto text = read(path)) return parse_message_definition(*text, type, path.string());
     }
   }
   if (const auto text = standard_message(type)) {
@@ -59,6 +92,45 @@ Expected<MessageDefinition> MessageLibrary::load(std::string_view type) const {
   return Error{"the message type " + std::string(type) +
                " is not known; give the directory that holds " + below.string() +
                " with --message-path"};
+}
+
+// What is no file, or a very large one, is passed over: others may decide what there is.
+std::optional<std::string> MessageLibrary::read(const std::filesystem::path& path) const {
+  const int file = open_below(root_, path);
+  if (file < 0) return std::nullopt;
+  auto text = read_whole(file);
+  close(file);
+  return text;
+}
+
+Expected<MessageDefinitions> MessageLibrary::with_parts(std::string_view type) {
+  MessageDefinitions parts;
+  std::vector<std::string> open = {std::string(type)};
+  while (!open.empty()) {
+    const std::string name = std::move(open.back());
+    open.pop_back();
+    if (parts.contains(name)) continue;
+    if (parts.size() >= kMaxParts)
+      return Error{std::string(type) + " has more than " + std::to_string(kMaxParts) +
+                   " types in it"};
+    const auto definition = find(name);
+    if (!definition) return Error{definition.error()};
+    for (const FieldDefinition& field : (*definition)->fields) {
+      if (const auto* part = std::get_if<std::string>(&field.element)) open.push_back(*part);
+    }
+    parts.emplace(name, **definition);
+  }
+  return parts;
+}
+
+Expected<std::string> MessageLibrary::hash_of(std::string_view type) {
+  auto parts = with_parts(type);
+  if (!parts) return Error{parts.error()};
+  return type_hash(type, *parts);
+}
+
+void MessageLibrary::define(const MessageDefinitions& definitions) {
+  for (const auto& [type, definition] : definitions) known_.insert_or_assign(type, definition);
 }
 
 std::vector<std::filesystem::path> message_directories(std::vector<std::filesystem::path> first,

@@ -4,12 +4,14 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/expected.h"
 #include "ros2/message_definition.h"
+#include "ros2/type_hash.h"
 
 namespace culprit::ros2 {
 
@@ -17,8 +19,10 @@ namespace culprit::ros2 {
 class MessageLibrary {
  public:
   // In each directory, the first one first: <package>/msg/<Type>.msg, then
-  // share/<package>/msg/<Type>.msg.
-  explicit MessageLibrary(std::vector<std::filesystem::path> directories = {});
+  // share/<package>/msg/<Type>.msg. `root`: what directories, and links below them, are meant to
+  // be below (/proc/PID/root for what a process in a container sees); nothing above it is read.
+  explicit MessageLibrary(std::vector<std::filesystem::path> directories = {},
+                          std::filesystem::path root = "/");
 
   // What a recorder or another program keeps of `type`: the text of its .msg file, then those of
   // the types in it, each after a line of 80 '=' and one "MSG: package/Type"
@@ -28,10 +32,19 @@ class MessageLibrary {
   // `type` is "package/msg/Type". The definition lives as long as the library.
   Expected<const MessageDefinition*> find(std::string_view type);
 
+  // `type` and all types in it. Errors: as find(); more than a thousand of them.
+  Expected<MessageDefinitions> with_parts(std::string_view type);
+  // What announces this very type (type_hash.h). Errors: as with_parts().
+  Expected<std::string> hash_of(std::string_view type);
+  // Makes these the definitions, whatever was known of those types before.
+  void define(const MessageDefinitions& definitions);
+
  private:
   Expected<MessageDefinition> load(std::string_view type) const;
+  std::optional<std::string> read(const std::filesystem::path& path) const;
 
   std::vector<std::filesystem::path> directories_;
+  std::filesystem::path root_;
   std::map<std::string, std::string, std::less<>> learned_;  // texts
   std::map<std::string, MessageDefinition, std::less<>> known_;
 };

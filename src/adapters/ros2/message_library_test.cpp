@@ -1,6 +1,7 @@
 #include "ros2/message_library.h"
 
 #include <fstream>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <gmock/gmock.h>
@@ -103,6 +104,53 @@ TEST(MessageLibrary, LearnsATypeWithThoseInIt) {
 TEST(MessageLibrary, SearchesTheGivenDirectoriesBeforeThePrefixPath) {
   EXPECT_THAT(message_directories({"/mine"}, "/a:/b::"), ElementsAre("/mine", "/a", "/b"));
   EXPECT_THAT(message_directories({}, ""), ElementsAre());
+}
+
+// A container's process decides what is below its root, and may be hostile.
+TEST(MessageLibrary, ReadsNothingAboveItsRoot) {
+  MessageDirectory root;
+  MessageDirectory outside;
+  outside.with("secret.msg", "int32 secret\n");
+  root.with("opt/share/my_msgs/msg/Real.msg", "int32 real\n");
+  const fs::path messages = root.path() / "opt/share/my_msgs/msg";
+  fs::create_symlink("/opt/share/my_msgs/msg/Real.msg", messages / "Linked.msg");
+  fs::create_symlink(outside.path() / "secret.msg", messages / "Escaped.msg");
+  fs::create_symlink("../../../../../../../.." + (outside.path() / "secret.msg").string(),
+                     messages / "Climbed.msg");
+  MessageLibrary library({"/opt"}, root.path());
+  EXPECT_TRUE(library.find("my_msgs/msg/Real"));
+  EXPECT_TRUE(library.find("my_msgs/msg/Linked"));
+  EXPECT_FALSE(library.find("my_msgs/msg/Escaped"));
+  EXPECT_FALSE(library.find("my_msgs/msg/Climbed"));
+}
+
+TEST(MessageLibrary, WaitsForNoPipeAndPassesOverWhatIsVeryLarge) {
+  MessageDirectory directory;
+  directory.with("my_msgs/msg/Large.msg", std::string(2u << 20, '#'));
+  ASSERT_EQ(mkfifo((directory.path() / "my_msgs/msg/Pipe.msg").c_str(), 0600), 0);
+  MessageLibrary library({directory.path()});
+  EXPECT_FALSE(library.find("my_msgs/msg/Pipe"));
+  EXPECT_FALSE(library.find("my_msgs/msg/Large"));
+}
+
+TEST(MessageLibrary, GivesATypeWithAllTypesInItOnce) {
+  MessageDirectory directory;
+  directory.with("my_msgs/msg/A.msg", "B one\nB two\n")
+      .with("my_msgs/msg/B.msg", "A[] back\nint32 x\n");
+  MessageLibrary library({directory.path()});
+  const auto parts = library.with_parts("my_msgs/msg/A");
+  ASSERT_TRUE(parts) << parts.error();
+  EXPECT_EQ(parts->size(), 2u);
+  EXPECT_FALSE(library.with_parts("my_msgs/msg/C"));
+}
+
+TEST(MessageLibrary, KnowsWhatItWasToldInPlaceOfWhatItHad) {
+  MessageLibrary library;
+  const auto before = library.hash_of("std_msgs/msg/String");
+  library.define({{"std_msgs/msg/String",
+                   {"std_msgs/msg/String", {{.name = "text", .element = Primitive::kString}}}}});
+  EXPECT_EQ((*library.find("std_msgs/msg/String"))->fields.front().name, "text");
+  EXPECT_NE(*library.hash_of("std_msgs/msg/String"), *before);
 }
 
 }  // namespace

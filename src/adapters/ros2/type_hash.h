@@ -1,0 +1,20 @@
+// Names a message type by what it looks like, as ROS 2 Iron and newer announce it for every endpoint
+// (REP 2011, "RIHS01"): the SHA-256 of the fields of the type and of all types in it. Two programs
+// that say the same hash mean the same type, whatever their files say.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "ros2/message_definition.h"
+
+namespace culprit::ros2 {
+
+using MessageDefinitions = std::map<std::string, MessageDefinition, std::less<>>;  // by type
+
+// "RIHS01_" and 64 digits. `definitions`: of `type` and of all types in it, and no others.
+// @pre `type` is among them
+std::string type_hash(std::string_view type, const MessageDefinitions& definitions);
+
+}  // namespace culprit::ros2

@@ -1,0 +1,49 @@
+#include "ros2/type_hash.h"
+
+#include <gtest/gtest.h>
+
+#include "ros2/message_library.h"
+
+namespace culprit::ros2 {
+namespace {
+
+// As `ros2 topic info -v` of Jazzy says them.
+TEST(TypeHash, IsThatOfIronAndNewer) {
+  MessageLibrary library;
+  for (const auto& [type, hash] : std::map<std::string, std::string>{
+           {"std_msgs/msg/String",
+            "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"},
+           {"std_msgs/msg/Empty",
+            "20b625256f32d5dbc0d04fee44f43c41e51c70d3502f84b4a08e7a9c26a96312"},
+           {"builtin_interfaces/msg/Time",
+            "b106235e25a4c5ed35098aa0a61a3ee9c9b18d197f398b0e4206cea9acf9c197"},
+           {"std_msgs/msg/Header",
+            "f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01"},
+           {"sensor_msgs/msg/LaserScan",
+            "64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828"},
+           {"sensor_msgs/msg/Image",
+            "d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47"},
+           {"geometry_msgs/msg/Twist",
+            "9c45bf16fe0983d80e3cfe750d6835843d265a9a6c46bd2e609fcddde6fb8d2a"},
+           {"nav_msgs/msg/Odometry",
+            "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"}}) {
+    const auto ours = library.hash_of(type);
+    ASSERT_TRUE(ours) << ours.error();
+    EXPECT_EQ(*ours, "RIHS01_" + hash) << type;
+  }
+}
+
+// Bounds are part of a type; constants and defaults are not.
+TEST(TypeHash, TellsBoundsApart) {
+  const auto hash_of = [](std::string_view text) {
+    auto definition = parse_message_definition(text, "a/msg/A", "A.msg");
+    return type_hash("a/msg/A", {{"a/msg/A", *definition}});
+  };
+  EXPECT_NE(hash_of("string<=3 a\n"), hash_of("string a\n"));
+  EXPECT_NE(hash_of("int32[<=3] a\n"), hash_of("int32[] a\n"));
+  EXPECT_NE(hash_of("int32[3] a\n"), hash_of("int32[4] a\n"));
+  EXPECT_EQ(hash_of("int32 A=3\nint32 a 7\n"), hash_of("int32 a\n"));
+}
+
+}  // namespace
+}  // namespace culprit::ros2
