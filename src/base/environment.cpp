@@ -1,6 +1,7 @@
 #include "base/environment.h"
 
 #include <cstdlib>
+#include <fstream>
 #include <sstream>
 #include <system_error>
 #include <unistd.h>
@@ -34,6 +35,14 @@ Expected<std::filesystem::path> find_laboratory() {
   return Error{
       "studies, torture and demonstrations are of culprit-lab, which is neither beside culprit nor "
       "in PATH; install it, or build it: cmake --build --preset release --target culprit-lab"};
+}
+
+std::optional<std::string> environment_of(int pid, const std::string& name) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/environ", std::ios::binary);
+  for (std::string entry; std::getline(in, entry, '\0');) {
+    if (entry.starts_with(name + "=")) return entry.substr(name.size() + 1);
+  }
+  return std::nullopt;
 }
 
 }  // namespace culprit

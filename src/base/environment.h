@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "base/expected.h"
@@ -20,6 +21,10 @@ Expected<std::filesystem::path> find_laboratory();
 
 // A variable of the environment; empty if it is not set.
 std::string environment(const char* name);
+
+// A variable of the environment that the process `pid` was started with. Nothing: it was started
+// without, there is no such process, or it may not be seen.
+std::optional<std::string> environment_of(int pid, const std::string& name);
 
 // "lines" in this variable: progress is told where there is no terminal, too.
 inline constexpr const char* kProgressVariable = "CULPRIT_PROGRESS";

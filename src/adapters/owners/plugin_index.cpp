@@ -3,26 +3,17 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <sstream>
 #include <vector>
 
 #include "base/closest.h"
+#include "base/environment.h"
 
 namespace culprit::owners {
 namespace {
 
 constexpr const char* kIndex = "share/ament_index/resource_index/rclcpp_components";
 constexpr std::size_t kLongestIndex = 1 << 20;  // bytes
-
-// Nothing: it has none, or may not be seen.
-std::optional<std::string> variable_in(int pid, const std::string& name) {
-  std::ifstream in("/proc/" + std::to_string(pid) + "/environ", std::ios::binary);
-  for (std::string entry; std::getline(in, entry, '\0');) {
-    if (entry.starts_with(name + "=")) return entry.substr(name.size() + 1);
-  }
-  return std::nullopt;
-}
 
 // A line is "package::Class;lib/libclass.so".
 std::vector<std::string> classes_in(const std::filesystem::path& file) {
@@ -47,7 +38,7 @@ std::string perhaps(const std::string& wanted, const std::vector<std::string>& k
 }  // namespace
 
 Expected<void> find_plugin(int pid, const std::string& package, const std::string& plugin) {
-  const auto prefixes = variable_in(pid, "AMENT_PREFIX_PATH");
+  const auto prefixes = environment_of(pid, "AMENT_PREFIX_PATH");
   if (!prefixes)
     return Error{"it cannot be seen what its container could load: process " + std::to_string(pid) +
                  " shows no AMENT_PREFIX_PATH"};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "ros2/service_mapping.h"
+
 namespace culprit::ros2 {
 namespace {
 
@@ -17,7 +19,8 @@ std::optional<GraphEndpoint> ros_meaning(const EndpointInfo& info) {
   EndpointKind kind = reads ? EndpointKind::kSubscriber : EndpointKind::kPublisher;
   if (channel->channel == Channel::kRequest)
     kind = reads ? EndpointKind::kServer : EndpointKind::kClient;
-  return GraphEndpoint{kind, std::move(channel->name), std::move(*type), info.qos};
+  return GraphEndpoint{kind, std::move(channel->name), std::move(*type), info.qos,
+                       std::string(user_data_value(info.user_data, "typehash"))};
 }
 
 // Nothing when a name breaks the grammar.

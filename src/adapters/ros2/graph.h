@@ -40,6 +40,7 @@ struct GraphEndpoint {
   std::string name;  // of the topic or service, absolute
   std::string type;  // "package/msg/Type" or "package/srv/Type"
   Qos qos;           // as announced, without depth
+  std::string type_hash{};  // as announced (type_description.h); empty before Iron
 };
 
 struct GraphNode {

@@ -2,7 +2,7 @@
 // (design.ros2.org/articles/legacy_interface_definition.html).
 //
 // Kept is what the wire needs, the fields in order with their types, and the bounds, which are part
-// of a type's identity (type_hash.h). Constants, default values and comments are checked for form
+// of a type's identity (type_description.h). Constants, default values and comments are checked for form
 // and dropped, for nothing of them is sent.
 #pragma once
 

@@ -11,7 +11,7 @@
 
 #include "base/expected.h"
 #include "ros2/message_definition.h"
-#include "ros2/type_hash.h"
+#include "ros2/type_description.h"
 
 namespace culprit::ros2 {
 
@@ -34,7 +34,7 @@ class MessageLibrary {
 
   // `type` and all types in it. Errors: as find(); more than a thousand of them.
   Expected<MessageDefinitions> with_parts(std::string_view type);
-  // What announces this very type (type_hash.h). Errors: as with_parts().
+  // What announces this very type (type_description.h). Errors: as with_parts().
   Expected<std::string> hash_of(std::string_view type);
   // Makes these the definitions, whatever was known of those types before.
   void define(const MessageDefinitions& definitions);

@@ -272,4 +272,59 @@ struct ParameterDescriptor {
   bool operator==(const ParameterDescriptor&) const = default;
 };
 
+// ---- what a type looks like, as Jazzy's nodes tell it (type_description_interfaces)
+
+struct FieldType {
+  static constexpr std::string_view kType = "type_description_interfaces/msg/FieldType";
+  std::uint8_t type_id = 0;           // type_description.h says which is which
+  std::uint64_t capacity = 0;         // of an array, or a bounded sequence
+  std::uint64_t string_capacity = 0;  // of a bounded string
+  std::string nested_type_name;
+  static void visit(auto& self, auto& each) {
+    each(self.type_id, self.capacity, self.string_capacity, self.nested_type_name);
+  }
+};
+
+struct Field {
+  static constexpr std::string_view kType = "type_description_interfaces/msg/Field";
+  std::string name;
+  FieldType type;
+  std::string default_value;
+  static void visit(auto& self, auto& each) { each(self.name, self.type, self.default_value); }
+};
+
+struct IndividualTypeDescription {
+  static constexpr std::string_view kType =
+      "type_description_interfaces/msg/IndividualTypeDescription";
+  std::string type_name;
+  std::vector<Field> fields;
+  static void visit(auto& self, auto& each) { each(self.type_name, self.fields); }
+};
+
+struct TypeDescription {
+  static constexpr std::string_view kType = "type_description_interfaces/msg/TypeDescription";
+  IndividualTypeDescription type_description;
+  std::vector<IndividualTypeDescription> referenced_type_descriptions;
+  static void visit(auto& self, auto& each) {
+    each(self.type_description, self.referenced_type_descriptions);
+  }
+};
+
+struct TypeSource {
+  static constexpr std::string_view kType = "type_description_interfaces/msg/TypeSource";
+  std::string type_name;
+  std::string encoding;  // "msg", "idl" ...
+  std::string raw_file_contents;
+  static void visit(auto& self, auto& each) {
+    each(self.type_name, self.encoding, self.raw_file_contents);
+  }
+};
+
+struct TypeDetail {
+  static constexpr std::string_view kType = "type_description_interfaces/msg/KeyValue";
+  std::string key;
+  std::string value;
+  static void visit(auto& self, auto& each) { each(self.key, self.value); }
+};
+
 }  // namespace culprit::ros2::msg

@@ -222,4 +222,28 @@ struct GetMode {
   };
 };
 
+// Jazzy and newer: ~/get_type_description of each node, for the types that it uses.
+struct GetTypeDescription {
+  static constexpr std::string_view kType = "type_description_interfaces/srv/GetTypeDescription";
+  struct Request {
+    std::string type_name;
+    std::string type_hash;
+    bool include_type_sources = false;
+    static void visit(auto& self, auto& each) {
+      each(self.type_name, self.type_hash, self.include_type_sources);
+    }
+  };
+  struct Response {
+    bool successful = false;
+    std::string failure_reason;
+    msg::TypeDescription type_description;
+    std::vector<msg::TypeSource> type_sources;
+    std::vector<msg::TypeDetail> extra_information;
+    static void visit(auto& self, auto& each) {
+      each(self.successful, self.failure_reason, self.type_description, self.type_sources,
+           self.extra_information);
+    }
+  };
+};
+
 }  // namespace culprit::ros2::srv

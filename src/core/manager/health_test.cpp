@@ -177,6 +177,19 @@ TEST(ProvenHealth, WhatWaitedForItsProofStillDoesAfterACrash) {
   EXPECT_EQ(belief(robot, "restart"), (Belief{6, 5})) << "counted once";
 }
 
+// Nobody knows whether it lasted.
+TEST(ProvenHealth, WhatWasNotHeardWhileItWaitedForItsProofCountsAsNothing) {
+  TestRobot robot = robot_that_is_well(20s);
+  robot["camera"].fault = "restart";
+  robot.run_for(5s);
+  robot.tell(HearingLost{"nothing came back"});
+  robot.run_for(1s);
+  robot.tell(HearingRegained{});
+  robot.run_for(30s);
+  EXPECT_TRUE(robot.works("camera"));
+  EXPECT_EQ(belief(robot, "restart"), (Belief{5, 5})) << transcript(robot);
+}
+
 TEST(ProvenHealth, ACrashLoopGoesOnBeingOneAcrossCrashesOfCulprit) {
   TestRobot robot = robot_that_is_well(20s);
   for (int i = 0; i < 4; ++i) {

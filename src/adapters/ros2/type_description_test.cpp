@@ -1,4 +1,4 @@
-#include "ros2/type_hash.h"
+#include "ros2/type_description.h"
 
 #include <gtest/gtest.h>
 
@@ -43,6 +43,34 @@ TEST(TypeHash, TellsBoundsApart) {
   EXPECT_NE(hash_of("int32[<=3] a\n"), hash_of("int32[] a\n"));
   EXPECT_NE(hash_of("int32[3] a\n"), hash_of("int32[4] a\n"));
   EXPECT_EQ(hash_of("int32 A=3\nint32 a 7\n"), hash_of("int32 a\n"));
+}
+
+TEST(TypeDescription, OfATypeIsThatTypeAgain) {
+  MessageLibrary library;
+  for (const std::string type : {"sensor_msgs/msg/Image", "nav_msgs/msg/Odometry",
+                                 "std_msgs/msg/Empty", "diagnostic_msgs/msg/DiagnosticArray"}) {
+    const auto parts = library.with_parts(type);
+    ASSERT_TRUE(parts) << parts.error();
+    const auto again = to_definitions(describe(type, *parts));
+    ASSERT_TRUE(again) << again.error();
+    EXPECT_EQ(type_hash(type, *again), type_hash(type, *parts));
+  }
+}
+
+TEST(TypeDescription, ThatNoTypeCouldHaveIsRefused) {
+  const auto read = [](const msg::Field& field) {
+    return to_definitions({{"a/msg/A", {field}}, {}}).has_value();
+  };
+  EXPECT_TRUE(read({"x", {6, 0, 0, ""}, ""}));
+  EXPECT_FALSE(read({"x\"", {6, 0, 0, ""}, ""}));             // names become part of what is hashed
+  EXPECT_FALSE(read({"x", {0, 0, 0, ""}, ""}));               // no type
+  EXPECT_FALSE(read({"x", {12, 0, 0, ""}, ""}));              // long double
+  EXPECT_FALSE(read({"x", {200, 0, 0, ""}, ""}));             // no shape
+  EXPECT_FALSE(read({"x", {54, 0, 0, ""}, ""}));              // an array of nothing
+  EXPECT_FALSE(read({"x", {54, 1ull << 40, 0, ""}, ""}));     // an array of too much
+  EXPECT_FALSE(read({"x", {21, 0, 0, ""}, ""}));              // a bound that there is not
+  EXPECT_FALSE(read({"x", {1, 0, 0, "../etc/passwd"}, ""}));  // no type's name
+  EXPECT_FALSE(to_definitions({{"no type", {}}, {}}));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Names a message type by what it looks like, as ROS 2 Iron and newer announce it for every endpoint
+// Describes a message type, and names it by what it looks like, as ROS 2 Iron and newer announce it for every endpoint
 // (REP 2011, "RIHS01"): the SHA-256 of the fields of the type and of all types in it. Two programs
 // that say the same hash mean the same type, whatever their files say.
 #pragma once
@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
+#include "base/expected.h"
 #include "ros2/message_definition.h"
+#include "ros2/messages.h"
 
 namespace culprit::ros2 {
 
@@ -16,5 +18,10 @@ using MessageDefinitions = std::map<std::string, MessageDefinition, std::less<>>
 // "RIHS01_" and 64 digits. `definitions`: of `type` and of all types in it, and no others.
 // @pre `type` is among them
 std::string type_hash(std::string_view type, const MessageDefinitions& definitions);
+
+// What a node said of a type and of all types in it. Errors: it says what no definition could.
+Expected<MessageDefinitions> to_definitions(const msg::TypeDescription& description);
+// The reverse, with the same precondition as type_hash().
+msg::TypeDescription describe(std::string_view type, const MessageDefinitions& definitions);
 
 }  // namespace culprit::ros2
