@@ -1,4 +1,5 @@
-// Text of a .msg file: it is read, or refused with a message that names its line.
+// Text of a .msg file: it is read, written and read again, or refused with a message that names its
+// line.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -18,7 +19,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const FieldDefinition& field : definition->fields) {
     const auto* nested = std::get_if<std::string>(&field.element);
     if (nested != nullptr && !is_valid_type_name(*nested)) std::abort();
-    if (field.count == 0) std::abort();
+    if (field.count == 0 && field.shape != Shape::kSequence) std::abort();
   }
+  // What is written is what was read.
+  const std::string written = to_text("a/msg/B", {{"a/msg/B", *definition}});
+  const auto again = parse_message_definition(written, "a/msg/B", "B.msg");
+  if (!again || *again != *definition) std::abort();
   return 0;
 }

@@ -5,11 +5,11 @@
 
 #include <fmt/core.h>
 
-#include "base/environment.h"
 #include "cli/commands.h"
 #include "cli/diagnostic_report.h"
 #include "live/live_robot.h"
 #include "live/preflight.h"
+#include "live/robot_survey.h"
 #include "live/rule_file.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
@@ -95,8 +95,7 @@ int plan_for_robot(const LoadedRules& loaded, const PlanOptions& options) {
   LiveRobot::Options robot_options;
   robot_options.link.participant = *participant;
   robot_options.link.name = {"/", "_culprit_plan"};  // hidden, as tools are
-  robot_options.link.message_path =
-      ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH"));
+  robot_options.link.types = sources_of_types(options.message_path);
   StopSignals signals;
   auto robot = LiveRobot::open(rules, std::move(robot_options));
   if (!robot) {

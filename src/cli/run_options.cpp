@@ -1,6 +1,6 @@
 #include "cli/run_options.h"
 
-#include "base/environment.h"
+#include "live/robot_survey.h"
 #include "live/run_journal.h"
 
 namespace culprit::cli {
@@ -23,8 +23,7 @@ Expected<LiveSession::Options> RunOptions::session(const RuleSet& rule_set) cons
   out.version = version;
   out.rules_file = rules;
   out.robot.link.participant = *participant;
-  out.robot.link.message_path =
-      ros2::message_directories(message_path, environment("AMENT_PREFIX_PATH"));
+  out.robot.link.types = sources_of_types(message_path);
   out.robot.link.parameters = {
       {"rules", Value(rules)}, {"planner", Value(planner.name)}, {"dry_run", Value(dry_run)}};
   out.robot.supervisor = {state_path() / "log", {own_folder()}};

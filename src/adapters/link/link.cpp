@@ -100,7 +100,6 @@ Link::Link(const RuleSet& rules, Options options, Inbox& inbox)
       options_(std::move(options)),
       inbox_(inbox),
       binding_(rules),
-      library_(options_.message_path),
       links_(rules.components.size()) {}
 
 Link::~Link() {
@@ -116,6 +115,7 @@ Link::~Link() {
   watches_.clear();
   links_.clear();
   diagnostics_.reset();
+  types_.reset();
   node_.reset();
   context_.reset();
 }
@@ -133,6 +133,7 @@ Expected<void> Link::start() {
   auto node = Node::create(*context_, options_.name);
   if (!node) return Error{node.error()};
   node_ = std::move(*node);
+  types_ = std::make_unique<TypeFinder>(*node_, options_.types);
   auto publisher = node_->create_publisher<msg::DiagnosticArray>("/diagnostics");
   if (!publisher) return Error{publisher.error()};
   diagnostics_.emplace(std::move(*publisher));
@@ -304,10 +305,19 @@ void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
   }
   if (endpoint.kind == EndpointKind::kPublisher) {
     const auto watch = watches_.find(endpoint.name);
-    if (watch != watches_.end()) watch->second->publisher_seen(endpoint.type, library_);
+    if (watch != watches_.end()) find_type(node, endpoint, *watch->second);
   }
   if (is_service(endpoint.kind) && is_for_management(endpoint.name)) return;
   inbox_.put(EndpointAppeared{node, endpoint.kind, endpoint.name});
+}
+
+void Link::find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch) {
+  if (!watch.reads_fields()) return watch.publisher_seen(endpoint.type, nullptr);
+  const auto pid = pids_.find(node);
+  types_->find({node, endpoint.type, endpoint.type_hash, pid == pids_.end() ? 0 : pid->second},
+               [&watch, type = endpoint.type](const Expected<MessageLibrary*>& library) {
+                 watch.publisher_seen(type, library);
+               });
 }
 
 void Link::on_parameter_event(const msg::ParameterEvent& event) {

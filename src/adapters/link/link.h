@@ -23,6 +23,7 @@
 #include "link/diagnostics_watch.h"
 #include "link/lease_link.h"
 #include "link/topic_watch.h"
+#include "link/type_finder.h"
 #include "robot/command.h"
 #include "robot/component_binding.h"
 #include "robot/inbox.h"
@@ -47,7 +48,7 @@ class Link {
   struct Options {
     ParticipantOptions participant;
     NodeName name{"/", "culprit"};
-    std::vector<std::filesystem::path> message_path;  // where to find .msg files
+    TypeFinder::Options types{};
     std::vector<std::pair<std::string, Value>>
         parameters;  // what the node shows of itself, read-only
     // Announced to other culprits, of which one manages the robot (manager_lease.h). Nothing: this
@@ -92,6 +93,7 @@ class Link {
   void on_left(const std::string& node);
   void on_system(const std::string& manager, const GraphEndpoint& service);
   void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
+  void find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch);
   void on_parameter_event(const msg::ParameterEvent& event);
   void probe();
   void publish_again();
@@ -106,13 +108,13 @@ class Link {
   Options options_;
   Inbox& inbox_;
   ComponentBinding binding_;
-  MessageLibrary library_;
 
   Executor executor_;
   std::unique_ptr<Context> context_;
   std::unique_ptr<Node> node_;
   std::optional<Publisher<msg::DiagnosticArray>> diagnostics_;
   std::map<std::string, std::unique_ptr<TopicWatch>> watches_;  // by topic
+  std::unique_ptr<TypeFinder> types_;
   std::unique_ptr<DiagnosticsWatch> diagnostics_watch_;
   std::unique_ptr<Subscription> parameter_events_;
   struct ToProbe {

@@ -46,7 +46,7 @@ class Linked {
                   const char* text = kRules)
       : rules(*check(Source("test.rules", text)).rules) {
     Link::Options options;
-    if (!message_path.empty()) options.message_path = {message_path};
+    if (!message_path.empty()) options.types.message_path = {message_path};
     options.participant = domain.options();
     options.parameters = {{"rules", Value(std::string("test.rules"))}};
     auto opened = Link::open(rules, std::move(options), inbox_);

@@ -16,9 +16,7 @@ Expected<std::unique_ptr<Survey>> Survey::open(Options options) {
 }
 
 Survey::Survey(Options options)
-    : options_(std::move(options)),
-      library_(options_.message_path),
-      tasks_(std::make_unique<TaskGroup>(executor_)) {}
+    : options_(std::move(options)), tasks_(std::make_unique<TaskGroup>(executor_)) {}
 
 Survey::~Survey() {
   executor_.stop();
@@ -29,6 +27,7 @@ Survey::~Survey() {
   nodes_read_.clear();
   diagnostics_.reset();
   parameter_events_.reset();
+  types_.reset();
   node_.reset();
   context_.reset();
 }
@@ -45,6 +44,7 @@ Expected<void> Survey::start() {
   auto node = Node::create(*context_, options_.name);
   if (!node) return Error{node.error()};
   node_ = std::move(*node);
+  types_ = std::make_unique<TypeFinder>(*node_, options_.types);
   if (auto listening = listen(); !listening) return listening;
   thread_ = std::thread([this] { executor_.run(); });
   return {};
@@ -130,7 +130,10 @@ void Survey::on_endpoint(const std::string& node, const GraphEndpoint& endpoint)
     const MutexLock lock(mutex_);
     TopicUse& use = topics_[endpoint.name];
     const bool publishes = endpoint.kind == EndpointKind::kPublisher;
-    if (publishes || use.type.empty()) use.type = endpoint.type;
+    if (publishes || use.type.empty()) {
+      use.type = endpoint.type;
+      use.type_hash = endpoint.type_hash;
+    }
     if (publishes) {
       use.publishers.insert(node);
     } else {
@@ -190,8 +193,26 @@ void Survey::read_topic(const std::string& topic) {
   const bool can_be_read = use != topics_.end() && !use->second.publishers.empty();
   if (wanted == interest_.fields_of_topics.end() || !can_be_read || topics_read_.contains(topic))
     return;
-  auto reading =
-      TopicReading::open(node_->entry(), topic, use->second.type, wanted->second, library_);
+  const TopicUse& read = use->second;
+  if (wanted->second.empty()) return read_topic_with(topic, read.type, nullptr);
+  const std::string& publisher = *read.publishers.begin();
+  int pid = 0;
+  {
+    const MutexLock lock(mutex_);
+    if (const auto known = pids_.find(publisher); known != pids_.end()) pid = known->second;
+  }
+  types_->find({publisher, read.type, read.type_hash, pid},
+               [this, topic, type = read.type](const Expected<MessageLibrary*>& library) {
+                 read_topic_with(topic, type, library);
+               });
+}
+
+// Much may have changed until a type was found.
+void Survey::read_topic_with(const std::string& topic, const std::string& type,
+                             const Expected<MessageLibrary*>& library) {
+  const auto wanted = interest_.fields_of_topics.find(topic);
+  if (wanted == interest_.fields_of_topics.end() || topics_read_.contains(topic)) return;
+  auto reading = TopicReading::open(node_->entry(), topic, type, wanted->second, library);
   if (!reading) return;
   const MutexLock lock(mutex_);
   topics_read_.emplace(topic, std::move(reading));

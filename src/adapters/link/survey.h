@@ -17,6 +17,7 @@
 #include "language/live_inventory.h"
 #include "link/node_reading.h"
 #include "link/topic_reading.h"
+#include "link/type_finder.h"
 #include "ros2/node.h"
 
 namespace culprit::ros2 {
@@ -27,7 +28,7 @@ class Survey {
   struct Options {
     ParticipantOptions participant;
     NodeName name{"/", "_culprit_survey"};
-    std::vector<std::filesystem::path> message_path;  // where to find .msg files
+    TypeFinder::Options types{};
   };
 
   // Errors: the domain cannot be joined.
@@ -45,6 +46,7 @@ class Survey {
     std::set<std::string> publishers;  // nodes
     int subscribers = 0;
     std::string type;
+    std::string type_hash;
   };
   using StatusKey = std::pair<std::string, std::string>;  // name and hardware id
 
@@ -61,16 +63,18 @@ class Survey {
   void on_interest(LiveInterest interest);
   void read_node(const std::string& node);
   void read_topic(const std::string& topic);
+  void read_topic_with(const std::string& topic, const std::string& type,
+                       const Expected<MessageLibrary*>& library);
 
   const Options options_;
-  MessageLibrary library_;  // of the executor's thread, as is the interest
-  LiveInterest interest_;
+  LiveInterest interest_;  // of the executor's thread
 
   Executor executor_;
   std::unique_ptr<Context> context_;
   std::unique_ptr<Node> node_;
   std::unique_ptr<Subscription> parameter_events_;
   std::unique_ptr<Subscription> diagnostics_;
+  std::unique_ptr<TypeFinder> types_;
 
   // Guards what follows, which only the executor's thread changes: it may read without it.
   // Its thread changes these four with the mutex, and reads them without; others read with it.

@@ -9,11 +9,16 @@ namespace culprit::ros2 {
 std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::string& topic,
                                                  const std::string& type,
                                                  const std::set<std::string>& fields,
-                                                 MessageLibrary& library) {
+                                                 const Expected<MessageLibrary*>& library) {
   std::unique_ptr<TopicReading> reading(new TopicReading);
   for (const std::string& path : fields) {
-    if (auto reader = FieldReader::compile(library, type, path))
+    auto reader = library ? FieldReader::compile(**library, type, path)
+                          : Expected<FieldReader>(Error{library.error()});
+    if (reader) {
       reading->readers_.push_back({path, std::move(*reader)});
+    } else {
+      reading->unreadable_.emplace(path, reader.error());
+    }
   }
   reading->since_ = live_now();
   constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
@@ -43,6 +48,7 @@ void TopicReading::tell(LiveInventory::Topic& topic) const {
   const Time now = live_now();
   const MutexLock lock(mutex_);
   topic.fields = values_;
+  topic.unreadable = unreadable_;
   if (now - since_ < kWindow) return;  // too early to tell
   const auto recent = std::count_if(arrivals_.begin(), arrivals_.end(),
                                     [&](Time at) { return at >= now - kWindow; });

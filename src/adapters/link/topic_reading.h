@@ -22,12 +22,12 @@ class TopicReading {
   // Rates are counted over this time.
   static constexpr Duration kWindow = std::chrono::seconds(2);
 
-  // `self` outlives the reading. Fields that the type has not are left out. Nothing if the topic
-  // cannot be read with this type.
+  // `self` outlives the reading; `library` has the type, or says why it is not known. Fields that
+  // cannot be read are told of. Nothing if the topic cannot be read with this type.
   static std::unique_ptr<TopicReading> open(NodeEntry& self, const std::string& topic,
                                             const std::string& type,
                                             const std::set<std::string>& fields,
-                                            MessageLibrary& library);
+                                            const Expected<MessageLibrary*>& library);
 
   // Enters rate and fields. From any thread.
   void tell(LiveInventory::Topic& topic) const;
@@ -42,6 +42,7 @@ class TopicReading {
   void on_sample(const Sample& sample);
 
   std::vector<Field> readers_;
+  std::map<std::string, std::string> unreadable_;  // fields, with the reason
   Time since_{};
   mutable Mutex mutex_;
   std::deque<Time> arrivals_ CULPRIT_GUARDED_BY(mutex_);

@@ -13,37 +13,58 @@ TopicWatch::TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inb
   });
 }
 
-void TopicWatch::publisher_seen(const std::string& type, MessageLibrary& library) {
+bool TopicWatch::reads_fields() const {
+  return std::any_of(rules_.signals.begin(), rules_.signals.end(), [&](const Signal& signal) {
+    const auto* field = std::get_if<TopicField>(&signal.source);
+    return field != nullptr && field->topic == topic_;
+  });
+}
+
+void TopicWatch::publisher_seen(const std::string& type, const Expected<MessageLibrary*>& library) {
   const std::string& name = rules_[topic_].name;
   if (subscription_) {
-    if (type != type_) {
-      inbox_.put(LinkTrouble{name + " is published as " + type + " too; only its " + type_ +
-                             " messages are watched"});
-    }
+    if (type != type_)
+      tell_once(name + " is published as " + type + " too; only its " + type_ +
+                " messages are watched");
     return;
   }
-  for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
-    const auto* field = std::get_if<TopicField>(&rules_.signals[s].source);
-    if (field == nullptr || field->topic != topic_) continue;
-    auto reader = FieldReader::compile(library, type, field->field);
-    if (reader) {
-      fields_.push_back({SignalId(s), std::move(*reader), {}});
-    } else {
-      inbox_.put(LinkTrouble{"signal " + rules_.signals[s].name + ": " + reader.error()});
-    }
-  }
-  if (fields_.empty() && !counts_) return;
+  if (!compile_fields(type, library) && !counts_) return;
   constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
   auto subscription = RawSubscription::create(
       self_, name, type, kQos, fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
       [this](const Sample& sample) { on_sample(sample); }, [this] { on_unheard(); });
   if (!subscription) {
     fields_.clear();
-    inbox_.put(LinkTrouble{"cannot watch " + name + ": " + subscription.error()});
-    return;
+    return tell_once("cannot watch " + name + ": " + subscription.error());
   }
   type_ = type;
   subscription_ = std::move(*subscription);
+}
+
+// Gives whether there is one to read.
+bool TopicWatch::compile_fields(const std::string& type, const Expected<MessageLibrary*>& library) {
+  for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
+    const auto* field = std::get_if<TopicField>(&rules_.signals[s].source);
+    if (field == nullptr || field->topic != topic_) continue;
+    const std::string signal = "signal " + rules_.signals[s].name + ": ";
+    if (!library) {
+      tell_once(signal + library.error());
+      continue;
+    }
+    auto reader = FieldReader::compile(**library, type, field->field);
+    if (reader) {
+      fields_.push_back({SignalId(s), std::move(*reader), {}});
+    } else {
+      tell_once(signal + reader.error());
+    }
+  }
+  return !fields_.empty();
+}
+
+void TopicWatch::tell_once(std::string trouble) {
+  constexpr std::size_t kMost = 100;  // the network decides which there are
+  if (told_.size() < kMost && told_.insert(trouble).second)
+    inbox_.put(LinkTrouble{std::move(trouble)});
 }
 
 void TopicWatch::on_sample(const Sample& sample) {

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -23,9 +24,12 @@ class TopicWatch {
   // All references must outlive the watch.
   TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inbox& inbox);
 
+  // Whether it takes a message's type to watch it, not only that it comes.
+  bool reads_fields() const;
+
   // A publisher of the topic was discovered: subscribes with its type, unless that is done already.
-  // On one thread.
-  void publisher_seen(const std::string& type, MessageLibrary& library);
+  // `library`: what has that type; not used where no field is read. On one thread.
+  void publisher_seen(const std::string& type, const Expected<MessageLibrary*>& library);
 
  private:
   struct Field {
@@ -33,6 +37,8 @@ class TopicWatch {
     FieldReader reader;
     std::optional<Value> last;
   };
+  bool compile_fields(const std::string& type, const Expected<MessageLibrary*>& library);
+  void tell_once(std::string trouble);
   void on_sample(const Sample& sample);
   void on_unheard();
   std::uint32_t published_since(const SampleIdentity& identity);
@@ -43,6 +49,7 @@ class TopicWatch {
   Inbox& inbox_;
   bool counts_ = false;  // the rules read the topic's rhythm
   std::string type_;
+  std::set<std::string> told_;  // troubles: each publisher has the same ones
 
   // Of the receive thread, once the subscription exists.
   std::vector<Field> fields_;

@@ -37,9 +37,9 @@ namespace culprit::ros2 {
 
 struct GraphEndpoint {
   EndpointKind kind = EndpointKind::kPublisher;
-  std::string name;  // of the topic or service, absolute
-  std::string type;  // "package/msg/Type" or "package/srv/Type"
-  Qos qos;           // as announced, without depth
+  std::string name;         // of the topic or service, absolute
+  std::string type;         // "package/msg/Type" or "package/srv/Type"
+  Qos qos;                  // as announced, without depth
   std::string type_hash{};  // as announced (type_description.h); empty before Iron
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <optional>
 #include <set>
@@ -199,11 +200,42 @@ class Parser {
   int line_ = 0;
 };
 
+std::string to_text(const FieldDefinition& field) {
+  std::string text;
+  if (const auto* primitive = std::get_if<Primitive>(&field.element)) {
+    text = std::find_if(kPrimitives.begin(), kPrimitives.end(), [&](const auto& known) {
+             return known.second == *primitive;
+           })->first;
+  } else {
+    text = std::get<std::string>(field.element);
+  }
+  if (field.text_bound != 0) text += "<=" + std::to_string(field.text_bound);
+  const std::string count = std::to_string(field.count);
+  if (field.shape == Shape::kArray) text += "[" + count + "]";
+  if (field.shape == Shape::kSequence) text += field.count == 0 ? "[]" : "[<=" + count + "]";
+  return text + " " + field.name + "\n";
+}
+
 }  // namespace
 
 Expected<MessageDefinition> parse_message_definition(std::string_view text, std::string_view type,
                                                      std::string_view file) {
   return Parser(type, file).parse(text);
+}
+
+std::string to_text(std::string_view type, const MessageDefinitions& definitions) {
+  const auto fields_of = [](const MessageDefinition& definition) {
+    std::string text;
+    for (const FieldDefinition& field : definition.fields) text += to_text(field);
+    return text;
+  };
+  const auto described = definitions.find(type);
+  assert(described != definitions.end());
+  std::string text = fields_of(described->second);
+  for (const auto& [name, part] : definitions) {
+    if (name != type) text += std::string(80, '=') + "\nMSG: " + name + "\n" + fields_of(part);
+  }
+  return text;
 }
 
 }  // namespace culprit::ros2

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -61,5 +62,11 @@ struct MessageDefinition {
 // `text` defines `type`, a valid "package/msg/Type". Errors begin with "<file>:<line>: ".
 Expected<MessageDefinition> parse_message_definition(std::string_view text, std::string_view type,
                                                      std::string_view file);
+
+using MessageDefinitions = std::map<std::string, MessageDefinition, std::less<>>;  // by type
+
+// The text of `type`'s file and of those of all types in it, as MessageLibrary::learn() takes it.
+// @pre `type` is among the definitions
+std::string to_text(std::string_view type, const MessageDefinitions& definitions);
 
 }  // namespace culprit::ros2

@@ -9,6 +9,7 @@
 
 #include "ros2/names.h"
 #include "ros2/standard_messages.h"
+#include "ros2/type_description.h"
 
 namespace culprit::ros2 {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "base/expected.h"
 #include "ros2/message_definition.h"
-#include "ros2/type_description.h"
 
 namespace culprit::ros2 {
 

@@ -3,7 +3,6 @@
 // that say the same hash mean the same type, whatever their files say.
 #pragma once
 
-#include <map>
 #include <string>
 #include <string_view>
 
@@ -12,8 +11,6 @@
 #include "ros2/messages.h"
 
 namespace culprit::ros2 {
-
-using MessageDefinitions = std::map<std::string, MessageDefinition, std::less<>>;  // by type
 
 // "RIHS01_" and 64 digits. `definitions`: of `type` and of all types in it, and no others.
 // @pre `type` is among them

@@ -54,6 +54,9 @@ TEST(TypeDescription, OfATypeIsThatTypeAgain) {
     const auto again = to_definitions(describe(type, *parts));
     ASSERT_TRUE(again) << again.error();
     EXPECT_EQ(type_hash(type, *again), type_hash(type, *parts));
+    MessageLibrary reread;
+    reread.learn(type, to_text(type, *again));
+    EXPECT_EQ(*reread.hash_of(type), type_hash(type, *parts)) << to_text(type, *again);
   }
 }
 

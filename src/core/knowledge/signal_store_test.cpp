@@ -24,6 +24,18 @@ TEST(SignalStore, ARuleIsReadWhenAllThatItReadsIs) {
   EXPECT_TRUE(store.is_read_since(RuleId(0), since));
 }
 
+TEST(SignalStore, ARuleIsLookedAtOnceHoweverManyOfItsInputsChanged) {
+  const RuleSet rules = *check(Source("x.rules",
+                                      "COMPONENT c NODE /c\nRULE R\nPOLICIES ERROR\nTRIGGER x > 1 "
+                                      "|| y > 1\nSTRATEGY s 90 10\nADAPTATION c restart 5\n"))
+                             .rules;
+  SignalStore store(rules);
+  (void)store.take_touched();
+  store.touch(InputId(0));
+  store.touch(InputId(1));
+  EXPECT_EQ(store.take_touched().size(), 1u);
+}
+
 TEST(SignalStore, OnlyOneAndZeroAreTruthValues) {
   std::string text;
   EXPECT_TRUE(as_type(Value(std::int64_t{1}), Type::kBool, text).b);

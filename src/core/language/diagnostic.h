@@ -67,6 +67,7 @@ enum class Code : std::uint16_t {
   kNoSuchService = 64,
   kNoSuchUnit = 65,
   kCannotLaunch = 66,
+  kNoSuchField = 67,
 };
 
 // "R011"

@@ -361,6 +361,12 @@ std::vector<Explanation> robot_explanations() {
                     "SETUP /opt/ros/humbel/setup.bash\n",
                     "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\" "
                     "SETUP /opt/ros/humble/setup.bash\n"),
+      against_robot(Code::kNoSuchField, "the messages of this topic have no such field",
+                    "Their type has none of this name, or it is not known what the type looks "
+                    "like: no .msg file of it was found, and the publisher's node did not tell it. "
+                    "So the signal would stay unknown and its rule quiet.",
+                    "SIGNAL lines TOPIC /robot/image FIELD heigt\n",
+                    "SIGNAL lines TOPIC /robot/image FIELD height\n"),
   };
 }
 
@@ -409,9 +415,19 @@ const LiveInventory& example_robot() {
     LiveInventory::Node& camera = robot.nodes["/robot/camera"];
     camera.parameters = {{"exposure", Value(0.5)}};
     camera.lifecycle = "active";
-    robot.topics["/robot/image"] = {"sensor_msgs/msg/Image", {"/robot/camera"}, {}, {}};
-    robot.topics["/diagnostics"] = {
-        "diagnostic_msgs/msg/DiagnosticArray", {"/robot/camera"}, {}, {}};
+    robot.topics["/robot/image"] = {
+        .type = "sensor_msgs/msg/Image",
+        .publishers = {"/robot/camera"},
+        .rate = {},
+        .fields = {},
+        .unreadable = {{"heigt",
+                        "sensor_msgs/msg/Image has no field 'heigt'; its fields are header, "
+                        "height, width, encoding, is_bigendian, step, data"}}};
+    robot.topics["/diagnostics"] = {.type = "diagnostic_msgs/msg/DiagnosticArray",
+                                    .publishers = {"/robot/camera"},
+                                    .rate = {},
+                                    .fields = {},
+                                    .unreadable = {}};
     robot.services = {{"/robot/camera/change_state", "lifecycle_msgs/srv/ChangeState"},
                       {"/robot/camera/get_state", "lifecycle_msgs/srv/GetState"},
                       {"/robot/camera/set_parameters", "rcl_interfaces/srv/SetParameters"},

@@ -61,6 +61,7 @@ bool exists(Code code) {
     case Code::kNoSuchService:
     case Code::kNoSuchUnit:
     case Code::kCannotLaunch:
+    case Code::kNoSuchField:
       return true;
   }
   return false;

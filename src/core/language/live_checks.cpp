@@ -53,7 +53,10 @@ class LiveChecks {
       if (asks_state) managed_node(o.name, o.span);
       before = &o;
     }
-    for (const syntax::Signal& signal : file_.signals) key(signal);
+    for (const syntax::Signal& signal : file_.signals) {
+      key(signal);
+      field(signal);
+    }
     for (const syntax::Component& component : file_.components) owner(component);
     for (const syntax::Rule& rule : file_.rules) {
       for (const syntax::Strategy& strategy : rule.strategies) {
@@ -259,6 +262,18 @@ class LiveChecks {
     warn(Code::kNoSuchDiagnostic, source->key.span,
          "status '" + source->status.text + "' has no key '" + source->key.text + "'",
          "correct the key", as_written(closest(source->key.text, known)));
+  }
+
+  // ---- messages
+
+  void field(const syntax::Signal& signal) {
+    const auto* source = std::get_if<syntax::TopicSource>(&signal.source);
+    if (source == nullptr) return;
+    const auto topic = robot_.topics.find(source->topic.text);
+    if (topic == robot_.topics.end()) return;
+    const auto trouble = topic->second.unreadable.find(source->field.text);
+    if (trouble != topic->second.unreadable.end())
+      warn(Code::kNoSuchField, source->field.span, trouble->second, "");
   }
 
   // The key of a diagnostic, or "<status>_<key>" (ros2/diagnostics_watch.h).

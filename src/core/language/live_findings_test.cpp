@@ -29,8 +29,8 @@ LiveInventory whole_robot() {
   robot.nodes["/lidar"].lifecycle = "active";
   robot.nodes["/slam"];
   robot.services["/lidar/change_state"] = "lifecycle_msgs/srv/ChangeState";
-  robot.topics["/scan"] = {"sensor_msgs/msg/LaserScan", {"/lidar"}, 10.0, {}};
-  robot.topics["/map"] = {"nav_msgs/msg/OccupancyGrid", {"/slam"}, 2.5, {}};
+  robot.topics["/scan"] = {"sensor_msgs/msg/LaserScan", {"/lidar"}, 10.0, {}, {}};
+  robot.topics["/map"] = {"nav_msgs/msg/OccupancyGrid", {"/slam"}, 2.5, {}, {}};
   robot.diagnostics = {{"slam", "", 0, {{"entropy", "0.25"}}}};
   return robot;
 }

@@ -31,6 +31,7 @@ struct LiveInventory {
     // Of topics that are watched only.
     std::optional<double> rate;  // Hz
     std::map<std::string, Value> fields;
+    std::map<std::string, std::string> unreadable;  // fields that it has not, with the reason
     bool is_published() const { return !publishers.empty(); }
     bool operator==(const Topic&) const = default;
   };

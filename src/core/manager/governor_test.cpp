@@ -1,6 +1,7 @@
 // What may be done now (docs/governor.md): limits, storms, interlocks, last resorts.
 #include <gtest/gtest.h>
 
+#include "execute/evidence.h"
 #include "manager/test_robot.h"
 
 namespace culprit::test {
@@ -292,6 +293,13 @@ TestRobot camera_and_fusion(const std::string& trigger, const Governor::Options&
   return robot;
 }
 
+TopicId rgb_of(TestRobot& robot) {
+  const auto& topics = robot.rules().topics;
+  const auto rgb = std::find_if(topics.begin(), topics.end(),
+                                [](const Topic& topic) { return topic.name == "/rgb"; });
+  return TopicId(static_cast<std::size_t>(rgb - topics.begin()));
+}
+
 TEST(Evidence, WhatRunsAndPublishesIsNotEndedBecauseSomethingElseIsSilent) {
   TestRobot robot = camera_and_fusion("age(/fused) > 300ms", with_evidence());
   robot["fusion"].fault = "a person";
@@ -304,6 +312,21 @@ TEST(Evidence, WhatRunsAndPublishesIsNotEndedBecauseSomethingElseIsSilent) {
   robot.order({1, "Ann", "", RunStrategy{StrategyId(0)}});
   robot.run_for(2s);
   EXPECT_TRUE(robot.was_asked("camera: stop process")) << "a person may know better";
+}
+
+// It came twice as late as usual, and a little: that is no silence yet.
+TEST(Evidence, AMessageThatIsALittleLateIsNoSilence) {
+  TestRobot robot = camera_and_fusion("age(/fused) > 300ms", with_evidence());
+  const Duration interval = robot.manager().knowledge().signals.rhythm(rgb_of(robot)).interval;
+  robot["camera"].fault = "a person";
+  robot["fusion"].fault = "a person";
+  const Time last = *robot.manager().knowledge().signals.rhythm(rgb_of(robot)).last;
+  const auto& strategy = robot.rules().strategies[0];
+  const auto objection = [&](Duration after) {
+    return contradiction(strategy, robot.manager().knowledge(), last + after);
+  };
+  EXPECT_TRUE(objection(2 * interval + 100ms));
+  EXPECT_FALSE(objection(2 * interval + 101ms));
 }
 
 TEST(Evidence, ItIsEndedOnceItIsSilentItself) {

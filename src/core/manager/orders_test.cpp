@@ -120,6 +120,13 @@ TEST(Orders, ASilencedComponentIsWatchedAndLeftAloneUntilTheSilenceEnds) {
   EXPECT_TRUE(r.works("camera")) << transcript(r);
 }
 
+TEST(Orders, TheFirstOfTwoSilencesToEndIsWaitedFor) {
+  TestRobot r = robot();
+  r.order(order(Silence{kCamera, 10s}));
+  r.order(order(Silence{kCameraDead, 60s}));
+  EXPECT_LE(r.manager().governor().next_deadline(), r.now + 10s);
+}
+
 TEST(Orders, ASilencedRuleDoesNotSpendItsRounds) {
   TestRobot r = robot();
   r.order(order(Silence{kCameraDead, {}}));

@@ -1,6 +1,7 @@
 // When the manager judges a strategy.
 #include <gtest/gtest.h>
 
+#include "analyze/analyzer.h"
 #include "manager/test_robot.h"
 
 namespace culprit::test {
@@ -50,6 +51,30 @@ TEST(Verdicts, DoNotWaitForEverForASignalThatFellSilent) {
   TestRobot robot = blurred_camera();
   robot.run_for(5s);
   EXPECT_EQ(robot.count("focus did not resolve Blurred"), 1u) << transcript(robot);
+}
+
+// Whether it helped cannot be seen for the moment, and after half a minute it did not.
+TEST(Verdicts, WaitHalfAMinuteForASignalThatIsNotKnownAnyLonger) {
+  TestRobot robot(R"(
+CYCLE 40ms
+SIGNAL blur DIAGNOSTIC camera KEY blur STALE 100ms
+COMPONENT camera NODE /camera
+RULE Blurred
+  POLICIES WARNING
+  TRIGGER blur > 0
+    STRATEGY focus 90 10
+      ADAPTATION camera set_parameter focus 1 10
+)");
+  robot.add("camera").parameters["focus"] = Value(std::int64_t{0});
+  robot.discover();
+  robot.signal("blur", Value(1.0));
+  Time deadline = kNever;
+  while (robot.count("focus did not resolve Blurred") == 0 && robot.now < Time(60s)) {
+    const auto& attempt = robot.manager().knowledge().states[RuleId(0)].attempt;
+    if (attempt) deadline = attempt->deadline;
+    robot.run_for(1ms);
+  }
+  EXPECT_EQ(robot.now, deadline + Analyzer::kLostAfter) << transcript(robot);
 }
 
 }  // namespace

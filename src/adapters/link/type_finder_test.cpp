@@ -1,0 +1,217 @@
+#include "link/type_finder.h"
+
+#include <fcntl.h>
+#include <fstream>
+#include <future>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/test_folder.h"
+#include "ros2/live_test.h"
+#include "ros2/type_description.h"
+
+namespace culprit::ros2 {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using DescribeType = srv::GetTypeDescription;
+
+constexpr const char* kType = "my_msgs/msg/Battery";
+
+MessageDefinitions battery() {
+  return {
+      {kType,
+       {kType,
+        {{.name = "cells", .element = "my_msgs/msg/Cell", .shape = Shape::kSequence, .count = 0},
+         {.name = "charge", .element = Primitive::kFloat64}}}},
+      {"my_msgs/msg/Cell",
+       {"my_msgs/msg/Cell", {{.name = "volts", .element = Primitive::kFloat32}}}}};
+}
+
+fs::path with_file(const fs::path& prefix, const std::string& text) {
+  const fs::path file = prefix / "share" / (std::string(kType) + ".msg");
+  fs::create_directories(file.parent_path());
+  std::ofstream(file) << text;
+  return prefix;
+}
+
+// A process that was started with this AMENT_PREFIX_PATH, and ends with the test.
+class StartedWith {
+ public:
+  explicit StartedWith(const fs::path& prefixes) {
+    const std::string variable = "AMENT_PREFIX_PATH=" + prefixes.string();
+    int runs[2];
+    if (pipe2(runs, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+    pid_ = fork();
+    if (pid_ == 0) {
+      char program[] = "/bin/sleep";
+      char time[] = "1000";
+      char* arguments[] = {program, time, nullptr};
+      char* environment[] = {const_cast<char*>(variable.c_str()), nullptr};
+      execve(program, arguments, environment);
+      _exit(127);
+    }
+    close(runs[1]);
+    char nothing = 0;
+    (void)!read(runs[0], &nothing, 1);  // ends when its program runs
+    close(runs[0]);
+  }
+  ~StartedWith() {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  StartedWith(const StartedWith&) = delete;
+  StartedWith& operator=(const StartedWith&) = delete;
+
+  int pid() const { return pid_; }
+
+ private:
+  pid_t pid_ = 0;
+};
+
+// A finder, and what it finds.
+class Finding {
+ public:
+  explicit Finding(const TestDomain& domain, TypeFinder::Options options = {})
+      : context_(domain.options()) {
+    context_.run([&] {
+      node_ = std::move(*Node::create(*context_, {"/", "finder"}));
+      finder_ = std::make_unique<TypeFinder>(*node_, std::move(options));
+    });
+  }
+  ~Finding() {
+    context_.run([&] {
+      finder_.reset();
+      node_.reset();
+    });
+  }
+
+  // The names of the type's fields, or why it is not known.
+  std::string find(TypeFinder::Publication publication) {
+    std::promise<std::string> found;
+    context_.run([&] {
+      finder_->find(publication, [&](const Expected<MessageLibrary*>& library) {
+        found.set_value(library ? fields_of(**library) : library.error());
+      });
+    });
+    return found.get_future().get();
+  }
+
+ private:
+  static std::string fields_of(MessageLibrary& library) {
+    std::string names;
+    for (const FieldDefinition& field : (*library.find(kType))->fields) names += field.name + ' ';
+    return names;
+  }
+
+  LiveContext context_;
+  std::unique_ptr<Node> node_;
+  std::unique_ptr<TypeFinder> finder_;
+};
+
+// A node as Jazzy's, which tells what `told` looks like whatever it is asked.
+class TellingNode {
+ public:
+  TellingNode(const TestDomain& domain, const MessageDefinitions& told)
+      : context_(domain.options()) {
+    context_.run([&] {
+      node_ = std::move(*Node::create(*context_, {"/", "driver"}));
+      server_ = std::move(*node_->create_service<DescribeType>(
+          "~/get_type_description", [told](const DescribeType::Request&) {
+            DescribeType::Response response;
+            response.successful = true;
+            response.type_description = describe(kType, told);
+            return response;
+          }));
+    });
+  }
+  ~TellingNode() {
+    context_.run([&] {
+      server_.reset();
+      node_.reset();
+    });
+  }
+
+ private:
+  LiveContext context_;
+  std::unique_ptr<Node> node_;
+  std::unique_ptr<ServiceServer> server_;
+};
+
+TEST(TypeFinder, TakesTheFilesOfThePublishersProcessWhereNobodyAnnouncesHashes) {
+  const TestDomain domain;
+  const test::TestFolder ours;
+  const test::TestFolder its;
+  with_file(ours.path(), "int32 old\n");
+  const StartedWith process(with_file(its.path(), "int32 real\n"));
+  Finding finding(domain, {{ours.path()}, {}});
+  EXPECT_EQ(finding.find({"/driver", kType, "", process.pid()}), "real ");
+  EXPECT_EQ(finding.find({"/elsewhere", kType, "", 0}), "old ");
+}
+
+TEST(TypeFinder, SaysWhatToDoWhereThereIsNothing) {
+  const TestDomain domain;
+  Finding finding(domain);
+  EXPECT_EQ(finding.find({"/driver", kType, "", 0}),
+            "the message type my_msgs/msg/Battery is not known; give the directory that holds "
+            "my_msgs/msg/Battery.msg with --message-path");
+  EXPECT_THAT(finding.find({"/driver", "../etc/passwd", "", 0}),
+              HasSubstr("not the name of a type"));
+}
+
+TEST(TypeFinder, TakesNoFileOfAnotherTypeThanTheOnePublished) {
+  const TestDomain domain;
+  const test::TestFolder ours;
+  const test::TestFolder its;
+  with_file(ours.path(), "int32 old\n");
+  const StartedWith process(with_file(its.path(), "int32 real\n"));
+  Finding finding(domain, {{ours.path()}, {}});
+  MessageLibrary real({its.path()});
+  EXPECT_EQ(finding.find({"/driver", kType, *real.hash_of(kType), process.pid()}), "real ");
+}
+
+TEST(TypeFinder, AsksTheNodeAndKeepsWhatItSays) {
+  const TestDomain domain;
+  const test::TestFolder kept;
+  const std::string hash = type_hash(kType, battery());
+  const test::TestFolder ours;
+  with_file(ours.path(), "int32 old\n");
+  {
+    const TellingNode driver(domain, battery());
+    Finding finding(domain, {{ours.path()}, kept.path() / "types"});
+    EXPECT_EQ(finding.find({"/driver", kType, hash, 0}), "cells charge ");
+  }
+  // Nobody is there to be asked.
+  Finding later(domain, {{ours.path()}, kept.path() / "types"});
+  EXPECT_EQ(later.find({"/driver", kType, hash, 0}), "cells charge ");
+}
+
+TEST(TypeFinder, BelievesNobodyWhoseWordsDoNotFitTheHash) {
+  const TestDomain domain;
+  const test::TestFolder kept;
+  const std::string hash = type_hash(kType, battery());
+  MessageDefinitions forged = battery();
+  forged.at(kType).fields.pop_back();
+  const TellingNode driver(domain, forged);
+  std::ofstream(kept.path() / hash) << "int32 forged\n";
+  Finding finding(domain, {{}, kept.path()});
+  EXPECT_THAT(finding.find({"/driver", kType, hash, 0}),
+              HasSubstr("what its node tells of it is not what is published"));
+  EXPECT_THAT(finding.find({"/driver", kType, "RIHS01_../../etc/passwd", 0}),
+              HasSubstr("none that can be checked"));
+}
+
+TEST(TypeFinder, WaitsForNobodyForEver) {
+  const TestDomain domain;
+  Finding finding(domain);
+  EXPECT_THAT(finding.find({"/driver", kType, type_hash(kType, battery()), 0}),
+              HasSubstr("its node does not tell it"));
+}
+
+}  // namespace
+}  // namespace culprit::ros2
