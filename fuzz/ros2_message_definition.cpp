@@ -5,10 +5,11 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "base/name_grammar.h"
 #include "ros2/message_definition.h"
-#include "ros2/names.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace culprit;
   using namespace culprit::ros2;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto definition = parse_message_definition(text, "a/msg/B", "B.msg");
