@@ -7,8 +7,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,17 +35,12 @@ class Condensation {
  public:
   using Scc = std::uint32_t;
   using Vertex = std::uint32_t;
-  static constexpr Scc kNone = std::numeric_limits<Scc>::max();
 
   // `edges` lead from a consumer to a producer; both are below `vertices`. Tarjan's algorithm.
   Condensation(std::size_t vertices, std::span<const std::pair<Vertex, Vertex>> edges);
 
   std::size_t size() const { return first_producer_.size() - 1; }
   Scc scc_of(Vertex vertex) const { return scc_of_[vertex]; }
-  // Their order, as that of a LiveCondensation: each number is its place, and none is empty.
-  std::size_t places() const { return size(); }
-  Scc at(std::size_t place) const { return static_cast<Scc>(place); }
-  std::size_t place_of(Scc scc) const { return scc; }
   // What an SCC depends on directly: lower numbers, possibly more than once.
   std::span<const Scc> producers(Scc scc) const {
     return std::span(producers_)

@@ -29,13 +29,12 @@ DependencyGraph::DependencyGraph(const RuleSet& rules)
     const NodeId producer = place_of(d.producer);
     nodes_[consumer.index].declared_producers.push_back(producer);
     nodes_[producer.index].declared_consumers.push_back(consumer);
-    condensation_.add_dependency(consumer.index, producer.index);
   }
 }
 
 NodeId DependencyGraph::add_node() {
   nodes_.emplace_back();
-  condensation_.add_node();
+  condensation_.reset();
   return NodeId(nodes_.size() - 1);
 }
 
@@ -79,7 +78,7 @@ std::optional<DependencyGraph::ChannelId> DependencyGraph::intern_channel(Endpoi
 bool DependencyGraph::node_appeared(const std::string& node) {
   const auto id = intern_node(node);
   if (!id || nodes_[id->index].is_present) return false;
-  note_channels_of(*id);
+  condensation_.reset();
   ++changes_;
   return nodes_[id->index].is_present = true;
 }
@@ -89,7 +88,7 @@ bool DependencyGraph::node_vanished(const std::string& node) {
   if (id == node_ids_.end() || !nodes_[id->second.index].is_present) return false;
   nodes_[id->second.index].is_present = false;
   ++changes_;
-  note_channels_of(id->second);
+  condensation_.reset();
   return true;
 }
 
@@ -98,7 +97,7 @@ void DependencyGraph::keep_ends(ComponentId component, bool is_kept) {
   if (!node || nodes_[node->index].keeps_ends == is_kept) return;
   nodes_[node->index].keeps_ends = is_kept;
   ++changes_;
-  note_channels_of(*node);
+  condensation_.reset();
 }
 
 bool DependencyGraph::has_all_ends(ComponentId component) const {
@@ -115,12 +114,6 @@ bool DependencyGraph::has_all_ends(ComponentId component) const {
                      [&](ChannelId id) { return is_there(channels_[id.index].consumers); });
 }
 
-// What a node's presence decides: whether its ends count that are only remembered.
-void DependencyGraph::note_channels_of(NodeId node) {
-  for (const ChannelId channel : nodes_[node.index].consumes) condensation_.note(channel.index);
-  for (const ChannelId channel : nodes_[node.index].produces) condensation_.note(channel.index);
-}
-
 bool DependencyGraph::endpoint_appeared(const std::string& node, EndpointKind kind,
                                         const std::string& name) {
   if (!is_service(kind) && ignored_.contains(name)) return false;
@@ -129,7 +122,7 @@ bool DependencyGraph::endpoint_appeared(const std::string& node, EndpointKind ki
   if (!node_id || !channel_id) return false;
   if (++end_of(*node_id, *channel_id, produces(kind)).count > 1) return false;
   if (produces(kind)) ++channels_[channel_id->index].live_producers;
-  condensation_.note(channel_id->index);
+  condensation_.reset();
   ++changes_;
   return true;
 }
@@ -151,7 +144,7 @@ void DependencyGraph::remember(ComponentId component, const std::vector<KnownRob
     const auto channel = intern_channel(end.kind, end.name);
     if (!channel) return;
     end_of(node, *channel, produces(end.kind));
-    condensation_.note(channel->index);
+    condensation_.reset();
   }
 }
 
@@ -186,7 +179,7 @@ bool DependencyGraph::endpoint_vanished(const std::string& node, EndpointKind ki
   if (end == ends.end() || end->count == 0) return false;
   if (--end->count > 0) return false;
   if (produces(kind)) --channel.live_producers;
-  condensation_.note(channel_id->second.index);
+  condensation_.reset();
   ++changes_;
   return true;
 }
@@ -291,11 +284,11 @@ void DependencyGraph::find_ends(const Channel& channel, std::vector<Vertex>& pro
   }
 }
 
-const LiveCondensation& DependencyGraph::condensation() const {
-  return condensation_.up_to_date(
-      [this](std::size_t channel, std::vector<Vertex>& producers, std::vector<Vertex>& consumers) {
-        find_ends(channels_[channel], producers, consumers);
-      });
+const Condensation& DependencyGraph::condensation() const {
+  if (condensation_) return *condensation_;
+  ChannelEdges edges(nodes_.size());
+  for_each_channel([&](auto producers, auto consumers) { edges.add(producers, consumers); });
+  return condensation_.emplace(edges.vertices(), edges.edges());
 }
 
 std::optional<DependencyGraph::Vertex> DependencyGraph::vertex_of(ComponentId component) const {
@@ -303,11 +296,10 @@ std::optional<DependencyGraph::Vertex> DependencyGraph::vertex_of(ComponentId co
   return node ? std::optional<Vertex>(node->index) : std::nullopt;
 }
 
-std::optional<LiveCondensation::Scc> DependencyGraph::scc_of(ComponentId component) const {
+std::optional<Condensation::Scc> DependencyGraph::scc_of(ComponentId component) const {
   const auto node = vertex_of(component);
   if (!node) return std::nullopt;
-  condensation();
-  return condensation_.scc_of(*node);
+  return condensation().scc_of(*node);
 }
 
 std::vector<std::string> DependencyGraph::nodes() const {

@@ -18,7 +18,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "knowledge/channel_condensation.h"
+#include "knowledge/condensation.h"
 #include "knowledge/known_robot.h"
 #include "language/rule_set.h"
 #include "robot/component_binding.h"
@@ -78,11 +78,11 @@ class DependencyGraph {
   // The components that depend on it, likewise.
   const std::vector<ComponentId>& downstream(ComponentId component) const;
 
-  // All that counts now, with circles drawn together. What has changed is worked in when it is
-  // asked for; the reference is valid until the next change.
-  const LiveCondensation& condensation() const;
+  // All that counts now, with circles drawn together. Found anew when it is asked for after a change
+  // (docs/performance.md says what that costs); the reference is valid until the next change.
+  const Condensation& condensation() const;
   // Nothing while the component was not seen and is not declared to depend on another.
-  std::optional<LiveCondensation::Scc> scc_of(ComponentId component) const;
+  std::optional<Condensation::Scc> scc_of(ComponentId component) const;
 
   using Vertex = std::uint32_t;
   // Nodes as numbers below size(). Nothing as for scc_of().
@@ -136,7 +136,6 @@ class DependencyGraph {
   End& end_of(NodeId node, ChannelId channel, bool producer);
   std::optional<NodeId> intern_node(const std::string& name);
   std::optional<ChannelId> intern_channel(EndpointKind kind, const std::string& name);
-  void note_channels_of(NodeId node);
   bool counts(const End& end, const Channel& channel, bool producer) const;
   std::vector<NodeId> publishers_of(const std::string& topic) const;
   // Appends those that count.
@@ -154,7 +153,7 @@ class DependencyGraph {
 
   std::uint64_t changes_ = 0;
 
-  mutable ChannelCondensation condensation_;
+  mutable std::optional<Condensation> condensation_;  // nothing: something changed
 
   // Scratch of reach(): who was visited in which search.
   mutable std::vector<std::uint32_t> visited_;

@@ -70,8 +70,7 @@ Reach::Reach(std::vector<ComponentId> components)
       downstream_(components_.size(), components_.size()),
       dependents_(components_.size(), 0) {}
 
-template <class Graph>
-void Reach::find(const Graph& graph, const Sccs& sccs) {
+void Reach::find(const Condensation& graph, const Sccs& sccs) {
   const std::vector<std::uint32_t> members = members_of(graph.size(), sccs);
   // By the order of their SCCs, so that a pass can begin at its first.
   std::vector<std::size_t> order;
@@ -80,7 +79,7 @@ void Reach::find(const Graph& graph, const Sccs& sccs) {
   }
   const auto scc_at = [&](std::size_t place) { return *sccs[components_[place].index]; };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(graph.place_of(scc_at(a)), a) < std::pair(graph.place_of(scc_at(b)), b);
+    return std::pair(scc_at(a), a) < std::pair(scc_at(b), b);
   });
 
   std::vector<Word> own(graph.size(), 0);      // which of the 64 are in the SCC
@@ -88,12 +87,9 @@ void Reach::find(const Graph& graph, const Sccs& sccs) {
   for (std::size_t begin = 0; begin < order.size(); begin += kWordBits) {
     const std::size_t end = std::min(order.size(), begin + kWordBits);
     for (std::size_t i = begin; i < end; ++i) own[scc_at(order[i])] |= Word{1} << (i - begin);
-    const std::size_t first = graph.place_of(scc_at(order[begin]));
     std::fill(reached.begin(), reached.end(), 0);
     BitCounts counts;
-    for (std::size_t place = first; place < graph.places(); ++place) {
-      const Scc scc = graph.at(place);
-      if (scc == Graph::kNone) continue;
+    for (Scc scc = scc_at(order[begin]); scc < graph.size(); ++scc) {
       Word bits = own[scc];
       for (const Scc producer : graph.producers(scc)) bits |= reached[producer];
       reached[scc] = bits;

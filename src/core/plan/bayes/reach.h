@@ -34,8 +34,7 @@ class Reach {
 
  private:
   explicit Reach(std::vector<ComponentId> components);
-  template <class Graph>
-  void find(const Graph& graph, const Sccs& sccs);
+  void find(const Condensation& graph, const Sccs& sccs);
 
   std::vector<ComponentId> components_;  // ascending, each once
   BitRows upstream_;

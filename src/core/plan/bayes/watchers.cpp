@@ -8,7 +8,7 @@ namespace culprit::plan {
 
 Watchers::Watchers(const Knowledge& knowledge, Time until)
     : knowledge_(knowledge), places_(knowledge.graph.condensation().size()) {
-  const LiveCondensation& graph = knowledge.graph.condensation();
+  const Condensation& graph = knowledge.graph.condensation();
   const RuleSet& rules = knowledge.rules;
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     if (const auto scc = knowledge.graph.scc_of(ComponentId(c))) ++places_[*scc].components;
@@ -21,10 +21,8 @@ Watchers::Watchers(const Knowledge& knowledge, Time until)
       if (const auto scc = knowledge.graph.scc_of(c)) ++places_[*scc].rules;
     }
   }
-  for (std::size_t place = 0; place < graph.places(); ++place) {
-    const LiveCondensation::Scc scc = graph.at(place);
-    if (scc == LiveCondensation::kNone) continue;
-    for (const LiveCondensation::Scc producer : graph.producers(scc)) {
+  for (Condensation::Scc scc = 0; scc < graph.size(); ++scc) {
+    for (const Condensation::Scc producer : graph.producers(scc)) {
       const Place& before = places_[producer];
       places_[scc].is_below_one |= before.is_below_one || before.rules > 0;
     }
