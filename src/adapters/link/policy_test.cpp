@@ -35,7 +35,7 @@ Rights rights_with(const std::string& trigger, const std::string& adaptation) {
       kSelf);
 }
 
-std::string read(const std::string& path) {
+std::string content_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return std::string(std::istreambuf_iterator<char>(file), {});
 }
@@ -43,7 +43,7 @@ std::string read(const std::string& path) {
 // CULPRIT_WRITE_GOLDEN=1 writes what it is now, for a person to read and commit.
 void expect_golden(const std::string& path, const std::string& text) {
   if (std::getenv("CULPRIT_WRITE_GOLDEN") != nullptr) std::ofstream(path, std::ios::binary) << text;
-  EXPECT_EQ(text, read(path)) << path;
+  EXPECT_EQ(text, content_of(path)) << path;
 }
 
 TEST(Policy, IsGoldenForTheRobotsOfTheExamples) {

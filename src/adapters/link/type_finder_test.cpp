@@ -58,7 +58,7 @@ class StartedWith {
     }
     close(runs[1]);
     char nothing = 0;
-    (void)!read(runs[0], &nothing, 1);  // ends when its program runs
+    (void)!::read(runs[0], &nothing, 1);  // ends when its program runs
     close(runs[0]);
   }
   ~StartedWith() {
