@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <mutex>
 #include <vector>
+
+#include "base/mutex.h"
 
 namespace culprit::bench {
 namespace {
@@ -15,20 +16,20 @@ struct Claim {
   std::string unit;
 };
 
-std::mutex mutex;
-std::vector<Claim> claims;
+Mutex mutex;
+std::vector<Claim> claims CULPRIT_GUARDED_BY(mutex);
 
 }  // namespace
 
 void claim(std::string what, double measured, double limit, std::string unit) {
-  const std::lock_guard lock(mutex);
+  const MutexLock lock(mutex);
   // Google Benchmark may run a function several times: the last run counts.
   std::erase_if(claims, [&](const Claim& c) { return c.what == what; });
   claims.push_back({std::move(what), measured, limit, std::move(unit)});
 }
 
 bool print_claims() {
-  const std::lock_guard lock(mutex);
+  const MutexLock lock(mutex);
   std::printf("\n%-72s %10s %10s\n", "claim", "measured", "at most");
   for (const Claim& c : claims) {
     std::printf("%-72s %10.3g %10.3g  %-12s %s\n", c.what.c_str(), c.measured, c.limit,

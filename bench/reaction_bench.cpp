@@ -1,12 +1,11 @@
 // From a sample to the request that answers it, between processes: a source, `culprit run`, and a
 // plain reader.
 #include <algorithm>
-#include <condition_variable>
-#include <mutex>
 #include <sstream>
 
 #include <benchmark/benchmark.h>
 
+#include "base/mutex.h"
 #include "claims.h"
 #include "live.h"
 #include "ros2/messages.h"
@@ -36,7 +35,7 @@ class Target {
          .user_data = {},
          .on_match = {}},
         [this](const ros2::Sample& sample) {
-          const std::lock_guard lock(mutex_);
+          const MutexLock lock(mutex_);
           request_ = sample.sent;
           changed_.notify_all();
         });
@@ -50,12 +49,13 @@ class Target {
   }
 
   void forget_request() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     request_.reset();
   }
   std::optional<SystemTime> await_request(Duration patience) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, patience, [this] { return request_.has_value(); });
+    MutexLock lock(mutex_);
+    changed_.wait_for(lock, patience,
+                      [this]() CULPRIT_REQUIRES(mutex_) { return request_.has_value(); });
     return request_;
   }
 
@@ -63,9 +63,9 @@ class Target {
   Side side_;
   std::unique_ptr<ros2::Node> node_;
   Expected<std::unique_ptr<ros2::RawPublisher>> value_ = Error{""};
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::optional<SystemTime> request_;
+  Mutex mutex_;
+  ConditionVariable changed_;
+  std::optional<SystemTime> request_ CULPRIT_GUARDED_BY(mutex_);
   Expected<std::unique_ptr<ros2::Reader>> requests_ = Error{""};
 };
 

@@ -2,10 +2,10 @@
 // again.
 #include <atomic>
 #include <map>
-#include <mutex>
 
 #include <benchmark/benchmark.h>
 
+#include "base/mutex.h"
 #include "claims.h"
 #include "demo/sunset_demo.h"
 #include "live.h"
@@ -38,7 +38,7 @@ BENCHMARK(idle)->Iterations(1)->Unit(benchmark::kSecond);
 class RedeployClock {
  public:
   void on(const Event& event) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (const auto* failed = std::get_if<StrategyFailed>(&event.what)) {
       failed_[rule_of(failed->strategy)] = event.at;
     } else if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) {
@@ -48,12 +48,15 @@ class RedeployClock {
     }
   }
   std::function<RuleId(StrategyId)> rule_of;
-  const std::vector<double>& all() const { return seconds_; }
+  std::vector<double> all() {
+    const MutexLock lock(mutex_);
+    return seconds_;
+  }
 
  private:
-  std::mutex mutex_;
-  std::map<RuleId, Time> failed_;
-  std::vector<double> seconds_;
+  Mutex mutex_;
+  std::map<RuleId, Time> failed_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<double> seconds_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 void redeploy(benchmark::State& state) {

@@ -32,6 +32,10 @@ namespace culprit {
 class CULPRIT_THREAD_ATTRIBUTE(capability("mutex")) Mutex {
  public:
   void lock() CULPRIT_ACQUIRES() CULPRIT_NOT_ANALYZED { mutex_.lock(); }
+  // Whether it was free; who gets it adopts it: `const MutexLock lock(mutex, std::adopt_lock);`
+  bool try_lock() CULPRIT_THREAD_ATTRIBUTE(try_acquire_capability(true)) CULPRIT_NOT_ANALYZED {
+    return mutex_.try_lock();
+  }
   void unlock() CULPRIT_RELEASES() CULPRIT_NOT_ANALYZED { mutex_.unlock(); }
 
  private:
@@ -43,6 +47,8 @@ class CULPRIT_THREAD_ATTRIBUTE(capability("mutex")) Mutex {
 class CULPRIT_THREAD_ATTRIBUTE(scoped_lockable) MutexLock {
  public:
   explicit MutexLock(Mutex& mutex) CULPRIT_ACQUIRES(mutex) : lock_(mutex.mutex_) {}
+  MutexLock(Mutex& mutex, std::adopt_lock_t held) CULPRIT_REQUIRES(mutex)
+      : lock_(mutex.mutex_, held) {}
   ~MutexLock() CULPRIT_RELEASES() = default;
   MutexLock(const MutexLock&) = delete;
   MutexLock& operator=(const MutexLock&) = delete;
@@ -68,6 +74,10 @@ class ConditionVariable {
   template <class Predicate>
   void wait(MutexLock& lock, Predicate is_over) CULPRIT_NOT_ANALYZED {
     condition_.wait(lock.lock_, is_over);
+  }
+  template <class Number, class Period>
+  std::cv_status wait_for(MutexLock& lock, const std::chrono::duration<Number, Period>& patience) {
+    return condition_.wait_for(lock.lock_, patience);
   }
   template <class Clock, class Span>
   std::cv_status wait_until(MutexLock& lock, const std::chrono::time_point<Clock, Span>& end) {

@@ -122,7 +122,7 @@ Expected<void> TestNetwork::open(Computer computer) {
 }
 
 void TestNetwork::set(const NetworkTrouble& trouble) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   trouble_ = trouble;
 }
 
@@ -142,7 +142,7 @@ void TestNetwork::accept(const End& from, const End& to) {
   const ssize_t size = read(from.tap, bytes.data(), bytes.size());
   if (size <= 0) return;
   bytes.resize(static_cast<std::size_t>(size));
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::uniform_real_distribution<double> any(0, 1);
   if (trouble_.is_cut || any(random_) < trouble_.lost) return;
   const int times = any(random_) < trouble_.doubled ? 2 : 1;

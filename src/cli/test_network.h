@@ -9,13 +9,13 @@
 #include <array>
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "base/expected.h"
+#include "base/mutex.h"
 #include "base/time.h"
 
 namespace culprit::cli {
@@ -74,8 +74,8 @@ class TestNetwork {
   std::array<End, 2> ends_;
   std::vector<Frame> under_way_;
   std::mt19937 random_{1};
-  std::mutex mutex_;
-  NetworkTrouble trouble_;  // guarded by mutex_
+  Mutex mutex_;
+  NetworkTrouble trouble_ CULPRIT_GUARDED_BY(mutex_);
   std::atomic<std::size_t> carried_ = 0;
   std::atomic<bool> is_over_ = false;
   std::thread cable_;

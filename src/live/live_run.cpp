@@ -52,17 +52,17 @@ void LiveRun::take_role() {
 }
 
 void LiveRun::enter(LiveSession* session) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   entered_ = session;
 }
 
 void LiveRun::interrupt() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (entered_ != nullptr) entered_->interrupt();
 }
 
 void LiveRun::leave() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (entered_ != nullptr) entered_->leave();
 }
 
@@ -71,7 +71,7 @@ Expected<std::size_t> LiveRun::reload(const std::string& author) {
   auto loaded = trusted_rules(path, options_.improvises, Colour::kOff);
   if (!loaded) return Error{loaded.error()};
   const std::size_t count = loaded->rules.rules.size();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (entered_ == nullptr) return Error{"the rules are just being reloaded; ask again"};
   const std::string& robot = entered_->rules().robot;
   if (loaded->rules.robot != robot)
@@ -83,7 +83,7 @@ Expected<std::size_t> LiveRun::reload(const std::string& author) {
 }
 
 std::optional<LiveRun::Next> LiveRun::take_next() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return std::exchange(next_, std::nullopt);
 }
 

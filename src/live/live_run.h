@@ -4,10 +4,10 @@
 
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 
+#include "base/mutex.h"
 #include "live/live_session.h"
 #include "live/role.h"
 #include "live/service_manager.h"
@@ -66,9 +66,10 @@ class LiveRun {
   std::unique_ptr<LiveSession> session_;
   ServiceManager systemd_;
 
-  std::mutex mutex_;                // guards what follows
-  LiveSession* entered_ = nullptr;  // the session that is on; null: none is now
-  std::optional<Next> next_;
+  Mutex mutex_;
+  LiveSession* entered_ CULPRIT_GUARDED_BY(mutex_) =
+      nullptr;  // the session that is on; null: none is now
+  std::optional<Next> next_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 }  // namespace culprit

@@ -13,7 +13,7 @@ OrderKeeper::OrderKeeper(std::string why)
 
 OrderKeeper::~OrderKeeper() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_over_ = true;
   }
   wakes_.notify_all();
@@ -22,7 +22,7 @@ OrderKeeper::~OrderKeeper() {
 
 StandingOrders OrderKeeper::begin(std::filesystem::path file, const StandingOrders& found,
                                   bool is_in_file, std::string& trouble) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   file_ = std::move(file);
   only_advises_ = false;
   in_file_ = is_in_file ? std::optional(found) : std::nullopt;
@@ -33,7 +33,7 @@ StandingOrders OrderKeeper::begin(std::filesystem::path file, const StandingOrde
 }
 
 StandingOrders OrderKeeper::begin_without(std::string why, const StandingOrders& found) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   file_.reset();
   in_file_.reset();
   only_advises_ = false;
@@ -43,7 +43,7 @@ StandingOrders OrderKeeper::begin_without(std::string why, const StandingOrders&
 }
 
 StandingOrders OrderKeeper::begin_advising(std::string why) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   file_.reset();
   in_file_.reset();
   only_advises_ = true;
@@ -59,19 +59,20 @@ void OrderKeeper::begin_with(const StandingOrders& orders) {
 }
 
 void OrderKeeper::tell(const StandingOrders& orders) {
-  const std::lock_guard lock(told_mutex_);
+  const MutexLock lock(told_mutex_);
   told_ = orders;
 }
 
 StandingOrders OrderKeeper::told() const {
-  const std::lock_guard lock(told_mutex_);
+  const MutexLock lock(told_mutex_);
   return told_;
 }
 
 // What they had told before, and what we had from them, is known: a person may have freed us of it.
 std::vector<Order> OrderKeeper::heed(const StandingOrders& theirs, const RuleSet& rules, Time now) {
-  const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock || theirs.revision <= known_) return {};
+  if (!mutex_.try_lock()) return {};
+  const MutexLock lock(mutex_, std::adopt_lock);
+  if (theirs.revision <= known_) return {};
   known_ = theirs.revision;
   orders_.revision = std::max(orders_.revision, theirs.revision);
   std::vector<Order> orders = restraints_beyond(orders_, theirs, rules, now);
@@ -84,7 +85,7 @@ std::vector<Order> OrderKeeper::heed(const StandingOrders& theirs, const RuleSet
 
 void OrderKeeper::write_later() {
   constexpr auto kAgain = std::chrono::seconds(1);
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (!is_over_) {
     if (is_unwritten() && write(orders_)) is_kept_again_ = true;
     if (is_unwritten()) {
@@ -108,7 +109,7 @@ Kept OrderKeeper::take(const NamedOrder& order, Standing standing,
   const bool frees = standing == Standing::kFrees;
   const std::uint64_t freed = freed_;
   if (!frees) submit();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto* dry_run = std::get_if<SetDryRun>(&order.what);
   if (only_advises_ && dry_run != nullptr && !dry_run->is_on) return {false, false, why_not_};
   StandingOrders next = after(orders_, order, live_now());
@@ -127,7 +128,7 @@ Kept OrderKeeper::take(const NamedOrder& order, Standing standing,
 Expected<void> OrderKeeper::write(const StandingOrders& orders) {
   if (!file_) return Error{why_not_};
   if (in_file_ && restrain_alike(*in_file_, orders)) return {};
-  const auto content = [&] {
+  const auto content = [&]() CULPRIT_REQUIRES(mutex_) {
     const auto text = journal::read_sealed(*file_);
     return text ? *text : std::nullopt;
   };
@@ -140,12 +141,12 @@ Expected<void> OrderKeeper::write(const StandingOrders& orders) {
 }
 
 StandingOrders OrderKeeper::orders() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return orders_;
 }
 
 bool OrderKeeper::is_kept() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return file_ && !is_unwritten();
 }
 

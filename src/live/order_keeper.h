@@ -5,15 +5,14 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <filesystem>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "base/mutex.h"
 #include "journal/standing_orders.h"
 #include "language/rule_set.h"
 #include "robot/standing.h"
@@ -81,27 +80,29 @@ class OrderKeeper {
  private:
   Kept take(const journal::NamedOrder& order, Standing standing,
             const std::function<void()>& submit);
-  Expected<void> write(const journal::StandingOrders& orders);
-  void begin_with(const journal::StandingOrders& orders);
+  Expected<void> write(const journal::StandingOrders& orders) CULPRIT_REQUIRES(mutex_);
+  void begin_with(const journal::StandingOrders& orders) CULPRIT_REQUIRES(mutex_);
   void tell(const journal::StandingOrders& orders);
-  bool is_unwritten() const;
+  bool is_unwritten() const CULPRIT_REQUIRES(mutex_);
   void write_later();
 
-  mutable std::mutex mutex_;  // guards what follows; also held while the file is written
-  std::optional<std::filesystem::path> file_;
-  std::string why_not_;  // if there is no file
-  bool only_advises_ = false;
-  journal::StandingOrders orders_;  // what holds
-  std::uint64_t known_ = 0;  // the latest revision of another culprit's orders that is in ours
-  std::optional<journal::StandingOrders> in_file_;  // nothing: unknown, or unreadable
-  std::atomic<std::uint64_t> freed_ = 0;            // how many orders that free were given
+  mutable Mutex mutex_;  // also held while the file is written
+  std::optional<std::filesystem::path> file_ CULPRIT_GUARDED_BY(mutex_);
+  std::string why_not_ CULPRIT_GUARDED_BY(mutex_);  // if there is no file
+  bool only_advises_ CULPRIT_GUARDED_BY(mutex_) = false;
+  journal::StandingOrders orders_ CULPRIT_GUARDED_BY(mutex_);  // what holds
+  std::uint64_t known_ CULPRIT_GUARDED_BY(mutex_) =
+      0;  // the latest revision of another culprit's orders that is in ours
+  std::optional<journal::StandingOrders> in_file_
+      CULPRIT_GUARDED_BY(mutex_);         // nothing: unknown, or unreadable
+  std::atomic<std::uint64_t> freed_ = 0;  // how many orders that free were given
 
-  mutable std::mutex told_mutex_;  // guards the next
-  journal::StandingOrders told_;
+  mutable Mutex told_mutex_;
+  journal::StandingOrders told_ CULPRIT_GUARDED_BY(told_mutex_);
 
   std::atomic<bool> is_kept_again_ = false;
-  std::condition_variable wakes_;
-  bool is_over_ = false;  // guarded by mutex_
+  ConditionVariable wakes_;
+  bool is_over_ CULPRIT_GUARDED_BY(mutex_) = false;
   std::thread later_;
 };
 

@@ -3,7 +3,7 @@
 namespace culprit {
 
 Expected<LiveInventory> RobotNames::look(const LiveInterest& interest) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (survey_ == nullptr) {
     auto survey = open_survey(message_path_);
     if (!survey) return Error{survey.error()};

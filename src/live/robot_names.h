@@ -1,8 +1,7 @@
 // What the live robot has, for forms: looked at only once somebody asks.
 #pragma once
 
-#include <mutex>
-
+#include "base/mutex.h"
 #include "live/robot_survey.h"
 
 namespace culprit {
@@ -18,9 +17,9 @@ class RobotNames {
 
  private:
   const std::vector<std::filesystem::path> message_path_;
-  std::mutex mutex_;                      // guards what follows
-  std::unique_ptr<ros2::Survey> survey_;  // null: nobody has asked yet
-  LiveInterest interest_;                 // as it was told last
+  Mutex mutex_;
+  std::unique_ptr<ros2::Survey> survey_ CULPRIT_GUARDED_BY(mutex_);  // null: nobody has asked yet
+  LiveInterest interest_ CULPRIT_GUARDED_BY(mutex_);                 // as it was told last
 };
 
 }  // namespace culprit

@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <stdlib.h>
 #include <sys/wait.h>
 
 #include "base/environment.h"
+#include "base/mutex.h"
 #include "base/text_file.h"
 #include "owners/spawn.h"
 
@@ -66,7 +66,7 @@ Answer play(const Json& request) {
   return {200, std::move(body)};
 }
 
-Answer answer(const Json& body, std::mutex& playing) {
+Answer answer(const Json& body, Mutex& playing) {
   const auto study = text_of(body, "study");
   const auto campaign = body.is_object() ? body.find("campaign") : body.end();
   if (!study || campaign == body.end())
@@ -74,18 +74,17 @@ Answer answer(const Json& body, std::mutex& playing) {
   const auto row = natural(body, "row");
   const auto run = natural(body, "run");
   if (!row || !run) return refuse(400, "'row' and 'run' have to be whole numbers from 0");
-  const std::unique_lock lock(playing, std::try_to_lock);
-  if (!lock) return refuse(409, "another run is being played; ask again in a moment");
+  if (!playing.try_lock()) return refuse(409, "another run is being played; ask again in a moment");
+  const MutexLock lock(playing, std::adopt_lock);
   return play({{"study", *study}, {"campaign", *campaign}, {"row", *row}, {"run", *run}});
 }
 
 }  // namespace
 
 Route single_run_route() {
-  return {Method::kPost, "/api/studies/run",
-          [playing = std::make_shared<std::mutex>()](const Json& body) {
-            return answer(body, *playing);
-          }};
+  return {
+      Method::kPost, "/api/studies/run",
+      [playing = std::make_shared<Mutex>()](const Json& body) { return answer(body, *playing); }};
 }
 
 }  // namespace culprit::web

@@ -52,7 +52,7 @@ ComposedNodes::ComposedNodes(const RuleSet& rules, const std::vector<ComponentId
 
 ComposedNodes::~ComposedNodes() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_ending_ = true;
   }
   if (!containers_.empty()) services_.interrupt();
@@ -75,7 +75,7 @@ void ComposedNodes::stop(CommandId command, ComponentId component, int pid, Endi
 
 void ComposedNodes::put(Errand errand) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     container_of_.at(errand.component)->errands.push_back(errand);
   }
   something_came_.notify_all();
@@ -91,7 +91,7 @@ void ComposedNodes::reply(CommandId command, const Answer& answer) {
 
 void ComposedNodes::observe(const Observation& observation) {
   if (containers_.empty()) return;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (const auto* node = std::get_if<NodeAppeared>(&observation.what)) {
     nodes_[node->node] = node->pid;
     for (const auto& each : containers_) {
@@ -116,12 +116,12 @@ void ComposedNodes::observe(const Observation& observation) {
 }
 
 void ComposedNodes::remember(ComponentId component, int pid) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (rules_[component].composed && pid != 0) lives_.try_emplace(component, Life{pid});
 }
 
 bool ComposedNodes::answered(const Reply& reply) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto asked = asked_.find(reply.command);
   // Also one that nobody waits for any more.
   if (asked == asked_.end())
@@ -133,7 +133,7 @@ bool ComposedNodes::answered(const Reply& reply) {
 }
 
 ComposedNodes::Process ComposedNodes::process_of(const std::string& node) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = nodes_.find(node);
   if (found == nodes_.end()) return {};
   // Where its process has ended the graph says so in a moment.
@@ -143,7 +143,7 @@ ComposedNodes::Process ComposedNodes::process_of(const std::string& node) const 
 // It lived in a process of the container before this one, and was not unloaded there.
 bool ComposedNodes::is_lost(const Container& container, ComponentId part, int pid) const {
   constexpr Duration kTogether = 5s;  // nodes of a process that ends leave one after the other
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto life = lives_.find(part);
   if (life == lives_.end() || life->second.pid == pid || has_process(life->second.pid))
     return false;
@@ -153,7 +153,7 @@ bool ComposedNodes::is_lost(const Container& container, ComponentId part, int pi
 
 template <class Done>
 bool ComposedNodes::wait(Time until, Done done) const {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (!is_ending_ && !done()) {
     const Duration left = until - live_now();
     if (left <= Duration::zero()) return false;
@@ -166,10 +166,13 @@ bool ComposedNodes::wait(Time until, Done done) const {
 
 void ComposedNodes::run(Container& container) {
   constexpr Duration kQuiet = 500ms;  // after somebody came to the container
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (!is_ending_) {
-    const auto has_errand = [&] { return is_ending_ || !container.errands.empty(); };
-    something_came_.wait(lock, [&] { return has_errand() || container.has_news; });
+    const auto has_errand = [&]() CULPRIT_REQUIRES(mutex_) {
+      return is_ending_ || !container.errands.empty();
+    };
+    something_came_.wait(
+        lock, [&]() CULPRIT_REQUIRES(mutex_) { return has_errand() || container.has_news; });
     if (container.errands.empty() && something_came_.wait_for(lock, kQuiet, has_errand) == false) {
       container.has_news = false;
       lock.unlock();
@@ -210,13 +213,14 @@ ComposedNodes::Answer ComposedNodes::ask_owner(const std::function<void(CommandI
                                                Duration patience) {
   CommandId id;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     id = CommandId{kFirstRequest + ++requests_};
     asked_[id] = std::nullopt;
   }
   ask(id);
-  wait(later(live_now(), patience), [&] { return asked_[id].has_value(); });
-  const std::lock_guard lock(mutex_);
+  wait(later(live_now(), patience),
+       [&]() CULPRIT_REQUIRES(mutex_) { return asked_[id].has_value(); });
+  const MutexLock lock(mutex_);
   const std::optional<Reply> reply = asked_[id];
   asked_.erase(id);
   if (!reply) return {Outcome::kTimedOut, "its owner did not answer"};
@@ -300,7 +304,7 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
     if (!has_process(pid)) return {};
     if (answer.outcome != Outcome::kDone) return stuck(answer);
   }
-  const bool has_left = wait(later(live_now(), kUnload), [&] {
+  const bool has_left = wait(later(live_now(), kUnload), [&]() CULPRIT_REQUIRES(mutex_) {
     const auto found = nodes_.find(part.node);
     return found == nodes_.end() || found->second != pid || !has_process(pid);
   });
@@ -310,7 +314,7 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
   if (!ids_of(part.node, has).empty() || !has_left)
     return stuck({Outcome::kTimedOut, "it said that it did, and its node is still there"});
   if (errand.ending == Ending::kForGood) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     lives_.erase(errand.component);
   }
   return {};
@@ -327,7 +331,7 @@ std::string ComposedNodes::why_not_replace(const Container& container, int pid) 
   if (container.listed && container.listed_by == pid) {
     others = *container.listed;
   } else {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (const auto& [node, process] : nodes_) {
       if (process == pid && node != container.node) others.insert(node);
     }
@@ -384,7 +388,7 @@ ComposedNodes::Answer ComposedNodes::ensure(Container& container, Duration patie
       if (started.outcome != Outcome::kDone)
         return {started.outcome, "its container " + name + " was not started: " + started.text};
     }
-    wait(later(live_now(), patience), [&] {
+    wait(later(live_now(), patience), [&]() CULPRIT_REQUIRES(mutex_) {
       const auto found = nodes_.find(container.node);
       return (found != nodes_.end() && has_process(found->second)) || !is_coming(container);
     });

@@ -20,18 +20,17 @@
 // first component that it starts there.
 #pragma once
 
-#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "base/mutex.h"
 #include "language/rule_set.h"
 #include "owners/container_services.h"
 #include "owners/supervisor.h"
@@ -148,15 +147,17 @@ class ComposedNodes {
   Inbox& inbox_;
   std::map<ComponentId, Container*> container_of_;  // of what lives there, and of what it is
 
-  mutable std::mutex mutex_;  // guards what follows, and the errands
-  mutable std::condition_variable something_came_;
-  std::map<std::string, int> nodes_;  // of the graph, with their processes; 0: not known
-  std::map<std::string, Time> left_;  // when a container's node left the graph last
-  std::map<ComponentId, Life> lives_;
-  std::map<CommandId, std::optional<Reply>> asked_;  // owners
-  std::uint64_t requests_ = 0;
-  bool is_ending_ = false;
-  std::vector<std::unique_ptr<Container>> containers_;
+  mutable Mutex mutex_;  // also guards the errands of a container, and whether it has news
+  mutable ConditionVariable something_came_;
+  std::map<std::string, int> nodes_
+      CULPRIT_GUARDED_BY(mutex_);  // of the graph, with their processes; 0: not known
+  std::map<std::string, Time> left_
+      CULPRIT_GUARDED_BY(mutex_);  // when a container's node left the graph last
+  std::map<ComponentId, Life> lives_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<CommandId, std::optional<Reply>> asked_ CULPRIT_GUARDED_BY(mutex_);  // owners
+  std::uint64_t requests_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
+  std::vector<std::unique_ptr<Container>> containers_;  // all that there ever are
 };
 
 }  // namespace culprit::owners

@@ -37,14 +37,14 @@ ContainerClients::~ContainerClients() {
 
 void ContainerClients::interrupt() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_ending_ = true;
   }
   something_came_.notify_all();
 }
 
 Expected<ServiceClient*> ContainerClients::client(const std::string& container, Which which) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   auto& client = clients_[{container, which}];
   if (client) return client.get();
   const ServiceName list{service_of_container(container, "list_nodes"),
@@ -76,15 +76,16 @@ std::variant<Bytes, ContainerAnswer> ContainerClients::call(const std::string& c
                 under_way->reply.assign(result.reply.begin(), result.reply.end());
                 // Whose answer it is, the graph knows, on its own thread.
                 tasks_.post([this, under_way, outcome = result.outcome, server = result.server] {
-                  const std::lock_guard lock(mutex_);
+                  const MutexLock lock(mutex_);
                   under_way->outcome = outcome;
                   under_way->process = self_.context().graph().process_of(server);
                   something_came_.notify_all();
                 });
               });
-  std::unique_lock lock(mutex_);
-  something_came_.wait_for(lock, patience + kProof,
-                           [&] { return is_ending_ || under_way->outcome; });
+  MutexLock lock(mutex_);
+  something_came_.wait_for(lock, patience + kProof, [&]() CULPRIT_REQUIRES(mutex_) {
+    return is_ending_ || under_way->outcome;
+  });
   if (!under_way->outcome || *under_way->outcome == CallOutcome::kTimedOut)
     return ContainerAnswer{Outcome::kTimedOut,
                            container + " did not answer within " + culprit::to_string(patience)};

@@ -6,12 +6,11 @@
 // once, and not before the container has proven that it knows us (ros2/service_client.h).
 #pragma once
 
-#include <condition_variable>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 
+#include "base/mutex.h"
 #include "owners/container_services.h"
 #include "ros2/node.h"
 #include "ros2/service_client.h"
@@ -53,10 +52,11 @@ class ContainerClients : public ContainerServices {
 
   ros2::NodeEntry& self_;
   const Contest contest_;
-  std::mutex mutex_;  // guards what follows, and the calls
-  std::condition_variable something_came_;
-  bool is_ending_ = false;
-  std::map<std::pair<std::string, Which>, std::unique_ptr<ros2::ServiceClient>> clients_;
+  Mutex mutex_;  // also guards each Call
+  ConditionVariable something_came_;
+  bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
+  std::map<std::pair<std::string, Which>, std::unique_ptr<ros2::ServiceClient>> clients_
+      CULPRIT_GUARDED_BY(mutex_);
   ros2::TaskGroup tasks_;
 };
 

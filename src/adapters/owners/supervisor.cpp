@@ -49,7 +49,7 @@ Supervisor::Supervisor(const RuleSet& rules, Options options, Inbox& inbox)
 
 Supervisor::~Supervisor() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_ending_ = true;
   }
   wake();
@@ -114,7 +114,7 @@ Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const 
 
 void Supervisor::start(CommandId command, ComponentId component) {
   const Component& what = rules_[component];
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (is_left_to_launcher(component))
     return answer(command, Outcome::kDone, "its launcher starts it again");
   if (what.launch.empty())
@@ -184,7 +184,7 @@ void Supervisor::finish_starts() {
 // ---- taking over what runs
 
 void Supervisor::adopt(ComponentId component, int pid, Time known) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (Member& member : members_) {
     if (member.component == component) member.awaited.reset();
   }
@@ -199,7 +199,7 @@ void Supervisor::adopt(ComponentId component, int pid, Time known) {
 void Supervisor::adopt_again(ComponentId component, int pid, Time known) {
   const bool has_ended = state_letter(pid).value_or('X') == 'Z';
   if (!has_ended && was_there(pid, known)) return adopt(component, pid, known);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (is_gone(component))
     inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, "it ended unseen"});
 }
@@ -294,7 +294,7 @@ std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending
 }
 
 void Supervisor::stop(CommandId command, ComponentId component, Ending ending, Hangs hangs) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (auto why = why_not_end(component, ending))
     return answer(command, Outcome::kRefused, std::move(*why));
   if (ending == Ending::kForGood || is_gone(component) || is_left_to_launcher(component)) {
@@ -345,15 +345,16 @@ void Supervisor::begin_shutdown(CommandId command, ComponentId component, Hangs 
 }
 
 void Supervisor::stop_all() {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   std::set<ComponentId> started;
   for (const Member& member : members_) {
     if (member.process.relation() == Relation::kChild) started.insert(member.component);
   }
   for (const ComponentId component : started) begin_shutdown({}, component, Hangs::kNo);
   wake();
-  something_ended_.wait(lock, [&] {
-    return std::all_of(started.begin(), started.end(), [&](ComponentId c) { return is_gone(c); });
+  something_ended_.wait(lock, [&]() CULPRIT_REQUIRES(mutex_) {
+    return std::all_of(started.begin(), started.end(),
+                       [&](ComponentId c) CULPRIT_REQUIRES(mutex_) { return is_gone(c); });
   });
 }
 
@@ -364,7 +365,7 @@ bool Supervisor::is_known(ComponentId component, int pid) const {
 }
 
 bool Supervisor::has_started(ComponentId component) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return !is_gone(component) &&
          std::none_of(members_.begin(), members_.end(), [&](const Member& m) {
            return m.component == component && m.process.relation() == Relation::kAdopted &&
@@ -414,7 +415,7 @@ void Supervisor::wake() {
 }
 
 void Supervisor::run() {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   Time next_look = live_now();
   std::vector<std::filesystem::path> logs;
   while (!is_ending_) {
@@ -488,7 +489,8 @@ void Supervisor::finish_shutdowns(Time now) {
       answer(shutdown.command, Outcome::kDone, "");
     }
   }
-  std::erase_if(shutdowns_, [&](const Shutdown& s) { return is_gone(s.component); });
+  std::erase_if(shutdowns_,
+                [&](const Shutdown& s) CULPRIT_REQUIRES(mutex_) { return is_gone(s.component); });
 }
 
 void Supervisor::escalate(Shutdown& shutdown, Time now) {

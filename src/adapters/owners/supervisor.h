@@ -24,15 +24,14 @@
 // lifetime is the starter's.
 #pragma once
 
-#include <condition_variable>
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
 
+#include "base/mutex.h"
 #include "language/rule_set.h"
 #include "owners/proc.h"
 #include "owners/spawn.h"
@@ -148,44 +147,46 @@ class Supervisor {
   Expected<FileDescriptor> lock_start_of(ComponentId component) const;
   void answer(CommandId command, Outcome outcome, std::string text) const;
 
-  // With the mutex.
-  void take_over(ComponentId component);
-  void watch(ComponentId component, int pid, Relation relation);
-  Expected<void> begin_start(CommandId command, ComponentId component);
-  void meet(CommandId command, ComponentId component);
-  std::optional<std::string> doubt(const Member& member) const;
+  void take_over(ComponentId component) CULPRIT_REQUIRES(mutex_);
+  void watch(ComponentId component, int pid, Relation relation) CULPRIT_REQUIRES(mutex_);
+  Expected<void> begin_start(CommandId command, ComponentId component) CULPRIT_REQUIRES(mutex_);
+  void meet(CommandId command, ComponentId component) CULPRIT_REQUIRES(mutex_);
+  std::optional<std::string> doubt(const Member& member) const CULPRIT_REQUIRES(mutex_);
   void tell_of_unit(ComponentId component, int pid) const;
-  void note_launcher(ComponentId component, int pid, bool is_others);
-  bool is_left_to_launcher(ComponentId component) const;
-  std::optional<std::string> why_not_end(ComponentId component, Ending ending) const;
-  void finish_starts();
-  void finish_trials(Time now);
-  void finish_shutdowns(Time now);
+  void note_launcher(ComponentId component, int pid, bool is_others) CULPRIT_REQUIRES(mutex_);
+  bool is_left_to_launcher(ComponentId component) const CULPRIT_REQUIRES(mutex_);
+  std::optional<std::string> why_not_end(ComponentId component, Ending ending) const
+      CULPRIT_REQUIRES(mutex_);
+  void finish_starts() CULPRIT_REQUIRES(mutex_);
+  void finish_trials(Time now) CULPRIT_REQUIRES(mutex_);
+  void finish_shutdowns(Time now) CULPRIT_REQUIRES(mutex_);
   void tell_what_stays(const Member& member) const;
 
   void run();
-  void look(Time now);
-  void look_for_work(Member& member, Time now);
-  void escalate(Shutdown& shutdown, Time now);
-  bool is_known(ComponentId component, int pid) const;
-  bool is_gone(ComponentId component) const;
-  void begin_shutdown(CommandId command, ComponentId component, Hangs hangs);
-  void end_member(Member& member);
-  Time next_deadline() const;
+  void look(Time now) CULPRIT_REQUIRES(mutex_);
+  void look_for_work(Member& member, Time now) CULPRIT_REQUIRES(mutex_);
+  void escalate(Shutdown& shutdown, Time now) CULPRIT_REQUIRES(mutex_);
+  bool is_known(ComponentId component, int pid) const CULPRIT_REQUIRES(mutex_);
+  bool is_gone(ComponentId component) const CULPRIT_REQUIRES(mutex_);
+  void begin_shutdown(CommandId command, ComponentId component, Hangs hangs)
+      CULPRIT_REQUIRES(mutex_);
+  void end_member(Member& member) CULPRIT_REQUIRES(mutex_);
+  Time next_deadline() const CULPRIT_REQUIRES(mutex_);
   void wake();
 
   const RuleSet& rules_;
   Options options_;
   Inbox& inbox_;
 
-  mutable std::mutex mutex_;
-  std::condition_variable something_ended_;
-  std::vector<Member> members_;
-  std::vector<Trial> trials_;
-  std::vector<Shutdown> shutdowns_;
-  std::map<ComponentId, Identity> identities_;  // of what others started, when it was found first
-  std::map<ComponentId, Launcher> launchers_;   // of what is RESPAWNED
-  bool is_ending_ = false;
+  mutable Mutex mutex_;
+  ConditionVariable something_ended_;
+  std::vector<Member> members_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<Trial> trials_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<Shutdown> shutdowns_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<ComponentId, Identity> identities_
+      CULPRIT_GUARDED_BY(mutex_);  // of what others started, when it was found first
+  std::map<ComponentId, Launcher> launchers_ CULPRIT_GUARDED_BY(mutex_);  // of what is RESPAWNED
+  bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
   FileDescriptor wake_;
   std::thread thread_;
 };

@@ -40,7 +40,7 @@ TestEngine::TestEngine() : listens_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC
 
 TestEngine::~TestEngine() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_ending_ = true;
   }
   thread_.join();
@@ -49,33 +49,33 @@ TestEngine::~TestEngine() {
 }
 
 void TestEngine::add(const std::string& name, TestContainer container) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   containers_[name] = std::move(container);
 }
 
 int TestEngine::start(const std::string& name) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   run(containers_[name]);
   return containers_[name].pid;
 }
 
 int TestEngine::pid_of(const std::string& name) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return containers_[name].pid;
 }
 
 std::vector<std::string> TestEngine::asked() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return asked_;
 }
 
 void TestEngine::say(const std::string& answer) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   answer_ = answer;
 }
 
 void TestEngine::hang(bool hangs) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   hangs_ = hangs;
 }
 
@@ -118,7 +118,7 @@ void TestEngine::serve() {
   while (true) {
     pollfd file{listens_.get(), POLLIN, 0};
     const bool has_come = poll(&file, 1, 20) > 0;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (is_ending_) return;
     for (auto& [name, container] : containers_) notice(container);
     if (!has_come || hangs_) continue;

@@ -5,11 +5,11 @@
 #include <atomic>
 #include <filesystem>
 #include <map>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "base/mutex.h"
 #include "base/test_folder.h"
 #include "owners/file_descriptor.h"
 
@@ -47,21 +47,22 @@ class TestEngine {
 
  private:
   void serve();
-  std::string answer_to(const std::string& method, const std::string& target);
-  std::string look_at(const std::string& name);
+  std::string answer_to(const std::string& method, const std::string& target)
+      CULPRIT_REQUIRES(mutex_);
+  std::string look_at(const std::string& name) CULPRIT_REQUIRES(mutex_);
   void run(TestContainer& container);
   void end(TestContainer& container);
   void notice(TestContainer& container);
 
   test::TestFolder own_;
   FileDescriptor listens_;
-  std::mutex mutex_;
-  std::map<std::string, TestContainer> containers_;
-  std::vector<std::string> asked_;
+  Mutex mutex_;
+  std::map<std::string, TestContainer> containers_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<std::string> asked_ CULPRIT_GUARDED_BY(mutex_);
   std::atomic<int> looks_ = 0;
-  std::string answer_;
-  bool hangs_ = false;
-  bool is_ending_ = false;
+  std::string answer_ CULPRIT_GUARDED_BY(mutex_);
+  bool hangs_ CULPRIT_GUARDED_BY(mutex_) = false;
+  bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };
 

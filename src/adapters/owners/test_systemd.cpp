@@ -89,7 +89,7 @@ struct TestSystemdMethods {
     TestSystemd& self = of(data);
     const char* name = nullptr;
     if (const int read = sd_bus_message_read(m, "s", &name); read < 0) return read;
-    const std::lock_guard lock(self.mutex_);
+    const MutexLock lock(self.mutex_);
     const std::string method = sd_bus_message_get_member(m);
     self.asked_.push_back(method + " " + name);
     if (!self.refusal_.empty()) return sd_bus_error_set(error, self.refusal_.c_str(), "not you");
@@ -119,7 +119,7 @@ struct TestSystemdMethods {
     TestSystemd& self = of(data);
     std::uint32_t pid = 0;
     if (const int read = sd_bus_message_read(m, "u", &pid); read < 0) return read;
-    const std::lock_guard lock(self.mutex_);
+    const MutexLock lock(self.mutex_);
     for (const auto& [name, unit] : self.units_) {
       if (static_cast<std::uint32_t>(unit.pid) == pid)
         return sd_bus_reply_method_return(m, "o", path_of(name).c_str());
@@ -129,7 +129,7 @@ struct TestSystemdMethods {
 
   static int files(sd_bus_message* m, void* data, sd_bus_error*) {
     TestSystemd& self = of(data);
-    const std::lock_guard lock(self.mutex_);
+    const MutexLock lock(self.mutex_);
     sd_bus_message* reply = nullptr;
     sd_bus_message_new_method_return(m, &reply);
     sd_bus_message_open_container(reply, 'a', "(ss)");
@@ -144,7 +144,7 @@ struct TestSystemdMethods {
   static int property(sd_bus*, const char* path, const char*, const char* name,
                       sd_bus_message* reply, void* data, sd_bus_error*) {
     TestSystemd& self = of(data);
-    const std::lock_guard lock(self.mutex_);
+    const MutexLock lock(self.mutex_);
     const auto found = self.units_.find(name_of(path));
     const std::string what = name;
     const TestUnit none;
@@ -227,7 +227,7 @@ TestSystemd::~TestSystemd() {
 void TestSystemd::run() {
   while (!is_ending_) {
     {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       reap();
     }
     while (sd_bus_process(bus_, nullptr) > 0) {
@@ -266,33 +266,33 @@ void TestSystemd::end(TestUnit& unit, int number) {
 }
 
 void TestSystemd::add(const std::string& name, TestUnit unit) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   units_[name] = std::move(unit);
 }
 
 int TestSystemd::start(const std::string& name) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   begin(name);
   return units_[name].pid;
 }
 
 int TestSystemd::pid_of(const std::string& name) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return units_[name].pid;
 }
 
 std::vector<std::string> TestSystemd::asked() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return asked_;
 }
 
 void TestSystemd::refuse(const std::string& error) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   refusal_ = error;
 }
 
 void TestSystemd::say(const std::string& active, std::uint32_t main_pid) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   said_active_ = active;
   said_pid_ = main_pid;
 }

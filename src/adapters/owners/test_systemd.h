@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "base/mutex.h"
 #include "owners/units.h"
 
 namespace culprit::owners {
@@ -60,17 +60,18 @@ class TestSystemd {
  private:
   friend struct TestSystemdMethods;
   void run();
-  void reap();
-  void begin(const std::string& name);
+  void reap() CULPRIT_REQUIRES(mutex_);
+  void begin(const std::string& name) CULPRIT_REQUIRES(mutex_);
   void end(TestUnit& unit, int number);
 
-  std::mutex mutex_;
-  std::map<std::string, TestUnit> units_;
-  std::vector<std::string> asked_;
-  std::string refusal_;
-  std::string said_active_;
-  std::uint32_t said_pid_ = 0;
-  std::vector<std::string> to_start_;  // RestartUnit: once the old one has ended
+  Mutex mutex_;
+  std::map<std::string, TestUnit> units_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<std::string> asked_ CULPRIT_GUARDED_BY(mutex_);
+  std::string refusal_ CULPRIT_GUARDED_BY(mutex_);
+  std::string said_active_ CULPRIT_GUARDED_BY(mutex_);
+  std::uint32_t said_pid_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::vector<std::string> to_start_
+      CULPRIT_GUARDED_BY(mutex_);  // RestartUnit: once the old one has ended
   struct sd_bus* bus_ = nullptr;
   std::atomic<bool> is_ending_ = false;
   std::thread thread_;

@@ -66,7 +66,7 @@ Units::Units(const RuleSet& rules, Inbox& inbox, Of whose)
 Units::~Units() {
   if (!thread_.joinable()) return;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     is_ending_ = true;
   }
   something_came_.notify_all();
@@ -93,7 +93,7 @@ ServiceOwner& Units::owner_of(ComponentId component) {
 void Units::found(ComponentId component, int pid) {
   if (components_.empty()) return;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     found_.push_back({component, pid, started_at(pid)});
   }
   something_came_.notify_all();
@@ -111,7 +111,7 @@ void Units::stop(CommandId command, ComponentId component, int pid, Ending endin
 void Units::add(Errand errand) {
   errand.until = later(live_now(), kStart);
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     errands_.push_back(std::move(errand));
   }
   something_came_.notify_all();
@@ -122,7 +122,7 @@ void Units::add(Errand errand) {
 void Units::run() {
   std::vector<Errand> under_way;
   Time next_look = kLongAgo;
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (!is_ending_) {
     std::vector<Found> found = std::exchange(found_, {});
     std::move(errands_.begin(), errands_.end(), std::back_inserter(under_way));
@@ -135,7 +135,9 @@ void Units::run() {
       next_look = later(live_now(), kIdlePeriod);
     }
     lock.lock();
-    const auto has_news = [&] { return is_ending_ || !errands_.empty() || !found_.empty(); };
+    const auto has_news = [&]() CULPRIT_REQUIRES(mutex_) {
+      return is_ending_ || !errands_.empty() || !found_.empty();
+    };
     const Duration wait = under_way.empty() ? next_look - live_now() : Duration(kPeriod);
     something_came_.wait_for(lock, std::max(wait, Duration::zero()), has_news);
   }

@@ -14,13 +14,12 @@
 // Everything is asked on a thread of its own: nobody waits here for a bus that does not answer.
 #pragma once
 
-#include <condition_variable>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
 
+#include "base/mutex.h"
 #include "language/rule_set.h"
 #include "owners/engine.h"
 #include "owners/supervisor.h"
@@ -112,11 +111,11 @@ class Units {
   std::map<ComponentId, std::pair<int, int>> found_with_;
   std::map<ComponentId, Found> last_found_;
 
-  std::mutex mutex_;
-  std::condition_variable something_came_;
-  std::vector<Errand> errands_;  // that are new
-  std::vector<Found> found_;     // likewise
-  bool is_ending_ = false;
+  Mutex mutex_;
+  ConditionVariable something_came_;
+  std::vector<Errand> errands_ CULPRIT_GUARDED_BY(mutex_);  // that are new
+  std::vector<Found> found_ CULPRIT_GUARDED_BY(mutex_);     // likewise
+  bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };
 

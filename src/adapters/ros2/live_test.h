@@ -6,11 +6,9 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <functional>
 #include <future>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
@@ -18,6 +16,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/mutex.h"
 #include "ros2/context.h"
 #include "ros2/domain_lock.h"
 #include "ros2/executor.h"
@@ -55,7 +54,7 @@ class EventLog {
  public:
   void add(Event event) {
     // Notified under the lock: whoever waits may destroy the log as soon as it sees the event.
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     events_.push_back(std::move(event));
     added_.notify_all();
   }
@@ -63,8 +62,9 @@ class EventLog {
   // Whether `done` became true of all events so far.
   template <class Predicate>
   bool wait(Predicate done) {
-    std::unique_lock lock(mutex_);
-    return added_.wait_for(lock, kPatience, [&] { return done(events_); });
+    MutexLock lock(mutex_);
+    return added_.wait_for(lock, kPatience,
+                           [&]() CULPRIT_REQUIRES(mutex_) { return done(events_); });
   }
   bool wait_for_count(std::size_t count) {
     return wait([count](const auto& events) { return events.size() >= count; });
@@ -80,14 +80,14 @@ class EventLog {
   }
 
   std::vector<Event> all() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return events_;
   }
 
  private:
-  mutable std::mutex mutex_;
-  std::condition_variable added_;
-  std::vector<Event> events_;
+  mutable Mutex mutex_;
+  ConditionVariable added_;
+  std::vector<Event> events_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 // A context whose executor runs on a thread of its own.

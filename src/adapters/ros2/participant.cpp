@@ -1,10 +1,10 @@
 #include "ros2/participant.h"
 
 #include <map>
-#include <mutex>
 #include <set>
 #include <utility>
 
+#include "base/mutex.h"
 #include "ros2/fast_dds.h"
 #include "ros2/names.h"
 
@@ -22,7 +22,7 @@ class Topics {
   explicit Topics(dds::DomainParticipant& participant) : participant_(participant) {}
 
   Expected<dds::Topic*> acquire(const std::string& name, const std::string& type) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (const auto found = topics_.find(name); found != topics_.end()) {
       if (found->second.topic->get_type_name() != type) {
         return Error{"the topic " + printable(name) + " is in use with the type " +
@@ -41,7 +41,7 @@ class Topics {
   }
 
   void release(const std::string& name) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const auto found = topics_.find(name);
     if (--found->second.users > 0) return;
     participant_.delete_topic(found->second.topic);
@@ -54,8 +54,8 @@ class Topics {
     int users;
   };
   dds::DomainParticipant& participant_;
-  std::mutex mutex_;
-  std::map<std::string, Entry> topics_;
+  Mutex mutex_;
+  std::map<std::string, Entry> topics_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 // The middleware fetches its listener without holding it back, so a callback could still come in
@@ -65,17 +65,17 @@ class Gate {
  public:
   template <class Callback>
   void pass(Callback&& callback) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (open_) callback();
   }
   void close() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     open_ = false;
   }
 
  private:
-  std::mutex mutex_;
-  bool open_ = true;
+  Mutex mutex_;
+  bool open_ CULPRIT_GUARDED_BY(mutex_) = true;
 };
 
 // The writers that one reader hears, which the filter has to know.
@@ -96,7 +96,7 @@ class HeardWriters {
   HeardWriters(const HeardWriters&) = delete;
 
   void note(const Guid& writer, Match match) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (match == Match::kMade && writers_.insert(writer).second)
       filter_.begin_hearing(writer, how_, on_unheard_);
     if (match == Match::kLost && writers_.erase(writer) > 0) filter_.end_hearing(writer, how_);
@@ -110,8 +110,8 @@ class HeardWriters {
   const DatagramFilter::Reading how_;
   const std::shared_ptr<Gate> gate_ = std::make_shared<Gate>();
   const DatagramFilter::OnUnheard on_unheard_;
-  std::mutex mutex_;
-  std::set<Guid> writers_;
+  Mutex mutex_;
+  std::set<Guid> writers_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 // Why the middleware may refuse a reader or writer, as far as one can tell.

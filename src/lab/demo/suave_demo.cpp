@@ -126,7 +126,7 @@ Expected<void> SuaveDemo::start_processes() {
 }
 
 void SuaveDemo::on_event(const Event& event, const RuleSet& rules, Time start) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   episode_.add(event);
   if (options_.on_event) options_.on_event(event, rules, start);
 }
@@ -143,7 +143,7 @@ Expected<MissionOutcome> SuaveDemo::fly() {
     return Error{fmt::format("the mission does not {}; the logs are in {}", what,
                              (keep_state() / "log").string())};
   }
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   outcome.failures = episode_.failures();
   outcome.strategies = episode_.strategies();
   for (const Duration reaction : episode_.reactions())

@@ -10,12 +10,12 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "base/mutex.h"
 #include "demo/episode.h"
 #include "exemplars/suave/mission_observer.h"
 #include "live/live_session.h"
@@ -78,8 +78,8 @@ class SuaveDemo : private Listener {
   LiveSession::Options how_;
   std::unique_ptr<LiveSession> session_;  // null: the robot was not joined
 
-  std::mutex mutex_;  // guards what follows
-  Episode episode_;
+  Mutex mutex_;
+  Episode episode_ CULPRIT_GUARDED_BY(mutex_);
 
   std::thread thread_;  // runs the session
 };

@@ -58,7 +58,7 @@ Expected<void> SunsetDemo::open() {
 }
 
 void SunsetDemo::on_event(const Event& event, const RuleSet& rules, Time start) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   last_event_ = event.at;
   if (episode_) episode_->add(event);
   if (options_.on_event) options_.on_event(event, rules, start);
@@ -69,7 +69,7 @@ bool SunsetDemo::wait_until_well(Duration patience) {
   for (const Time end = live_now() + patience; live_now() < end && !stop_;) {
     std::this_thread::sleep_for(50ms);
     const bool is_well = world_->experiment().measure().complaint.empty();
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     const bool is_quiet = !episode_ || (episode_->open() == 0 && !episode_->failures().empty());
     if (episode_ && episode_->is_exhausted()) return false;
     if (is_well && is_quiet && live_now() >= later(last_event_, kCalm)) return true;
@@ -99,7 +99,7 @@ Expected<void> SunsetDemo::inject(const std::string& fault) {
 
 Expected<PlayOutcome> SunsetDemo::play(const Play& play) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     episode_.emplace(rules());
   }
   world_->experiment().restart_measuring();
@@ -112,7 +112,7 @@ Expected<PlayOutcome> SunsetDemo::play(const Play& play) {
   outcome.name = play.name;
   outcome.faults = play.fault_names();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     outcome.failures = episode_->failures();
     outcome.strategies = episode_->strategies();
     outcome.strategies_succeeded = episode_->strategies_succeeded();
@@ -134,7 +134,7 @@ Expected<PlayOutcome> SunsetDemo::play(const Play& play) {
 // noise) would change the next play.
 Expected<void> SunsetDemo::clear() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     episode_.reset();
   }
   if (auto cleared = world_->experiment().clear(); !cleared) return cleared;

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "base/mutex.h"
 #include "demo/episode.h"
 #include "demo/play.h"
 #include "demo/sunset_world.h"
@@ -98,9 +98,9 @@ class SunsetDemo : private Listener {
   LiveSession::Options how_;
   std::unique_ptr<LiveSession> session_;  // null: the robot was not joined
 
-  std::mutex mutex_;  // guards what follows
-  std::optional<Episode> episode_;
-  Time last_event_ = kLongAgo;
+  Mutex mutex_;
+  std::optional<Episode> episode_ CULPRIT_GUARDED_BY(mutex_);
+  Time last_event_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
 
   std::thread thread_;  // runs the session
 };

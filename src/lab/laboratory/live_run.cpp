@@ -1,10 +1,10 @@
 #include "laboratory/live_run.h"
 
 #include <algorithm>
-#include <mutex>
 #include <thread>
 
 #include "base/live_clock.h"
+#include "base/mutex.h"
 #include "demo/episode.h"
 #include "demo/sunset_world.h"
 #include "exemplars/sunset/health_watch.h"
@@ -35,6 +35,7 @@ class LiveRun {
     if (stop_) return Error{"interrupted"};
     measure();
     end_managing();
+    const MutexLock lock(mutex_);
     return study_.measured(id_, run_);
   }
 
@@ -60,14 +61,15 @@ class LiveRun {
   std::unique_ptr<LiveRobot> robot_;
   std::unique_ptr<ManagingSystem> manager_;
   std::unique_ptr<Runtime> runtime_;
+  Time begin_ = kLongAgo;  // when the robot is broken
   Time last_unwell_ = kLongAgo;
 
-  std::mutex mutex_;  // guards what follows
-  Episode episode_;   // until the robot is broken
-  Time last_event_ = kLongAgo;
-  bool is_broken_ = false;
-  std::vector<const sunset::Fault*> present_;
-  study::SunsetRun run_;
+  Mutex mutex_;
+  Episode episode_ CULPRIT_GUARDED_BY(mutex_);  // until the robot is broken
+  Time last_event_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
+  bool is_broken_ CULPRIT_GUARDED_BY(mutex_) = false;
+  std::vector<const sunset::Fault*> present_ CULPRIT_GUARDED_BY(mutex_);
+  study::SunsetRun run_ CULPRIT_GUARDED_BY(mutex_);
 
   std::atomic<bool> is_ending_ = false;
   std::thread thread_;  // runs the runtime
@@ -103,7 +105,7 @@ Expected<void> LiveRun::begin() {
 bool LiveRun::is_well_and_quiet() {
   constexpr Duration kCalm = 500ms;
   if (!complaint().empty()) return false;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return episode_.open() == 0 && live_now() >= later(last_event_, kCalm);
 }
 
@@ -114,17 +116,19 @@ Expected<void> LiveRun::break_robot() {
   wait(profile.injection.draw(random) - profile.manager_start - kWatchedBefore);
   world_->experiment().restart_measuring();
   wait(kWatchedBefore);
+  const auto scenario = study::SunsetStudy::scenario_of(id_);
+  begin_ = live_now();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!episode_.strategies().empty() || episode_.open() > 0)
       return Error{"the manager found something wrong before anything was broken"};
-    run_.scenario = study::SunsetStudy::scenario_of(id_);
-    run_.begin = live_now();
-    present_.assign(run_.scenario.faults.begin(), run_.scenario.faults.end());
+    run_.scenario = scenario;
+    run_.begin = begin_;
+    for (const sunset::Fault* fault : scenario.faults) run_.injections.push_back({begin_, fault});
+    present_.assign(scenario.faults.begin(), scenario.faults.end());
     is_broken_ = true;
   }
-  for (const auto& [fault, outcome] : world_->experiment().inject(run_.scenario)) {
-    run_.injections.push_back({run_.begin, fault});
+  for (const auto& [fault, outcome] : world_->experiment().inject(scenario)) {
     if (!outcome)
       return Error{"cannot inject " + std::string(fault->name) + ": " + outcome.error()};
   }
@@ -132,7 +136,7 @@ Expected<void> LiveRun::break_robot() {
 }
 
 void LiveRun::watch() {
-  const Time end = later(run_.begin, study_.profile(id_.row).end_of_run);
+  const Time end = later(begin_, study_.profile(id_.row).end_of_run);
   while (live_now() < end && !stop_) {
     if (!complaint().empty()) last_unwell_ = live_now();
     wait(50ms);
@@ -141,7 +145,7 @@ void LiveRun::watch() {
 
 void LiveRun::measure() {
   const sunset::Measurements measured = world_->experiment().measure();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   run_.end = live_now();
   run_.downtime = from_seconds(measured.downtime_between_outputs_sec);
   run_.honest_downtime = from_seconds(measured.downtime_sec);
@@ -162,7 +166,7 @@ void LiveRun::end_managing() {
 }
 
 void LiveRun::on_events(std::span<const Event> events) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const Event& event : events) {
     last_event_ = event.at;
     if (!is_broken_) {

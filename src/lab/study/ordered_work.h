@@ -3,12 +3,12 @@
 // What is done ahead is bounded, so memory does not grow with the number of pieces.
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
+
+#include "base/mutex.h"
 
 namespace culprit::study {
 
@@ -20,43 +20,49 @@ void work_in_order(std::uint64_t first, std::uint64_t end, unsigned jobs, Comput
                    Consume consume) {
   using Result = decltype(compute(first));
   const std::uint64_t ahead = std::uint64_t{jobs} * 4;  // beyond what is consumed
-  std::mutex mutex;                                     // guards what follows
-  std::condition_variable changed;
-  std::vector<std::optional<Result>> done(ahead);  // result i in place i % ahead
-  std::uint64_t begun = first;
-  std::uint64_t consumed = first;
-  bool is_over = false;
+  struct State {
+    Mutex mutex{};
+    ConditionVariable changed{};
+    std::vector<std::optional<Result>> done CULPRIT_GUARDED_BY(mutex);  // i in place i % ahead
+    std::uint64_t begun CULPRIT_GUARDED_BY(mutex);
+    std::uint64_t consumed CULPRIT_GUARDED_BY(mutex);
+    bool is_over CULPRIT_GUARDED_BY(mutex) = false;
+  };
+  State state{.done = std::vector<std::optional<Result>>(ahead), .begun = first, .consumed = first};
 
   const auto worker = [&] {
-    for (std::unique_lock lock(mutex);;) {
-      changed.wait(lock, [&] { return is_over || begun == end || begun < consumed + ahead; });
-      if (is_over || begun == end) return;
-      const std::uint64_t mine = begun++;
+    for (MutexLock lock(state.mutex);;) {
+      state.changed.wait(lock, [&]() CULPRIT_REQUIRES(state.mutex) {
+        return state.is_over || state.begun == end || state.begun < state.consumed + ahead;
+      });
+      if (state.is_over || state.begun == end) return;
+      const std::uint64_t mine = state.begun++;
       lock.unlock();
       Result result = compute(mine);
       lock.lock();
-      done[mine % ahead] = std::move(result);
-      changed.notify_all();
+      state.done[mine % ahead] = std::move(result);
+      state.changed.notify_all();
     }
   };
   std::vector<std::thread> threads;
   for (unsigned t = 0; t < jobs; ++t) threads.emplace_back(worker);
 
   for (std::uint64_t next = first; next < end; ++next) {
-    std::unique_lock lock(mutex);
-    changed.wait(lock, [&] { return done[next % ahead].has_value(); });
-    Result result = std::move(*done[next % ahead]);
-    done[next % ahead].reset();
-    consumed = next + 1;
-    changed.notify_all();
+    MutexLock lock(state.mutex);
+    state.changed.wait(
+        lock, [&]() CULPRIT_REQUIRES(state.mutex) { return state.done[next % ahead].has_value(); });
+    Result result = std::move(*state.done[next % ahead]);
+    state.done[next % ahead].reset();
+    state.consumed = next + 1;
+    state.changed.notify_all();
     lock.unlock();
     if (!consume(next, std::move(result))) break;
   }
   {
-    const std::lock_guard lock(mutex);
-    is_over = true;
+    const MutexLock lock(state.mutex);
+    state.is_over = true;
   }
-  changed.notify_all();
+  state.changed.notify_all();
   for (std::thread& thread : threads) thread.join();
 }
 

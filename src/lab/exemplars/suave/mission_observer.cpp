@@ -37,7 +37,7 @@ Expected<void> MissionObserver::subscribe() {
                                         std::function<void(const Message&)> see) -> Expected<void> {
     auto made = node_->create_subscription<Message>(
         topic, qos, [this, see = std::move(see)](const Message& message) {
-          const std::lock_guard lock(mutex_);
+          const MutexLock lock(mutex_);
           see(message);
         });
     if (!made) return Error{made.error()};
@@ -47,16 +47,20 @@ Expected<void> MissionObserver::subscribe() {
   using ros2::msg::Bool;
   using ros2::msg::Float32;
   for (auto& subscribed :
-       {on(robot.guided.name(), kLatched, std::function([this](const Bool&) {
+       {on(robot.guided.name(), kLatched,
+           std::function([this](const Bool&) CULPRIT_REQUIRES(mutex_) {
              if (!begun_) begun_ = ros2::Executor::Clock::now();
              seen_.has_begun = true;
            })),
-        on(robot.detected.name(), kLatched, std::function([this](const Bool& is_detected) {
+        on(robot.detected.name(), kLatched,
+           std::function([this](const Bool& is_detected) CULPRIT_REQUIRES(mutex_) {
              if (is_detected.data && !seen_.found_s) seen_.found_s = robot_s();
            })),
         on(robot.distance.name(), ros2::qos::kDefault,
-           std::function([this](const Float32& metres) { seen_.inspected_m = metres.data; })),
-        on(std::string(topics::kDone), kLatched, std::function([this](const Bool&) {
+           std::function([this](const Float32& metres)
+                             CULPRIT_REQUIRES(mutex_) { seen_.inspected_m = metres.data; })),
+        on(std::string(topics::kDone), kLatched,
+           std::function([this](const Bool&) CULPRIT_REQUIRES(mutex_) {
              if (!seen_.done_s) seen_.done_s = robot_s();
            }))}) {
     if (!subscribed) return subscribed;
@@ -70,7 +74,7 @@ double MissionObserver::robot_s() const {
 }
 
 MissionSeen MissionObserver::seen() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return seen_;
 }
 

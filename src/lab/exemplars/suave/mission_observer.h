@@ -6,11 +6,11 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
 
+#include "base/mutex.h"
 #include "base/time.h"
 #include "exemplars/suave/live_names.h"
 #include "ros2/node.h"
@@ -37,15 +37,15 @@ class MissionObserver {
   explicit MissionObserver(double speed) : speed_(speed) {}
   Expected<void> open(const ros2::ParticipantOptions& participant);
   Expected<void> subscribe();
-  double robot_s() const;  // with the mutex
+  double robot_s() const CULPRIT_REQUIRES(mutex_);
 
   const double speed_;
   ros2::Executor executor_;
   std::unique_ptr<ros2::Context> context_;
   std::unique_ptr<ros2::Node> node_;
-  mutable std::mutex mutex_;  // guards the rest of this block
-  std::optional<ros2::Executor::Clock::time_point> begun_;
-  MissionSeen seen_;
+  mutable Mutex mutex_;
+  std::optional<ros2::Executor::Clock::time_point> begun_ CULPRIT_GUARDED_BY(mutex_);
+  MissionSeen seen_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<ros2::Subscription>> subscriptions_;
   std::thread thread_;
 };

@@ -44,13 +44,13 @@ Observer::Figures Observer::fresh(Time now) const {
 }
 
 void Observer::restart() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   figures_ = fresh(live_now());
 }
 
 Measurements Observer::measure() const {
   const auto robot_sec = [this](Duration wall) { return seconds(wall) / seconds(robot_second_); };
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const Time now = live_now();
   Measurements result;
   result.elapsed_sec = robot_sec(now - figures_.begin);
@@ -65,19 +65,19 @@ Measurements Observer::measure() const {
 }
 
 void Observer::on_state(Member member, std::optional<LifecycleState> state) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   health_.on_state(member, state);
 }
 
 void Observer::on_segmentation() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const Time now = live_now();
   health_.on_segmentation(now);
   figures_.segmentation.on_output(now);
 }
 
 void Observer::on_iou(double iou) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const Time now = live_now();
   health_.on_iou(iou, now);
   figures_.evaluator.on_output(now);
@@ -93,7 +93,7 @@ void Observer::on_diagnostics(const msg::DiagnosticArray& array) {
 
 void Observer::on_value(const std::string& hardware_id, const msg::KeyValue& value) {
   const Value read = value_from_text(value.value);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (hardware_id == name_of(Member::kSegmentation) && value.key == "entropy") {
     if (const auto* entropy = std::get_if<double>(&read)) {
       entropy_ = *entropy;

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 
 #include "base/expected.h"
+#include "base/mutex.h"
 #include "exemplars/sunset/downtime.h"
 #include "exemplars/sunset/health_watch.h"
 #include "exemplars/sunset/members.h"
@@ -56,10 +56,10 @@ class Observer {
   void on_value(const std::string& hardware_id, const ros2::msg::KeyValue& value);
 
   const Duration robot_second_;
-  mutable std::mutex mutex_;  // guards the rest of this block
-  HealthWatch health_;
-  Figures figures_;
-  std::optional<double> entropy_;
+  mutable Mutex mutex_;
+  HealthWatch health_ CULPRIT_GUARDED_BY(mutex_);
+  Figures figures_ CULPRIT_GUARDED_BY(mutex_);
+  std::optional<double> entropy_ CULPRIT_GUARDED_BY(mutex_);
 
   std::unique_ptr<ros2::RawSubscription> segmentations_;
   std::unique_ptr<ros2::Subscription> ious_;

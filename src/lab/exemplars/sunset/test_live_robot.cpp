@@ -56,7 +56,7 @@ Watcher::Watcher(const ros2::ParticipantOptions& participant)
     subscriptions_.push_back(must(ros2::RawSubscription::create(
         node_->entry(), topic, type_of(topic), ros2::qos::kSensorData, ros2::PayloadUse::kHeader,
         [this, topic](const ros2::Sample&) {
-          const std::lock_guard lock(mutex_);
+          const MutexLock lock(mutex_);
           ++messages_[topic];
           something_came_.notify_all();
         })));
@@ -73,7 +73,7 @@ Watcher::~Watcher() {
 }
 
 void Watcher::on_diagnostics(const ros2::msg::DiagnosticArray& array) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (const auto& status : array.status) {
     for (const auto& [key, value] : status.values) {
       if (status.hardware_id == "camera" && key == "autofocus_needed") autofocus_ = value;
@@ -87,13 +87,13 @@ void Watcher::on_diagnostics(const ros2::msg::DiagnosticArray& array) {
 }
 
 bool Watcher::wait(const std::function<bool()>& condition) {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return something_came_.wait_for(lock, kPatience, condition);
 }
 
 bool Watcher::flows(std::string_view topic, int messages) {
   std::optional<int> before;
-  return wait([&] {
+  return wait([&]() CULPRIT_REQUIRES(mutex_) {
     if (!before) before = messages_[topic];
     return messages_[topic] >= *before + messages;
   });
@@ -102,19 +102,19 @@ bool Watcher::flows(std::string_view topic, int messages) {
 bool Watcher::speaks_now(std::string_view topic) {
   std::optional<int> before;
   std::optional<int> frames_before;
-  wait([&] {
+  wait([&]() CULPRIT_REQUIRES(mutex_) {
     if (!before) before = messages_[topic];
     if (!frames_before) frames_before = messages_[topics::kRgbRaw];
     return messages_[topic] > *before || messages_[topics::kRgbRaw] >= *frames_before + 20;
   });
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return messages_[topic] > *before;
 }
 
 bool Watcher::falls_silent(std::string_view topic) {
   int last = -1;
   int frames_then = 0;
-  return wait([&] {
+  return wait([&]() CULPRIT_REQUIRES(mutex_) {
     if (messages_[topic] != last) {
       last = messages_[topic];
       frames_then = messages_[topics::kRgbRaw];
@@ -123,16 +123,16 @@ bool Watcher::falls_silent(std::string_view topic) {
   });
 }
 
-bool Watcher::has_in_a_row(int& count) {
+bool Watcher::has_in_a_row(int Watcher::*count) {
   bool is_first = true;
-  return wait([&] {
-    if (std::exchange(is_first, false)) count = 0;
-    return count >= 30;  // the first ten or so may be of pictures from before
+  return wait([&]() CULPRIT_REQUIRES(mutex_) {
+    if (std::exchange(is_first, false)) this->*count = 0;
+    return this->*count >= 30;  // the first ten or so may be of pictures from before
   });
 }
 
 bool Watcher::says_autofocus(std::string_view text) {
-  return wait([&] { return autofocus_ == text; });
+  return wait([&]() CULPRIT_REQUIRES(mutex_) { return autofocus_ == text; });
 }
 
 LiveRobot::LiveRobot() : domain_(must(ros2::DomainLock::reserve())) {

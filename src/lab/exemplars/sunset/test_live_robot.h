@@ -3,18 +3,17 @@
 #pragma once
 
 #include <array>
-#include <condition_variable>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
 
+#include "base/mutex.h"
 #include "base/test_folder.h"
 #include "exemplars/sunset/members.h"
 #include "exemplars/sunset/node_control.h"
@@ -38,8 +37,8 @@ class Watcher {
   // No message on this topic while the world shows 10 more frames.
   bool falls_silent(std::string_view topic);
   // 30 more entropies in a row on one side of the limit.
-  bool becomes_sure() { return has_in_a_row(sure_); }
-  bool becomes_unsure() { return has_in_a_row(unsure_); }
+  bool becomes_sure() { return has_in_a_row(&Watcher::sure_); }
+  bool becomes_unsure() { return has_in_a_row(&Watcher::unsure_); }
   // The camera says so.
   bool says_autofocus(std::string_view text);
 
@@ -47,20 +46,20 @@ class Watcher {
   bool speaks_now(std::string_view topic);
 
  private:
-  bool wait(const std::function<bool()>& condition);
-  bool has_in_a_row(int& count);
+  bool wait(const std::function<bool()>& condition);  // which is called with the mutex
+  bool has_in_a_row(int Watcher::*count);
   void on_diagnostics(const ros2::msg::DiagnosticArray& array);
 
   ros2::Executor executor_;
   std::unique_ptr<ros2::Context> context_;
   std::unique_ptr<ros2::Node> node_;
   std::array<std::unique_ptr<NodeControl>, kMembers.size()> controls_;
-  std::mutex mutex_;  // guards the rest of this block
-  std::condition_variable something_came_;
-  std::map<std::string_view, int> messages_;
-  int sure_ = 0;  // in a row
-  int unsure_ = 0;
-  std::string autofocus_;
+  Mutex mutex_;
+  ConditionVariable something_came_;
+  std::map<std::string_view, int> messages_ CULPRIT_GUARDED_BY(mutex_);
+  int sure_ CULPRIT_GUARDED_BY(mutex_) = 0;  // in a row
+  int unsure_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::string autofocus_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<ros2::RawSubscription>> subscriptions_;
   std::unique_ptr<ros2::Subscription> diagnostics_;
   std::thread thread_;
