@@ -5,6 +5,7 @@
 // what happened, where, what to do next.
 #pragma once
 
+#include <cassert>
 #include <string>
 #include <utility>
 #include <variant>
@@ -48,7 +49,10 @@ class [[nodiscard]] Expected<void> {
   explicit operator bool() const { return !failed_; }
 
   // @pre !has_value()
-  const std::string& error() const { return error_; }
+  const std::string& error() const {
+    assert(failed_);
+    return error_;
+  }
 
  private:
   std::string error_;

@@ -1,5 +1,6 @@
 #include "live/live_run.h"
 
+#include <cassert>
 #include <cstdlib>
 
 #include <fmt/core.h>
@@ -95,6 +96,7 @@ Expected<void> LiveRun::join(LoadedRules rules) {
 }
 
 void LiveRun::begin(OrderTaker& desk, const std::atomic<bool>& stopped) {
+  assert(session_);
   session_->begin(stopped);
   open(desk);
 }
@@ -177,6 +179,7 @@ void LiveRun::watch_hearing(OrderTaker& desk) {
 }
 
 Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) {
+  assert(session_);
   systemd_.ready("watching " + name_of(session_->rules()));
   std::optional<Next> next;
   Time joined = session_->now();

@@ -1,10 +1,12 @@
 #include "journal/standing_orders.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "journal/json.h"
 #include "journal/requests.h"
 #include "journal/sealed_file.h"
+#include "robot/standing.h"
 
 namespace culprit::journal {
 namespace {
@@ -43,6 +45,7 @@ std::pair<About, std::string> named(const Silenceable& what, const RuleSet& rule
 }  // namespace
 
 NamedOrder by_name(const Order& order, const RuleSet& rules) {
+  assert(standing_of(order) != Standing::kNot);
   NamedOrder out{order.what, {order.author, order.reason}, About::kComponent, ""};
   if (const auto* silence = std::get_if<Silence>(&order.what))
     std::tie(out.about, out.name) = named(silence->what, rules);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -269,6 +270,7 @@ Launch::~Launch() {
 }
 
 Expected<void> Launch::outcome() {
+  assert(report_.get() >= 0);
   const int pid = std::exchange(pid_, 0);
   Failure failure{};
   ssize_t size = 0;

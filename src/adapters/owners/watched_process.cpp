@@ -1,5 +1,6 @@
 #include "owners/watched_process.h"
 
+#include <cassert>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -60,6 +61,7 @@ void WatchedProcess::signal_group(int number) const {
 }
 
 std::string WatchedProcess::reap() {
+  assert(state() == ProcessState::kGone);
   if (relation_ != Relation::kChild) return "ended";
   siginfo_t info{};
   if (waitid(static_cast<idtype_t>(P_PIDFD), static_cast<id_t>(pidfd_.get()), &info, WEXITED) != 0)

@@ -1,5 +1,6 @@
 #include "ros2/context.h"
 
+#include <cassert>
 #include <chrono>
 #include <utility>
 
@@ -74,7 +75,10 @@ Expected<void> Context::open(const ParticipantOptions& options) {
   return {};
 }
 
-Context::~Context() { tasks_.close(); }
+Context::~Context() {
+  assert(nodes_.empty());
+  tasks_.close();
+}
 
 std::string Context::unique_id() {
   std::uint32_t number = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <poll.h>
@@ -23,6 +24,7 @@ timespec to_timespec(std::chrono::nanoseconds d) {
 Executor::Executor() : wake_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
 
 Executor::~Executor() {
+  assert(ready_.empty() && timers_.empty() && running_ == nullptr);
   close(wake_fd_);
   if (signal_fd_ >= 0) close(signal_fd_);
 }

@@ -1,6 +1,7 @@
 #include "ros2/graph.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "ros2/service_mapping.h"
@@ -85,6 +86,7 @@ void Graph::apply(const DiscoveryInfo& info) {
 
 // What of `info` is well-formed and has room. @pre peer.claims is empty
 Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
+  assert(peer.claims.empty());
   Claims claims;
   std::size_t new_nodes = 0;
   for (const NodeEntities& node : info.nodes) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <string>
 
 namespace culprit::ros2 {
@@ -108,12 +109,15 @@ const LifecycleTransition* LifecycleMachine::find(std::string_view label) const 
 }
 
 LifecycleTransition LifecycleMachine::begin(const LifecycleTransition& transition) {
+  assert(transition.start == state_);
   state_ = transition.goal;
   return transition;
 }
 
 LifecycleTransition LifecycleMachine::finish(TransitionResult result) {
-  const LifecycleTransition transition = *find(label_of(result));
+  const LifecycleTransition* found = find(label_of(result));
+  assert(found != nullptr);
+  const LifecycleTransition transition = *found;
   state_ = transition.goal;
   return transition;
 }

@@ -5,6 +5,7 @@
 // A pure data structure; node.h gives it its services and events.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -56,7 +57,9 @@ class ParameterStore {
   // std::string
   template <class T>
   T get(std::string_view name) const {
-    return std::get<T>(*to_value(*find(name)));
+    const msg::ParameterValue* value = find(name);
+    assert(value != nullptr);
+    return std::get<T>(*to_value(*value));
   }
 
   // As the services of the same names answer. With any undeclared name, nothing is answered for all

@@ -1,5 +1,6 @@
 #include "ros2/timer.h"
 
+#include <cassert>
 #include <utility>
 
 namespace culprit::ros2 {
@@ -9,6 +10,7 @@ Timer::Timer(Executor& executor, Duration period, std::function<void()> callback
       callback_(std::move(callback)),
       next_(Executor::Clock::now() + period),
       tasks_(executor) {
+  assert(period > Duration::zero());
   tasks_.post_at(next_, [this] { tick(); });
 }
 

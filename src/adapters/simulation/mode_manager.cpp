@@ -50,7 +50,9 @@ void ModeManager::on_start() {
 // ---- requests
 
 bool ModeManager::change_mode(const std::string& system, const std::string& mode) {
-  const modes::Entity& known = *model_.find(system);
+  const modes::Entity* found = model_.find(system);
+  assert(found != nullptr);
+  const modes::Entity& known = *found;
   const modes::Mode* wanted = known.find(mode);
   if (wanted == nullptr) return false;
   if (mode_of(system) == mode) return true;

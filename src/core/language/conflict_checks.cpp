@@ -1,6 +1,7 @@
 #include "language/conflict_checks.h"
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <optional>
 #include <set>
@@ -123,6 +124,7 @@ bool take_turns(const RuleConditions& a, const RuleConditions& b, const RuleSet&
 
 // @pre both are about the same thing
 bool undo_one_another(const Doing& a, const Doing& b, const RuleSet& rules) {
+  assert(a.effect.thing == b.effect.thing);
   return a.rule != b.rule && a.effect.state != b.effect.state &&
          take_turns(*a.rule, *b.rule, rules);
 }

@@ -2,6 +2,7 @@
 // nothing left behind. Who manages it is up to others.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -42,7 +43,10 @@ class SunsetWorld {
   // How the robot is joined. Errors: the environment is wrong.
   Expected<LiveRobot::Options> robot() const;
   // @pre begin() succeeded
-  sunset::Experiment& experiment() { return *experiment_; }
+  sunset::Experiment& experiment() {
+    assert(experiment_);
+    return *experiment_;
+  }
   std::uint32_t domain() const { return domain_.domain(); }
   const std::filesystem::path& state() const { return state_; }
   const std::filesystem::path& keep_state();

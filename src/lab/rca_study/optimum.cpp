@@ -1,6 +1,7 @@
 #include "rca_study/optimum.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "rca_study/rules.h"
@@ -207,6 +208,7 @@ double expected_cost(const RepairProcess& process, const RuleSet& rules, const P
 }
 
 std::unique_ptr<const Planner> optimum_planner(const RcaScenario& scenario, Objective objective) {
+  assert(RepairProcess::is_small(scenario));
   return std::make_unique<OptimumPlanner>(scenario, objective);
 }
 

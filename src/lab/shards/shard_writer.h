@@ -4,6 +4,7 @@
 // is locked meanwhile: a second process is turned away.
 #pragma once
 
+#include <cassert>
 #include <filesystem>
 #include <functional>
 
@@ -33,7 +34,10 @@ class ShardWriter {
   std::uint64_t size() const { return study::size(header_.shard, header_.campaign); }
   bool is_complete() const { return done_ == size(); }
   // The run that append() wants. @pre !is_complete()
-  RunId next() const { return header_.campaign[campaign_index(header_.shard, done_)]; }
+  RunId next() const {
+    assert(!is_complete());
+    return header_.campaign[campaign_index(header_.shard, done_)];
+  }
 
   // What next() yielded; behind the last one goes the line that ends the file. An error: a number
   // is not finite, or the file cannot be written; then the run counts as not done.

@@ -4,6 +4,7 @@
 // result, so that the result is the same to the last bit however the work was spread.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -62,6 +63,7 @@ struct Campaign {
   std::uint64_t size() const { return std::uint64_t{runs} * rows.size(); }
   // The runs in their order. @pre index < size()
   RunId operator[](std::uint64_t index) const {
+    assert(index < size());
     return {static_cast<std::uint32_t>(index / runs), static_cast<std::uint32_t>(index % runs)};
   }
 

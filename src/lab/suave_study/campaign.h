@@ -4,6 +4,7 @@
 // phases of all timers, the same drift as long as nothing is done differently.
 #pragma once
 
+#include <cassert>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,7 @@ struct SuaveCampaign {
   std::uint64_t size() const { return std::uint64_t{runs} * managers.size(); }
   // The runs in their order, by manager; a RunId's row is the manager. @pre index < size()
   RunId operator[](std::uint64_t index) const {
+    assert(index < size());
     return {static_cast<std::uint32_t>(index / runs), static_cast<std::uint32_t>(index % runs)};
   }
 
@@ -87,7 +89,10 @@ class SuaveFold {
   bool is_complete() const { return next_ == result_.campaign.size(); }
 
   // @pre is_complete()
-  SuaveResult result() && { return std::move(result_); }
+  SuaveResult result() && {
+    assert(is_complete());
+    return std::move(result_);
+  }
 
  private:
   SuaveResult result_;

@@ -1,6 +1,7 @@
 #include "suave_study/validation.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <fmt/core.h>
@@ -144,6 +145,7 @@ Json json(const ValidationRow& row) {
 
 Validation validate(SuaveCampaign campaign, const RecordedCampaign& recorded, double margin_sd,
                     unsigned jobs) {
+  assert(margin_sd > 0);
   campaign.managers.clear();
   for (const RecordedRow& row : recorded.rows) campaign.managers.push_back(row.manager);
   const SuaveResult result = run_campaign(campaign, jobs);

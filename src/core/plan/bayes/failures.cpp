@@ -1,6 +1,7 @@
 #include "plan/bayes/failures.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "plan/bayes/suspicion.h"
 
@@ -119,11 +120,17 @@ void Failures::find_circles(const BitRows& effects) {
 }
 
 bool Failures::holds(RuleId rule) const {
-  const std::size_t i = index_of(rule);
+  const std::size_t i = place_of(rule);
   return i < rules_.size() && rules_[i] == rule;
 }
 
 std::size_t Failures::index_of(RuleId rule) const {
+  assert(holds(rule));
+  return place_of(rule);
+}
+
+// Where it is, or would be.
+std::size_t Failures::place_of(RuleId rule) const {
   const auto found = std::lower_bound(rules_.begin(), rules_.end(), rule, [&](RuleId a, RuleId b) {
     return knowledge_.rules[a].name < knowledge_.rules[b].name;
   });

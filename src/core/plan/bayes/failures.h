@@ -38,6 +38,7 @@ class Failures {
   const std::vector<std::vector<std::size_t>>& circles() const { return circles_; }
 
  private:
+  std::size_t place_of(RuleId rule) const;
   void find_circles(const BitRows& effects);
 
   const Knowledge& knowledge_;

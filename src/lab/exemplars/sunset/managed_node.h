@@ -14,6 +14,7 @@
 // parameters and topics that the exemplar's scenarios do not touch and its nodes do not read.
 #pragma once
 
+#include <cassert>
 #include <memory>
 #include <optional>
 #include <span>
@@ -52,7 +53,11 @@ class ManagedNode {
  protected:
   ros2::Node& node() { return managed_->node(); }
   const NodeOptions& options() const { return options_; }
-  Heartbeat& heartbeat() { return *heartbeat_; }  // @pre configured
+  // @pre configured
+  Heartbeat& heartbeat() {
+    assert(heartbeat_);
+    return *heartbeat_;
+  }
   bool is_active() const;
 
   template <class T>

@@ -1,6 +1,7 @@
 #include "study/plot/distribution_plot.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -203,6 +204,7 @@ bool has_values(const CampaignResult& result, Metric metric) {
 }
 
 Svg distribution_plot(const CampaignResult& result, Metric metric) {
+  assert(has_values(result, metric));
   return Plot(result, metric).draw();
 }
 

@@ -1,6 +1,7 @@
 #include "study/plot/learning_plot.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include <fmt/core.h>
 
@@ -115,6 +116,9 @@ class Plot {
 
 }  // namespace
 
-Svg learning_plot(const std::vector<LearningCurve>& curves) { return Plot(curves).draw(); }
+Svg learning_plot(const std::vector<LearningCurve>& curves) {
+  assert(!curves.empty());
+  return Plot(curves).draw();
+}
 
 }  // namespace culprit::study

@@ -1,6 +1,7 @@
 #include "study/statistics/anova.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -59,6 +60,7 @@ TukeyHsd::TukeyHsd(std::vector<Moments> groups, Anova anova, double alpha)
                                              anova.degrees_within)) {}
 
 Difference TukeyHsd::compare(std::size_t first, std::size_t second) const {
+  assert(first < groups_.size() && second < groups_.size());
   const Moments& a = groups_[first];
   const Moments& b = groups_[second];
   Difference difference;

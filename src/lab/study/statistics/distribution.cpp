@@ -1,6 +1,7 @@
 #include "study/statistics/distribution.h"
 
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 namespace culprit::study {
@@ -31,6 +32,7 @@ void Distribution::coarsen() {
 }
 
 double Distribution::quantile(double q) const {
+  assert(count_ > 0 && q > 0 && q <= 1);
   const auto wanted = static_cast<std::int64_t>(std::ceil(q * static_cast<double>(count_)));
   std::int64_t seen = 0;
   for (const auto& [value, count] : counts_) {

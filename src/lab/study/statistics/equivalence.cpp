@@ -1,6 +1,7 @@
 #include "study/statistics/equivalence.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include <boost/math/distributions/students_t.hpp>
 
@@ -10,6 +11,7 @@ namespace culprit::study {
 
 std::optional<EquivalenceTest> equivalence_test(const Moments& first, const Moments& second,
                                                 double margin) {
+  assert(margin > 0);
   const auto welch = welch_test(first, second);
   if (!welch) return std::nullopt;
   EquivalenceTest test;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -110,6 +111,7 @@ Table root_cause_table(const CampaignResult& result) {
 }
 
 Table learning_table(const std::vector<LearningCurve>& curves) {
+  assert(!curves.empty());
   Table table{"learning",
               "Learned success probabilities beside the true rates",
               {{"", "failure", "", "", Align::kLeft},
