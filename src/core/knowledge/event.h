@@ -190,7 +190,6 @@ enum class Restraint : std::uint8_t {
   kGraphInDoubt,        // nodes vanished whose processes are there: it may be our own network
   kInterlock,           // INTERLOCK is not true
   kOverallIntensity,    // too many strategies lately
-  kApproval,            // a person has to approve it first
   kSilenced,            // by a person
   kRefused,             // by a person
   kComponentIntensity,  // too many strategies lately at this component

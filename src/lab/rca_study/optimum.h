@@ -45,8 +45,6 @@ class Optimum {
   // The round to begin; nothing if nothing is left to try or worth it, or nobody is ill.
   const Round& round(const Situation& situation) { return best(situation).round; }
 
-  std::size_t situations() const { return known_.size(); }
-
  private:
   struct Best {
     double cost = 0;

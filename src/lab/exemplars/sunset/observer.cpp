@@ -40,7 +40,7 @@ Expected<void> Observer::open(ros2::Node& node) {
 
 Observer::Figures Observer::fresh(Time now) const {
   const Duration tolerated = from_seconds(2 * kFramePeriodSec * seconds(robot_second_));
-  return {now, Downtime(now, tolerated), Downtime(now, tolerated)};
+  return {Downtime(now, tolerated)};
 }
 
 void Observer::restart() {
@@ -53,12 +53,10 @@ Measurements Observer::measure() const {
   const MutexLock lock(mutex_);
   const Time now = live_now();
   Measurements result;
-  result.elapsed_sec = robot_sec(now - figures_.begin);
   result.judged_frames = figures_.judged_frames;
   if (figures_.judged_frames > 0) result.mean_iou = figures_.iou_sum / figures_.judged_frames;
   result.downtime_between_outputs_sec = robot_sec(figures_.evaluator.between_outputs());
   result.downtime_sec = robot_sec(figures_.evaluator.total(now));
-  result.segmentation_downtime_sec = robot_sec(figures_.segmentation.total(now));
   result.entropy = entropy_;
   result.complaint = health_.complaint(now);
   return result;
@@ -71,9 +69,7 @@ void Observer::on_state(Member member, std::optional<LifecycleState> state) {
 
 void Observer::on_segmentation() {
   const MutexLock lock(mutex_);
-  const Time now = live_now();
-  health_.on_segmentation(now);
-  figures_.segmentation.on_output(now);
+  health_.on_segmentation(live_now());
 }
 
 void Observer::on_iou(double iou) {

@@ -16,15 +16,13 @@ namespace culprit::sunset {
 
 // Of what began with the last Observer::restart(), one scenario as a rule. Times in robot seconds.
 struct Measurements {
-  double elapsed_sec = 0;
   int judged_frames = 0;
   std::optional<double> mean_iou;  // of the judged frames, as the exemplar has it; nothing if none
   // Of the evaluator's output, by downtime.h: the exemplar's figure, and the honest one.
   double downtime_between_outputs_sec = 0;
   double downtime_sec = 0;
-  double segmentation_downtime_sec = 0;  // of the segmentation's own output, the honest figure
-  std::optional<double> entropy;         // last heard of, as the manager hears it
-  std::string complaint;  // why the robot is not well (health_watch.h); empty if it is
+  std::optional<double> entropy;  // last heard of, as the manager hears it
+  std::string complaint;          // why the robot is not well (health_watch.h); empty if it is
 };
 
 class Observer {
@@ -39,9 +37,7 @@ class Observer {
 
  private:
   struct Figures {
-    Time begin;
     Downtime evaluator;
-    Downtime segmentation;
     int judged_frames = 0;
     double iou_sum = 0;
   };

@@ -18,7 +18,6 @@ class Autopilot : public simulation::Node {
   Autopilot(simulation::World& world, Topics& topics, const VehicleTraits& traits, Time guided);
 
   Time guided() const { return guided_; }
-  bool is_guided() const { return world().now() >= guided_; }
   Vehicle& vehicle() { return vehicle_; }
   const Vehicle& vehicle() const { return vehicle_; }
 
