@@ -1,4 +1,5 @@
-// What culprit tells of itself, which no event of the manager does: called as events are.
+// What culprit says about itself rather than about the robot: not events of the manager, but named
+// in the same way.
 #pragma once
 
 #include "knowledge/event_words.h"

@@ -1,4 +1,4 @@
-// Culprit's own remedy, when it stays deaf: another one in its place.
+// What culprit does when it stays deaf: it replaces itself by a new process.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// To which of several culprits on one machine something belongs: a robot, or a node.
+// Which of several culprits on one machine is in charge of something: of a robot, or of a node.
 //
 // A claim is a name that the kernel gives to one process at a time (ros2/named_lock.h). Such names
 // are open to all who are on the machine, so that having one proves nothing: it counts if the

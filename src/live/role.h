@@ -1,5 +1,5 @@
-// Whether this culprit manages the robot, or only says what it would do because another one does;
-// and of which components another one is in charge that manages a robot of another name.
+// Whether this culprit manages the robot, or only advises because another one manages it; and which
+// components belong to another culprit, one that calls the robot by another name.
 //
 // Two managers would undo each other's work. On one machine a claim that the kernel keeps decides
 // (host_claim.h), among machines the lease (ros2/manager_lease.h); both are looked at again while

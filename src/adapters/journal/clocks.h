@@ -1,7 +1,7 @@
-// One moment on the clocks that what outlives a process is judged by.
+// One moment on both clocks that records which outlive a process are dated with.
 //
-// The robot's clock is sure, and begins anew with each start of the machine. The wall clock goes
-// on, and jumps: a computer without a battery begins in 1970 until the network tells it the time.
+// The robot's clock is reliable, but starts anew whenever the machine starts. The wall clock goes
+// on, but jumps: a computer without a battery begins in 1970 until the network tells it the time.
 #pragma once
 
 #include <cstdint>

@@ -2,8 +2,8 @@
 //
 // A declared signal names a status, by its name or its hardware id, and a key. One that is only
 // used is looked for as a key of its name, or as "<hardware id>_<key>" or "<status name>_<key>"
-// (the convention of the SUNSET exemplar's blackboard). While not all of it was found, what is heard
-// instead is told, for whoever looks for a typing mistake.
+// (the convention of the SUNSET exemplar's blackboard). Until all of them are found, the names that
+// are heard instead are reported, so that a misspelled one can be found.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// The order of a model's entities in which parts come before their systems, or a circle that has
-// none.
+// Orders a model's entities so that parts come before their systems; or finds a circle, which has
+// no such order.
 #pragma once
 
 #include <cstddef>

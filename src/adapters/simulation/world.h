@@ -1,4 +1,4 @@
-// A simulated world: a clock, what is due, who is in it, and who watches.
+// A simulated world: its clock, its agenda, its nodes, and its watchers.
 //
 // Discrete-event simulation: time jumps from one thing that is due to the next. The same seed gives
 // the same world, bit for bit, on every machine.

@@ -6,13 +6,13 @@
 //   detected   its trigger held for its policy's time (FOR, HOLD n/k) and its COOLDOWN is over
 //   resolved   its trigger was false for its policy's time; unknown is neither true nor false
 //   proven     it stayed resolved for `healthy`. A failure that is back before that is the same
-//              one: its strategies stay tried, its attempts and rounds go on, and if it is back
-//              often it flaps, which is said
+//              one: its strategies stay tried, and its attempts and rounds go on counting. One
+//              that keeps coming back is reported as flapping
 //
 // A strategy under way succeeds when its failure is resolved, once its adaptations took effect. It
 // fails at its deadline: its impact in cycles after they took effect, plus the latency of what the
-// trigger reads: of a signal two of its periods, so that a fresh reading comes before; as long as
-// its period is not known, five seconds.
+// trigger reads. The latency of a signal is two of its periods, so that a fresh reading comes
+// first; five seconds while its period is not known.
 //
 // A round of strategies is followed by a back-off that doubles each time. After ATTEMPTS strategies
 // (or as many rounds without any valid strategy) its LASTRESORT strategies follow, each once, and

@@ -1,15 +1,15 @@
 // Which failures go away with which: learns the couplings, and says who is expected to settle.
 //
-// When a strategy has resolved failure j, every other failure i that is there has until its signals
-// would show it to go away too, or until the first fresh reading, upon which planners act as well.
-// If it does, i is coupled to j; if it is still there, it is not. An outcome counts only if nothing
+// When a strategy has resolved failure j, every other failure i that is there gets as long as its
+// signals need to show a change, or until the first fresh reading, which planners act on as well.
+// If i is gone by then, it is coupled to j; otherwise it is not. The outcome counts only if nothing
 // but j's strategy can have caused it: no other change of the system between that strategy's first
-// request and the outcome could resolve i, none was made for i itself, none that had just been made
-// can have had its effect only now, and nothing else upstream of i went away by itself.
+// request and the outcome could have resolved i, no change was made for i itself, no earlier change
+// can have taken effect only now, and nothing else upstream of i went away by itself.
 //
-// A failure goes as it came: if i was detected some time after j, it may take as long to go after j
-// is gone, and half as long again. So long it is given to settle, and so long nobody asks. What
-// comes and goes (flapping) may have effects that are there from the time before.
+// A failure goes away as slowly as it came: if i was detected some time after j, it is given one
+// and a half times that long to go away after j. Until then i is said to settle, and planners leave
+// it alone. What comes and goes (flapping) may leave effects of an earlier time behind.
 #pragma once
 
 #include <optional>

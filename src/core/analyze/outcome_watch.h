@@ -2,13 +2,14 @@
 //
 // An outcome counts for nothing if
 //   - before the strategy's deadline something else could have had the same effect,
-//   - at the deadline a more critical failure that it is connected with is there, or one comes
-//     before it is due: nobody sees through that,
-//   - one upstream comes before it is due: a second fault blames nobody, and thanks nobody,
-//   - nobody watched for a while before it was due (culprit slept, or was deaf),
-//   - when it is due nobody can see whether the failure is there.
-// All of that is asked in the same way of what helped and of what did not, and of the same time.
-// If the failure is back by itself, the strategy did not help.
+//   - a more critical failure that it is connected with is there at the deadline, or appears before
+//     the outcome is due: it hides what the strategy did,
+//   - a failure upstream appears before the outcome is due: a second fault says nothing about the
+//     strategy,
+//   - nobody watched for a while before the outcome was due (culprit slept, or was deaf),
+//   - it is not known whether the failure is there when the outcome is due.
+// The same questions are asked about strategies that helped and that did not, over the same time.
+// If the failure came back by itself, the strategy did not help.
 #pragma once
 
 #include "knowledge/knowledge.h"

@@ -1,10 +1,10 @@
 // Does one strategy take back what another has brought about?
 //
-//   - Who replaces or ends a process takes what was set and called in it; culprit brings its
+//   - Replacing or ending a process undoes what was set and called in it; culprit brings its
 //     lifecycle back to where it was.
-//   - Who changes a lifecycle takes back another change of it, and what was called may go with it.
-//   - Who sets a parameter, an input or a mode takes back what was set there.
-// That a process was replaced, or restarted, nobody takes back, but who ends it.
+//   - A change of a lifecycle undoes another change of it, and possibly what was called.
+//   - Setting a parameter, an input or a mode undoes what was set there before.
+//   - A restart or a replaced process is undone only by ending that process.
 #pragma once
 
 #include "language/rule_set.h"

@@ -1,10 +1,10 @@
-// Is it known who would be hit, and does what is known agree with ending that process?
+// Is it known which process would be ended, and does the evidence allow ending it?
 // (docs/governor.md, "Evidence", "Who is hit")
 //
 // There are three witnesses: the operating system about the process, the graph about the node, and
-// the component's own topics. That a process runs proves little by itself, for it may be stuck; a
-// process that runs, whose node is there and whose topics come, is at work, and that something else
-// fell silent is no reason to end it.
+// the component's own topics. A running process alone proves little, for it may be stuck. But if
+// the process runs, its node is there and its topics arrive, it is at work, and the silence of
+// something else is no reason to end it.
 #pragma once
 
 #include <optional>

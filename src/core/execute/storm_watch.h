@@ -2,9 +2,9 @@
 //
 // A storm: components that nothing upstream explains are ill, many of them (NodeHealthCheck's
 // minHealthy, with the dependency graph taken into account: a dead camera and all that needs it is
-// no storm; nor are dead processes, which are no riddle). A graph in doubt: nodes are gone from the
-// graph whose processes run, or those of another computer do not answer: more likely the network is
-// ill than all of them.
+// no storm; nor are dead processes, whose cause is clear). A graph in doubt: nodes vanished from
+// the graph although their processes run, or those of another computer do not answer. Then the
+// network is more likely to be ill than all of them.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
-// How a component came up when a process of it began: what the next start is waited for by.
+// How a component came up when one of its processes began: how long the next start may take, and
+// what to wait for.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What the step under way tells, in order.
+// The events of the current step, in order.
 #pragma once
 
 #include <utility>

@@ -1,5 +1,5 @@
-// What the robot calls its diagnostics and parameters, as far as it was heard: for whoever wrote such
-// a name otherwise (named.h).
+// The names that the robot's diagnostics and parameters really have, as far as they were heard: to
+// suggest them to somebody who misspelled one (named.h).
 #pragma once
 
 #include <map>

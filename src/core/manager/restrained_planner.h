@@ -1,8 +1,8 @@
-// A planner that chooses what a manager would begin: what the governor withholds because of what it
-// knows of the robot (several nodes of one name, evidence) makes room for the next best.
+// A planner that chooses what a manager would begin: a strategy that the governor withholds because
+// of the robot's state (several nodes of one name, evidence) makes room for the next best.
 //
-// For whoever asks what would be decided (culprit plan), and what if. Budgets and back-offs are not
-// heard: they come from what was done before.
+// It answers what would be decided (culprit plan, what-if). Budgets and back-offs do not count
+// here, because they come from what was done before.
 #pragma once
 
 #include "plan/planner.h"

@@ -1,10 +1,11 @@
-// Does a failure wait until a component is repaired that all of its strategies need?
+// Does a failure wait for the repair of a component that all of its strategies need?
 //
-// Whoever can only refocus a camera can do nothing while the camera is dead. That is no attempt
-// that failed: were it counted, the failure would be exhausted when the camera is back, and nobody
-// would refocus it. So it waits as long as another failure may bring the component back, or waits
-// for a person with it. Where nobody is at work on the component, the round counts: else nobody
-// would be told. A failure with a LASTRESORT does not wait: the safe stop must come.
+// A strategy that refocuses a camera can do nothing while the camera is dead. That does not count
+// as a failed attempt: otherwise the failure would be exhausted by the time the camera is back, and
+// nobody would refocus it. So it waits as long as another failure may bring the component back, or
+// waits for a person together with that failure. If nothing is being done about the component, the
+// round counts, since otherwise nobody would be told. A failure with a LASTRESORT does not wait:
+// the safe stop must come.
 #pragma once
 
 #include "plan/planner.h"

@@ -1,13 +1,13 @@
-// What may be tried of a failure that an exhausted one explains?
+// What may still be tried for a failure whose cause is exhausted?
 //
-// All that was known against the cause has been tried in vain, so repairing its effects is in vain
-// as well, and each process that is replaced for it was well. They wait for a person with it. What
-// may be tried all the same:
-//   - one reconfiguration, once: a strategy that takes nothing down and starts nothing. It may lead
+// Everything known against the cause has been tried in vain. Repairing its effects would be in vain
+// as well, and would replace processes that are well. So the effects wait for a person together
+// with the cause, with two exceptions:
+//   - one reconfiguration, once: a strategy that takes nothing down and starts nothing. It may get
 //     round the cause (another source, another mode);
 //   - a LASTRESORT: the safe stop never waits.
-// The same goes for the effects of what a person has to look at for another reason, because all
-// that is left was refused, say.
+// The same holds for the effects of a failure that waits for a person for another reason, for
+// example because all its remaining strategies were refused.
 #pragma once
 
 #include "plan/planner.h"

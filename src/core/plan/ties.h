@@ -1,10 +1,11 @@
 // Numbers that differ only by rounding errors are equal.
 //
 // 0.2 + 7/30 and 0.3 + 4/30 are the same cost, and yet not the same double. Compared as they are,
-// the rounding errors would decide between two strategies that are equally good. So what is
-// compared are whole parts of 2^-30: coarse enough for any sum that is made here, far finer than
-// anything that is known of a robot. Parts of a power of two, so that fractions of powers of two
-// are none that a rounding error takes from one part to the next.
+// the rounding errors would decide between two strategies that are equally good. So numbers are
+// rounded to multiples of 2^-30 before they are compared: coarser than the rounding error of any
+// sum that is made here, and far finer than anything that is known of a robot. With a power of two,
+// common fractions (1/2, 1/4, ...) are multiples themselves, far from the point where rounding goes
+// the other way.
 #pragma once
 
 #include <cassert>

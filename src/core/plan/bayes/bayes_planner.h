@@ -9,12 +9,13 @@
 //   1. was tried already, or
 //   2. is invalid in the present state of the system (its WHEN condition is not true, ...),
 //   3. adapts a component that is being adapted, or one that depends on such a component,
-//   4. is for a failure that more likely is the effect of another one (1 - R_i > 1/2),
+//   4. is for a failure that is more likely the effect of another one (1 - R_i > 1/2),
 //   5. is for a failure that is expected to go away with one that was just resolved,
-//   6. adapts a component that depends on a suspicious one: whether that fails too is not known yet,
+//   6. adapts a component that depends on a suspicious one: whether that fails too is not known
+//      yet,
 //   7. adapts a component on which a more critical failure depends that is being worked on and that
-//      it does not explain: the lower criticality never delays the higher. What waits for a person
-//      is not worked on: its cause is exhausted, or all that is left was refused, say.
+//      it does not explain: the lower criticality never delays the higher. A failure that waits for
+//      a person is not being worked on (its cause is exhausted, or all that is left was refused).
 // 5 and 6 are waits of bounded length, and 3, 4 and 7 wait for failures that come to an end
 // (resolved or exhausted) without waiting for this one, so every failure has its turn.
 //

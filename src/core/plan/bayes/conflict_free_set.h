@@ -1,10 +1,10 @@
 // Which together? The items of the highest total worth of which no two conflict.
 //
-// Two items conflict if they are for the same failure, or if what one takes is near what the
+// Two items conflict if they are for the same failure, or if one takes something near to what the
 // other takes. Exact up to kExact items, by branch and bound over the failures: a branch is left
 // when even the best remaining item of every remaining failure could not make it better. Beyond,
-// greedy by worth, and then improved by swaps: an item makes place for those that only it shuts
-// out if these are worth more together.
+// greedy by worth, and then improved by swaps: an item gives way to those that it alone excludes,
+// if they are worth more together.
 #pragma once
 
 #include <vector>

@@ -1,17 +1,17 @@
-// The ways that a failure can have taken: the graph without what is seen to be well.
+// The paths along which a failure can have spread: the graph without what is seen to be well.
 //
 // A chain of effects does not go through a component that shows none. Left out, for failures of one
 // kind of symptom (an outage, or a bad value), are
 //   - components that are well: a rule of that kind touches them and is quiet, and no rule that
-//     touches them fails or is suspicious; an outage is none of who sends, however bad the values
-//     are;
+//     touches them fails or is suspicious; a component that sends has no outage, however bad the
+//     values are;
 //   - topics and services that evidently carry no failures: of n consumers that are well or
 //     fail, more are well than kSpared n and kDeviations standard deviations of the binomial
 //     distribution. /tf and its like are read by many.
 // A young failure has the whole graph: what lies between may only not have been detected yet.
 //
-// This is what tells a cause from what is upstream by the graph alone, which on a robot with
-// circles or with topics that everybody reads is everything.
+// This separates causes from what is merely upstream: on a robot with circles, or with topics that
+// everybody reads, everything is upstream of everything.
 #pragma once
 
 #include <array>

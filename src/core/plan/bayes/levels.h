@@ -1,8 +1,8 @@
 // How bad is it? The level at which each failure is treated.
 //
-// Whoever is held responsible for a failure inherits its criticality if that is higher, as the
-// holder of a lock inherits the priority of who waits for it (Sha, Rajkumar, Lehoczky, "Priority
-// inheritance protocols", IEEE Transactions on Computers 39, 1990):
+// The failure that is held responsible for another one inherits its criticality if that is higher,
+// as the holder of a lock inherits the priority of the thread that waits for it (Sha, Rajkumar,
+// Lehoczky, "Priority inheritance protocols", IEEE Transactions on Computers 39, 1990):
 //
 //     L_i = max(own level of i, max_k L_k)
 //

@@ -7,8 +7,8 @@
 //   redeployment   one process replaced
 //   disruption     the whole robot taken down for a moment
 //
-// Under every objective all of them weigh something: between strategies that are equal in what is
-// wanted least of, the one that is better in the rest is taken.
+// Under every objective each of them weighs something: of strategies that are equal in what the
+// owner wants least of, the one that is better in the rest is taken.
 #pragma once
 
 #include <string_view>

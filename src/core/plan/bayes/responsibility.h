@@ -6,11 +6,10 @@
 //   i           a failure that is there
 //   j           the failures that may be its cause (plan/bayes/failures.h)
 //   kappa       how surely i goes away when j is resolved (knowledge/couplings.h)
-//   X_i         the probability that one of the others explains i; 0, and so P = 1, if there is
-//   none pi_i        that i has a cause of its own, before anything else is known of it:
-//   kCoincidence; if
-//               the operating system says that the process of a component is gone or stopped that a
-//               strategy of i would replace, kSeenDown
+//   X_i         the probability that one of the others explains i; 0 (so P = 1) if there is none
+//   pi_i        the probability that i has a cause of its own, before anything else is known of it:
+//               kSeenDown if a strategy of i would replace a process that the operating system
+//               says is gone or stopped, kCoincidence otherwise
 //
 // This is the posterior of a noisy-or: any present cause is enough, and i's own is one of them.
 //
@@ -21,11 +20,11 @@
 //     w_i     = a_i (pi_i / pi) 1 / (1 + delay_i) prod_{k in C, k != i} kappa(i -> k) / kappa0
 //     R_i     = P(root i) (omega_i + (1 - omega_i) pi)
 //
-//   a_i                 how likely what is wrong at i would still be there after all that was tried
-//                       there (plan/bayes/strategy_chances.h): who was adapted in vain is less likely the
-//                       cause
-//   delay_i             how much later than the first of the circle it was detected (before it
-//                       came back, if it comes and goes), in cycles
+//   a_i                 how likely it is that a fault at i would have survived all that was tried
+//                       there (plan/bayes/strategy_chances.h): a component that was adapted in
+//                       vain is less likely to be the cause
+//   delay_i             how much later than the first failure of the circle it was detected, in
+//                       cycles (its first detection, if it comes and goes)
 //   kappa(i -> k)       how well it explains the others
 //   pi, kappa0          kCoincidence and Coupling::kUsual
 //

@@ -1,18 +1,21 @@
 // What begins together passes together.
 //
 // The set of the highest worth (conflict_free_set.h) counts the time of each of its strategies,
-// though the robot waits only for the longest. So with which strategy each of its failures is begun
-// is weighed once more, for all of them together, going on in rounds as long as they fail:
+// though the robot waits only for the longest. So the strategy that each of its failures begins
+// with is chosen once more, for all of them together, assuming further rounds as long as they fail:
 //
 //     E = sum_r ( sum_i p_i,r (c_i,r - t_i,r) + T_r )
 //
 //   c_i,r, t_i,r   what the r-th try for failure i costs, and the part of it that its time is
-//   p_i,r          the chance that failure i is still there then: a of those before (value.h)
-//   T_r            the expectation of the longest t_i,r of those that are: with the failures in the
-//                  order of t, longest first, sum_i t_i,r p_i,r prod_{k before i} (1 - p_k,r)
+//   p_i,r          the probability that failure i is still there then: a(T) of value.h, with T what
+//                  was tried for it before
+//   T_r            the expected longest t_i,r among the failures that are still there: with the
+//                  failures in the order of t, longest first,
+//                  sum_i t_i,r p_i,r prod_{k before i} (1 - p_k,r)
 //
-// One alone has its cheapest order anyway (value.h). Two that would each be restarted first may
-// both be replaced at once: neither then waits for the other's replacement.
+// A single failure has its cheapest order anyway (value.h). Two components that would each be
+// restarted first may both be replaced at once instead: then neither waits for the other one's
+// replacement.
 #pragma once
 
 #include <vector>

@@ -1,7 +1,7 @@
 // What would fix it? The chances of a failure's strategies, given those that did not help.
 //
-// What is wrong is one of as many things as the rule has strategies, or none of them. Strategy s
-// always helps against its own, and by luck against the others:
+// The model: each strategy has one fault of its own; what is wrong is one of these, or none of
+// them. Strategy s always helps against its own fault, and by luck against the others:
 //
 //     v_s = w_s / max(1, S)                  how likely it is what s is for;  S = sum_t w_t
 //     q_s = (w_s - v_s) / (1 - v_s)          its luck with the rest: so that it helps with w_s
@@ -9,15 +9,15 @@
 //
 //   w_s   P_s * e_s
 //   P_s   the belief that s helps (knowledge/beliefs.h)
-//   out   the strategies of the rule that were tried in this round, or are invalid now: what they
-//         are for, it is not
-//   e_s   evidence of the operating system: kUnlikely if the process of a component is gone or
-//         stopped that another strategy would replace, and s would not; 1 otherwise
+//   out   the strategies of the rule that were tried in this round, or are invalid now: their own
+//         fault is ruled out
+//   e_s   evidence of the operating system: kUnlikely if a process is gone or stopped that another
+//         strategy would replace and s would not; 1 otherwise
 //
-// Where the beliefs of a rule sum to one there is no luck: these are the beliefs in what is left,
-// renormalised. Where they sum to less, something is wrong that no strategy of the rule fixes, and
-// that grows likelier with each that failed; where to more, one fixes what another would fix as
-// well, and less is left for the one when the other failed.
+// Where the beliefs of a rule sum to one there is no luck: the chances are the beliefs in the
+// remaining strategies, renormalised. Where they sum to less, the fault may be one that no strategy
+// of the rule fixes, which becomes likelier with each strategy that fails. Where they sum to more,
+// some strategies fix the same fault, so one is less promising after the other has failed.
 #pragma once
 
 #include <optional>

@@ -1,8 +1,8 @@
-// Is a failure about to be detected? A rule that has not fired may be about to: what it watches looks ill
-// already.
+// Is a failure about to be detected? A rule that has not fired yet is suspicious if what it watches
+// already looks ill.
 //
-// The failure downstream is often seen first, because its detector is faster or its last sample
-// came earlier. Who acts on it at once repairs what is not broken.
+// Often the failure downstream is seen first, because its detector is faster or its last sample
+// came earlier. Acting on it at once would repair what is not broken.
 #pragma once
 
 #include "knowledge/knowledge.h"
@@ -28,8 +28,8 @@ inline constexpr double kSure = 0.9;
 //   - a component of it is known to be gone or stopped.
 bool is_suspicious(RuleId rule, const Knowledge& knowledge);
 
-// What a rule sees of a failure. The former has early signs (a topic that sends nothing), the latter has
-// none.
+// What a rule sees of a failure. The former has early signs (a topic that sends nothing), the
+// latter has none.
 enum class Symptom : std::uint8_t {
   kOutage,  // its trigger reads topics' ages, rates, or who is alive
   kValue    // it reads the value of a signal, a parameter or a diagnostic

@@ -14,8 +14,9 @@
 //
 //     E_s = c_s + sum_k c_k a(s and all before k),    a(T) = (1 - sum_{t in T} v_t) prod (1 - q_t)
 //
-//   v, q   of the chances of the strategies (plan/bayes/strategy_chances.h): the probability that one is
-//          what would fix it, and its luck otherwise. a(T): still there after all of T
+//   v, q   of the strategies (plan/bayes/strategy_chances.h): the probability that one is what would
+//          fix it, and its luck otherwise
+//   a(T)   the probability that the failure is still there after all of T
 //
 // Without luck that order is the cheapest for one failure (Smith's rule; exchange two neighbours
 // and compare), so the strategy with the highest u/c has the lowest E.
@@ -26,9 +27,8 @@
 //
 //   R_i           its responsibility (plan/bayes/responsibility.h)
 //   W             1, 2 or 4: how much worse each level of criticality is than the one below it
-//   share(i -> k) the part of failure k that falls to i, or what else was seen to go away with it;
-//   of
-//                 those in the same circle kappa(i -> k), as if i had been the first
+//   share(i -> k) the part of failure k that is put down to i, or how often k was seen to go away
+//                 with it; in one circle kappa(i -> k), as if i had been the first
 #pragma once
 
 #include <span>

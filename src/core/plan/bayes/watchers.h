@@ -1,8 +1,8 @@
-// Upstream of whom are there rules that may have been too slow?
+// Which failures may have a cause that a slower rule is about to detect?
 //
-// Of a bad value nothing is seen beforehand. If a rule about values watches something upstream of a
-// failure, it may be about to fire; not if nothing new will be heard of it in the time that anybody
-// would wait.
+// A bad value gives no warning before it is there. If a rule about values watches something
+// upstream of a failure, it may be about to fire, unless no new value will arrive within the time
+// that a plan is prepared to wait.
 #pragma once
 
 #include <vector>
