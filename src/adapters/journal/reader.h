@@ -1,4 +1,8 @@
 // Reads a journal file, also while another process writes it. Changes nothing.
+//
+//     const auto reader = Reader::open("/var/lib/culprit/robot.journal");
+//     auto rows = reader->entries(Which::kReadable);
+//     for (Entry row; *rows->next(row);) std::puts(row.body.c_str());
 #pragma once
 
 #include <filesystem>

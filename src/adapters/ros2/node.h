@@ -2,6 +2,14 @@
 // /parameter_events, the six parameter services, use_sim_time. On it: publishers, subscriptions,
 // services and clients; timers are in timer.h.
 //
+//     Executor executor;
+//     auto context = Context::create(executor, {.domain = 0});
+//     auto node = Node::create(**context, {"/robot", "camera"});
+//     auto rate = (*node)->create_publisher<msg::Float64>("~/rate");
+//     auto heard = (*node)->create_subscription<msg::Float64>(
+//         "/light", qos::kSensorData, [&](const msg::Float64& light) { rate->publish(light); });
+//     executor.run();    // until stop()
+//
 // Everything calls back on the executor's thread unless it says otherwise. Parameters belong to
 // that thread (before it runs, to whoever sets the node up). Errors are bad names, or what the
 // middleware refuses.

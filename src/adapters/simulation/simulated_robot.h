@@ -5,6 +5,11 @@
 // wait for its executor, and take their way back.
 //
 // A system of a mode manager is a component like a node: it is there as long as its manager is.
+//
+//     World world(seed);
+//     MyCamera camera(world);                      // a Node (node.h)
+//     SimulatedRobot robot(rules, world);
+//     Runtime(manager, robot).run(stop, Time(60s));    // a minute, at once
 #pragma once
 
 #include <map>

@@ -1,4 +1,9 @@
 // Rule file -> checked rule set: the whole front end in one call.
+//
+//     const Checked checked = check(Source("robot.rules", text));
+//     for (const Diagnostic& diagnostic : checked.diagnostics) show(diagnostic);
+//     if (!checked.rules) return 1;
+//     Manager manager(*checked.rules, std::make_unique<BayesPlanner>(), {});
 #pragma once
 
 #include <optional>

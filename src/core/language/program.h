@@ -46,44 +46,49 @@ struct Slot {
 enum class Op : std::uint8_t {
   kConstant,     // push constants[operand]
   kInput,        // push inputs[operand]
-  kIntToDouble,  // i -> d
-  kNot,
-  kAnd,
-  kOr,
+  kIntToDouble,  // int -> the same number as a double
+
+  kNot,     // bool -> bool
+  kAnd,     // bool, bool -> bool: Kleene's, as all logic here
+  kOr,      // bool, bool -> bool
   kSelect,  // condition, then, otherwise -> one of the two
-  kNegateInt,
-  kNegateDouble,
-  kAddInt,  // the Int instructions also serve durations
-  kAddDouble,
-  kSubtractInt,
-  kSubtractDouble,
-  kMultiplyInt,
-  kMultiplyDouble,
-  kDivideInt,  // toward zero, as in C++
-  kDivideDouble,
-  kRemainderInt,  // sign of the dividend, as in C++
-  kRemainderDouble,
-  kScale,   // duration, double -> duration
-  kShrink,  // duration, double -> duration
-  kRatio,   // duration, duration -> double
-  kLessInt,
-  kLessDouble,
-  kLessString,  // byte by byte
-  kLessEqualInt,
-  kLessEqualDouble,
-  kLessEqualString,
-  kEqualBool,
-  kEqualInt,
-  kEqualDouble,
-  kEqualString,
-  kAbsInt,
-  kAbsDouble,
-  kMinInt,
-  kMinDouble,
-  kMaxInt,
-  kMaxDouble,
-  kPower,
-  kSquareRoot,
+
+  // The Int instructions also serve durations, in nanoseconds.
+  kNegateInt,        // a -> -a; unknown if it overflows
+  kNegateDouble,     // a -> -a
+  kAddInt,           // a, b -> a + b; unknown if it overflows
+  kAddDouble,        // a, b -> a + b
+  kSubtractInt,      // a, b -> a - b; unknown if it overflows
+  kSubtractDouble,   // a, b -> a - b
+  kMultiplyInt,      // a, b -> a * b; unknown if it overflows
+  kMultiplyDouble,   // a, b -> a * b
+  kDivideInt,        // a, b -> a / b toward zero; unknown if b is 0 or it overflows
+  kDivideDouble,     // a, b -> a / b; unknown if b is 0
+  kRemainderInt,     // a, b -> a % b, with the sign of a; unknown as above
+  kRemainderDouble,  // a, b -> fmod(a, b); unknown if b is 0
+  kScale,            // duration, double -> their product, a duration
+  kShrink,           // duration, double -> their quotient, a duration
+  kRatio,            // duration, duration -> their quotient, a double
+
+  kLessInt,          // a, b -> a < b
+  kLessDouble,       // a, b -> a < b
+  kLessString,       // a, b -> a < b, byte by byte
+  kLessEqualInt,     // a, b -> a <= b
+  kLessEqualDouble,  // a, b -> a <= b
+  kLessEqualString,  // a, b -> a <= b, byte by byte
+  kEqualBool,        // a, b -> a == b
+  kEqualInt,         // a, b -> a == b
+  kEqualDouble,      // a, b -> a == b
+  kEqualString,      // a, b -> a == b
+
+  kAbsInt,      // a -> |a|; unknown if it overflows
+  kAbsDouble,   // a -> |a|
+  kMinInt,      // a, b -> the smaller one
+  kMinDouble,   // a, b -> the smaller one
+  kMaxInt,      // a, b -> the larger one
+  kMaxDouble,   // a, b -> the larger one
+  kPower,       // a, b -> a to the power of b, doubles; unknown if it is not finite
+  kSquareRoot,  // a -> its root, doubles; unknown if a is negative
 };
 // How many operands the instruction takes off the stack. Each leaves one result.
 constexpr int operand_count(Op op) {

@@ -4,6 +4,13 @@
 // A pure state machine. No clock, no thread, no I/O, nothing random: the same observations give the
 // same commands and the same events. Live runs, simulations, replays and tests drive the same step.
 //
+//     Manager manager(rules, std::make_unique<BayesPlanner>(), {.start = now});
+//     for (const Command& command : manager.step(now, observations)) carry_out(command);
+//     for (const Event& event : manager.events()) print(describe(event, rules));
+//     // step again when something was observed (replies, too), or at manager.next_deadline()
+//
+// Runtime (runtime.h) does that for a Robot. examples/t01 is this in full.
+//
 // Not thread-safe; one owner calls it.
 #pragma once
 

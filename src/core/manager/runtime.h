@@ -3,6 +3,10 @@
 // The only loop there is. It steps the managing system as soon as something was observed or one of
 // its deadlines has passed; there is no period. A simulated robot runs through the same loop in
 // virtual time.
+//
+//     Runtime runtime(manager, robot);
+//     runtime.on_events = [&](std::span<const Event> events) { print(events); };
+//     runtime.run(stop);    // elsewhere: stop = true; robot.interrupt();
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,21 @@
 // The port of planners: failures -> strategies.
+//
+//     class First : public Planner {    // tries each rule's strategies in the order of the file
+//       std::vector<Decision> plan(std::span<const RuleId> failures,
+//                                  const Knowledge& knowledge) const override {
+//         std::vector<Decision> decisions;
+//         for (const RuleId rule : failures) {
+//           Decision& decision = decisions.emplace_back(Decision{.rule = rule});
+//           for (const StrategyId strategy : knowledge.rules[rule].strategies)
+//             if (!decision.chosen && !knowledge.states.is_tried(strategy))
+//               decision.chosen = strategy;
+//           decision.is_spent = !decision.chosen;
+//         }
+//         return decisions;
+//       }
+//     };
+//
+// examples/t03 also lists the candidates, with what excluded them.
 #pragma once
 
 #include <functional>

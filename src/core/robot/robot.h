@@ -1,5 +1,18 @@
 // The port to a managed system. Everything that drives a manager does it through this: live robots,
 // simulated ones, recordings.
+//
+//     class Tank : public Robot {
+//       Time now() const override { return now_; }
+//       void observe(Time until, std::vector<Observation>& observations) override {
+//         now_ = std::min(until, now_ + 100ms);    // a simulation: its clock moves
+//         observations.push_back({now_, SignalRead{SignalId(0), Value(level())}});
+//       }
+//       void execute(const Command& command) override {
+//         replies_.push_back({command.id, carry_out(command), {}, ""});    // told by observe()
+//       }
+//     };
+//
+// examples/t02 is this in full.
 #pragma once
 
 #include <vector>
