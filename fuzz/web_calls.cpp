@@ -21,7 +21,7 @@ std::vector<web::Route> all_routes() {
   static const RuleSet rules = *check(Source("fuzz.rules", kRules)).rules;
   static web::RuleDesk desk("fuzz.rules", kRules);
   std::vector<web::Route> routes = web::rule_routes(desk);
-  static OrderKeeper keeper("it is fuzzed");
+  static live::OrderKeeper keeper("it is fuzzed");
   static web::OrderDesk orders(keeper.keeping());
   orders.open(rules, [](const Order&) {});
   for (web::Route& route : web::order_routes(orders)) routes.push_back(std::move(route));

@@ -48,11 +48,11 @@ Expected<LiveInventory> look(const std::vector<Source>& sources, Duration wait) 
   for (const Checked& each : checked) {
     if (each.rules) named.push_back(&*each.rules);
   }
-  auto survey = open_survey();
+  auto survey = live::open_survey();
   if (!survey) return Error{survey.error()};
-  LiveInventory robot = look_for(named, **survey, wait);
+  LiveInventory robot = live::look_for(named, **survey, wait);
   if (!robot.has_robot())
-    return Error{nobody_on(ros2::options_from_environment()->domain) +
+    return Error{live::nobody_on(ros2::options_from_environment()->domain) +
                  " Nothing was checked against them"};
   return robot;
 }

@@ -27,10 +27,10 @@ Expected<Picture> look(Duration wait) {
   auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
   const RuleSet no_rules;
-  LiveRobot::Options options;
+  live::LiveRobot::Options options;
   options.link.participant = *participant;
   options.link.name = {"/", "_culprit_graph"};  // hidden, as tools are
-  auto robot = LiveRobot::open(no_rules, std::move(options));
+  auto robot = live::LiveRobot::open(no_rules, std::move(options));
   if (!robot) return Error{robot.error()};
 
   DependencyGraph graph(no_rules);

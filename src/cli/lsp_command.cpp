@@ -72,7 +72,7 @@ int serve(const std::string& version, const LspOptions& options) {
   std::unique_ptr<ros2::Survey> survey;
   std::optional<Watch> watch;
   if (options.robot) {
-    auto opened = open_survey(options.message_path);
+    auto opened = live::open_survey(options.message_path);
     if (!opened) {
       fmt::print(stderr, "culprit: {}\n", opened.error());
       return kFailed;

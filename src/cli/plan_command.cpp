@@ -74,7 +74,7 @@ bool all_is_known(const Knowledge& knowledge) {
 
 // Until discovery has settled and all that triggers read is known (or has had as long again to
 // come), and as long as rules wait until they call something a failure.
-void watch(Manager& manager, LiveRobot& robot, const RuleSet& rules, Duration discovery,
+void watch(Manager& manager, live::LiveRobot& robot, const RuleSet& rules, Duration discovery,
            const std::atomic<bool>& stop) {
   Runtime runtime(manager, robot);
   const Time settled = later(robot.now(), discovery);
@@ -85,19 +85,19 @@ void watch(Manager& manager, LiveRobot& robot, const RuleSet& rules, Duration di
   runtime.run(stop, later(robot.now(), longest_detection(rules)));
 }
 
-int plan_for_robot(const LoadedRules& loaded, const PlanOptions& options) {
+int plan_for_robot(const live::LoadedRules& loaded, const PlanOptions& options) {
   const RuleSet& rules = loaded.rules;
   auto participant = ros2::options_from_environment();
   if (!participant) {
     fmt::print(stderr, "culprit: {}\n", participant.error());
     return kUsage;
   }
-  LiveRobot::Options robot_options;
+  live::LiveRobot::Options robot_options;
   robot_options.link.participant = *participant;
   robot_options.link.name = {"/", "_culprit_plan"};  // hidden, as tools are
-  robot_options.link.types = sources_of_types(options.message_path);
+  robot_options.link.types = live::sources_of_types(options.message_path);
   StopSignals signals;
-  auto robot = LiveRobot::open(rules, std::move(robot_options));
+  auto robot = live::LiveRobot::open(rules, std::move(robot_options));
   if (!robot) {
     fmt::print(stderr, "culprit: {}\n", robot.error());
     return kFailed;
@@ -115,7 +115,7 @@ int plan_for_robot(const LoadedRules& loaded, const PlanOptions& options) {
              rules.robot.empty() ? "the robot" : rules.robot,
              seconds(manager_options.discovery + longest_detection(rules)));
   auto preflight = std::async(std::launch::async, [&] {
-    return sight(Source(options.rules, loaded.text), options.message_path);
+    return live::sight(Source(options.rules, loaded.text), options.message_path);
   });
   watch(manager, **robot, rules, manager_options.discovery, signals.stopped());
   const bool is_stopped = signals.stopped();
@@ -138,7 +138,8 @@ int plan_for_robot(const LoadedRules& loaded, const PlanOptions& options) {
 }
 
 int plan(const PlanOptions& options) {
-  const auto loaded = read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
+  const auto loaded =
+      live::read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
   if (!loaded) return fail(loaded.error());
   fmt::print(stderr, "{}", loaded->remarks);
   return options.robot ? plan_for_robot(*loaded, options) : plan_for_state(loaded->rules, options);

@@ -91,7 +91,7 @@ int write_policy(PolicyOptions& options) {
   if (!is_valid_topic_name(options.enclave))
     return fail("'" + printable(options.enclave) + "' is no enclave; it is a path such as /culprit",
                 kUsage);
-  auto loaded = read_rules(options.rules);
+  auto loaded = live::read_rules(options.rules);
   if (loaded && options.improvise) loaded = improvised(std::move(*loaded), options.rules);
   if (!loaded) return fail(loaded.error());
   const auto text = options.format == "sros2"         ? sros2_form(loaded->rules, options)

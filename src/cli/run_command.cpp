@@ -21,7 +21,7 @@
 namespace culprit::cli {
 namespace {
 
-Expected<RoleOfCulprit> claim_robot(const RuleSet& rules, const RunOptions& options) {
+Expected<live::RoleOfCulprit> claim_robot(const RuleSet& rules, const RunOptions& options) {
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
   std::string key;
@@ -30,7 +30,7 @@ Expected<RoleOfCulprit> claim_robot(const RuleSet& rules, const RunOptions& opti
     if (!read) return Error{read.error()};
     key = std::move(*read);
   }
-  return RoleOfCulprit(rules, participant->domain, std::move(key));
+  return live::RoleOfCulprit(rules, participant->domain, std::move(key));
 }
 
 std::string name_of(const RuleSet& rules) {
@@ -38,7 +38,7 @@ std::string name_of(const RuleSet& rules) {
 }
 
 // Says everything at the terminal, or wherever the output goes.
-class ConsoleListener : public Listener {
+class ConsoleListener : public live::Listener {
  public:
   void on_event(const Event& event, const RuleSet& rules, Time start) override {
     const std::string text = line(event, rules, start, colour_of(STDOUT_FILENO));
@@ -52,8 +52,8 @@ class ConsoleListener : public Listener {
 };
 
 std::vector<web::Route> web_routes(web::Hub& hub, const web::Metrics& metrics, web::RuleDesk& desk,
-                                   web::OrderDesk& orders, LiveRun& live, RobotNames& names,
-                                   PlannerFactory planner) {
+                                   web::OrderDesk& orders, live::LiveRun& live,
+                                   live::RobotNames& names, PlannerFactory planner) {
   std::vector<web::Route> all;
   const auto reload = [&live](const std::string& author) { return live.reload(author); };
   for (auto routes :
@@ -71,9 +71,9 @@ std::vector<web::Route> web_routes(web::Hub& hub, const web::Metrics& metrics, w
 constexpr Duration kEndsWithin = std::chrono::seconds(8);
 
 int run(const RunOptions& options) {
-  auto rules = trusted_rules(options.rules, options.improvise, colour_of(STDERR_FILENO));
+  auto rules = live::trusted_rules(options.rules, options.improvise, colour_of(STDERR_FILENO));
   if (!rules) return fail(rules.error());
-  const auto trusted = trust_state(options.state_path(), options.journal_path(rules->rules));
+  const auto trusted = live::trust_state(options.state_path(), options.journal_path(rules->rules));
   if (!trusted) return fail(trusted.error());
   say(stderr, "{}", rules->remarks);
   auto session = options.session(rules->rules);
@@ -84,14 +84,14 @@ int run(const RunOptions& options) {
   StopSignals signals(Hangup::kReloads);
   signals.end_within(kEndsWithin);
   ConsoleListener listener;
-  LiveRun* running = nullptr;
+  live::LiveRun* running = nullptr;
   web::Hub hub([&] { running->interrupt(); });
   web::Metrics metrics;
   web::HubObserver observer(hub, metrics);
-  OrderKeeper keeper("the run has not begun");
+  live::OrderKeeper keeper("the run has not begun");
   web::OrderDesk orders(keeper.keeping());
-  LiveRun live({std::move(*session), options.dry_run, options.improvise}, std::move(*role), keeper,
-               listener, &observer);
+  live::LiveRun live({std::move(*session), options.dry_run, options.improvise}, std::move(*role),
+                     keeper, listener, &observer);
   running = &live;
   const std::string robot = name_of(rules->rules);
   const std::size_t count = rules->rules.rules.size();
@@ -104,7 +104,7 @@ int run(const RunOptions& options) {
   live.begin(orders, signals.stopped());
 
   web::RuleDesk desk(options.rules);
-  RobotNames names(options.message_path);
+  live::RobotNames names(options.message_path);
   Expected<std::unique_ptr<web::Server>> server(nullptr);
   if (options.is_on_web) {
     server =

@@ -1,5 +1,6 @@
 #include "cli/run_options.h"
 
+#include "base/environment.h"
 #include "live/robot_survey.h"
 #include "live/run_journal.h"
 
@@ -10,20 +11,20 @@ std::filesystem::path RunOptions::state_path() const {
 }
 
 std::filesystem::path RunOptions::journal_path(const RuleSet& rule_set) const {
-  return journal.empty() ? default_journal(state_path(), rule_set.robot)
+  return journal.empty() ? live::default_journal(state_path(), rule_set.robot)
                          : std::filesystem::path(journal);
 }
 
-Expected<LiveSession::Options> RunOptions::session(const RuleSet& rule_set) const {
+Expected<live::LiveSession::Options> RunOptions::session(const RuleSet& rule_set) const {
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
   const auto limits = governor.options();
   if (!limits) return Error{limits.error()};
-  LiveSession::Options out;
+  live::LiveSession::Options out;
   out.version = version;
   out.rules_file = rules;
   out.robot.link.participant = *participant;
-  out.robot.link.types = sources_of_types(message_path);
+  out.robot.link.types = live::sources_of_types(message_path);
   out.robot.link.parameters = {
       {"rules", Value(rules)}, {"planner", Value(planner.name)}, {"dry_run", Value(dry_run)}};
   out.robot.supervisor = {state_path() / "log", {own_folder()}};

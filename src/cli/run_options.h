@@ -36,7 +36,7 @@ struct RunOptions {
   std::filesystem::path state_path() const;
   std::filesystem::path journal_path(const RuleSet& rules) const;
   // Errors: the environment names no DDS domain, or the governor's options are wrong.
-  Expected<LiveSession::Options> session(const RuleSet& rules) const;
+  Expected<live::LiveSession::Options> session(const RuleSet& rules) const;
 };
 
 }  // namespace culprit::cli

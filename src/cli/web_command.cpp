@@ -30,7 +30,7 @@ int edit(const WebCommandOptions& options) {
   std::vector<web::Route> routes = web::rule_routes(desk);
   for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
   routes.push_back(web::single_run_route());
-  RobotNames names;
+  live::RobotNames names;
   if (options.robot) {
     for (web::Route& route :
          web::name_routes([&names](const LiveInterest& interest) { return names.look(interest); }))

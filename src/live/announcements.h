@@ -4,7 +4,7 @@
 
 #include "knowledge/event_words.h"
 
-namespace culprit::announcements {
+namespace culprit::live::announcements {
 
 inline constexpr EventWords kRole{"role", "role", EventSeverity::kInfo, Tone::kAction};
 inline constexpr EventWords kReloaded{"reloaded", "reloaded", EventSeverity::kInfo, Tone::kPerson};
@@ -16,4 +16,4 @@ inline constexpr EventWords kNotReloaded{"not_reloaded", "trouble", EventSeverit
 inline constexpr EventWords kBeginsAnew{"begins_anew", "deaf", EventSeverity::kError, Tone::kAlarm,
                                         Weight::kStrong};
 
-}  // namespace culprit::announcements
+}  // namespace culprit::live::announcements

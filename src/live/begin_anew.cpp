@@ -8,7 +8,7 @@
 #include <iterator>
 #include <unistd.h>
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 std::vector<std::string> own_arguments() {
@@ -42,4 +42,4 @@ std::string begin_anew() {
   return std::string("culprit cannot be started anew: ") + std::strerror(errno);
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

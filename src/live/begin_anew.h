@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace culprit {
+namespace culprit::live {
 
 // With which arguments the next one is started. It starts nothing that it does not see: this one
 // could not see anything.
@@ -15,4 +15,4 @@ std::vector<std::string> arguments_of_next(std::vector<std::string> own);
 // whole.
 std::string begin_anew();
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 TEST(BeginAnew, DoesTheSameAgainButStartsNothing) {
@@ -11,4 +11,4 @@ TEST(BeginAnew, DoesTheSameAgainButStartsNothing) {
 }
 
 }  // namespace
-}  // namespace culprit
+}  // namespace culprit::live

@@ -6,7 +6,7 @@
 
 #include "knowledge/describe.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 constexpr std::uint8_t kWell = 0;
@@ -82,4 +82,4 @@ std::vector<ros2::Health> health(const Knowledge& knowledge) {
   return all;
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -7,11 +7,11 @@
 #include "knowledge/knowledge.h"
 #include "link/link.h"
 
-namespace culprit {
+namespace culprit::live {
 
 // OK while quiet, WARN while a failure is there and being worked on, ERROR when a rule is
 // exhausted: a person must look. ERROR also for a REQUIRED component that is not there; each has a
 // status of its own once that is known.
 std::vector<ros2::Health> health(const Knowledge& knowledge);
 
-}  // namespace culprit
+}  // namespace culprit::live

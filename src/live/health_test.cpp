@@ -4,7 +4,7 @@
 
 #include "language/checker.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 RuleSet two_rules() {
@@ -60,4 +60,4 @@ TEST(HealthReport, ErrsWhenARequiredComponentIsNotThere) {
 }
 
 }  // namespace
-}  // namespace culprit
+}  // namespace culprit::live

@@ -4,7 +4,7 @@
 #include <signal.h>
 #include <unistd.h>
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 using Holder = ros2::NamedLock::Holder;
@@ -56,4 +56,4 @@ bool HostClaim::look() {
   return true;
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -12,7 +12,7 @@
 
 #include "ros2/named_lock.h"
 
-namespace culprit {
+namespace culprit::live {
 
 class HostClaim {
  public:
@@ -39,4 +39,4 @@ class HostClaim {
   std::string stranger_;
 };
 
-}  // namespace culprit
+}  // namespace culprit::live

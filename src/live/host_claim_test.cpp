@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 using testing::HasSubstr;
@@ -85,4 +85,4 @@ TEST(HostClaim, IsNotLostToAStranger) {
 }
 
 }  // namespace
-}  // namespace culprit
+}  // namespace culprit::live

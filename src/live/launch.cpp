@@ -8,7 +8,7 @@
 
 #include "robot/component_binding.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 // Producers before their consumers, else as the file has them. Who waits for one another comes in
@@ -248,4 +248,4 @@ Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start,
   return launched;
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -16,7 +16,7 @@
 #include "live/listener.h"
 #include "robot/robot.h"
 
-namespace culprit {
+namespace culprit::live {
 
 // Starts a component's LAUNCH command; a Reply to the command says whether it runs.
 using StartComponent = std::function<void(CommandId, ComponentId)>;
@@ -43,4 +43,4 @@ std::vector<ComponentId> in_order(const RuleSet& rules);
 Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start, Listener& listener,
                 const std::atomic<bool>& stop, LaunchTimes times = {});
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -8,7 +8,7 @@
 #include "language/checker.h"
 #include "robot/component_binding.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 using namespace std::chrono_literals;
@@ -240,4 +240,4 @@ TEST_F(Launching, EndsWhenCulpritIsStopped) {
 }
 
 }  // namespace
-}  // namespace culprit
+}  // namespace culprit::live

@@ -5,7 +5,7 @@
 
 #include "knowledge/event_words.h"
 
-namespace culprit {
+namespace culprit::live {
 
 // Nothing of it has to be listened to.
 class Listener {
@@ -23,4 +23,4 @@ class Listener {
   virtual void on_trouble(const std::string& /*text*/) {}
 };
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -4,7 +4,7 @@
 
 #include "live/launch.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 // ", with /tracker, /filter"
@@ -176,4 +176,4 @@ void LiveRobot::end_process(CommandId command, ComponentId component, int pid,
   supervisor_->stop(command, component, ending, hangs);
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -13,7 +13,7 @@
 #include "robot/inbox.h"
 #include "robot/robot.h"
 
-namespace culprit {
+namespace culprit::live {
 
 class LiveRobot : public Robot {
  public:
@@ -77,4 +77,4 @@ class LiveRobot : public Robot {
   std::optional<Time> deaf_since_;
 };
 
-}  // namespace culprit
+}  // namespace culprit::live

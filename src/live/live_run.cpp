@@ -8,7 +8,7 @@
 #include "live/announcements.h"
 #include "live/begin_anew.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 // How long nothing is heard before culprit begins anew. A cut cable is no reason: what it says to
@@ -212,4 +212,4 @@ Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) 
   return {};
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

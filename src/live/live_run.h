@@ -12,7 +12,7 @@
 #include "live/role.h"
 #include "live/service_manager.h"
 
-namespace culprit {
+namespace culprit::live {
 
 class LiveRun {
  public:
@@ -72,4 +72,4 @@ class LiveRun {
   std::optional<Next> next_ CULPRIT_GUARDED_BY(mutex_);
 };
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -13,7 +13,7 @@
 #include "live/setups.h"
 #include "replay/replay.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 ros2::Severity severity_in_rosout(EventSeverity severity) {
@@ -377,4 +377,4 @@ void LiveSession::end(journal::Ending ending) {
   recorder_.reset();
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -19,7 +19,7 @@
 #include "live/run_journal.h"
 #include "plan/planner.h"
 
-namespace culprit {
+namespace culprit::live {
 
 class LiveSession {
  public:
@@ -133,4 +133,4 @@ class LiveSession {
   std::atomic<bool> is_left_ = false;
 };
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -9,7 +9,7 @@
 #include "manager/manager.h"
 #include "manager/runtime.h"
 
-namespace culprit {
+namespace culprit::live {
 
 // All members are called on the thread that manages, and must not block it. One observer sees the
 // sessions of a run one after the other.
@@ -31,4 +31,4 @@ class Observer {
   virtual void announced(Time at, const EventWords& words, const std::string& text) = 0;
 };
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -3,7 +3,7 @@
 #include "journal/sealed_file.h"
 #include "robot/inbox.h"
 
-namespace culprit {
+namespace culprit::live {
 
 using journal::NamedOrder;
 using journal::StandingOrders;
@@ -154,4 +154,4 @@ bool OrderKeeper::is_unwritten() const {
   return file_ && (!in_file_ || !restrain_alike(*in_file_, orders_));
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -17,7 +17,7 @@
 #include "language/rule_set.h"
 #include "robot/standing.h"
 
-namespace culprit {
+namespace culprit::live {
 
 // Whether the next process will know of an order.
 struct Kept {
@@ -106,4 +106,4 @@ class OrderKeeper {
   std::thread later_;
 };
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -17,7 +17,7 @@
 #include "live/run_journal.h"
 #include "robot/inbox.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 namespace fs = std::filesystem;
@@ -316,4 +316,4 @@ TEST_F(KillSwitch, EndsAsItIsKeptIfTwoPeopleOrderAtOnce) {
 }
 
 }  // namespace
-}  // namespace culprit
+}  // namespace culprit::live

@@ -14,7 +14,7 @@
 #include "owners/units.h"
 #include "robot/inbox.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 using namespace std::chrono_literals;
@@ -189,4 +189,4 @@ void Preflight::look(const std::stop_token& stop) const {
   if (!stop.stop_requested()) say_(seen.report);
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

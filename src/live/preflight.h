@@ -14,7 +14,7 @@
 #include "language/source.h"
 #include "link/survey.h"
 
-namespace culprit {
+namespace culprit::live {
 
 // "no nodes were seen on domain 7; is ROS_DOMAIN_ID the robot's?"
 std::string nobody_on(std::uint32_t domain);
@@ -53,4 +53,4 @@ class Preflight {
   std::jthread thread_;  // ends looking with the object
 };
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -1,6 +1,6 @@
 #include "live/robot_names.h"
 
-namespace culprit {
+namespace culprit::live {
 
 Expected<LiveInventory> RobotNames::look(const LiveInterest& interest) {
   const MutexLock lock(mutex_);
@@ -13,4 +13,4 @@ Expected<LiveInventory> RobotNames::look(const LiveInterest& interest) {
   return survey_->inventory();
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

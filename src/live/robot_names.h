@@ -4,7 +4,7 @@
 #include "base/mutex.h"
 #include "live/robot_survey.h"
 
-namespace culprit {
+namespace culprit::live {
 
 class RobotNames {
  public:
@@ -22,4 +22,4 @@ class RobotNames {
   LiveInterest interest_ CULPRIT_GUARDED_BY(mutex_);                 // as it was told last
 };
 
-}  // namespace culprit
+}  // namespace culprit::live

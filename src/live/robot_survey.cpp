@@ -2,7 +2,7 @@
 
 #include "base/environment.h"
 
-namespace culprit {
+namespace culprit::live {
 
 ros2::TypeFinder::Options sources_of_types(std::vector<std::filesystem::path> message_path) {
   return {ros2::message_directories(std::move(message_path), environment("AMENT_PREFIX_PATH")),
@@ -19,4 +19,4 @@ Expected<std::unique_ptr<ros2::Survey>> open_survey(
   return ros2::Survey::open(std::move(survey));
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -7,7 +7,7 @@
 
 #include "link/survey.h"
 
-namespace culprit {
+namespace culprit::live {
 
 // Where message types are looked for: `message_path`, then AMENT_PREFIX_PATH, then what nodes told
 // of earlier, which is kept in the state folder.
@@ -19,4 +19,4 @@ ros2::TypeFinder::Options sources_of_types(std::vector<std::filesystem::path> me
 Expected<std::unique_ptr<ros2::Survey>> open_survey(
     std::vector<std::filesystem::path> message_path = {});
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -5,7 +5,7 @@
 #include "base/live_clock.h"
 #include "manager/manager.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 std::int64_t random_id() {
@@ -112,4 +112,4 @@ std::vector<std::string> RoleOfCulprit::warnings(const ros2::LeaseLink* lease) {
   return lines;
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -18,7 +18,7 @@
 #include "link/lease_link.h"
 #include "live/host_claim.h"
 
-namespace culprit {
+namespace culprit::live {
 
 enum class Role : std::uint8_t { kManage, kAdvise };
 
@@ -70,4 +70,4 @@ class RoleOfCulprit {
   std::set<std::string> warned_;
 };
 
-}  // namespace culprit
+}  // namespace culprit::live

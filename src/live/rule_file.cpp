@@ -5,7 +5,7 @@
 #include "language/improvise.h"
 #include "live/rule_trust.h"
 
-namespace culprit {
+namespace culprit::live {
 
 Expected<LoadedRules> read_rules(const std::string& path, Strictness strictness, Colour colour) {
   const auto source = Source::read(path);
@@ -38,4 +38,4 @@ Expected<LoadedRules> trusted_rules(const std::string& path, bool improvises, Co
   return improvises ? improvised(std::move(*loaded), path) : std::move(loaded);
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

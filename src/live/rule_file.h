@@ -5,7 +5,7 @@
 
 #include "language/checker.h"
 
-namespace culprit {
+namespace culprit::live {
 
 struct LoadedRules {
   RuleSet rules;
@@ -25,4 +25,4 @@ Expected<LoadedRules> improvised(LoadedRules loaded, const std::string& path);
 // (live/rule_trust.h), improvised on if that is asked for.
 Expected<LoadedRules> trusted_rules(const std::string& path, bool improvises, Colour colour);
 
-}  // namespace culprit
+}  // namespace culprit::live

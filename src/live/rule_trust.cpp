@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ Expected<void> trust_state(const fs::path& folder, const fs::path& journal) {
   return {};
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -9,7 +9,7 @@
 
 #include "base/expected.h"
 
-namespace culprit {
+namespace culprit::live {
 
 // Errors: the file or a folder above it belongs to somebody else, or is writable for its group or
 // for all. A group that is its owner's alone, as Debian gives each user one, is no other; in a
@@ -24,4 +24,4 @@ Expected<void> trust_setup(const std::string& path);
 Expected<void> trust_state(const std::filesystem::path& folder,
                            const std::filesystem::path& journal);
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -9,7 +9,7 @@
 
 #include "base/test_folder.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 namespace fs = std::filesystem;
@@ -116,4 +116,4 @@ TEST_F(RuleTrust, NorStateOfAnotherUser) {
 }
 
 }  // namespace
-}  // namespace culprit
+}  // namespace culprit::live

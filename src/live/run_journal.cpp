@@ -4,7 +4,7 @@
 
 #include "journal/requests.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 using journal::Recovery;
@@ -151,4 +151,4 @@ RunBeginning begin_without_journal(const std::filesystem::path& path, Time now) 
   return beginning;
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -6,7 +6,7 @@
 #include "journal/session.h"
 #include "journal/standing_orders.h"
 
-namespace culprit {
+namespace culprit::live {
 
 // Where the journal of a robot is unless it is said otherwise.
 std::filesystem::path default_journal(const std::filesystem::path& state_folder,
@@ -34,4 +34,4 @@ RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rul
 // What people have ordered according to the file beside the journal, if it is not to be written.
 RunBeginning begin_without_journal(const std::filesystem::path& path, Time now);
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -10,7 +10,7 @@
 
 #include "base/environment.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 std::optional<std::int64_t> number(std::string_view text) {
@@ -66,4 +66,4 @@ void ServiceManager::tell(const std::string& state) const {
                                             reinterpret_cast<const sockaddr*>(&to), length);
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -10,7 +10,7 @@
 
 #include "base/time.h"
 
-namespace culprit {
+namespace culprit::live {
 
 class ServiceManager {
  public:
@@ -37,4 +37,4 @@ class ServiceManager {
   Time next_ = kNever;
 };
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 using namespace std::chrono_literals;
@@ -82,4 +82,4 @@ TEST(ServiceManager, IsNotNeeded) {
 }
 
 }  // namespace
-}  // namespace culprit
+}  // namespace culprit::live

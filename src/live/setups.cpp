@@ -8,7 +8,7 @@
 #include "owners/setup.h"
 #include "owners/spawn.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 using Environment = Expected<std::vector<std::string>>;
@@ -63,4 +63,4 @@ std::optional<LiveInventory::LaunchTrouble> launch_trouble(const Component& comp
   return std::nullopt;
 }
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -9,7 +9,7 @@
 #include "language/live_inventory.h"
 #include "language/rule_set.h"
 
-namespace culprit {
+namespace culprit::live {
 
 // What each component's LAUNCH has in its environment beside what it inherits, by component. Reads
 // each SETUP, which takes as long as that. Errors: it cannot be read, others could change it, or it
@@ -21,4 +21,4 @@ std::vector<Expected<std::vector<std::string>>> environments_of(const RuleSet& r
 // program is not looked for. Nothing: nothing is known against it, or it has none.
 std::optional<LiveInventory::LaunchTrouble> launch_trouble(const Component& component);
 
-}  // namespace culprit
+}  // namespace culprit::live

@@ -9,7 +9,7 @@
 #include "base/test_folder.h"
 #include "language/checker.h"
 
-namespace culprit {
+namespace culprit::live {
 namespace {
 
 using testing::Contains;
@@ -89,4 +89,4 @@ TEST_F(Setups, OneThatOthersMayWriteIsNotRead) {
 }
 
 }  // namespace
-}  // namespace culprit
+}  // namespace culprit::live

@@ -15,7 +15,7 @@
 
 namespace culprit::web {
 
-class HubObserver : public Observer {
+class HubObserver : public live::Observer {
  public:
   static constexpr Duration kPeriod = std::chrono::milliseconds(200);
   // After an event the state is told sooner, at most so often.

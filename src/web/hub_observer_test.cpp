@@ -27,7 +27,7 @@ TEST(HubObserver, ShowsWhoElseHasTheNameOfANodeWithItsComponent) {
   observer.begins(
       manager,
       [] {
-        return Observer::Remarks{{"/camera", "kill 12 or 13"}};
+        return live::Observer::Remarks{{"/camera", "kill 12 or 13"}};
       },
       Time());
   const Hub::Reader reader(hub);

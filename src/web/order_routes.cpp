@@ -128,7 +128,7 @@ Answer OrderDesk::take(const Json& body) {
   if (!order) return refuse(400, order.error());
   const std::uint64_t number = ++last_;
   if (standing_of(*order) != Standing::kNot) {
-    const KeepOrder keep_it = keeping_(*order, rules);
+    const live::KeepOrder keep_it = keeping_(*order, rules);
     lock.unlock();
     return keep(keep_it, body, number);
   }
@@ -139,8 +139,8 @@ Answer OrderDesk::take(const Json& body) {
 
 // Without the lock, for a disk may take its time, and nothing may delay a pause. So the rules may
 // have been replaced before the order is given: it is read anew.
-Answer OrderDesk::keep(const KeepOrder& keep, const Json& body, std::uint64_t number) {
-  const Kept kept = keep([&] {
+Answer OrderDesk::keep(const live::KeepOrder& keep, const Json& body, std::uint64_t number) {
+  const live::Kept kept = keep([&] {
     const MutexLock lock(mutex_);
     auto order = read_order(body, rules_ == nullptr ? no_rules() : *rules_, number);
     if (order) submit(std::move(*order));

@@ -13,10 +13,10 @@ namespace culprit::web {
 
 // Where orders are taken: by names of a rule set, for whoever manages with it. Both may be replaced
 // while the server runs. All members may be called from any thread.
-class OrderDesk : public OrderTaker {
+class OrderDesk : public live::OrderTaker {
  public:
   // `keeping` is called under a lock.
-  explicit OrderDesk(KeepOrders keeping) : keeping_(std::move(keeping)) {}
+  explicit OrderDesk(live::KeepOrders keeping) : keeping_(std::move(keeping)) {}
 
   void open(const RuleSet& rules, std::function<void(Order)> submit) override;
   // Only a pause is taken meanwhile, and given to whoever is next.
@@ -25,10 +25,10 @@ class OrderDesk : public OrderTaker {
   Answer take(const Json& body);
 
  private:
-  Answer keep(const KeepOrder& keep, const Json& body, std::uint64_t number);
+  Answer keep(const live::KeepOrder& keep, const Json& body, std::uint64_t number);
   void submit(Order order) CULPRIT_REQUIRES(mutex_);
 
-  const KeepOrders keeping_;
+  const live::KeepOrders keeping_;
   Mutex mutex_;
   const RuleSet* rules_ CULPRIT_GUARDED_BY(mutex_) = nullptr;  // null: nobody manages now
   std::function<void(Order)> submit_ CULPRIT_GUARDED_BY(mutex_);

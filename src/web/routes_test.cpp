@@ -85,7 +85,7 @@ struct Routes : testing::Test {
   Metrics metrics;
   RuleDesk desk{path};
   const RuleSet rules = *check(Source("test", kRouteRules)).rules;
-  OrderKeeper keeper{"this is a test"};
+  live::OrderKeeper keeper{"this is a test"};
   OrderDesk order_desk{keeper.keeping()};
   bool is_file_wrong = false;
   std::string reloaded_by;
@@ -223,8 +223,10 @@ TEST_F(Routes, SayWhetherAnOrderIsKept) {
   EXPECT_EQ(answer.status, 202);
   EXPECT_EQ(answer.body["kept"], false);
   EXPECT_EQ(answer.body["text"], "in force, not kept: this is a test");
-  OrderDesk strict([](const Order&, const RuleSet&) -> KeepOrder {
-    return [](const std::function<void()>&) -> Kept { return {false, false, "the disk is full"}; };
+  OrderDesk strict([](const Order&, const RuleSet&) -> live::KeepOrder {
+    return [](const std::function<void()>&) -> live::Kept {
+      return {false, false, "the disk is full"};
+    };
   });
   strict.open(rules, [this](Order order) { orders.push_back(std::move(order)); });
   orders.clear();

@@ -140,7 +140,7 @@ web::Faults faults_of(SunsetDemo& demo) {
 
 std::vector<web::Route> web_routes(SunsetDemo& demo, web::Hub& hub, const web::Metrics& metrics,
                                    web::OrderDesk& orders, web::RuleDesk& desk,
-                                   web::StudyRunner& studies, RobotNames& names,
+                                   web::StudyRunner& studies, live::RobotNames& names,
                                    PlannerFactory planner) {
   std::vector<web::Route> routes = web::live_routes(hub);
   for (web::Route& route : web::order_routes(orders)) routes.push_back(std::move(route));
@@ -188,7 +188,7 @@ int demo_sunset(const DemoOptions& options) {
   say_domain("SUNSET", (*demo)->domain());
   web::RuleDesk desk("sunset.rules", SunsetDemo::rule_text());
   web::OrderDesk orders((*demo)->keeper().keeping());
-  RobotNames names;
+  live::RobotNames names;
   web::StudyRunner studies(default_state_folder() / "studies");
   orders.open((*demo)->rules(), [&](Order order) { (*demo)->submit(std::move(order)); });
   const auto server = serve(

@@ -12,13 +12,14 @@ RuleSet embedded_rules(const char* name, const char* text) {
   return *check(Source(name, text)).rules;
 }
 
-LoadedRules embedded_file(const char* name, const char* text) {
+live::LoadedRules embedded_file(const char* name, const char* text) {
   return {embedded_rules(name, text), text, ""};
 }
 
-LiveSession::Options demo_session(const char* rules_file, LiveRobot::Options robot,
-                                  PlannerFactory planner, const std::filesystem::path& state) {
-  LiveSession::Options options;
+live::LiveSession::Options demo_session(const char* rules_file, live::LiveRobot::Options robot,
+                                        PlannerFactory planner,
+                                        const std::filesystem::path& state) {
+  live::LiveSession::Options options;
   options.rules_file = rules_file;
   options.robot = std::move(robot);
   options.planner = std::move(planner);

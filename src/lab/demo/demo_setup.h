@@ -12,7 +12,7 @@
 namespace culprit::lab {
 
 // The rules of an embedded file, which has no errors.
-LoadedRules embedded_file(const char* name, const char* text);
+live::LoadedRules embedded_file(const char* name, const char* text);
 RuleSet embedded_rules(const char* name, const char* text);
 
 // A new folder for logs and state.
@@ -25,8 +25,8 @@ Expected<ros2::DomainLock> make_own_domain(std::optional<std::uint32_t> wanted);
 
 // How culprit manages the robot of a demonstration: without a journal, and it forgets all when it
 // ends.
-LiveSession::Options demo_session(const char* rules_file, LiveRobot::Options robot,
-                                  PlannerFactory planner, const std::filesystem::path& state);
+live::LiveSession::Options demo_session(const char* rules_file, live::LiveRobot::Options robot,
+                                        PlannerFactory planner, const std::filesystem::path& state);
 // Why nothing is kept.
 inline constexpr const char* kForgets = "a demonstration forgets all when it ends";
 

@@ -91,7 +91,7 @@ Expected<void> SuaveDemo::open() {
   setenv("SUAVE_SEED", std::to_string(options_.seed).c_str(), 1);
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
-  LiveRobot::Options robot;
+  live::LiveRobot::Options robot;
   robot.link.participant = *participant;
   robot.supervisor = demo_processes(state_);
   how_ = demo_session(rule_file(options_.is_extended), std::move(robot), options_.planner, state_);
@@ -100,13 +100,13 @@ Expected<void> SuaveDemo::open() {
   auto observer = suave::MissionObserver::start(options_.speed, *participant);
   if (!observer) return Error{observer.error()};
   observer_ = std::move(*observer);
-  auto opened = LiveSession::open({.options = how_,
-                                   .records = false,
-                                   .lease = {},
-                                   .orders = keeper_,
-                                   .listener = *this,
-                                   .start = live_now()},
-                                  {rules_, rule_text(options_.is_extended), ""});
+  auto opened = live::LiveSession::open({.options = how_,
+                                         .records = false,
+                                         .lease = {},
+                                         .orders = keeper_,
+                                         .listener = *this,
+                                         .start = live_now()},
+                                        {rules_, rule_text(options_.is_extended), ""});
   if (!opened) return Error{opened.error()};
   session_ = std::move(*opened);
   if (auto started = start_processes(); !started) return started;

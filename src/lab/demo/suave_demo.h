@@ -32,7 +32,7 @@ struct MissionOutcome {
   std::size_t unresolved = 0;
 };
 
-class SuaveDemo : private Listener {
+class SuaveDemo : private live::Listener {
  public:
   struct Options {
     bool is_extended = false;
@@ -74,9 +74,9 @@ class SuaveDemo : private Listener {
   Inbox processes_inbox_;
   std::unique_ptr<owners::Supervisor> supervisor_;
   std::unique_ptr<suave::MissionObserver> observer_;
-  OrderKeeper keeper_;
-  LiveSession::Options how_;
-  std::unique_ptr<LiveSession> session_;  // null: the robot was not joined
+  live::OrderKeeper keeper_;
+  live::LiveSession::Options how_;
+  std::unique_ptr<live::LiveSession> session_;  // null: the robot was not joined
 
   Mutex mutex_;
   Episode episode_ CULPRIT_GUARDED_BY(mutex_);

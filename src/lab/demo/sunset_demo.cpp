@@ -38,14 +38,14 @@ Expected<void> SunsetDemo::open() {
   if (!robot) return Error{robot.error()};
   how_ = demo_session("sunset.rules", std::move(*robot), options_.planner, world_->state());
   how_.discovery = SunsetWorld::kStarting;
-  auto opened = LiveSession::open({.options = how_,
-                                   .records = false,
-                                   .lease = {},
-                                   .orders = keeper_,
-                                   .listener = *this,
-                                   .observer = options_.observer,
-                                   .start = live_now()},
-                                  embedded_file("sunset.rules", kSunsetRules));
+  auto opened = live::LiveSession::open({.options = how_,
+                                         .records = false,
+                                         .lease = {},
+                                         .orders = keeper_,
+                                         .listener = *this,
+                                         .observer = options_.observer,
+                                         .start = live_now()},
+                                        embedded_file("sunset.rules", kSunsetRules));
   if (!opened) return Error{opened.error()};
   session_ = std::move(*opened);
   if (auto begun = world_->begin(session_->supervisor(), rules()); !begun) return begun;

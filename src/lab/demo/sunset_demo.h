@@ -35,7 +35,7 @@ struct PlayOutcome {
   bool is_resolved() const { return unresolved == 0 && complaint.empty(); }
 };
 
-class SunsetDemo : private Listener {
+class SunsetDemo : private live::Listener {
  public:
   struct Options {
     double speed = 1;  // robot seconds in a second
@@ -46,7 +46,7 @@ class SunsetDemo : private Listener {
     // demo.
     std::function<void(const Event&, const RuleSet&, Time start)> on_event{};
     // Looks on, and outlives the demo; null: nobody does.
-    Observer* observer = nullptr;
+    live::Observer* observer = nullptr;
   };
 
   // Starts the seven processes and the manager and waits until the robot is well. Sets
@@ -74,7 +74,7 @@ class SunsetDemo : private Listener {
   static const char* rule_text();
   std::uint32_t domain() const { return world_->domain(); }
   // Keeps nothing, and says so.
-  OrderKeeper& keeper() { return keeper_; }
+  live::OrderKeeper& keeper() { return keeper_; }
   // Gives the manager an order, or has it look round. From any thread.
   void submit(Order order) { session_->submit(std::move(order)); }
   void interrupt() { session_->interrupt(); }
@@ -94,9 +94,9 @@ class SunsetDemo : private Listener {
   Options options_;
   const std::atomic<bool>& stop_;
   std::unique_ptr<SunsetWorld> world_;
-  OrderKeeper keeper_;
-  LiveSession::Options how_;
-  std::unique_ptr<LiveSession> session_;  // null: the robot was not joined
+  live::OrderKeeper keeper_;
+  live::LiveSession::Options how_;
+  std::unique_ptr<live::LiveSession> session_;  // null: the robot was not joined
 
   Mutex mutex_;
   std::optional<Episode> episode_ CULPRIT_GUARDED_BY(mutex_);

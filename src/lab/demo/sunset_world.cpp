@@ -47,10 +47,10 @@ const std::filesystem::path& SunsetWorld::keep_state() {
   return state_;
 }
 
-Expected<LiveRobot::Options> SunsetWorld::robot() const {
+Expected<live::LiveRobot::Options> SunsetWorld::robot() const {
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
-  LiveRobot::Options options;
+  live::LiveRobot::Options options;
   options.link.participant = *participant;
   options.supervisor = demo_processes(state_);
   return options;

@@ -41,7 +41,7 @@ class SunsetWorld {
   ~SunsetWorld();
 
   // How the robot is joined. Errors: the environment is wrong.
-  Expected<LiveRobot::Options> robot() const;
+  Expected<live::LiveRobot::Options> robot() const;
   // @pre begin() succeeded
   sunset::Experiment& experiment() {
     assert(experiment_);

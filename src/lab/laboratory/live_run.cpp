@@ -58,7 +58,7 @@ class LiveRun {
   const std::atomic<bool>& stop_;
   const RuleSet& rules_;
   std::unique_ptr<SunsetWorld> world_;
-  std::unique_ptr<LiveRobot> robot_;
+  std::unique_ptr<live::LiveRobot> robot_;
   std::unique_ptr<ManagingSystem> manager_;
   std::unique_ptr<Runtime> runtime_;
   Time begin_ = kLongAgo;  // when the robot is broken
@@ -83,7 +83,7 @@ Expected<void> LiveRun::begin() {
   world_ = std::move(*world);
   auto how = world_->robot();
   if (!how) return Error{how.error()};
-  auto robot = LiveRobot::open(rules_, std::move(*how));
+  auto robot = live::LiveRobot::open(rules_, std::move(*how));
   if (!robot) return Error{robot.error()};
   robot_ = std::move(*robot);
   if (auto begun = world_->begin(robot_->supervisor(), rules_); !begun) return begun;
