@@ -83,5 +83,26 @@ TEST_F(NeverSeen, WhatDiedWithCulpritIsKnownToHaveDied) {
   EXPECT_EQ(second.wait(), 0);
 }
 
+// Which of two nodes a component without NODE is, nobody can say: none of them is touched.
+TEST_F(NeverSeen, ANameThatTwoNodesHaveIsActedOnByNobody) {
+  const std::string domain = std::to_string(ros2::options_from_environment()->domain);
+  const TestProgram first(world, {"ros2_peer_node", domain, "/r1/arm"});
+  const TestProgram second(world, {"ros2_peer_node", domain, "/r2/arm"});
+  TestProgram culprit =
+      run(world.write("arm.rules", "ROBOT arms\nCOMPONENT arm LAUNCH \"ros2_peer_node " + domain +
+                                       " /r1/arm\"\n"
+                                       "RULE Dead\n  POLICIES ERROR\n  TRIGGER !alive(arm)\n"
+                                       "    STRATEGY arm_redeploy 90 10\n"
+                                       "      ADAPTATION arm redeploy 5\n"));
+  ASSERT_TRUE(culprit.prints("arm is there")) << culprit.output();
+  kill(culprit.output().find("/r1/arm") < culprit.output().find("/r2/arm") ? first.pid()
+                                                                           : second.pid(),
+       SIGKILL);
+  EXPECT_TRUE(culprit.prints("say which with NODE")) << culprit.output();
+  culprit.signal(SIGINT);
+  EXPECT_EQ(culprit.wait(), 0);
+  EXPECT_THAT(culprit.output(), HasSubstr("'arm' could be '/r1/arm' or '/r2/arm'"));
+}
+
 }  // namespace
 }  // namespace culprit::cli

@@ -62,9 +62,9 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
     containers_.observe(observations[i]);
     composed_->observe(observations[i]);
     const auto* appeared = std::get_if<NodeAppeared>(&observations[i].what);
-    if (appeared == nullptr || appeared->pid == 0) continue;
+    if (appeared == nullptr) continue;
     const auto component = binding_.bind(appeared->node);
-    if (!component) continue;
+    if (!component || appeared->pid == 0) continue;
     supervisor_->adopt(*component, appeared->pid, observations[i].at);
     units_.found(*component, appeared->pid);
     engines_.found(*component, appeared->pid);
@@ -103,6 +103,8 @@ void LiveRobot::witness(std::size_t before, std::vector<Observation>& observatio
 }
 
 void LiveRobot::execute(const Command& command) {
+  if (const std::string doubt = binding_.ambiguity(command.component); !doubt.empty())
+    return inbox_.put(Reply{command.id, Outcome::kRefused, {}, doubt});
   if (std::holds_alternative<StopProcess>(command.what)) {
     stop_process(command);
   } else if (std::holds_alternative<StartProcess>(command.what)) {

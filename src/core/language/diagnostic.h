@@ -68,6 +68,7 @@ enum class Code : std::uint16_t {
   kNoSuchUnit = 65,
   kCannotLaunch = 66,
   kNoSuchField = 67,
+  kSeveralNodes = 68,
 };
 
 // "R011"

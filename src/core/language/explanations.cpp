@@ -367,6 +367,12 @@ std::vector<Explanation> robot_explanations() {
                     "So the signal would stay unknown and its rule quiet.",
                     "SIGNAL lines TOPIC /robot/image FIELD heigt\n",
                     "SIGNAL lines TOPIC /robot/image FIELD height\n"),
+      against_robot(Code::kSeveralNodes, "several nodes of the robot have this component's name",
+                    "A component without NODE is the node whose own name it has. Here more than "
+                    "one has it, in different namespaces, and culprit does not choose: it does "
+                    "nothing to either until NODE says which is meant.",
+                    "COMPONENT wheel LAUNCH \"wheel_driver\"\n",
+                    "COMPONENT wheel NODE /left/wheel LAUNCH \"wheel_driver\"\n"),
   };
 }
 
@@ -415,6 +421,8 @@ const LiveInventory& example_robot() {
     LiveInventory::Node& camera = robot.nodes["/robot/camera"];
     camera.parameters = {{"exposure", Value(0.5)}};
     camera.lifecycle = "active";
+    robot.nodes["/left/wheel"];
+    robot.nodes["/right/wheel"];
     robot.topics["/robot/image"] = {
         .type = "sensor_msgs/msg/Image",
         .publishers = {"/robot/camera"},

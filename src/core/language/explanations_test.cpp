@@ -62,6 +62,7 @@ bool exists(Code code) {
     case Code::kNoSuchUnit:
     case Code::kCannotLaunch:
     case Code::kNoSuchField:
+    case Code::kSeveralNodes:
       return true;
   }
   return false;

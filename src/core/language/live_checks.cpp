@@ -57,7 +57,10 @@ class LiveChecks {
       key(signal);
       field(signal);
     }
-    for (const syntax::Component& component : file_.components) owner(component);
+    for (const syntax::Component& component : file_.components) {
+      owner(component);
+      several_nodes(component);
+    }
     for (const syntax::Rule& rule : file_.rules) {
       for (const syntax::Strategy& strategy : rule.strategies) {
         for (const syntax::Adaptation& a : strategy.adaptations) services(a);
@@ -138,6 +141,22 @@ class LiveChecks {
     const Span name = declared->second->name.span;
     const std::string node = near.empty() ? "" : " NODE " + robot_.node_of({near, "", {}, false});
     warn(Code::kNoSuchNode, name, cause, remedy, node, {name.end, name.end});
+  }
+
+  // Without NODE: one of several, and nobody can say which.
+  void several_nodes(const syntax::Component& written) {
+    const Component* c = component_of(written.name.text);
+    if (c == nullptr || !c->node.empty()) return;
+    std::vector<std::string> fitting;
+    for (const auto& [name, node] : robot_.nodes) {
+      if (own_name(name) == c->name) fitting.push_back(name);
+    }
+    if (fitting.size() < 2) return;
+    std::sort(fitting.begin(), fitting.end());
+    found_.push_back({Code::kSeveralNodes, Severity::kError, written.name.span,
+                      "'" + c->name + "' could be '" + fitting[0] + "' or '" + fitting[1] + "'",
+                      "say which with NODE " + fitting[0] + " or NODE " + fitting[1],
+                      {}});
   }
 
   void topic(const Occurrence& o) {

@@ -12,6 +12,7 @@ ComponentBinding::ComponentBinding(const RuleSet& rules) {
       components_.emplace(component.node, ComponentId(c));
     }
   }
+  namesakes_.resize(nodes_.size());
 }
 
 std::optional<ComponentId> ComponentBinding::bind(const std::string& node) {
@@ -20,10 +21,21 @@ std::optional<ComponentId> ComponentBinding::bind(const std::string& node) {
   const auto fitting = without_node_.find(node.substr(node.rfind('/') + 1));
   if (fitting == without_node_.end()) return std::nullopt;
   const ComponentId component = fitting->second;
-  without_node_.erase(fitting);
+  std::string& bound = nodes_[component.index];
+  if (!bound.empty()) {
+    namesakes_[component.index] = node;
+    return std::nullopt;
+  }
   components_.emplace(node, component);
-  nodes_[component.index] = node;
+  bound = node;
   return component;
+}
+
+std::string ComponentBinding::ambiguity(ComponentId component) const {
+  const std::string& other = namesakes_[component.index];
+  if (other.empty()) return "";
+  const std::string& bound = nodes_[component.index];
+  return "it could be " + bound + " or " + other + ": say which with NODE " + bound;
 }
 
 }  // namespace culprit
