@@ -312,12 +312,13 @@ void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
 }
 
 void Link::find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch) {
-  if (!watch.reads_fields()) return watch.publisher_seen(endpoint.type, nullptr);
+  if (!watch.reads_fields()) return watch.publisher_seen(endpoint.type, endpoint.qos, nullptr);
   const auto pid = pids_.find(node);
-  types_->find({node, endpoint.type, endpoint.type_hash, pid == pids_.end() ? 0 : pid->second},
-               [&watch, type = endpoint.type](const Expected<MessageLibrary*>& library) {
-                 watch.publisher_seen(type, library);
-               });
+  types_->find(
+      {node, endpoint.type, endpoint.type_hash, pid == pids_.end() ? 0 : pid->second},
+      [&watch, type = endpoint.type, qos = endpoint.qos](const Expected<MessageLibrary*>& library) {
+        watch.publisher_seen(type, qos, library);
+      });
 }
 
 void Link::on_parameter_event(const msg::ParameterEvent& event) {

@@ -206,6 +206,22 @@ TEST(Link, ReadsFieldsOfMessagesThatFilesDefine) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(Link, ReadsWhatWasLatchedBeforeItCame) {
+  const TestDomain domain;
+  Robot robot(domain);
+  const auto publisher =
+      RawPublisher::create(robot.managed->node().entry(), "/visibility", "std_msgs/msg/Float64",
+                           {.durability = Durability::kTransientLocal, .depth = 1});
+  ASSERT_TRUE(publisher);
+  (*publisher)->publish(encode(msg::Float64{3.5}));
+  Linked linked(domain);
+  EXPECT_EQ(linked.reads("visibility"), Value(3.5));
+  EXPECT_FALSE(linked.has_seen<SampleArrived>([](const SampleArrived&) { return true; }))
+      << "what was published before is no beat of its rhythm";
+  (*publisher)->publish(encode(msg::Float64{4.5}));
+  EXPECT_TRUE(linked.wait<SignalRead>([](const SignalRead& r) { return r.value == Value(4.5); }));
+}
+
 TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
   const TestDomain domain;
   Robot robot(domain);

@@ -136,6 +136,7 @@ void Survey::on_endpoint(const std::string& node, const GraphEndpoint& endpoint)
     }
     if (publishes) {
       use.publishers.insert(node);
+      if (use.offered.durability == Durability::kVolatile) use.offered = endpoint.qos;
     } else {
       ++use.subscribers;
     }
@@ -191,9 +192,10 @@ void Survey::read_topic(const std::string& topic) {
   const auto wanted = interest_.fields_of_topics.find(topic);
   const auto use = topics_.find(topic);
   const bool can_be_read = use != topics_.end() && !use->second.publishers.empty();
-  if (wanted == interest_.fields_of_topics.end() || !can_be_read || topics_read_.contains(topic))
-    return;
+  if (wanted == interest_.fields_of_topics.end() || !can_be_read) return;
   const TopicUse& read = use->second;
+  if (const auto reading = topics_read_.find(topic); reading != topics_read_.end())
+    return reading->second->publisher_offers(read.offered);
   if (wanted->second.empty()) return read_topic_with(topic, read.type, nullptr);
   const std::string& publisher = *read.publishers.begin();
   int pid = 0;
@@ -214,6 +216,7 @@ void Survey::read_topic_with(const std::string& topic, const std::string& type,
   if (wanted == interest_.fields_of_topics.end() || topics_read_.contains(topic)) return;
   auto reading = TopicReading::open(node_->entry(), topic, type, wanted->second, library);
   if (!reading) return;
+  reading->publisher_offers(topics_[topic].offered);
   const MutexLock lock(mutex_);
   topics_read_.emplace(topic, std::move(reading));
 }

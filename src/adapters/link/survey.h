@@ -47,6 +47,7 @@ class Survey {
     int subscribers = 0;
     std::string type;
     std::string type_hash;
+    Qos offered;  // of a publisher; of one that latches, if there is one
   };
   using StatusKey = std::pair<std::string, std::string>;  // name and hardware id
 

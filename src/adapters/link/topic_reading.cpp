@@ -21,22 +21,32 @@ std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::str
     }
   }
   reading->since_ = live_now();
-  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
-  auto subscription = RawSubscription::create(
-      self, topic, type, kQos, reading->readers_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
-      [raw = reading.get()](const Sample& sample) { raw->on_sample(sample); });
-  if (!subscription) return nullptr;
-  reading->subscription_ = std::move(*subscription);
+  auto listener = TopicListener::open(
+      self, topic, type, reading->readers_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
+      {.on_arrival = [raw = reading.get()](const Sample&) { raw->on_arrival(); },
+       .on_message = [raw = reading.get()](const Sample& sample) { raw->on_message(sample); },
+       .on_unheard = {}});
+  if (!listener) return nullptr;
+  reading->listener_ = std::move(*listener);
   return reading;
 }
 
-void TopicReading::on_sample(const Sample& sample) {
+// That a topic's latched messages cannot be read shows in that none was.
+void TopicReading::publisher_offers(const Qos& offered) {
+  (void)listener_->publisher_offers(offered);
+}
+
+void TopicReading::on_arrival() {
   constexpr std::size_t kMaxArrivals = 100'000;  // a flood must not eat the memory
   const Time now = live_now();
   const MutexLock lock(mutex_);
   arrivals_.push_back(now);
   while (arrivals_.front() < now - kWindow || arrivals_.size() > kMaxArrivals)
     arrivals_.pop_front();
+}
+
+void TopicReading::on_message(const Sample& sample) {
+  const MutexLock lock(mutex_);
   for (const Field& field : readers_) {
     Value value;
     if (field.reader.read(sample.payload, value) == FieldStatus::kRead)

@@ -1,6 +1,6 @@
 // Listens to one topic: its rate now, and the last values of some of its fields.
 //
-// One best effort reader that keeps one sample; without fields no payload is copied.
+// Without fields no payload is copied (topic_listener.h).
 #pragma once
 
 #include <deque>
@@ -12,8 +12,8 @@
 #include "base/mutex.h"
 #include "base/time.h"
 #include "language/live_inventory.h"
+#include "link/topic_listener.h"
 #include "ros2/field_reader.h"
-#include "ros2/subscription.h"
 
 namespace culprit::ros2 {
 
@@ -29,6 +29,9 @@ class TopicReading {
                                             const std::set<std::string>& fields,
                                             const Expected<MessageLibrary*>& library);
 
+  // A publisher offers this; what a latched topic was told before is read, too.
+  void publisher_offers(const Qos& offered);
+
   // Enters rate and fields. From any thread.
   void tell(LiveInventory::Topic& topic) const;
 
@@ -39,7 +42,8 @@ class TopicReading {
   };
 
   TopicReading() = default;
-  void on_sample(const Sample& sample);
+  void on_arrival();
+  void on_message(const Sample& sample);
 
   std::vector<Field> readers_;
   std::map<std::string, std::string> unreadable_;  // fields, with the reason
@@ -47,7 +51,7 @@ class TopicReading {
   mutable Mutex mutex_;
   std::deque<Time> arrivals_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, Value> values_ CULPRIT_GUARDED_BY(mutex_);
-  std::unique_ptr<RawSubscription> subscription_;
+  std::unique_ptr<TopicListener> listener_;
 };
 
 }  // namespace culprit::ros2

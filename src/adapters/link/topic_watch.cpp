@@ -20,25 +20,37 @@ bool TopicWatch::reads_fields() const {
   });
 }
 
-void TopicWatch::publisher_seen(const std::string& type, const Expected<MessageLibrary*>& library) {
+void TopicWatch::publisher_seen(const std::string& type, const Qos& offered,
+                                const Expected<MessageLibrary*>& library) {
   const std::string& name = rules_[topic_].name;
-  if (subscription_) {
-    if (type != type_)
-      tell_once(name + " is published as " + type + " too; only its " + type_ +
-                " messages are watched");
-    return;
+  if (listener_ && type != type_)
+    return tell_once(name + " is published as " + type + " too; only its " + type_ +
+                     " messages are watched");
+  if (!listener_) {
+    if (!compile_fields(type, library) && !counts_) return;
+    if (const auto listening = listen(type); !listening) {
+      fields_.clear();
+      return tell_once("cannot watch " + name + ": " + listening.error());
+    }
   }
-  if (!compile_fields(type, library) && !counts_) return;
-  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
-  auto subscription = RawSubscription::create(
-      self_, name, type, kQos, fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
-      [this](const Sample& sample) { on_sample(sample); }, [this] { on_unheard(); });
-  if (!subscription) {
-    fields_.clear();
-    return tell_once("cannot watch " + name + ": " + subscription.error());
-  }
+  if (const auto latched = listener_->publisher_offers(offered); !latched)
+    tell_once("cannot read what " + name + " has latched: " + latched.error());
+}
+
+Expected<void> TopicWatch::listen(const std::string& type) {
+  auto listener = TopicListener::open(
+      self_, rules_[topic_].name, type, fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
+      {.on_arrival =
+           [this](const Sample& sample) {
+             if (counts_)
+               inbox_.put(SampleArrived{topic_, published_since(sample.identity)}, Urgency::kSoon);
+           },
+       .on_message = [this](const Sample& sample) { on_message(sample); },
+       .on_unheard = [this] { on_unheard(); }});
+  if (!listener) return Error{listener.error()};
   type_ = type;
-  subscription_ = std::move(*subscription);
+  listener_ = std::move(*listener);
+  return {};
 }
 
 // Gives whether there is one to read.
@@ -67,8 +79,7 @@ void TopicWatch::tell_once(std::string trouble) {
     inbox_.put(LinkTrouble{std::move(trouble)});
 }
 
-void TopicWatch::on_sample(const Sample& sample) {
-  if (counts_) inbox_.put(SampleArrived{topic_, published_since(sample.identity)}, Urgency::kSoon);
+void TopicWatch::on_message(const Sample& sample) {
   for (Field& field : fields_) {
     Value value;
     if (field.reader.read(sample.payload, value) != FieldStatus::kRead) continue;

@@ -1,7 +1,6 @@
 // Watches one topic for the rules: its rhythm, and the values of its fields.
 //
-// One best effort reader that keeps one sample, so that it can hold no writer back. If the rules
-// read no field, payloads are not even copied: watching a camera costs what receiving it costs.
+// If the rules read no field, payloads are not even copied (topic_listener.h).
 #pragma once
 
 #include <atomic>
@@ -13,9 +12,9 @@
 #include <vector>
 
 #include "language/rule_set.h"
+#include "link/topic_listener.h"
 #include "robot/inbox.h"
 #include "ros2/field_reader.h"
-#include "ros2/subscription.h"
 
 namespace culprit::ros2 {
 
@@ -28,8 +27,10 @@ class TopicWatch {
   bool reads_fields() const;
 
   // A publisher of the topic was discovered: subscribes with its type, unless that is done already.
-  // `library`: what has that type; not used where no field is read. On one thread.
-  void publisher_seen(const std::string& type, const Expected<MessageLibrary*>& library);
+  // `offered`: its quality of service. `library`: what has that type; not used where no field is
+  // read. On one thread.
+  void publisher_seen(const std::string& type, const Qos& offered,
+                      const Expected<MessageLibrary*>& library);
 
  private:
   struct Field {
@@ -38,8 +39,9 @@ class TopicWatch {
     std::optional<Value> last;
   };
   bool compile_fields(const std::string& type, const Expected<MessageLibrary*>& library);
+  Expected<void> listen(const std::string& type);
   void tell_once(std::string trouble);
-  void on_sample(const Sample& sample);
+  void on_message(const Sample& sample);
   void on_unheard();
   std::uint32_t published_since(const SampleIdentity& identity);
 
@@ -51,14 +53,14 @@ class TopicWatch {
   std::string type_;
   std::set<std::string> told_;  // troubles: each publisher has the same ones
 
-  // Of the receive thread, once the subscription exists.
+  // Of the receive thread, once the listener exists.
   std::vector<Field> fields_;
   std::unordered_map<Guid, std::int64_t> last_sequence_;  // by writer
 
   std::atomic<bool> told_unheard_ =
       false;  // receive threads come one at a time, but not always one
 
-  std::unique_ptr<RawSubscription> subscription_;
+  std::unique_ptr<TopicListener> listener_;
 };
 
 }  // namespace culprit::ros2

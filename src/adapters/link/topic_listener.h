@@ -1,0 +1,59 @@
+// Listens to one topic without disturbing it: its rhythm, and what its messages say.
+//
+// One best effort reader that keeps one sample, so that it can hold no writer back; where payloads
+// are not asked for they are not even copied: watching a camera costs what receiving it costs.
+//
+// A latched topic (transient local: a map, a robot's description) is published once, before we come.
+// Only a reliable reader is sent what was published before (DDS 1.4 §2.2.3.4), so a second one
+// listens too once a publisher is known to latch.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <unordered_map>
+
+#include "base/mutex.h"
+#include "ros2/subscription.h"
+
+namespace culprit::ros2 {
+
+class TopicListener {
+ public:
+  // On receive threads, under the rules of participant.h.
+  struct Callbacks {
+    // A sample came now: of the best effort reader, so each is a beat of the topic's rhythm.
+    SampleCallback on_arrival;
+    // A sample to read, newer than what its writer was heard to say before. Needs kWhole; one at a
+    // time.
+    SampleCallback on_message;
+    // Samples came that cannot be put together (ReaderOptions).
+    std::function<void()> on_unheard;
+  };
+
+  // `self` outlives the listener. `type` is "package/msg/Type".
+  static Expected<std::unique_ptr<TopicListener>> open(NodeEntry& self, const std::string& topic,
+                                                       const std::string& type, PayloadUse use,
+                                                       Callbacks callbacks);
+
+  // A publisher offers this. If it latches, what it published before is read, too.
+  Expected<void> publisher_offers(const Qos& offered);
+
+ private:
+  TopicListener(NodeEntry& self, std::string topic, std::string type, PayloadUse use,
+                Callbacks callbacks);
+  void read(const Sample& sample);
+  bool is_news(const SampleIdentity& identity) CULPRIT_REQUIRES(mutex_);
+
+  NodeEntry& self_;
+  const std::string topic_;
+  const std::string type_;
+  const PayloadUse use_;
+  const Callbacks callbacks_;
+  Mutex mutex_;
+  std::unordered_map<Guid, std::int64_t> last_read_ CULPRIT_GUARDED_BY(mutex_);  // by writer
+  std::unique_ptr<RawSubscription> now_;
+  std::unique_ptr<RawSubscription> latched_;
+};
+
+}  // namespace culprit::ros2
