@@ -25,6 +25,7 @@ Expected<live::LiveSession::Options> RunOptions::session(const RuleSet& rule_set
   out.rules_file = rules;
   out.robot.link.participant = *participant;
   out.robot.link.types = live::sources_of_types(message_path);
+  out.robot.link.use_sim_time = use_sim_time;
   out.robot.link.parameters = {
       {"rules", Value(rules)}, {"planner", Value(planner.name)}, {"dry_run", Value(dry_run)}};
   out.robot.supervisor = {state_path() / "log", {own_folder()}};
@@ -67,6 +68,8 @@ void RunOptions::add_to(CLI::App& command) {
                      "share: they agree who manages the robot (docs/security.md)");
   command.add_option("--message-path", message_path,
                      "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
+  command.add_flag("--use-sim-time", use_sim_time,
+                   "The robot is simulated: nothing is judged while its /clock stands still");
   command
       .add_option("--forgetting", forgetting,
                   "What was learned n outcomes ago weighs this to the n-th power; 1: nothing is "

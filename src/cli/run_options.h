@@ -27,6 +27,7 @@ struct RunOptions {
   std::string lease_key;  // a file; empty: culprits on other machines are not believed
   bool no_journal = false;
   std::vector<std::filesystem::path> message_path;
+  bool use_sim_time = false;
   bool is_on_web = false;
   WebOptions web;
 

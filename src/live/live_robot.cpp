@@ -77,9 +77,9 @@ void LiveRobot::listen(Time until, std::vector<Observation>& observations) {
   const std::size_t before = observations.size();
   while (true) {
     const Time now = live_now();
-    const bool hears = link_->doubtful() > now;
-    if (hears == deaf_since_.has_value()) return inbox_.take(now, observations);
-    const Time look = hears ? link_->doubtful() : later(now, ros2::Hearing::kPeriod);
+    const bool judges = link_->doubtful() > now;
+    if (judges != judges_) return inbox_.take(now, observations);
+    const Time look = judges ? link_->doubtful() : later(now, ros2::Hearing::kPeriod);
     inbox_.take(std::min(until, look), observations);
     const bool was_woken = observations.size() > before || live_now() < std::min(until, look);
     if (was_woken || live_now() >= until) return;
@@ -89,15 +89,16 @@ void LiveRobot::listen(Time until, std::vector<Observation>& observations) {
 // What silence means is clear before anything that was observed is judged.
 void LiveRobot::witness(std::size_t before, std::vector<Observation>& observations) {
   const Time now = live_now();
-  const bool hears = link_->doubtful() > now;
-  if (hears == !deaf_since_) return;
-  Observation observation{now, HearingRegained{}};
-  if (!hears) {
-    observation.what = HearingLost{link_->doubt()};
-    deaf_since_ = now;
-  } else {
+  const bool judges = link_->doubtful() > now;
+  if (judges || link_->is_paused()) {
     deaf_since_.reset();
+  } else if (!deaf_since_) {
+    deaf_since_ = now;
   }
+  if (judges == judges_) return;
+  judges_ = judges;
+  Observation observation{now, HearingRegained{}};
+  if (!judges) observation.what = HearingLost{link_->doubt()};
   observations.insert(observations.begin() + static_cast<std::ptrdiff_t>(before),
                       std::move(observation));
 }

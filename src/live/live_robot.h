@@ -74,6 +74,7 @@ class LiveRobot : public Robot {
   std::unique_ptr<ros2::Link> link_;
   std::unique_ptr<owners::ContainerClients> container_clients_;
   std::unique_ptr<owners::ComposedNodes> composed_;
+  bool judges_ = true;  // the manager was told that what it hears is all that there is
   std::optional<Time> deaf_since_;
 };
 

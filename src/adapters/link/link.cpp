@@ -112,6 +112,7 @@ Link::~Link() {
   hearing_.reset();
   parameter_events_.reset();
   diagnostics_watch_.reset();
+  clock_.reset();
   watches_.clear();
   links_.clear();
   diagnostics_.reset();
@@ -160,17 +161,34 @@ Expected<void> Link::start() {
     if (!lease) return Error{lease.error()};
     lease_ = std::move(*lease);
   }
+  if (options_.use_sim_time) {
+    auto clock = SimulatedClock::open(node_->entry());
+    if (!clock) return Error{clock.error()};
+    clock_ = std::move(*clock);
+  }
   probing_ = std::make_unique<Timer>(executor_, kProbePeriod, [this] { probe(); });
   thread_ = std::thread([this] { executor_.run(); });
   return {};
 }
 
-Time Link::doubtful() const {
+Time Link::sure_to_hear(Time now) const {
   const Time heard = hearing_->doubtful();
-  return lease_ ? std::min(heard, lease_->sure_until(live_now())) : heard;
+  return lease_ ? std::min(heard, lease_->sure_until(now)) : heard;
+}
+
+Time Link::doubtful() const {
+  const Time now = live_now();
+  const Time sure = sure_to_hear(now);
+  return clock_ ? std::min(sure, clock_->doubtful(now)) : sure;
+}
+
+bool Link::is_paused() const {
+  const Time now = live_now();
+  return clock_ && sure_to_hear(now) > now && clock_->doubtful(now) <= now;
 }
 
 std::string Link::doubt() const {
+  if (is_paused()) return clock_->doubt(live_now());
   const Time now = live_now();
   return lease_ && lease_->sure_until(now) <= now
              ? "culprit was away so long that another one may manage this robot by now; it listens"

@@ -22,6 +22,7 @@
 #include "link/component_link.h"
 #include "link/diagnostics_watch.h"
 #include "link/lease_link.h"
+#include "link/simulated_clock.h"
 #include "link/topic_watch.h"
 #include "link/type_finder.h"
 #include "robot/command.h"
@@ -54,6 +55,7 @@ class Link {
     // Announced to other culprits, of which one manages the robot (manager_lease.h). Nothing: this
     // one never will.
     std::optional<LeaseLink::Options> lease{};
+    bool use_sim_time = false;  // the robot is simulated: its time is /clock (simulated_clock.h)
   };
 
   // `rules` and `inbox` must outlive the link. Errors: the domain cannot be joined.
@@ -72,11 +74,14 @@ class Link {
   // Our own node, for clients of what is no component. It goes with the link.
   NodeEntry& entry() { return node_->entry(); }
 
-  // Until when it is sure that what the robot says is heard (hearing.h), and that no other culprit
-  // manages it (lease_link.h). From any thread, as the next.
+  // Until when it is sure that what the robot says is heard (hearing.h), that no other culprit
+  // manages it (lease_link.h), and that its time passes (simulated_clock.h). From any thread, as
+  // the next two.
   Time doubtful() const;
   // What is not sure, if that time has come.
   std::string doubt() const;
+  // Nothing is wrong with culprit: it is only the robot's time that stands still.
+  bool is_paused() const;
 
   // Who manages the robot, of the culprits of the domain. Null: this one claims nothing.
   LeaseLink* lease() { return lease_.get(); }
@@ -102,6 +107,7 @@ class Link {
   void remind();
 
   ComponentLink* link_of(ComponentId component);
+  Time sure_to_hear(Time now) const;
   ComponentLink* make_link(ComponentId component, const std::string& node);
 
   const RuleSet& rules_;
@@ -115,6 +121,7 @@ class Link {
   std::optional<Publisher<msg::DiagnosticArray>> diagnostics_;
   std::map<std::string, std::unique_ptr<TopicWatch>> watches_;  // by topic
   std::unique_ptr<TypeFinder> types_;
+  std::unique_ptr<SimulatedClock> clock_;  // if the robot is simulated
   std::unique_ptr<DiagnosticsWatch> diagnostics_watch_;
   std::unique_ptr<Subscription> parameter_events_;
   struct ToProbe {

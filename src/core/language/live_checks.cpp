@@ -153,7 +153,9 @@ class LiveChecks {
     }
     if (fitting.size() < 2) return;
     std::sort(fitting.begin(), fitting.end());
-    found_.push_back({Code::kSeveralNodes, Severity::kError, written.name.span,
+    found_.push_back({Code::kSeveralNodes,
+                      Severity::kError,
+                      written.name.span,
                       "'" + c->name + "' could be '" + fitting[0] + "' or '" + fitting[1] + "'",
                       "say which with NODE " + fitting[0] + " or NODE " + fitting[1],
                       {}});

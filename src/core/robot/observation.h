@@ -165,8 +165,9 @@ struct LinkTrouble {
   std::string text;
 };
 
-// What we say to ourselves, on the way that the robot's messages take, does not come back: nothing
-// that is missing from now on is missing on the robot. Until HearingRegained.
+// What we say to ourselves, on the way that the robot's messages take, does not come back, or the
+// time of a simulated robot stands still: nothing that is missing from now on is missing on the
+// robot. Until HearingRegained.
 struct HearingLost {
   std::string reason;
 };
