@@ -17,7 +17,7 @@
 // Anybody in the domain could announce so. A claim or a beat counts if it carries a proof that its
 // participant knows the key that both were given (HMAC-SHA-256 over it and the participant's GUID
 // prefix); beats are numbered, so that an old one is not taken for a new one. What has no proof is
-// a stranger's: told of, and not given way to.
+// a stranger's: it is reported, and culprit does not give way to it.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Finds out what a topic's messages look like, for types of which no file was given.
 //
 // From Iron on every endpoint announces the hash of its type (type_description.h), and only a
-// definition with that hash is gone by: what our files say, what was kept from an earlier run, what
+// definition with that hash is used: what our files say, what was kept from an earlier run, what
 // the files of the publisher's process say, and what the publisher's node tells when asked
 // (~/get_type_description, Jazzy). Before Iron there is no hash: the files that the publisher's process
 // was started with (AMENT_PREFIX_PATH, below its own root directory) go before ours.

@@ -8,7 +8,7 @@
 //
 // What it starts carries a mark (mark.h), so that whoever supervises the same robot later knows it
 // again, also if this process died the moment after: a component is never started beside a process
-// that runs already. Until its program runs it is not marked: so long it has a lock on the log,
+// that runs already. It is not marked until its program runs; until then it has a lock on the log,
 // which outlives us, too. (The tools of ROS 2 leave a daemon behind, which outlives whatever was
 // launched with them.)
 //

@@ -19,6 +19,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "language/checker.h"
 #include "owners/bounded_log.h"
 #include "owners/proc.h"
@@ -430,7 +431,8 @@ TEST(Supervisor, LeavesItsProcessesRunningWhenItEnds) {
   {
     const RuleSet rules = *check(Source("test.rules", "COMPONENT c LAUNCH \"sleep 1000\"\n")).rules;
     Inbox inbox;
-    Supervisor supervisor(rules, {std::filesystem::temp_directory_path(), {}}, inbox);
+    const test::TestFolder logs;
+    Supervisor supervisor(rules, {logs.path(), {}}, inbox);
     supervisor.start({1}, ComponentId(0));
     std::vector<Observation> seen;
     for (const Time end = live_now() + 30s; pid == 0 && live_now() < end;) {
@@ -447,8 +449,8 @@ TEST(Supervisor, LeavesItsProcessesRunningWhenItEnds) {
 }
 
 TEST(Launch, WhatRunsGoesOnWhetherOrNotAnybodyAsked) {
-  const auto log =
-      std::filesystem::temp_directory_path() / ("culprit-launch-" + std::to_string(getpid()));
+  const test::TestFolder own;
+  const auto log = own / "log";
   int pid = 0;
   {
     const auto launch = Launch::begin({{"sleep", "1000"}, {}, log}, Until::kItRuns);
@@ -461,7 +463,6 @@ TEST(Launch, WhatRunsGoesOnWhetherOrNotAnybodyAsked) {
   kill(pid, SIGKILL);
   siginfo_t info{};
   ASSERT_EQ(waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED), 0) << "it is ours to reap";
-  std::filesystem::remove(log);
 }
 
 // As after a crash: nothing is known but what the operating system says.
@@ -590,9 +591,7 @@ TEST(Supervisor, EndsAndStartsAgainWhatCanBeStartedAgain) {
 }
 
 TEST(Supervisor, DoesNotEndWhatItCannotStartAgain) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("culprit-gone-" + std::to_string(getpid()));
-  std::filesystem::create_directory(folder);
+  const test::TestFolder folder;
   std::filesystem::copy_file("/bin/sleep", folder / "node");
   {
     Supervised c((folder / "node").string() + " 1000", "test/again/" + std::to_string(getpid()));
@@ -629,7 +628,6 @@ TEST(Supervisor, DoesNotEndWhatItCannotStartAgain) {
     c.stop();
     EXPECT_FALSE(exists(pid)) << "for good, it is ended all the same";
   }
-  std::filesystem::remove_all(folder);
 }
 
 // What others started is known by what it ran when it was found first.
@@ -780,38 +778,35 @@ TEST(Supervisor, AProcessWhoseMainThreadEndedRuns) {
 }
 
 TEST(Proc, APythonNodeIsItsScript) {
-  const auto script =
-      std::filesystem::temp_directory_path() / ("culprit-script-" + std::to_string(getpid()));
+  const test::TestFolder own;
+  const auto script = own / "script";
   std::ofstream(script) << "sleep 1000; true\n";
   const int pid = start_by_others("exec bash -e " + script.string());
   ASSERT_TRUE(becomes(pid, "bash"));
   EXPECT_EQ(identity_of(pid)->script, script.string());
   EXPECT_EQ(identity_of(pid)->user, geteuid());
   kill(-pid, SIGKILL);
-  std::filesystem::remove(script);
 }
 
 TEST(Spawn, PassesArgumentsAsTheyAre) {
-  const auto log =
-      std::filesystem::temp_directory_path() / ("culprit-spawn-" + std::to_string(getpid()));
+  const test::TestFolder own;
+  const auto log = own / "log";
   const auto pid = spawn({{"printf", "%s|", "a b", "$HOME", "; rm", "*"}, {}, log});
   ASSERT_TRUE(pid) << pid.error();
   waitpid(*pid, nullptr, 0);
   std::ifstream file(log);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "a b|$HOME|; rm|*|");
-  std::filesystem::remove(log);
 }
 
 TEST(Spawn, TellsTheProgramItsPid) {
-  const auto log =
-      std::filesystem::temp_directory_path() / ("culprit-pid-" + std::to_string(getpid()));
+  const test::TestFolder own;
+  const auto log = own / "log";
   const auto pid =
       spawn({{"sh", "-c", "sh -c 'echo $CULPRIT_PROCESS'"}, {}, log, {}, "CULPRIT_PROCESS"});
   ASSERT_TRUE(pid) << pid.error();
   waitpid(*pid, nullptr, 0);
   std::ifstream file(log);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), std::to_string(*pid) + "\n");
-  std::filesystem::remove(log);
 }
 
 TEST(Spawn, PassesNoCapabilityOn) {
@@ -823,28 +818,24 @@ TEST(Spawn, PassesNoCapabilityOn) {
   if (syscall(SYS_capset, &who, has) != 0 ||
       prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_RAISE, CAP_KILL, 0, 0) != 0)
     GTEST_SKIP() << "this user cannot pass it on";
-  const auto log =
-      std::filesystem::temp_directory_path() / ("culprit-capability-" + std::to_string(getpid()));
+  const test::TestFolder own;
+  const auto log = own / "log";
   const auto pid = spawn({{"grep", "CapAmb", "/proc/self/status"}, {}, log});
   prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
   ASSERT_TRUE(pid) << pid.error();
   waitpid(*pid, nullptr, 0);
   std::ifstream file(log);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "CapAmb:\t0000000000000000\n");
-  std::filesystem::remove(log);
 }
 
 TEST(Spawn, SaysWhyAProgramCannotBeStarted) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("culprit-spawn-" + std::to_string(getpid()));
-  std::filesystem::create_directory(folder);
+  const test::TestFolder folder;
   const auto bad = folder / "bad";
   std::ofstream(bad) << "#!/no/such/interpreter\n";
   std::filesystem::permissions(bad, std::filesystem::perms::owner_all);
   const auto pid = spawn({{bad}, {}, folder / "log"});
   ASSERT_FALSE(pid);
   EXPECT_EQ(pid.error(), "cannot start '" + bad.string() + "': No such file or directory");
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
