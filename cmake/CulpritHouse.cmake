@@ -211,8 +211,8 @@ function(culprit_program name source)
 endfunction()
 
 # culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LIVE] [LABELS ...] [CASES n]): one CTest test for each
-# TEST. SERIAL tests run alone. LIVE tests have a machine of their own (in_own_machine.sh), or run alone; they wait more than they compute, so
-# two of them may run where one of the others does. Properties are tried on n random cases each instead of 100.
+# TEST. SERIAL tests run one after the other, beside those of other programs. LIVE tests have a machine of their own
+# (in_own_machine.sh), or run alone; they wait more than they compute, so two of them may run where one of the others does. Properties are tried on n random cases each instead of 100.
 function(culprit_test name)
   cmake_parse_arguments(ARG "SERIAL;LIVE" "" "SOURCES;USES;PACKAGES;LABELS;CASES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -225,7 +225,10 @@ function(culprit_test name)
   if(ARG_LIVE) # first: they wait, and scripts/test builds meanwhile
     list(APPEND properties COST 1000)
   endif()
-  if(ARG_SERIAL OR (ARG_LIVE AND NOT culprit_own_machine))
+  if(ARG_SERIAL)
+    list(APPEND properties RESOURCE_LOCK ${name} COST 900) # early: a long row of tests that wait, too
+  endif()
+  if(ARG_LIVE AND NOT culprit_own_machine)
     list(APPEND properties RUN_SERIAL TRUE)
   endif()
   if(ARG_LIVE)
