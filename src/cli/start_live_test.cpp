@@ -8,6 +8,7 @@
 
 #include "base/environment.h"
 #include "exemplars/sunset/node_process.h"
+#include "owners/mark.h"
 #include "robot/inbox.h"
 #include "ros2/options.h"
 #include "terminal/test_program.h"
@@ -164,6 +165,30 @@ TEST_F(Start, LaunchBringsUpWhatNobodyElseDrives) {
   EXPECT_EQ(run.wait(), 0);
   for (const char* name : {"planner", "map", "lidar", "wheels"})
     kill(pid_in(run.output(), name), SIGKILL);
+}
+
+// It is a lifecycle node that nobody else brings up.
+TEST_F(Start, WhatWasBeingLaunchedWhenCulpritWasKilledIsBroughtUpByTheNext) {
+  const std::string text = "ROBOT half\nCOMPONENT lidar NODE /lidar LAUNCH \"ros2_peer_node " +
+                           std::to_string(domain()) +
+                           " /lidar\"\nRULE IsUp\n  POLICIES WARNING\n"
+                           "  TRIGGER lifecycle(lidar) == \"active\"\n"
+                           "    STRATEGY never 90 10 WHEN lifecycle(lidar) == \"finalized\"\n"
+                           "      ADAPTATION lidar redeploy 5\n";
+  const std::string half = world.write("half.rules", text);
+  {
+    auto first = culprit({"run", half, "--launch", "--state-dir", state()});
+    ASSERT_TRUE(eventually([&] {
+      return !owners::launched_as(std::to_string(domain()) + "/half/lidar").empty();
+    })) << first.output();
+    first.signal(SIGKILL);
+    first.wait();
+  }
+  auto second = culprit({"run", half, "--state-dir", state(), "--settle", "0.5"});
+  EXPECT_TRUE(second.prints("bringing up lidar")) << second.output();
+  EXPECT_TRUE(second.prints("IsUp")) << second.output();
+  EXPECT_FALSE(std::filesystem::exists(state() + "/half.journal-launching"));
+  kill(pid_in(second.output(), "lidar"), SIGKILL);
 }
 
 // The first time it was seen to come up, and how long that takes is known.

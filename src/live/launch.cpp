@@ -4,8 +4,10 @@
 #include <iterator>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <utility>
 
+#include "base/text_file.h"
 #include "robot/component_binding.h"
 
 namespace culprit::live {
@@ -25,8 +27,12 @@ void add_in_order(ComponentId component, const RuleSet& rules, std::vector<bool>
 
 class Starting {
  public:
-  Starting(Robot& robot, const RuleSet& rules, const std::atomic<bool>& stop, LaunchTimes times)
-      : robot_(robot),
+  using OnAsked = std::function<void(ComponentId)>;
+
+  Starting(Robot& robot, const RuleSet& rules, const std::atomic<bool>& stop, LaunchTimes times,
+           OnAsked on_asked)
+      : on_asked_(std::move(on_asked)),
+        robot_(robot),
         rules_(rules),
         stop_(stop),
         times_(times),
@@ -46,6 +52,12 @@ class Starting {
     end_ = std::min(end_, later(robot_.now(), times_.patience));
   }
 
+  // Of what was started before. `was_asked`: and taken through its lifecycle, as far as that came.
+  void resume(ComponentId component, bool was_asked) {
+    part(component).is_left_halfway = was_asked;
+    end_ = std::min(end_, later(robot_.now(), times_.patience));
+  }
+
   // Says what went wrong; nothing: it is up, or nobody is to bring it up.
   std::optional<std::string> bring_up(ComponentId component) {
     const LifecycleDriver driver = rules_[component].lifecycle;
@@ -54,7 +66,9 @@ class Starting {
     if (driver == LifecycleDriver::kSelf || driver == LifecycleDriver::kLauncher)
       return std::nullopt;
     if (!joined || !is_managed(component)) return std::nullopt;  // the manager will see
-    if (driver == LifecycleDriver::kUndeclared && moves(component)) return std::nullopt;
+    const bool may_drive_itself =
+        driver == LifecycleDriver::kUndeclared && !part(component).is_left_halfway;
+    if (may_drive_itself && moves(component)) return std::nullopt;
     if (robot_.now() >= end_) return "there was no time left to configure and activate it";
     const auto trouble =
         step(component, Transition::kConfigure, Lifecycle::kUnconfigured, Lifecycle::kInactive);
@@ -88,9 +102,10 @@ class Starting {
     std::optional<Time> joined;
     bool has_lifecycle = false;
     bool has_ended = false;
-    std::string trouble{};   // why it could not be started
-    bool was_asked = false;  // to change its lifecycle
-    Time asked{};            // first
+    std::string trouble{};         // why it could not be started
+    bool is_left_halfway = false;  // by a culprit before this one
+    bool was_asked = false;        // to change its lifecycle
+    Time asked{};                  // first
     Lifecycle state = Lifecycle::kUnknown;
     Time state_since{};
   };
@@ -153,7 +168,8 @@ class Starting {
   // Whether it leaves the state in which every lifecycle node begins, and nobody asked it here.
   bool moves(ComponentId component) {
     const Part& it = part(component);
-    const Duration grace = std::max(times_.least_grace, *it.joined - *it.began);
+    const Duration start = it.began ? *it.joined - *it.began : Duration::zero();
+    const Duration grace = std::max(times_.least_grace, start);
     return observe_until(std::min(end_, later(*it.joined, grace)), [&] {
       return it.state != Lifecycle::kUnknown && it.state != Lifecycle::kUnconfigured;
     });
@@ -163,7 +179,10 @@ class Starting {
   std::optional<std::string> step(ComponentId component, Transition transition, Lifecycle from,
                                   Lifecycle to) {
     if (read(component) != from) return std::nullopt;
-    if (!std::exchange(part(component).was_asked, true)) part(component).asked = robot_.now();
+    if (!std::exchange(part(component).was_asked, true)) {
+      part(component).asked = robot_.now();
+      on_asked_(component);
+    }
     const Reply reply = ask(component, ChangeLifecycle{transition});
     Lifecycle state = read(component);
     for (const Time end = later(robot_.now(), times_.transition);
@@ -200,6 +219,7 @@ class Starting {
                                                  << 63;  // the manager's begin at 1
   static constexpr Duration kPeriod = std::chrono::milliseconds(100);
 
+  const OnAsked on_asked_;
   Robot& robot_;
   const RuleSet& rules_;
   const std::atomic<bool>& stop_;
@@ -223,16 +243,67 @@ std::vector<ComponentId> in_order(const RuleSet& rules) {
   return order;
 }
 
+std::filesystem::path launching_beside(const std::filesystem::path& journal) {
+  return journal.string() + "-launching";
+}
+
+// "lidar", or "lidar asked", a line.
+Unfinished read_unfinished(const std::filesystem::path& path) {
+  Unfinished unfinished;
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return unfinished;
+  const auto text = read_text(path.string());
+  if (!text) return unfinished;
+  std::istringstream lines(*text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t blank = line.find(' ');
+    unfinished[line.substr(0, blank)] = blank != std::string::npos;
+  }
+  return unfinished;
+}
+
+Expected<void> write_unfinished(const std::filesystem::path& path, const Unfinished& unfinished) {
+  std::error_code error;
+  if (unfinished.empty()) {
+    std::filesystem::remove(path, error);
+    return {};
+  }
+  std::string text;
+  for (const auto& [name, was_asked] : unfinished) text += name + (was_asked ? " asked\n" : "\n");
+  return write_text(path.string(), text);
+}
+
 Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start, Listener& listener,
-                const std::atomic<bool>& stop, LaunchTimes times) {
-  Starting starting(robot, rules, stop, times);
+                const std::atomic<bool>& stop, LaunchTimes times, const LaunchKeeper& keeper) {
+  Unfinished unfinished;
+  Starting starting(robot, rules, stop, times, [&](ComponentId c) {
+    unfinished[rules[c].name] = true;
+    keeper.keep(unfinished);
+  });
   starting.look();
+  std::vector<ComponentId> missing;
   std::vector<ComponentId> started;
   for (const ComponentId c : in_order(rules)) {
-    if (stop || starting.is_there(c) || !rules[c].can_start() || rules[c].is_respawned) continue;
+    const auto left = keeper.left.find(rules[c].name);
+    if (left != keeper.left.end() && keeper.runs(c)) {
+      listener.on_remark("bringing up " + rules[c].name +
+                         ", which a culprit started that was ended meanwhile\n");
+      starting.resume(c, left->second);
+      unfinished.insert(*left);
+    } else if (keeper.starts_missing && !starting.is_there(c) && rules[c].can_start() &&
+               !rules[c].is_respawned) {
+      missing.push_back(c);
+      unfinished[rules[c].name] = false;
+    } else {
+      continue;
+    }
+    started.push_back(c);
+  }
+  if (stop) return {std::move(starting).seen(), {}, {}};
+  keeper.keep(unfinished);
+  for (const ComponentId c : missing) {
     listener.on_remark("starting " + rules[c].name + "\n");
     starting.begin(c, start);
-    started.push_back(c);
   }
   Launched launched;
   for (const ComponentId c : started) {
@@ -243,6 +314,9 @@ Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start,
                          "\n");
     if (const auto how = starting.came_up(c))
       launched.past.push_back({robot.now(), CameUp{c, *how}});
+    if (stop) continue;
+    unfinished.erase(rules[c].name);
+    keeper.keep(unfinished);
   }
   launched.seen = std::move(starting).seen();
   return launched;

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "language/checker.h"
 #include "robot/component_binding.h"
 
@@ -123,7 +124,7 @@ class Launching : public testing::Test {
   void launch_all() {
     launched = launch(
         robot, rules_, [&](CommandId command, ComponentId c) { robot.start(command, c); }, remarks,
-        stop);
+        stop, {}, keeper);
   }
 
  private:
@@ -132,6 +133,7 @@ class Launching : public testing::Test {
  protected:
   ScriptedRobot robot;
   Remarks remarks;
+  LaunchKeeper keeper;
   std::atomic<bool> stop = false;
   Launched launched;
 };
@@ -230,6 +232,68 @@ TEST_F(Launching, BringsNobodyUpAnyMoreAfterAMinute) {
   launch_all();
   EXPECT_THAT(robot.asked, ElementsAre("configure lidar", "activate lidar"));
   EXPECT_THAT(remarks.text, HasSubstr("planner was started and is not up: there was no time left"));
+}
+
+// ---- after a culprit that was killed in the middle of it
+
+TEST_F(Launching, KeepsWhatIsNotFinished) {
+  std::vector<Unfinished> kept;
+  keeper.keep = [&](const Unfinished& unfinished) { kept.push_back(unfinished); };
+  launch_all();
+  EXPECT_THAT(kept, ElementsAre(Unfinished{{"lidar", false}, {"planner", false}},
+                                Unfinished{{"lidar", true}, {"planner", false}},
+                                Unfinished{{"planner", false}}, Unfinished{{"planner", true}},
+                                Unfinished{}));
+}
+
+TEST_F(Launching, BringsUpWhatAnEarlierCulpritHadStarted) {
+  for (const bool launches : {false, true}) {
+    robot.nodes["lidar"] = {};
+    robot.nodes["planner"].state = Lifecycle::kActive;
+    robot.asked.clear();
+    robot.in(10ms, [this](auto& out) {
+      robot.appear("/lidar", ComponentId(1u), out);
+      robot.appear("/planner", ComponentId(0u), out);
+    });
+    keeper.left = {{"lidar", false}, {"nobody", true}};
+    keeper.runs = [](ComponentId c) { return c == ComponentId(1u); };
+    keeper.starts_missing = launches;
+    launch_all();
+    EXPECT_THAT(robot.started, IsEmpty());
+    EXPECT_THAT(robot.asked, ElementsAre("configure lidar", "activate lidar"));
+    EXPECT_THAT(remarks.text, HasSubstr("bringing up lidar"));
+  }
+}
+
+// Where it stands is where culprit left it, and nobody's intention.
+TEST_F(Launching, BringsUpWhatWasLeftHalfway) {
+  robot.nodes["lidar"].state = Lifecycle::kInactive;
+  robot.in(10ms, [this](auto& out) { robot.appear("/lidar", ComponentId(1u), out); });
+  keeper.left = {{"lidar", true}};
+  keeper.runs = [](ComponentId) { return true; };
+  keeper.starts_missing = false;
+  launch_all();
+  EXPECT_THAT(robot.asked, ElementsAre("activate lidar"));
+}
+
+TEST_F(Launching, LeavesAloneWhatIsSomebodyElsesByNow) {
+  robot.in(10ms, [this](auto& out) { robot.appear("/lidar", ComponentId(1u), out); });
+  keeper.left = {{"lidar", true}, {"planner", false}};
+  keeper.starts_missing = false;
+  launch_all();
+  EXPECT_THAT(robot.started, IsEmpty());
+  EXPECT_THAT(robot.asked, IsEmpty());
+}
+
+TEST(Unfinished, IsReadAsItWasWritten) {
+  const test::TestFolder folder;
+  const auto path = launching_beside(folder.path() / "robot.journal");
+  EXPECT_TRUE(read_unfinished(path).empty());
+  const Unfinished unfinished{{"lidar", true}, {"planner", false}};
+  ASSERT_TRUE(write_unfinished(path, unfinished));
+  EXPECT_EQ(read_unfinished(path), unfinished);
+  ASSERT_TRUE(write_unfinished(path, {}));
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 TEST_F(Launching, EndsWhenCulpritIsStopped) {

@@ -228,11 +228,21 @@ void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_r
     frame_.listener.on_remark("culprit: " + finding + "\n");
   std::vector<Observation> seen;
   const bool is_held = beginning.orders.pause || beginning.orders.dry_run;
-  if (frame_.options.launches && !frame_.advises && !is_held) {
+  const std::filesystem::path kept =
+      frame_.options.no_journal.empty() ? launching_beside(frame_.options.journal) : "";
+  LaunchKeeper keeper{read_unfinished(kept), frame_.options.launches, {}, {}};
+  if ((keeper.starts_missing || !keeper.left.empty()) && !frame_.advises && !is_held) {
+    keeper.runs = [&](ComponentId c) { return robot_->supervisor().has_started(c); };
+    keeper.keep = [&](const Unfinished& unfinished) {
+      if (kept.empty()) return;
+      if (const auto written = write_unfinished(kept, unfinished); !written)
+        frame_.listener.on_remark(
+            "culprit: what is being launched is not kept: " + written.error() + "\n");
+    };
     const auto start = [&](CommandId command, ComponentId component) {
       robot_->start(command, component);
     };
-    Launched launched = launch(*robot_, rules_, start, frame_.listener, stop);
+    Launched launched = launch(*robot_, rules_, start, frame_.listener, stop, {}, keeper);
     seen = std::move(launched.seen);
     add(beginning.known_robot, {std::move(launched.parts), {}});
     add(beginning.past, launched.past);
