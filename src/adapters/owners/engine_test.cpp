@@ -106,6 +106,22 @@ TEST_F(ContainersOnAStandInForDocker, ThatExitedAreDead) {
   ASSERT_TRUE(seen);
 }
 
+// Signals are how somebody stops it on purpose, too.
+TEST_F(ContainersOnAStandInForDocker, ThatHadExitedBeforeAnybodyLookedAreDeadIfTheyFailed) {
+  for (const int code : {0, 137, 1}) {
+    engine.add("slam", {.status = "exited", .code = code});
+    ask("slam");
+    for (const int looks = engine.looks(); engine.looks() < looks + 2;)
+      std::this_thread::sleep_for(1ms);
+    std::vector<Observation> seen;
+    inbox.take(live_now(), seen);
+    ASSERT_EQ(seen.size(), code == 1 ? 1u : 0u) << code;
+    if (code == 1) {
+      EXPECT_EQ(std::get<ProcessSeen>(seen[0].what).remark, "slam failed: exit code 1");
+    }
+  }
+}
+
 TEST_F(ContainersOnAStandInForDocker, ThatSomebodyPausedAreLeftToHim) {
   engine.add("slam", {.status = "paused"});
   EXPECT_THAT(stop(0).text, HasSubstr("docker unpause slam"));

@@ -68,6 +68,8 @@ std::optional<UnitState::Activity> activity_of(const std::string& text) {
   return std::nullopt;
 }
 
+constexpr const char* kMayNot = "culprit may not: ";
+
 constexpr const char* kRight =
     "; give its user the right (docs/security.md), or run the unit in that user's own systemd "
     "(UNIT ... USER)";
@@ -110,7 +112,7 @@ Expected<void> SystemdBus::connect() {
 Error SystemdBus::failed(const std::string& what, int error, const BusError& why) {
   const bool is_of_user = whose_ == Whose::kUser;
   const std::string text = (is_of_user ? "the user's systemd: " : "systemd: ") + what + ": ";
-  if (is_denied(why)) return Error{text + "culprit may not: " + shown(why.it.message) + kRight};
+  if (is_denied(why)) return Error{text + kMayNot + shown(why.it.message) + kRight};
   if (is_of_systemd(why)) return Error{text + shown(why.it.message)};
   // The connection may be at fault, or what comes over it: the next call makes another one.
   bus_.reset();
@@ -255,8 +257,13 @@ Expected<std::vector<std::string>> SystemdBus::services() {
 // Setting no property changes nothing, and takes the right that starting and ending take.
 Expected<void> SystemdBus::may_manage(const std::string& unit) {
   Message nothing;
-  return call("SetUnitProperties " + unit, nothing, "SetUnitProperties", "sba(sv)", unit.c_str(), 1,
-              0);
+  auto may = call("SetUnitProperties " + unit, nothing, "SetUnitProperties", "sba(sv)",
+                  unit.c_str(), 1, 0);
+  if (may || may.error().find(kMayNot) == std::string::npos) return may;
+  return Error{
+      may.error() +
+      ". A rule of polkit that names verbs has to allow start, stop, restart and kill, and "
+      "set-property for this look, which sets nothing"};
 }
 
 }  // namespace culprit::owners

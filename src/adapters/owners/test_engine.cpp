@@ -122,7 +122,8 @@ void TestEngine::serve() {
     if (is_ending_) return;
     for (auto& [name, container] : containers_) notice(container);
     if (!has_come || hangs_) continue;
-    const FileDescriptor peer(accept(listens_.get(), nullptr, nullptr));
+    // Not for what it starts to hold open: the answer ends with the connection.
+    const FileDescriptor peer(accept4(listens_.get(), nullptr, nullptr, SOCK_CLOEXEC));
     std::string request;
     char part[4096];
     while (request.find("\r\n\r\n") == std::string::npos) {

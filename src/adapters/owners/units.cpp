@@ -132,6 +132,7 @@ void Units::run() {
     std::erase_if(under_way, [&](Errand& each) { return advance(each); });
     if (live_now() >= next_look) {
       look_at_all();
+      look_for_work();
       next_look = later(live_now(), kIdlePeriod);
     }
     lock.lock();
@@ -143,8 +144,9 @@ void Units::run() {
   }
 }
 
-// What failed is proven to be dead, also if its node was never seen; what is inactive only if it was
-// active before: it may have been stopped on purpose before anybody looked.
+// What failed is proven to be dead, also if its node was never seen, and if it never had a main
+// process; what is inactive only if it was active before: it may have been stopped on purpose before
+// anybody looked.
 void Units::look_at_all() {
   for (const ComponentId component : components_) {
     const std::string& name = name_of(component);
@@ -157,14 +159,30 @@ void Units::look_at_all() {
     const bool has_failed =
         state->activity == Activity::kFailed && (is_first || before->second != Activity::kFailed);
     before_.insert_or_assign(component, state->activity);
-    if (state->is_over() && (has_failed || has_ended) && state->last_main_pid != 0) {
+    if (state->is_over() && (has_failed || has_ended)) {
       inbox_.put(ProcessSeen{component, ProcessState::kGone, state->last_main_pid,
                              in_words(*state, name)});
     }
   }
 }
 
+// Of all in its session, which is the node's where `ros2 run` is the main process.
+void Units::look_for_work() {
+  const Time now = live_now();
+  std::erase_if(coming_up_, [&](const ComingUp& each) {
+    return now >= later(each.since, Supervisor::kComingUp) || !is_running(each.pid, each.began);
+  });
+  for (ComingUp& each : coming_up_) {
+    const Work work = work_of_group(each.pid);
+    if (each.work && work.is_more_than(*each.work))
+      inbox_.put(ProcessWorked{each.component, each.pid});
+    each.work = work;
+  }
+}
+
 void Units::note(const Found& found) {
+  std::erase_if(coming_up_,
+                [&](const ComingUp& each) { return each.component == found.component; });
   last_found_[found.component] = found;
   if (!is_ours(found.component)) return;
   const auto state = owner_of(found.component).state_of(name_of(found.component));
@@ -174,7 +192,11 @@ void Units::note(const Found& found) {
 
 bool Units::answer(const Errand& errand, Outcome outcome, std::string text, int pid) {
   Reply reply{errand.command, outcome, {}, std::move(text)};
-  if (pid != 0) reply.value = Value(std::int64_t{pid});
+  if (pid != 0) {
+    coming_up_.push_back({errand.component, pid, started_at(pid), live_now()});
+    inbox_.put(ProcessSeen{errand.component, ProcessState::kRunning, pid, ""});
+    reply.value = Value(std::int64_t{pid});
+  }
   inbox_.put(std::move(reply));
   return true;
 }

@@ -11,6 +11,9 @@
 // is ended then. Where systemd cannot be asked, or refuses, that is the answer, and nothing was
 // ended.
 //
+// What was started is said to work, until its node is there, as long as it does (ProcessWorked): what
+// is slow is not taken for what hangs.
+//
 // Everything is asked on a thread of its own: nobody waits here for a bus that does not answer.
 #pragma once
 
@@ -78,10 +81,20 @@ class Units {
     std::optional<Time> began{};
   };
 
+  // A process whose node is awaited.
+  struct ComingUp {
+    ComponentId component;
+    int pid = 0;
+    std::optional<Time> began{};
+    Time since{};
+    std::optional<Work> work{};
+  };
+
   void add(Errand errand);
   void run();
   void look_at_all();
   void note(const Found& found);
+  void look_for_work();
 
   // Gives whether the errand is done.
   bool advance(Errand& errand);
@@ -110,6 +123,7 @@ class Units {
   // The node's process, and the main process of the unit then: `ros2 run` is another one.
   std::map<ComponentId, std::pair<int, int>> found_with_;
   std::map<ComponentId, Found> last_found_;
+  std::vector<ComingUp> coming_up_;
 
   Mutex mutex_;
   ConditionVariable something_came_;

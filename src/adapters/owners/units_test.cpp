@@ -167,7 +167,9 @@ TEST_F(UnitsOnAStandInForSystemd, ThatSystemdRefusesAreLeftAsTheyAre) {
   }
   EXPECT_EQ(stop(old, Ending::kForGood).outcome, Outcome::kRefused);
   EXPECT_TRUE(is_alive(old));
-  EXPECT_THAT(could_manage({"lidar.service", false}).error(), HasSubstr("culprit may not"));
+  EXPECT_THAT(
+      could_manage({"lidar.service", false}).error(),
+      testing::AllOf(HasSubstr("culprit may not"), HasSubstr("set-property for this look")));
 }
 
 TEST_F(UnitsOnAStandInForSystemd, ThatDoNotExistAreToldWithTheNameThatWasMeant) {
@@ -184,6 +186,17 @@ TEST_F(UnitsOnAStandInForSystemd, ThatCannotBeStartedSayWhatSystemdSays) {
   const auto seen = wait_for<ProcessSeen>([](const auto&) { return true; });
   ASSERT_TRUE(seen) << "what failed is dead, though its node was never seen";
   EXPECT_EQ(seen->state, ProcessState::kGone);
+  EXPECT_EQ(seen->remark, "lidar.service failed: exit-code");
+}
+
+// Also by what it does before its main process (ExecStartPre=).
+TEST_F(UnitsOnAStandInForSystemd, ThatFailedBeforeAnybodyLookedAreDead) {
+  systemd.add("lidar.service", {.active = "failed", .result = "exit-code"});
+  ask();
+  const auto seen = wait_for<ProcessSeen>([](const auto&) { return true; });
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->state, ProcessState::kGone);
+  EXPECT_EQ(seen->pid, 0);
   EXPECT_EQ(seen->remark, "lidar.service failed: exit-code");
 }
 

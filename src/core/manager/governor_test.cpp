@@ -264,6 +264,25 @@ TEST(Identity, NothingIsDoneToANameThatSeveralNodesHave) {
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
 }
 
+// Culprit ended the one too many, or a person did.
+TEST(Identity, TheEndOfOneOfTwoIsNoLoss) {
+  TestRobot robot = one_camera({});
+  robot.tell(NamesakesSeen{"/camera", 1});
+  robot.tell(ProcessSeen{ComponentId(0), ProcessState::kGone, robot["camera"].pid, "exit code 0"});
+  robot.run_for(300ms);
+  EXPECT_EQ(robot.count("is lost"), 0u) << transcript(robot);
+  constexpr int kOther = 4711;
+  robot["camera"].pid = kOther;
+  robot.tell(NodeAppeared{"/camera", kOther});
+  robot.tell(NamesakesSeen{"/camera", 0});
+  robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/rgb"});
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  robot["camera"].fault = "redeploy";
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("camera")) << "it goes on being managed" << transcript(robot);
+}
+
 Governor::Options with_evidence() {
   Governor::Options options;
   options.needs_evidence = true;

@@ -61,6 +61,25 @@ TEST(NeverSeen, AUnitThatFailedIsStartedThoughItsNodeWasNeverThere) {
   EXPECT_EQ(robot.count("camera is there"), 1u) << transcript(robot);
 }
 
+// What it could not even begin has no process. Somebody may run its node by hand, though.
+TEST(NeverSeen, AUnitThatNeverHadAProcessIsStartedUnlessItsNodeIsThere) {
+  for (const bool is_there : {false, true}) {
+    TestRobot robot(
+        "COMPONENT camera NODE /camera UNIT camera.service\n"
+        "RULE Dead\n  POLICIES ERROR\n  TRIGGER !alive(camera)\n"
+        "    STRATEGY s 90 10\n      ADAPTATION camera redeploy 2\n");
+    auto& camera = robot.add("camera");
+    if (!is_there) camera.process = ProcessState::kGone;
+    robot.tell(ProcessSeen{ComponentId(0), ProcessState::kGone, 0, "camera.service failed"});
+    if (is_there) robot.discover();
+    robot.tell(ProcessSeen{ComponentId(0), ProcessState::kGone, 0, "camera.service failed"});
+    robot.run_for(60s);
+    EXPECT_EQ(robot.count("camera is lost"), is_there ? 0u : 1u) << transcript(robot);
+    EXPECT_EQ(robot.count("camera is there"), 1u) << transcript(robot);
+    EXPECT_EQ(robot.asked.empty(), is_there) << transcript(robot);
+  }
+}
+
 // What a status, a key or a parameter is really called is known only if the robot was heard.
 TEST(NeverSeen, ATypingMistakeInADiagnosticOrAParameterIsTold) {
   TestRobot robot(

@@ -54,7 +54,7 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
   state.node_seen = at;
   state.node_pid = seen.pid;
   state.missed_probes = 0;
-  if (seen.pid != state.pid) state.process = ProcessState::kRunning;
+  if (seen.pid != state.pid || seen.pid == 0) state.process = ProcessState::kRunning;
   if (!same_process) await_ends(*component, at);
   update_alive(*component, at, "");
 }
@@ -189,11 +189,15 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
   if (knowledge_.rules[seen.component].has_owner()) write_.sightings.note(seen.component, at);
   // A word about a process that the node no longer runs in says nothing about the node.
   const int present = state.node_pid != 0 ? state.node_pid : state.pid;
-  const bool is_other = seen.pid != 0 && seen.pid != present;
+  // Of what an owner could not even begin there is no process.
+  const bool is_other =
+      seen.pid != present && (seen.pid != 0 || knowledge_.rules[seen.component].has_owner());
   if (is_other && state.in_graph && seen.state != ProcessState::kRunning) return;
   state.process = seen.state;
   state.pid = seen.pid;
   state.process_remark = seen.remark;
+  // One of several was too many: the graph says which it is from now on, so none is missed.
+  if (seen.state == ProcessState::kGone && state.in_graph && state.namesakes > 0) return;
   if (seen.state == ProcessState::kGone) {
     if (has_crashed(seen.remark)) note_end_of_start(seen.component, at);
     write_.graph.node_vanished(knowledge_.graph.node_name(seen.component));
