@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "live/launch.h"
+#include "owners/proc.h"
 
 namespace culprit::live {
 namespace {
@@ -15,6 +16,27 @@ std::string with(const owners::ComponentContainers::Home& home) {
     text += (i == 0 ? ", with " : ", ") + home.others[i];
   const std::size_t more = home.others.size() - std::min(home.others.size(), kShown);
   return more == 0 ? text : text + " and " + std::to_string(more) + " more";
+}
+
+// "process 12 (/opt/ros/bin/camera of user 1000), started by process 9 (/usr/bin/python3 ...)"
+std::string who_runs(int pid) {
+  constexpr int kInit = 1;  // it gets those whose parent has ended
+  const auto in_words = [](int process) {
+    const auto identity = owners::identity_of(process);
+    return "process " + std::to_string(process) +
+           (identity ? " (" + owners::to_string(*identity) + ")" : "");
+  };
+  const int parent = owners::parent_of(pid).value_or(0);
+  return in_words(pid) + (parent > kInit ? ", started by " + in_words(parent) : "");
+}
+
+// One that goes on, and is proven, where those of `ours` end.
+std::optional<int> other_of(const std::vector<int>& processes, const std::set<int>& ours) {
+  const auto other = std::ranges::find_if(processes, [&](int pid) {
+    const char state = pid == 0 ? 'Z' : owners::state_letter(pid).value_or('Z');
+    return !ours.contains(pid) && state != 'Z' && state != 'T' && state != 't';
+  });
+  return other == processes.end() ? std::nullopt : std::optional(*other);
 }
 
 }  // namespace
@@ -118,6 +140,27 @@ void LiveRobot::execute(const Command& command) {
 void LiveRobot::adopt_again(ComponentId component, int pid, Time known) {
   supervisor_->adopt_again(component, pid, known);
   composed_->remember(component, pid);
+}
+
+void LiveRobot::withdraw_doubles(const std::function<bool(ComponentId)>& may) {
+  const std::map<std::string, std::vector<int>> doubled = link_->doubled();
+  for (const auto& [node, processes] : doubled) {
+    const auto component = binding_.bind(node);
+    if (!component || rules_[*component].launch.empty() || !may(*component)) continue;
+    const std::set<int> ours = supervisor_->started(*component);
+    const auto other = other_of(processes, ours);
+    if (!other || std::ranges::none_of(processes, [&](int pid) { return ours.contains(pid); }))
+      continue;
+    const std::vector<std::string> would_end = containers_.nodes_in(ours);
+    const bool is_all_doubled = std::ranges::all_of(would_end, [&](const std::string& each) {
+      const auto found = doubled.find(each);
+      return found != doubled.end() && other_of(found->second, ours);
+    });
+    if (!is_all_doubled) continue;
+    report(rules_[*component].name + " runs twice: culprit started one, and there is " +
+           who_runs(*other) + ", too; culprit ends its own");
+    supervisor_->withdraw(*component);
+  }
 }
 
 void LiveRobot::start(CommandId command, ComponentId component, Duration patience) {

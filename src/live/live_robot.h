@@ -1,6 +1,7 @@
 // A live robot as one Robot: its nodes over DDS, its processes through the operating system.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -36,6 +37,11 @@ class LiveRobot : public Robot {
 
   // The component ran in this process at `known`, in an earlier run of culprit.
   void adopt_again(ComponentId component, int pid, Time known);
+
+  // Ends what culprit started where somebody else runs the component, too: two of one name are worse
+  // than either. Both have to be proven, and nothing else may end with it that has no other. `may`:
+  // whether anything may be done to the component now.
+  void withdraw_doubles(const std::function<bool(ComponentId)>& may);
 
   void interrupt() override { inbox_.interrupt(); }
 

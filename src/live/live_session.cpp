@@ -298,6 +298,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
     if (frame_.observer != nullptr) frame_.observer->stepped(step);
     if (recorder_ != nullptr)
       recorder_->stepped(step.now, step.observations, step.commands, step.events);
+    withdraw_doubles();
   };
   runtime_->on_events = [this](std::span<const Event> events) { tell(events); };
   robot_->link().publish(health(manager_->knowledge()));
@@ -306,6 +307,18 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
     if (std::holds_alternative<Order>(each.what)) each.at = session.start;
   }
   runtime_->step(seen);
+}
+
+// Not what a person, or another culprit, wants to be left alone, nor while a strategy changes it.
+void LiveSession::withdraw_doubles() {
+  if (manager_->autonomy() == Autonomy::kAdvise || !manager_->hears()) return;
+  const Governor& governor = manager_->governor();
+  if (governor.is_paused() || frame_.options.governor.approval == Approval::kEach) return;
+  robot_->withdraw_doubles([&](ComponentId component) {
+    const bool is_silenced = std::ranges::any_of(
+        governor.silences(), [&](const auto& each) { return each.what == Silenceable(component); });
+    return !is_silenced && manager_->knowledge().states.reservation(component) == nullptr;
+  });
 }
 
 void LiveSession::tell(std::span<const Event> events) {

@@ -119,6 +119,7 @@ class LiveSession {
   RunBeginning look_back();
   void hold(RunBeginning& beginning);
   void manage(RunBeginning beginning, std::vector<Observation> seen, std::string occasion);
+  void withdraw_doubles();
   void tell(std::span<const Event> events);
 
   const Frame frame_;

@@ -17,6 +17,8 @@ namespace {
 constexpr Duration kProbePeriod = std::chrono::milliseconds(400);
 constexpr Duration kPublishPeriod = std::chrono::seconds(1);
 constexpr Duration kReminder = std::chrono::minutes(1);
+// One that ends, or is ended, needs no person.
+constexpr Duration kSettles = std::chrono::seconds(2);
 
 // Services that managers and tools use, of every node or of every managed node: who uses them
 // depends on nobody.
@@ -230,8 +232,8 @@ void Link::on_change(const GraphChange& change) {
     if (is_service(gone->kind) && is_for_management(gone->name)) return;
     inbox_.put(EndpointVanished{gone->node, gone->kind, gone->name});
   } else if (const auto* namesakes = std::get_if<NodeNamesakes>(&change)) {
+    on_namesakes(*namesakes);  // before anybody acts on it
     inbox_.put(NamesakesSeen{namesakes->node, namesakes->others});
-    on_namesakes(*namesakes);
   } else if (const auto* trouble = std::get_if<GraphTrouble>(&change)) {
     inbox_.put(LinkTrouble{trouble->text});
   }
@@ -239,6 +241,13 @@ void Link::on_change(const GraphChange& change) {
 
 // Rules may have nothing to complain of, or complain late: this is told in its own right.
 void Link::on_namesakes(const NodeNamesakes& seen) {
+  {
+    const MutexLock lock(mutex_);
+    std::vector<int>& processes = doubled_[seen.node];
+    processes.clear();
+    for (const GraphNode& node : seen.all) processes.push_back(node.pid);
+    if (seen.others == 0) doubled_.erase(seen.node);
+  }
   const bool is_container = std::any_of(
       rules_.components.begin(), rules_.components.end(),
       [&](const Component& c) { return c.composed && c.composed->container == seen.node; });
@@ -250,9 +259,13 @@ void Link::on_namesakes(const NodeNamesakes& seen) {
       return;
     }
     contested_[seen.node] = {"several nodes have the name " + seen.node + ": " + who_are(seen.all),
-                             kLongAgo};
+                             later(live_now(), kSettles)};
   }
-  remind();
+}
+
+std::map<std::string, std::vector<int>> Link::doubled() const {
+  const MutexLock lock(mutex_);
+  return doubled_;
 }
 
 std::map<std::string, std::string> Link::contested() const {
@@ -269,8 +282,8 @@ void Link::remind() {
   {
     const MutexLock lock(mutex_);
     for (auto& [node, contest] : contested_) {
-      if (contest.told != kLongAgo && now < later(contest.told, kReminder)) continue;
-      contest.told = now;
+      if (now < contest.due) continue;
+      contest.due = later(now, kReminder);
       due.push_back(contest.text);
     }
   }

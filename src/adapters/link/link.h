@@ -70,6 +70,9 @@ class Link {
   // Of each component's node, and each container's, that others have the name of, by full name: who they are, who started
   // each, and how to end what is one too many. From any thread.
   std::map<std::string, std::string> contested() const;
+  // The processes of all nodes of one name, where there are several: by that name; 0: on another
+  // machine, or not proven. From any thread.
+  std::map<std::string, std::vector<int>> doubled() const;
 
   // Our own node, for clients of what is no component. It goes with the link.
   NodeEntry& entry() { return node_->entry(); }
@@ -141,9 +144,10 @@ class Link {
   // A component's node that others have the name of.
   struct Contest {
     std::string text;
-    Time told = kLongAgo;
+    Time due{};  // to be told
   };
-  std::map<std::string, Contest> contested_ CULPRIT_GUARDED_BY(mutex_);  // by node
+  std::map<std::string, Contest> contested_ CULPRIT_GUARDED_BY(mutex_);         // by node
+  std::map<std::string, std::vector<int>> doubled_ CULPRIT_GUARDED_BY(mutex_);  // by node
   std::vector<Health> health_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<ComponentLink>> links_
       CULPRIT_GUARDED_BY(mutex_);  // by component; one that is made stays

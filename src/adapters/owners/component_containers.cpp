@@ -39,6 +39,14 @@ std::optional<ComponentContainers::Home> ComponentContainers::home_of(ComponentI
   return home.container.empty() ? std::nullopt : std::optional(home);
 }
 
+std::vector<std::string> ComponentContainers::nodes_in(const std::set<int>& processes) const {
+  std::vector<std::string> nodes;
+  for (const auto& [node, process] : processes_) {
+    if (processes.contains(process)) nodes.push_back(node);
+  }
+  return nodes;
+}
+
 std::optional<ComponentId> ComponentContainers::would_lose(ComponentId component) const {
   const auto last = last_.find(component);
   if (last == last_.end() || last->second == 0) return std::nullopt;

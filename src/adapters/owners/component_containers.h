@@ -31,6 +31,9 @@ class ComponentContainers {
   // own, or the process is not known, or it is the container.
   std::optional<Home> home_of(ComponentId component) const;
 
+  // The nodes of these processes that are there, by full name.
+  std::vector<std::string> nodes_in(const std::set<int>& processes) const;
+
   // Another component in the same process that would not come back with this one, for the rules start
   // it in another way. One that they do not start is taken for the same program's. Nothing: there is
   // none, or the component is the container that the others live in.

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <fcntl.h>
 #include <poll.h>
-#include <set>
 #include <sys/eventfd.h>
 #include <sys/file.h>
 #include <sys/wait.h>
@@ -257,11 +256,34 @@ std::optional<std::string> Supervisor::doubt(const Member& member) const {
 
 void Supervisor::note_launcher(ComponentId component, int pid, bool is_others) {
   constexpr int kInit = 1;  // it gets those whose parent has ended
-  if (!rules_[component].is_respawned) return;
   if (!is_others) launchers_[component] = Launcher{};
   const auto parent = parent_of(pid);
-  if (is_others && parent && *parent > kInit)
-    launchers_[component] = Launcher{*parent, started_at(*parent)};
+  if (!is_others || !parent || *parent <= kInit) return;
+  const auto identity = identity_of(*parent);
+  launchers_[component] =
+      Launcher{*parent, started_at(*parent), identity ? to_string(*identity) : ""};
+}
+
+bool Supervisor::goes_on(const Launcher& launcher) {
+  if (launcher.pid == 0 || state_letter(launcher.pid).value_or('Z') == 'Z') return false;
+  constexpr Duration kSame = 100ms;  // two readings of one start differ by the clocks' rounding
+  const auto begins = started_at(launcher.pid);
+  return begins && launcher.began && std::chrono::abs(*begins - *launcher.began) < kSame;
+}
+
+void Supervisor::look_at_launchers(Time now) {
+  for (auto& [component, launcher] : launchers_) {
+    if (launcher.child_ended == kLongAgo) continue;
+    const bool ends_with_it = !goes_on(launcher);
+    if (!ends_with_it && now < later(launcher.child_ended, kEndsWith)) continue;
+    launcher.child_ended = kLongAgo;
+    if (ends_with_it)
+      inbox_.put(LinkTrouble{
+          "process " + std::to_string(launcher.pid) + " (" + launcher.what + ") had started " +
+          rules_[component].name +
+          ", and ended with it; so may have what else it started. If its launch file says "
+          "on_exit=Shutdown(), leave that out for what culprit redeploys"});
+  }
 }
 
 // Also if it is not known who its launcher is: two of one name would be worse than none.
@@ -269,11 +291,7 @@ bool Supervisor::is_left_to_launcher(ComponentId component) const {
   if (!rules_[component].is_respawned) return false;
   const auto launcher = launchers_.find(component);
   if (launcher == launchers_.end()) return true;
-  const auto& [pid, began] = launcher->second;
-  if (pid == 0 || state_letter(pid).value_or('Z') == 'Z') return false;
-  constexpr Duration kSame = 100ms;  // two readings of one start differ by the clocks' rounding
-  const auto begins = started_at(pid);
-  return begins && began && std::chrono::abs(*begins - *began) < kSame;
+  return goes_on(launcher->second);
 }
 
 std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending ending) const {
@@ -341,7 +359,46 @@ void Supervisor::begin_shutdown(CommandId command, ComponentId component, Hangs 
     member.left = descendants_of(member.process.pid());
     member.left_at = live_now();
   }
-  shutdowns_.push_back({command, component, hangs, 0, live_now()});
+  Shutdown& shutdown = shutdowns_.emplace_back(Shutdown{command, component, hangs});
+  shutdown.escalate = live_now();
+}
+
+// ---- one too many
+
+std::set<int> Supervisor::started(ComponentId component) const {
+  const MutexLock lock(mutex_);
+  const auto is_its = [&](const auto& each) { return each.component == component; };
+  if (std::ranges::any_of(shutdowns_, is_its) || std::ranges::any_of(trials_, is_its)) return {};
+  std::set<int> all;
+  for (const Member& member : members_) {
+    if (member.component != component || !was_started(member)) continue;
+    if (member.launch) return {};
+    all.insert(member.process.pid());
+    if (member.process.relation() == Relation::kAdopted) continue;
+    for (const int pid : members_of_group(member.process.pid())) all.insert(pid);
+  }
+  return all;
+}
+
+void Supervisor::withdraw(ComponentId component) {
+  const MutexLock lock(mutex_);
+  Shutdown& shutdown = shutdowns_.emplace_back(Shutdown{{}, component, Hangs::kNo});
+  shutdown.only_started = true;
+  shutdown.escalate = live_now();
+  wake();
+}
+
+bool Supervisor::was_started(const Member& member) const {
+  return member.process.relation() != Relation::kAdopted ||
+         carries_mark(member.process.pid(), marked_as(member.component));
+}
+
+bool Supervisor::is_meant(const Shutdown& shutdown, const Member& member) const {
+  return member.component == shutdown.component && (!shutdown.only_started || was_started(member));
+}
+
+bool Supervisor::is_over(const Shutdown& shutdown) const {
+  return std::ranges::none_of(members_, [&](const Member& m) { return is_meant(shutdown, m); });
 }
 
 void Supervisor::stop_all() {
@@ -367,10 +424,8 @@ bool Supervisor::is_known(ComponentId component, int pid) const {
 bool Supervisor::has_started(ComponentId component) const {
   const MutexLock lock(mutex_);
   return !is_gone(component) &&
-         std::none_of(members_.begin(), members_.end(), [&](const Member& m) {
-           return m.component == component && m.process.relation() == Relation::kAdopted &&
-                  !carries_mark(m.process.pid(), marked_as(component));
-         });
+         std::none_of(members_.begin(), members_.end(),
+                      [&](const Member& m) { return m.component == component && !was_started(m); });
 }
 
 bool Supervisor::is_gone(ComponentId component) const {
@@ -385,6 +440,10 @@ void Supervisor::end_member(Member& member) {
   const std::string remark = member.process.reap();
   inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), remark});
   tell_what_stays(member);
+  const auto launcher = launchers_.find(member.component);
+  const bool was_its = member.process.relation() == Relation::kAdopted;
+  if (was_its && launcher != launchers_.end() && launcher->second.pid != 0)
+    launcher->second.child_ended = live_now();
 }
 
 // What somebody else's process had started is not ours to end.
@@ -425,7 +484,10 @@ void Supervisor::run() {
       if (member.launch) watched.push_back({member.launch->descriptor(), POLLIN, 0});
     }
     for (const Trial& trial : trials_) watched.push_back({trial.launch.descriptor(), POLLIN, 0});
-    const Time until = members_.empty() ? next_deadline() : std::min(next_look, next_deadline());
+    const bool is_awaited = std::ranges::any_of(
+        launchers_, [](const auto& each) { return each.second.child_ended != kLongAgo; });
+    const Time until =
+        members_.empty() && !is_awaited ? next_deadline() : std::min(next_look, next_deadline());
     const auto wait =
         until == kNever ? Duration(-1) : std::max(Duration::zero(), until - live_now());
     lock.unlock();
@@ -465,6 +527,7 @@ void Supervisor::look(Time now) {
   std::erase_if(members_, [](const Member& m) { return m.state == ProcessState::kGone; });
   finish_trials(now);
   finish_shutdowns(now);
+  look_at_launchers(now);
   something_ended_.notify_all();
 }
 
@@ -483,19 +546,18 @@ void Supervisor::look_for_work(Member& member, Time now) {
 
 void Supervisor::finish_shutdowns(Time now) {
   for (Shutdown& shutdown : shutdowns_) {
-    if (!is_gone(shutdown.component)) {
+    if (!is_over(shutdown)) {
       if (shutdown.escalate <= now) escalate(shutdown, now);
     } else if (shutdown.command != CommandId{}) {
       answer(shutdown.command, Outcome::kDone, "");
     }
   }
-  std::erase_if(shutdowns_,
-                [&](const Shutdown& s) CULPRIT_REQUIRES(mutex_) { return is_gone(s.component); });
+  std::erase_if(shutdowns_, [&](const Shutdown& s) CULPRIT_REQUIRES(mutex_) { return is_over(s); });
 }
 
 void Supervisor::escalate(Shutdown& shutdown, Time now) {
   const bool is_stopped = std::any_of(members_.begin(), members_.end(), [&](const Member& m) {
-    return m.component == shutdown.component && m.state == ProcessState::kStopped;
+    return is_meant(shutdown, m) && m.state == ProcessState::kStopped;
   });
   const bool hangs = shutdown.hangs == Hangs::kYes && shutdown.signal == SIGINT;
   if (is_stopped || hangs || shutdown.signal == SIGTERM || shutdown.signal == SIGKILL) {
@@ -509,7 +571,7 @@ void Supervisor::escalate(Shutdown& shutdown, Time now) {
     shutdown.escalate = later(now, shutdown.hangs == Hangs::kYes ? kHung : kPolite);
   }
   for (const Member& member : members_) {
-    if (member.component == shutdown.component) member.process.signal(shutdown.signal);
+    if (is_meant(shutdown, member)) member.process.signal(shutdown.signal);
   }
 }
 

@@ -20,6 +20,9 @@
 // A component that is RESPAWNED is its launcher's to start: it is ended, and its launcher starts it
 // again. It is started here only once that launcher is known and has ended.
 //
+// Who starts a process that culprit did not start is told of when it ends with it, as ros2 launch does
+// where that says on_exit=Shutdown(): it ends all that it had started then.
+//
 // Whatever it started goes on running when the supervisor ends, unless stop_all() was called or its
 // lifetime is the starter's.
 #pragma once
@@ -28,6 +31,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -58,6 +62,8 @@ class Supervisor {
   static constexpr Duration kComingUp = std::chrono::minutes(5);
   // How often it is looked whether a process was stopped; its end is known at once.
   static constexpr Duration kStatePeriod = std::chrono::milliseconds(200);
+  // A launcher that ends within this time after what it started ended because of that.
+  static constexpr Duration kEndsWith = std::chrono::seconds(10);
   // How long the trial of a start may take.
   static constexpr Duration kTrial = std::chrono::seconds(5);
 
@@ -99,6 +105,15 @@ class Supervisor {
   // same robot before, and there is one.
   bool has_started(ComponentId component) const;
 
+  // The component's processes that were started here, or by a supervisor of the same robot before,
+  // with all that they started and that is in their groups. Empty: there is none, or it is being
+  // started or ended.
+  std::set<int> started(ComponentId component) const;
+
+  // Ends what was started of the component, here or by a supervisor of the same robot before, and
+  // nothing else: it is not needed, for somebody else started one, too.
+  void withdraw(ComponentId component);
+
   // Ends every process that was started here, and waits until all are gone.
   void stop_all();
 
@@ -131,14 +146,17 @@ class Supervisor {
     CommandId command;  // number 0: nobody waits for a reply
     ComponentId component;
     Hangs hangs = Hangs::kNo;
-    int signal = 0;          // sent last
-    Time escalate = kNever;  // when the next one is due
+    bool only_started = false;  // what others started goes on
+    int signal = 0;             // sent last
+    Time escalate = kNever;     // when the next one is due
   };
 
-  // Who started a RESPAWNED component.
+  // Who started a component that culprit did not start.
   struct Launcher {
     int pid = 0;  // 0: a supervisor, since the launcher had ended
     std::optional<Time> began{};
+    std::string what{};           // it runs
+    Time child_ended = kLongAgo;  // and it was not looked since whether it did, too
   };
 
   std::string marked_as(ComponentId component) const;
@@ -161,6 +179,8 @@ class Supervisor {
   void finish_trials(Time now) CULPRIT_REQUIRES(mutex_);
   void finish_shutdowns(Time now) CULPRIT_REQUIRES(mutex_);
   void tell_what_stays(const Member& member) const;
+  static bool goes_on(const Launcher& launcher);
+  void look_at_launchers(Time now) CULPRIT_REQUIRES(mutex_);
 
   void run();
   void look(Time now) CULPRIT_REQUIRES(mutex_);
@@ -168,6 +188,9 @@ class Supervisor {
   void escalate(Shutdown& shutdown, Time now) CULPRIT_REQUIRES(mutex_);
   bool is_known(ComponentId component, int pid) const CULPRIT_REQUIRES(mutex_);
   bool is_gone(ComponentId component) const CULPRIT_REQUIRES(mutex_);
+  bool was_started(const Member& member) const;
+  bool is_meant(const Shutdown& shutdown, const Member& member) const;
+  bool is_over(const Shutdown& shutdown) const CULPRIT_REQUIRES(mutex_);
   void begin_shutdown(CommandId command, ComponentId component, Hangs hangs)
       CULPRIT_REQUIRES(mutex_);
   void end_member(Member& member) CULPRIT_REQUIRES(mutex_);
@@ -185,7 +208,7 @@ class Supervisor {
   std::vector<Shutdown> shutdowns_ CULPRIT_GUARDED_BY(mutex_);
   std::map<ComponentId, Identity> identities_
       CULPRIT_GUARDED_BY(mutex_);  // of what others started, when it was found first
-  std::map<ComponentId, Launcher> launchers_ CULPRIT_GUARDED_BY(mutex_);  // of what is RESPAWNED
+  std::map<ComponentId, Launcher> launchers_ CULPRIT_GUARDED_BY(mutex_);
   bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
   FileDescriptor wake_;
   std::thread thread_;

@@ -6,6 +6,7 @@
 #include <linux/capability.h>
 #include <optional>
 #include <poll.h>
+#include <set>
 #include <signal.h>
 #include <sys/file.h>
 #include <sys/prctl.h>
@@ -194,6 +195,21 @@ TEST(Supervisor, TakesOverFromALauncherThatHasEnded) {
   c.supervise();  // another culprit knows it by its mark
   EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
   EXPECT_NE(c.start(), 0) << "there is no launcher any more to wait for";
+}
+
+// As ros2 launch does where the launch file says on_exit=Shutdown().
+TEST(Supervisor, TellsThatALauncherEndedWithWhatItStarted) {
+  Supervised c("sleep 1000");
+  const auto launcher = spawn({{"sh", "-c", "sleep 1000; sleep 0.1"}, {}, "/dev/null"});
+  ASSERT_TRUE(launcher);
+  int child = 0;
+  while (child == 0) {
+    for (const Relative& each : descendants_of(*launcher)) child = each.pid;
+  }
+  c.supervisor->adopt(ComponentId(0), child, live_now());
+  kill(child, SIGKILL);
+  EXPECT_NE(c.trouble().find("had started c, and ended with it"), std::string::npos);
+  waitpid(*launcher, nullptr, 0);
 }
 
 TEST(Supervisor, EndsNoOrphanThatNobodyWouldStartAgain) {
@@ -424,6 +440,33 @@ TEST(Supervisor, AdoptsAndEndsAProcessThatWasThere) {
   c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
   EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(*foreign)) << "what is a child of this program is reaped, too";
+}
+
+// One that a launch file started, too.
+TEST(Supervisor, WithdrawsWhatItStartedAndNothingElse) {
+  for (const bool is_of_earlier_one : {false, true}) {
+    Supervised one("sh -c 'sleep 300 & wait'", "test/" + std::to_string(getpid()) + "/withdrawn");
+    const int ours = one.start();
+    if (is_of_earlier_one) {
+      one.supervise();
+      EXPECT_EQ(one.state(ProcessState::kRunning).pid, ours);
+    }
+    const Respawning launcher;
+    const int other = launcher.child();
+    one.supervisor->adopt(ComponentId(0), other, live_now());
+    std::set<int> started;
+    while (started.size() < 2) started = one.supervisor->started(ComponentId(0));
+    EXPECT_TRUE(started.contains(ours));
+    EXPECT_FALSE(started.contains(other));
+    one.supervisor->withdraw(ComponentId(0));
+    EXPECT_TRUE(one.supervisor->started(ComponentId(0)).empty()) << "it is asked once";
+    EXPECT_EQ(one.state(ProcessState::kGone).pid, ours);
+    EXPECT_TRUE(is_alive(other));
+    EXPECT_FALSE(one.supervisor->has_started(ComponentId(0)));
+    one.supervisor->withdraw(ComponentId(0));
+    std::this_thread::sleep_for(50ms);
+    EXPECT_TRUE(is_alive(other));
+  }
 }
 
 TEST(Supervisor, LeavesItsProcessesRunningWhenItEnds) {

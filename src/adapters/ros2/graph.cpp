@@ -195,6 +195,11 @@ void Graph::claim(const GuidPrefix& prefix, const std::string& name) {
   node.claimants.push_back(prefix);
   if (node.told) {
     warn_of_duplicate(name, node);
+    // First, so that its leaving is no loss; and again below, when more is known of who came.
+    if (!has_ended(peers_.at(*node.told))) {
+      count_namesakes(name, node);
+      node.namesakes = -1;
+    }
     tell_left(name, node);
   }
   tell_joined(name, node);

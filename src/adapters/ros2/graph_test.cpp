@@ -272,7 +272,7 @@ TEST(Graph, TwoLivingNodesOfOneNameAreTrouble) {
       watched.told(),
       ElementsAre(
           "!two nodes have the name /a: one in process 10, one in process 20; the latter counts",
-          "-/a publishes /t", "-/a", "+/a in 20", "=/a has 1 namesakes"));
+          "=/a has 1 namesakes", "-/a publishes /t", "-/a", "+/a in 20", "=/a has 1 namesakes"));
   watched.leaves(2);
   EXPECT_THAT(watched.told(),
               ElementsAre("-/a", "+/a in 10", "+/a publishes /t", "=/a has 0 namesakes"));

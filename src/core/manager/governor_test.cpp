@@ -270,6 +270,7 @@ TEST(Identity, TheEndOfOneOfTwoIsNoLoss) {
   robot.tell(NamesakesSeen{"/camera", 1});
   robot.tell(ProcessSeen{ComponentId(0), ProcessState::kGone, robot["camera"].pid, "exit code 0"});
   robot.run_for(300ms);
+  robot.tell(NodeVanished{"/camera"});
   EXPECT_EQ(robot.count("is lost"), 0u) << transcript(robot);
   constexpr int kOther = 4711;
   robot["camera"].pid = kOther;

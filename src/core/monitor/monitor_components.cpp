@@ -94,6 +94,8 @@ void Monitor::on(Time at, const NodeVanished& seen) {
   const auto component = knowledge_.graph.component_of(seen.node);
   if (!component) return;
   forget_process(*component, at);
+  // Of several the graph tells next which it is from now on, perhaps in another step.
+  if (knowledge_.components[*component].namesakes > 0) return;
   update_alive(*component, at, "its node left the graph");
 }
 
