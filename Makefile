@@ -23,13 +23,14 @@ test:
 	scripts/test
 
 # What takes longer than a test may, some four hours in all: a robot that is broken and healed for an hour, 500 kills of culprit,
-# 40 changes of the core that its tests should notice, each fuzzer for five minutes.
+# 100 random sequences of faults for each kind of owner, 40 changes of the core that its tests should notice, each fuzzer for five minutes.
 soak:
 	@scripts/install-dependencies --tests
 	cmake --preset release
 	cmake --build --preset release
 	scripts/soak
 	scripts/chaos
+	CULPRIT_SEQUENCES=100 build/release/bin/owners_test --gtest_filter='AnySequenceOfFaults.*'
 	scripts/mutate
 	scripts/fuzz --seconds 300
 

@@ -362,7 +362,7 @@ TEST(ComposedNodes, WhatIsToEndForGoodIsUnloadedAndNotReplaced) {
 // Containers that are killed, that do not unload, that refuse to load, and culprits that are killed in
 // between: once it settles each is there once, in one container.
 TEST(ComposedNodes, AreThereOnceAfterAnySequenceOfFaults) {
-  for (unsigned seed = 0; seed < 8; ++seed) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
     OneContainer robot;
