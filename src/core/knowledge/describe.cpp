@@ -356,6 +356,21 @@ std::string_view to_string(Criticality criticality) {
   return "";
 }
 
+namespace {
+
+// Who is asked to end and to start it, where culprit does neither.
+std::string by_whom(const Component& component) {
+  using Engine = EngineContainer::Engine;
+  if (component.unit) return " (" + component.unit->name + ")";
+  if (component.engine)
+    return std::string(component.engine->engine == Engine::kPodman ? " (podman " : " (docker ") +
+           component.engine->name + ")";
+  if (component.composed) return " (in " + component.composed->container + ")";
+  return component.is_respawned ? " (respawned)" : "";
+}
+
+}  // namespace
+
 std::string describe(const Adaptation& adaptation, const RuleSet& rules) {
   const std::string& component = rules[adaptation.component].name;
   switch (adaptation.type) {
@@ -371,6 +386,11 @@ std::string describe(const Adaptation& adaptation, const RuleSet& rules) {
       return "change " + component + " to mode " + adaptation.subject;
     case AdaptationType::kCall:
       return "call " + adaptation.subject + " of " + component;
+    case AdaptationType::kRedeploy:
+    case AdaptationType::kStart:
+    case AdaptationType::kStop:
+      return std::string(keyword(adaptation.type)) + " " + component +
+             by_whom(rules[adaptation.component]);
     default:
       return std::string(keyword(adaptation.type)) + " " + component;
   }

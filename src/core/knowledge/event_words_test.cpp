@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "knowledge/describe.h"
 #include "language/checker.h"
 
 namespace culprit {
@@ -30,6 +31,27 @@ TEST(EventWords, WhatIsRequiredAndNotThereIsAnError) {
   EXPECT_EQ(severity_of({{}, NeverSeen{camera, ""}}, rules), EventSeverity::kWarning);
   EXPECT_EQ(severity_of({{}, StormBegan{}}, rules), EventSeverity::kError);
   EXPECT_EQ(severity_of({{}, ComponentFound{base, 1}}, rules), EventSeverity::kInfo);
+}
+
+TEST(EventWords, SayWhoIsAskedToStartAndToEnd) {
+  const RuleSet rules = *check(Source("test",
+                                      "COMPONENT own NODE /own LAUNCH \"own\"\n"
+                                      "COMPONENT lidar NODE /lidar UNIT lidar.service\n"
+                                      "COMPONENT slam NODE /slam CONTAINER podman slam_1\n"
+                                      "COMPONENT part NODE /part IN /box PLUGIN a::B\n"
+                                      "COMPONENT radar NODE /radar RESPAWNED\n"))
+                             .rules;
+  const auto redeploys = [&](std::uint32_t component) {
+    Adaptation adaptation{};
+    adaptation.component = ComponentId(component);
+    adaptation.type = AdaptationType::kRedeploy;
+    return describe(adaptation, rules);
+  };
+  EXPECT_EQ(redeploys(0), "redeploy own");
+  EXPECT_EQ(redeploys(1), "redeploy lidar (lidar.service)");
+  EXPECT_EQ(redeploys(2), "redeploy slam (podman slam_1)");
+  EXPECT_EQ(redeploys(3), "redeploy part (in /box)");
+  EXPECT_EQ(redeploys(4), "redeploy radar (respawned)");
 }
 
 }  // namespace
