@@ -90,7 +90,7 @@ TEST(SimulatedTime, ThatStandsStillOrJumpsReplacesNobody) {
 
   kill(camera.pid(), SIGKILL);
   EXPECT_TRUE(culprit.prints("Dead detected")) << culprit.output();
-  EXPECT_TRUE(culprit.prints("Dead resolved by camera_redeploy")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("camera is held responsible for Dead")) << culprit.output();
   culprit.signal(SIGINT);
   EXPECT_EQ(culprit.wait(), 0);
 }
