@@ -47,7 +47,7 @@ TEST_F(NeverSeen, ATypingMistakeEndsNobody) {
   culprit.signal(SIGINT);
   EXPECT_EQ(culprit.wait(), 0);
   EXPECT_THAT(culprit.output(), Not(HasSubstr("Dead detected")));
-  EXPECT_EQ(kill(camera.pid(), 0), 0);
+  EXPECT_EQ(camera.wait(0s), std::nullopt) << "it goes on";
 }
 
 TEST_F(NeverSeen, ANodeThatComesLateIsNotStartedASecondTime) {
@@ -87,8 +87,8 @@ TEST_F(NeverSeen, WhatDiedWithCulpritIsKnownToHaveDied) {
 // the marker sees the second arm, too: they are one participant.
 TEST_F(NeverSeen, ANameThatTwoNodesHaveIsActedOnByNobody) {
   const std::string domain = std::to_string(ros2::options_from_environment()->domain);
-  const TestProgram first(world, {"ros2_peer_node", domain, "/r1/arm"});
-  const TestProgram second(world, {"ros2_peer_node", domain, "/r2/arm", "/r2/marker"});
+  TestProgram first(world, {"ros2_peer_node", domain, "/r1/arm"});
+  TestProgram second(world, {"ros2_peer_node", domain, "/r2/arm", "/r2/marker"});
   TestProgram culprit =
       run(world.write("arm.rules",
                       "ROBOT arms\nCOMPONENT marker NODE /r2/marker\n"
@@ -101,8 +101,8 @@ TEST_F(NeverSeen, ANameThatTwoNodesHaveIsActedOnByNobody) {
   EXPECT_TRUE(culprit.prints("say which with NODE")) << culprit.output();
   culprit.signal(SIGINT);
   EXPECT_EQ(culprit.wait(), 0);
-  EXPECT_EQ(kill(first.pid(), 0), 0) << culprit.output();
-  EXPECT_EQ(kill(second.pid(), 0), 0) << culprit.output();
+  EXPECT_EQ(first.wait(0s), std::nullopt) << culprit.output();
+  EXPECT_EQ(second.wait(0s), std::nullopt) << culprit.output();
 }
 
 }  // namespace
