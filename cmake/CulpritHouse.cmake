@@ -222,7 +222,7 @@ function(culprit_test name)
   target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PACKAGES} culprit_test_main GTest::gtest GTest::gmock
                                         rapidcheck culprit_test_options)
   set(properties TIMEOUT 300)
-  if(ARG_LIVE) # first: they wait, and scripts/test builds meanwhile
+  if(ARG_LIVE) # first: they take longest
     list(APPEND properties COST 1000)
   endif()
   if(ARG_SERIAL)
