@@ -98,7 +98,7 @@ TEST_F(NeverSeen, ANameThatTwoNodesHaveIsActedOnByNobody) {
                           "RULE Here\n  POLICIES ERROR\n  TRIGGER alive(arm) && alive(marker)\n"
                           "    STRATEGY arm_redeploy 90 10\n"
                           "      ADAPTATION arm redeploy 5\n"));
-  EXPECT_TRUE(culprit.prints("say which with NODE")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("redeploy arm: failed, it could be /r")) << culprit.output();
   culprit.signal(SIGINT);
   EXPECT_EQ(culprit.wait(), 0);
   EXPECT_EQ(first.wait(0s), std::nullopt) << culprit.output();
