@@ -188,7 +188,9 @@ TEST_F(Start, WhatWasBeingLaunchedWhenCulpritWasKilledIsBroughtUpByTheNext) {
   EXPECT_TRUE(second.prints("bringing up lidar")) << second.output();
   EXPECT_TRUE(second.prints("IsUp")) << second.output();
   EXPECT_FALSE(std::filesystem::exists(state() + "/half.journal-launching"));
-  kill(pid_in(second.output(), "lidar"), SIGKILL);
+  const int lidar = pid_in(second.output(), "lidar");
+  ASSERT_GT(lidar, 0) << second.output();
+  kill(lidar, SIGKILL);
 }
 
 // The first time it was seen to come up, and how long that takes is known.

@@ -423,6 +423,8 @@ const LiveInventory& example_robot() {
     camera.lifecycle = "active";
     robot.nodes["/left/wheel"];
     robot.nodes["/right/wheel"];
+    robot.nodes["/left/arm"];
+    robot.nodes["/right/arm"];
     robot.topics["/robot/image"] = {
         .type = "sensor_msgs/msg/Image",
         .publishers = {"/robot/camera"},

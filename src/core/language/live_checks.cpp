@@ -143,13 +143,13 @@ class LiveChecks {
     warn(Code::kNoSuchNode, name, cause, remedy, node, {name.end, name.end});
   }
 
-  // Without NODE: one of several, and nobody can say which.
+  // Without NODE: one of several that are no other component's, and nobody can say which.
   void several_nodes(const syntax::Component& written) {
     const Component* c = component_of(written.name.text);
     if (c == nullptr || !c->node.empty()) return;
     std::vector<std::string> fitting;
     for (const auto& [name, node] : robot_.nodes) {
-      if (own_name(name) == c->name) fitting.push_back(name);
+      if (own_name(name) == c->name && !components_.contains(name)) fitting.push_back(name);
     }
     if (fitting.size() < 2) return;
     std::sort(fitting.begin(), fitting.end());

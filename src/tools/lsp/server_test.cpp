@@ -256,7 +256,8 @@ TEST(LspServer, ProposesWhatTheRobotHas) {
   };
   EXPECT_THAT(offers(1), testing::IsEmpty()) << "no robot was seen";
   session.server.see(robot());
-  EXPECT_THAT(offers(1), testing::ElementsAre("/left/wheel", "/right/wheel", "/robot/camera"));
+  EXPECT_THAT(offers(1), testing::ElementsAre("/left/arm", "/left/wheel", "/right/arm",
+                                              "/right/wheel", "/robot/camera"));
   EXPECT_THAT(offers(2), Contains("/robot/image"));
   EXPECT_THAT(offers(3), testing::ElementsAre("entropy"));
   EXPECT_THAT(offers(4), testing::ElementsAre("exposure"));
