@@ -63,6 +63,7 @@ void WatchedProcess::signal_group(int number) const {
 std::string WatchedProcess::reap() {
   assert(state() == ProcessState::kGone);
   if (relation_ != Relation::kChild) return "ended";
+  is_reaped_ = true;
   siginfo_t info{};
   if (waitid(static_cast<idtype_t>(P_PIDFD), static_cast<id_t>(pidfd_.get()), &info, WEXITED) != 0)
     return "ended";
@@ -71,6 +72,7 @@ std::string WatchedProcess::reap() {
 }
 
 void WatchedProcess::kill_group() const {
+  assert(!is_reaped_);  // the number may be another group's by now
   if (relation_ != Relation::kAdopted) signal_group(SIGKILL);
 }
 

@@ -49,6 +49,7 @@ class WatchedProcess {
   int pid_;
   FileDescriptor pidfd_;
   Relation relation_;
+  bool is_reaped_ = false;
   std::string mark_;  // of kMarked: what its group has in its environment
 };
 

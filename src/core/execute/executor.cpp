@@ -29,6 +29,7 @@ Executor::Run& Executor::add_run(StrategyId strategy) {
 }
 
 void Executor::resume(Interrupted interrupted, Time now, Time from) {
+  assert(std::all_of(runs_.begin(), runs_.end(), [](const Run& r) { return r.interrupted; }));
   write_.attempts.resume(interrupted.strategy, now);
   Run& run = add_run(interrupted.strategy);
   // An answer to a request of the earlier process must not be taken for one to ours.

@@ -1,6 +1,7 @@
 #include "execute/governor.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "execute/evidence.h"
 #include "language/evaluate.h"
@@ -132,8 +133,13 @@ std::optional<std::string> Governor::objection_to_run(StrategyId id, Autonomy au
 void Governor::obey(const Order& order, Time now) {
   std::visit(
       Overload{[&](const Pause&) { is_paused_ = true; }, [&](const Resume&) { is_paused_ = false; },
-               [&](const Approve& o) { question_of(o.strategy)->is_approved = true; },
+               [&](const Approve& o) {
+                 Question* const question = question_of(o.strategy);
+                 assert(question != nullptr);
+                 question->is_approved = true;
+               },
                [&](const Refuse& o) {
+                 assert(question_of(o.strategy) != nullptr);
                  const Question& question = *question_of(o.strategy);
                  refused_[o.strategy.index] = question.failing_since;
                  questions_.erase(questions_.begin() + (&question - questions_.data()));

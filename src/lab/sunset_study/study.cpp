@@ -1,5 +1,6 @@
 #include "sunset_study/study.h"
 
+#include <cassert>
 #include <algorithm>
 
 #include "knowledge/describe.h"
@@ -200,6 +201,7 @@ const sunset::Scenario& SunsetStudy::scenario_of(RunId id) {
 
 SunsetRun SunsetStudy::play(RunId id) const {
   const Setting& setting = settings_[id.row];
+  assert(setting.configuration.profile != kLiveRobot);
   sunset::model::SunsetModel model(*setting.profile, seed_of(id));
   const auto managing = manager(id, manager_options(*setting.profile));
   return study::play(model, *setting.rules, *managing, scenario_of(id));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cstdio>
 #include <utility>
 
@@ -39,6 +40,7 @@ bool clear(T& part) {
 }  // namespace
 
 Scenario shrink(Scenario scenario) {
+  assert(run(scenario).violation);
   while (true) {
     bool is_smaller = leave_out(scenario, &Scenario::mishaps);
     // Nobody needs the last part.
