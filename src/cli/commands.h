@@ -13,6 +13,7 @@ namespace culprit::cli {
 void add_run(CLI::App& app, const std::string& version, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
+void add_init(CLI::App& app, int& exit_code);
 void add_explain(CLI::App& app, int& exit_code);
 void add_fmt(CLI::App& app, int& exit_code);
 void add_test(CLI::App& app, int& exit_code);

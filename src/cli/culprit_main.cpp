@@ -33,6 +33,7 @@ void add_commands(CLI::App& app, int& exit_code) {
   cli::add_run(app, CULPRIT_VERSION, exit_code);
   cli::add_check(app, exit_code);
   cli::add_doctor(app, exit_code);
+  cli::add_init(app, exit_code);
   cli::add_explain(app, exit_code);
   cli::add_fmt(app, exit_code);
   cli::add_test(app, exit_code);

@@ -92,6 +92,13 @@ LiveInventory Survey::inventory() const {
   return all;
 }
 
+std::map<std::string, Rhythm> Survey::rhythms() const {
+  std::map<std::string, Rhythm> all;
+  const MutexLock lock(mutex_);
+  for (const auto& [topic, reading] : topics_read_) all[topic] = reading->rhythm();
+  return all;
+}
+
 // ---- the graph
 
 void Survey::on_change(const GraphChange& change) {

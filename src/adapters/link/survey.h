@@ -16,6 +16,7 @@
 #include "base/mutex.h"
 #include "language/live_inventory.h"
 #include "link/node_reading.h"
+#include "link/rhythm.h"
 #include "link/topic_reading.h"
 #include "link/type_finder.h"
 #include "ros2/node.h"
@@ -40,6 +41,8 @@ class Survey {
 
   // What is known by now.
   LiveInventory inventory() const;
+  // How the messages came of the topics that were asked for, since they are.
+  std::map<std::string, Rhythm> rhythms() const;
 
  private:
   struct TopicUse {

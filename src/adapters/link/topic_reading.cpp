@@ -41,6 +41,11 @@ void TopicReading::on_arrival() {
   const Time now = live_now();
   const MutexLock lock(mutex_);
   arrivals_.push_back(now);
+  if (rhythm_.messages++ > 0) {
+    rhythm_.first_to_last += now - last_;
+    rhythm_.longest_pause = std::max(rhythm_.longest_pause, now - last_);
+  }
+  last_ = now;
   while (arrivals_.front() < now - kWindow || arrivals_.size() > kMaxArrivals)
     arrivals_.pop_front();
 }
@@ -63,6 +68,11 @@ void TopicReading::tell(LiveInventory::Topic& topic) const {
   const auto recent = std::count_if(arrivals_.begin(), arrivals_.end(),
                                     [&](Time at) { return at >= now - kWindow; });
   topic.rate = static_cast<double>(recent) / seconds(kWindow);
+}
+
+Rhythm TopicReading::rhythm() const {
+  const MutexLock lock(mutex_);
+  return rhythm_;
 }
 
 }  // namespace culprit::ros2

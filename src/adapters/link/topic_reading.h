@@ -12,6 +12,7 @@
 #include "base/mutex.h"
 #include "base/time.h"
 #include "language/live_inventory.h"
+#include "link/rhythm.h"
 #include "link/topic_listener.h"
 #include "ros2/field_reader.h"
 
@@ -35,6 +36,9 @@ class TopicReading {
   // Enters rate and fields. From any thread.
   void tell(LiveInventory::Topic& topic) const;
 
+  // Of all messages since it was opened. From any thread.
+  Rhythm rhythm() const;
+
  private:
   struct Field {
     std::string path;
@@ -50,6 +54,8 @@ class TopicReading {
   Time since_{};
   mutable Mutex mutex_;
   std::deque<Time> arrivals_ CULPRIT_GUARDED_BY(mutex_);
+  Time last_ CULPRIT_GUARDED_BY(mutex_){};
+  Rhythm rhythm_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, Value> values_ CULPRIT_GUARDED_BY(mutex_);
   std::unique_ptr<TopicListener> listener_;
 };

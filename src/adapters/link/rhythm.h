@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+
+#include "base/time.h"
+
+namespace culprit::ros2 {
+
+// How the messages of a topic came.
+struct Rhythm {
+  std::size_t messages = 0;
+  Duration first_to_last{};
+  Duration longest_pause{};
+  bool operator==(const Rhythm&) const = default;
+};
+
+}  // namespace culprit::ros2

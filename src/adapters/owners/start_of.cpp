@@ -1,0 +1,33 @@
+#include "owners/start_of.h"
+
+#include <filesystem>
+#include <fstream>
+
+namespace culprit::owners {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> texts_of(const fs::path& file) {
+  std::vector<std::string> all;
+  std::ifstream in(file, std::ios::binary);
+  for (std::string text; std::getline(in, text, '\0');) all.push_back(std::move(text));
+  return all;
+}
+
+}  // namespace
+
+std::optional<Started> start_of(int pid) {
+  const fs::path process = "/proc/" + std::to_string(pid);
+  Started started{texts_of(process / "cmdline"), texts_of(process / "environ"), {}};
+  std::error_code error;
+  const fs::path program = fs::read_symlink(process / "exe", error);
+  const bool is_gone = error || program.native().ends_with(" (deleted)");
+  if (is_gone || started.command.empty()) return std::nullopt;
+  started.folder = fs::read_symlink(process / "cwd", error);
+  // What it is called by may matter to it; but a name alone depends on PATH, and a path on a folder.
+  if (!started.command.front().starts_with('/')) started.command.front() = program;
+  return started;
+}
+
+}  // namespace culprit::owners

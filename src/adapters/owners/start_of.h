@@ -1,0 +1,19 @@
+// How a process was started, so that it can be started again.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace culprit::owners {
+
+struct Started {
+  std::vector<std::string> command;      // argument vector; the program by its whole path
+  std::vector<std::string> environment;  // "NAME=value", as it was then
+  std::string folder;                    // that it is in now
+};
+
+// Nothing: there is no such process, or it may not be looked into.
+std::optional<Started> start_of(int pid);
+
+}  // namespace culprit::owners

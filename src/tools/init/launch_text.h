@@ -1,0 +1,14 @@
+// How a process was started, as the clauses of a COMPONENT.
+#pragma once
+
+#include <string>
+
+#include "init/sighting.h"
+
+namespace culprit::init {
+
+// LAUNCH "/opt/driver --frame 'left lidar'" ENV "ROS_DOMAIN_ID=7" CWD "/a/folder".
+// @pre start.command is not empty
+std::string launch_text(const Start& start);
+
+}  // namespace culprit::init

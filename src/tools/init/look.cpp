@@ -1,0 +1,91 @@
+#include "init/look.h"
+
+#include <algorithm>
+#include <array>
+#include <thread>
+
+#include "base/environment.h"
+#include "init/names.h"
+#include "owners/found_owner.h"
+#include "owners/start_of.h"
+#include "robot/inbox.h"
+
+namespace culprit::init {
+namespace {
+
+using namespace std::chrono_literals;
+
+bool starts_with_any(std::string_view text, std::initializer_list<std::string_view> prefixes) {
+  return std::ranges::any_of(prefixes, [&](auto prefix) { return text.starts_with(prefix); });
+}
+
+bool is_of_ros_or_dds(std::string_view variable) {
+  return starts_with_any(variable, {"ROS_", "RMW_", "AMENT_", "COLCON_", "FASTRTPS_", "FASTDDS_",
+                                    "CYCLONEDDS_", "PYTHONPATH=", "LD_LIBRARY_PATH="});
+}
+
+// What shells and culprit set for themselves.
+bool is_nobodys(std::string_view variable) {
+  return starts_with_any(variable, {"PWD=", "OLDPWD=", "SHLVL=", "_=", "TERM=", "CULPRIT_"});
+}
+
+Start start_as_written(const owners::Started& started) {
+  Start start;
+  start.command = started.command;
+  if (started.folder != std::filesystem::current_path()) start.folder = started.folder;
+  for (const std::string& variable : started.environment) {
+    const std::size_t equals = variable.find('=');
+    if (equals == std::string::npos || is_nobodys(variable)) continue;
+    const std::string name = variable.substr(0, equals);
+    if (environment(name.c_str()) == variable.substr(equals + 1)) continue;
+    if (is_of_ros_or_dds(variable))
+      start.environment.push_back(variable);
+    else
+      start.withheld.push_back(name);
+  }
+  return start;
+}
+
+std::map<std::string, Start> starts_of(const LiveInventory& robot) {
+  std::map<std::string, Start> starts;
+  for (const auto& [name, node] : robot.nodes) {
+    if (node.pid == 0 || is_tool(name)) continue;
+    const auto started = owners::start_of(node.pid);
+    if (!started) continue;
+    Start& start = starts[name] = start_as_written(*started);
+    if (const auto owner = owners::found_owner(node.pid, "")) {
+      start.owner = owner->who;
+      if (starts_with_any(owner->declare, {"UNIT", "CONTAINER"})) start.declare = owner->declare;
+    }
+  }
+  return starts;
+}
+
+LiveInterest all_of(const LiveInventory& robot) {
+  LiveInterest interest;
+  for (const auto& [name, node] : robot.nodes) {
+    if (!is_tool(name)) interest.nodes.insert(name);
+  }
+  for (const auto& [name, topic] : robot.topics) {
+    if (!is_of_ros(name) && topic.is_published()) interest.fields_of_topics[name];
+  }
+  return interest;
+}
+
+}  // namespace
+
+Sighting look(ros2::Survey& survey, std::uint32_t domain, Duration time) {
+  constexpr Duration kTurn = 500ms;
+  const Time end = later(live_now(), time);
+  LiveInterest asked;
+  while (live_now() < end) {
+    LiveInterest interest = all_of(survey.inventory());
+    if (interest != asked) survey.ask_for(asked = std::move(interest));
+    std::this_thread::sleep_for(std::min<Duration>(kTurn, end - live_now()));
+  }
+  Sighting seen{survey.inventory(), survey.rhythms(), {}, time, domain};
+  seen.starts = starts_of(seen.robot);
+  return seen;
+}
+
+}  // namespace culprit::init

@@ -1,0 +1,34 @@
+// What `culprit init` saw of a robot.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/time.h"
+#include "language/live_inventory.h"
+#include "link/rhythm.h"
+
+namespace culprit::init {
+
+// How a process was started that is this machine's and may be looked into.
+struct Start {
+  std::vector<std::string> command;      // argument vector, with the program's whole path
+  std::vector<std::string> environment;  // "ROS_DOMAIN_ID=7": of ROS and DDS, where it is not ours
+  std::vector<std::string> withheld;     // names of other variables that are not as ours
+  std::string folder;                    // that it was started in; empty: the one that we are in
+  std::string owner;    // who runs it: "systemd as lidar.service"; empty: nobody can be told
+  std::string declare;  // what to write then: "UNIT lidar.service"; empty: a LAUNCH
+  bool operator==(const Start&) const = default;
+};
+
+struct Sighting {
+  LiveInventory robot;
+  std::map<std::string, ros2::Rhythm> rhythms;  // by topic
+  std::map<std::string, Start> starts;          // by node, of those whose process is proven
+  Duration looked{};
+  std::uint32_t domain = 0;
+};
+
+}  // namespace culprit::init
