@@ -1,7 +1,7 @@
 #include "sunset_study/study.h"
 
-#include <cassert>
 #include <algorithm>
+#include <cassert>
 
 #include "knowledge/describe.h"
 #include "language/checker.h"
