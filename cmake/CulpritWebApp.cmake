@@ -30,7 +30,7 @@ function(culprit_web_app target)
     COMMENT "Installing what the web app is made of")
   add_custom_command(
     OUTPUT ${generated}
-    DEPENDS ${installed} ${sources} ${ui}/build.mjs ${ui}/tsconfig.json
+    DEPENDS ${installed} ${sources} ${ui}/build.mjs ${ui}/bundle.mjs ${ui}/tsconfig.json
     COMMAND ${CULPRIT_NODE} ${ui}/build.mjs ${CULPRIT_UI_MODULES} ${generated}
     COMMENT "Bundling the web app")
   target_sources(${target} PRIVATE ${generated})

@@ -1,39 +1,13 @@
 // Bundles the web app and writes it as one C++ file: node build.mjs <folder of node_modules> <output.cpp>
-import { mkdirSync, readFileSync, writeFileSync } from 'node:fs'
-import { createRequire } from 'node:module'
-import { dirname, join } from 'node:path'
-import { fileURLToPath } from 'node:url'
+import { mkdirSync, writeFileSync } from 'node:fs'
+import { dirname } from 'node:path'
 import { gzipSync } from 'node:zlib'
+import { bundle } from './bundle.mjs'
 
 const [modules, output] = process.argv.slice(2)
-const require = createRequire(join(modules, 'package.json'))
-const { buildSync } = require('esbuild')
-const source = join(dirname(fileURLToPath(import.meta.url)), 'src')
 const kMostBytes = 400_000 // compressed: what a tablet in the field has to load
 
-const bundle = buildSync({
-  entryPoints: [join(source, 'app.tsx')],
-  nodePaths: [join(modules, 'node_modules')],
-  bundle: true,
-  minify: true,
-  write: false,
-  outdir: '/',
-  format: 'esm',
-  target: 'es2021',
-  jsx: 'automatic',
-  jsxImportSource: 'preact',
-  legalComments: 'none',
-})
-
-const assets = [
-  ['/', 'text/html; charset=utf-8', readFileSync(join(source, 'index.html'))],
-  ['/icon.svg', 'image/svg+xml', readFileSync(join(source, 'icon.svg'))],
-  ...bundle.outputFiles.map((file) =>
-    file.path.endsWith('.css')
-      ? ['/app.css', 'text/css; charset=utf-8', file.contents]
-      : ['/app.js', 'text/javascript; charset=utf-8', file.contents]
-  ),
-].map(([path, type, contents]) => ({ path, type, gzip: gzipSync(contents, { level: 9 }) }))
+const assets = bundle(modules).map(({ path, type, contents }) => ({ path, type, gzip: gzipSync(contents, { level: 9 }) }))
 
 const size = assets.reduce((sum, asset) => sum + asset.gzip.length, 0)
 if (size > kMostBytes) throw new Error(`the app has ${size} bytes; it may have ${kMostBytes}`)

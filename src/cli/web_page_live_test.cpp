@@ -32,6 +32,10 @@ TEST_F(WebPage, BuildsThePapersRuleFromNothing) { passes("builder.mjs"); }
 
 TEST_F(WebPage, MendsABrokenFile) { passes("repair.mjs"); }
 
+TEST_F(WebPage, LosesNothingThatWasWritten) { passes("drafts.mjs"); }
+
+TEST_F(WebPage, TellsEveryStateOnEveryScreenWithoutScrolling) { passes("states.mjs"); }
+
 TEST_F(WebPage, RunsStudiesAndDrawsRulesThatAreInOneAnothersWay) { passes("studies.mjs"); }
 
 TEST_F(WebPage, ObeysWhoIsInChargeOfARobot) {

@@ -19,7 +19,7 @@ namespace culprit::web {
 class EventStream {
  public:
   // How long the stream may be silent; then it says so, to find out whether the reader is there.
-  static constexpr std::chrono::milliseconds kSilence = std::chrono::seconds(5);
+  static constexpr std::chrono::milliseconds kSilence = std::chrono::seconds(1);
 
   // `hub` must outlive the stream. `last_event_id` is what the reader sent, of any content.
   EventStream(Hub& hub, const std::string& last_event_id);

@@ -1,6 +1,8 @@
 #include "web/hub_observer.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 
 #include "web/robot_json.h"
 
@@ -15,7 +17,13 @@ bool may_change_graph(const Observation& observation) {
          std::holds_alternative<ProcessSeen>(what);
 }
 
+double rounded_to_ms(double time) { return std::round(time * 1000) / 1000; }
+
 }  // namespace
+
+double HubObserver::wall_clock() {
+  return seconds(std::chrono::system_clock::now().time_since_epoch());
+}
 
 void HubObserver::begins(const Manager& manager, std::function<Remarks()> remarks, Time start) {
   manager_ = &manager;
@@ -40,6 +48,11 @@ void HubObserver::announced(Time at, const EventWords& words, const std::string&
   Json json{{"t", time_to_json(at, start_)}};
   json.update(to_json(words));
   json["text"] = text;
+  tell_event(std::move(json));
+}
+
+void HubObserver::tell_event(Json json) {
+  json["clock"] = rounded_to_ms(wall_());
   hub_.publish(Kind::kEvent, to_line(json));
 }
 
@@ -47,8 +60,7 @@ void HubObserver::tell_events(std::span<const Event> events) {
   const RuleSet& rules = manager_->knowledge().rules;
   for (const Event& event : events) {
     Json json = to_json(event, rules, start_);
-    if (!json["text"].get_ref<const std::string&>().empty())
-      hub_.publish(Kind::kEvent, to_line(json));
+    if (!json["text"].get_ref<const std::string&>().empty()) tell_event(std::move(json));
   }
   if (!events.empty()) next_tell_ = later(told_, kSoon);
 }
@@ -62,6 +74,7 @@ void HubObserver::tell_state(Time now) {
   std::string control = to_line(control_to_json(*manager_, start_));
   if (control != told_control_) hub_.publish(Kind::kControl, told_control_ = std::move(control));
   Json state = state_to_json(knowledge, start_);
+  state["clock"] = rounded_to_ms(wall_());
   if (remarks_) add_remarks(state);
   hub_.publish(Kind::kState, to_line(state));
   told_ = now;

@@ -21,8 +21,13 @@ class HubObserver : public live::Observer {
   // After an event the state is told sooner, at most so often.
   static constexpr Duration kSoon = std::chrono::milliseconds(33);
 
-  // Both must outlive this.
-  HubObserver(Hub& hub, Metrics& metrics) : hub_(hub), metrics_(metrics) {}
+  // Seconds since 1970: what people read off a wall, while the robot may count otherwise.
+  using WallClock = std::function<double()>;
+  static double wall_clock();
+
+  // Hub and metrics must outlive this.
+  HubObserver(Hub& hub, Metrics& metrics, WallClock wall = wall_clock)
+      : hub_(hub), metrics_(metrics), wall_(std::move(wall)) {}
 
   // Remarks are shown with the components of their nodes.
   void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) override;
@@ -31,12 +36,14 @@ class HubObserver : public live::Observer {
   void announced(Time at, const EventWords& words, const std::string& text) override;
 
  private:
+  void tell_event(Json json);
   void tell_events(std::span<const Event> events);
   void tell_state(Time now);
   void add_remarks(Json& state) const;
 
   Hub& hub_;
   Metrics& metrics_;
+  const WallClock wall_;
   const Manager* manager_ = nullptr;  // null: none has begun
   std::function<Remarks()> remarks_;
   Time start_{};

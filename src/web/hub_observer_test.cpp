@@ -18,24 +18,55 @@ RULE CameraGone
       ADAPTATION camera restart 3
 )";
 
-TEST(HubObserver, ShowsWhoElseHasTheNameOfANodeWithItsComponent) {
+// One step of a manager that knows nothing, told at a quarter to six.
+struct ToldOnce {
+  explicit ToldOnce(std::vector<Observation> observations, live::Observer::Remarks remarks = {}) {
+    observer.begins(
+        manager, [remarks] { return remarks; }, Time());
+    const Hub::Reader reader(hub);
+    const Time now(Duration(1));
+    const auto commands = manager.step(now, observations);
+    observer.stepped({now, {}, observations, commands, manager.events()});
+  }
+  Json latest(Kind kind) const { return Json::parse(*hub.latest(kind)); }
+
   const RuleSet rules = *check(Source("test", kObservedRules)).rules;
-  Manager manager(rules, std::make_unique<BayesPlanner>(), {});
+  Manager manager{rules, std::make_unique<BayesPlanner>(), {}};
   Hub hub;
   Metrics metrics;
-  HubObserver observer(hub, metrics);
-  observer.begins(
-      manager,
-      [] {
-        return live::Observer::Remarks{{"/camera", "kill 12 or 13"}};
-      },
-      Time());
-  const Hub::Reader reader(hub);
-  std::vector<Observation> nothing;
-  const Time now(Duration(1));
-  const auto commands = manager.step(now, nothing);
-  observer.stepped({now, {}, nothing, commands, manager.events()});
-  const Json state = Json::parse(*hub.latest(Kind::kState));
+  HubObserver observer{hub, metrics, [] { return 1795538700.1234; }};
+};
+
+TEST(HubObserver, TellsWhatTheClockOnTheWallSays) {
+  ToldOnce told({});
+  EXPECT_EQ(told.latest(Kind::kState)["clock"], 1795538700.123);
+  told.observer.announced(Time(), {"trouble", "trouble", EventSeverity::kWarning, Tone::kWarning},
+                          "a test");
+  const Hub::Batch batch = told.hub.wait(0, std::chrono::milliseconds(0));
+  const Json event = Json::parse(*batch.messages.back().data);
+  EXPECT_EQ(event["text"], "a test");
+  EXPECT_EQ(event["clock"], 1795538700.123);
+}
+
+TEST(HubObserver, SaysWhetherTheRobotIsHeard) {
+  EXPECT_EQ(ToldOnce({}).latest(Kind::kControl)["hears"], true);
+  const ToldOnce deaf({{Time(), HearingLost{"a test"}}});
+  EXPECT_EQ(deaf.latest(Kind::kControl)["hears"], false);
+}
+
+TEST(HubObserver, TellsAProcessThatIsStoppedFromOneThatIsGone) {
+  const ToldOnce told({{Time(), NodeAppeared{"/camera"}},
+                       {Time(), ProcessSeen{ComponentId(0), ProcessState::kStopped, 12, ""}},
+                       {Time(), NodeAppeared{"/lidar"}},
+                       {Time(), ProcessSeen{ComponentId(1), ProcessState::kGone, 13, ""}}});
+  const Json state = told.latest(Kind::kState);
+  EXPECT_EQ(state["components"][0]["process"], "stopped");
+  EXPECT_EQ(state["components"][1]["process"], "gone");
+}
+
+TEST(HubObserver, ShowsWhoElseHasTheNameOfANodeWithItsComponent) {
+  const ToldOnce told({}, {{"/camera", "kill 12 or 13"}});
+  const Json state = told.latest(Kind::kState);
   EXPECT_EQ(state["components"][0]["remark"], "kill 12 or 13");
   EXPECT_FALSE(state["components"][1].contains("remark"));
 }

@@ -74,6 +74,13 @@ Json rule_to_json(RuleId id, const Knowledge& knowledge, Time start) {
   return json;
 }
 
+// What became of the process. One that is stopped is not gone: it goes on if somebody lets it.
+std::string_view word_of_process(const ComponentState& state) {
+  if (state.process == ProcessState::kStopped) return "stopped";
+  if (state.hangs()) return "hung";
+  return *state.alive ? "running" : "gone";
+}
+
 Json components_to_json(const Knowledge& knowledge) {
   const std::vector<std::size_t> health = health_of_components(knowledge);
   Json list = Json::array();
@@ -82,6 +89,7 @@ Json components_to_json(const Knowledge& knowledge) {
     const ComponentState& state = knowledge.components[id];
     Json json{{"health", kHealthWords[health[c]]}, {"present", knowledge.graph.is_present(id)}};
     json["alive"] = state.alive ? Json(*state.alive) : Json(nullptr);
+    if (state.alive) json["process"] = word_of_process(state);
     if (state.lifecycle != Lifecycle::kUnknown) json["lifecycle"] = to_string(state.lifecycle);
     if (!state.process_remark.empty()) json["remark"] = state.process_remark;
     if (const Attempt* attempt = knowledge.states.reservation(id))
@@ -176,6 +184,7 @@ Json control_to_json(const Manager& manager, Time start) {
   const RuleSet& rules = manager.knowledge().rules;
   Json json{{"paused", manager.governor().is_paused()},
             {"dry_run", manager.autonomy() == Autonomy::kAdvise},
+            {"hears", manager.hears()},
             {"silences", Json::array()},
             {"asked", Json::array()}};
   for (const Governor::ActiveSilence& silence : manager.governor().silences()) {

@@ -108,6 +108,16 @@ TEST_F(WebServer, ServesTheAppUnderAStrictPolicy) {
   EXPECT_FALSE(page->has_header("Access-Control-Allow-Origin"));
 }
 
+TEST_F(WebServer, ServesTheAppAlsoToWhoeverCannotUnpackIt) {
+  if (app().empty()) GTEST_SKIP() << "built without npm";
+  const auto page = client().Get("/", {{"Accept-Encoding", "identity"}});
+  ASSERT_TRUE(page);
+  EXPECT_EQ(page->status, 200);
+  EXPECT_FALSE(page->has_header("Content-Encoding"));
+  EXPECT_EQ(page->body, client().Get("/", {{"Accept-Encoding", "gzip"}})->body);
+  EXPECT_THAT(page->body, HasSubstr("</html>"));
+}
+
 TEST_F(WebServer, NeedsTheTokenForWhatChangesAnything) {
   EXPECT_EQ(post({}), 401);
   EXPECT_EQ(post({{"Authorization", "Bearer 0123456789abcdee"}}), 401);

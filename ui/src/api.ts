@@ -58,22 +58,36 @@ export interface StreamMessage {
   data: string
 }
 
+// A server that lives says something every second.
+const kLongestSilence = 5000 // ms, until the connection is given up
+
 // Server-sent events (WHATWG HTML). Not by EventSource, which cannot send the token. Goes on after
-// an interruption where it left off, for ever.
+// an interruption where it left off, for ever. `onSign` is told of whatever comes, also if it is no message.
 export async function follow(
   onMessage: (message: StreamMessage) => void,
+  onSign: () => void,
   onConnection: (isConnected: boolean) => void
 ): Promise<never> {
   let lastId = ''
   for (;;) {
+    // A network that is gone says nothing of it.
+    const silence = new AbortController()
+    let timer = 0
+    const listen = () => {
+      clearTimeout(timer)
+      timer = window.setTimeout(() => silence.abort(), kLongestSilence)
+    }
     try {
       const more: Record<string, string> = lastId ? { 'Last-Event-ID': lastId } : {}
-      const response = await fetch('/api/stream', { headers: headers(more) })
+      listen()
+      const response = await fetch('/api/stream', { headers: headers(more), signal: silence.signal })
       if (!response.ok || !response.body) throw new Error(String(response.status))
       onConnection(true)
       const reader = response.body.pipeThrough(new TextDecoderStream()).getReader()
       let pending = ''
       for (let part = await reader.read(); !part.done; part = await reader.read()) {
+        listen()
+        onSign()
         const blocks = (pending + part.value).split('\n\n')
         pending = blocks.pop() ?? ''
         for (const block of blocks) {
@@ -91,6 +105,7 @@ export async function follow(
     } catch {
       // The next attempt says the same again.
     }
+    clearTimeout(timer)
     onConnection(false)
     await new Promise((resolve) => setTimeout(resolve, 1000))
   }

@@ -1,14 +1,16 @@
 import './app.css'
-import { signal } from '@preact/signals'
+import { effect, signal } from '@preact/signals'
 import { render } from 'preact'
 import { hasToken } from './api'
 import { BeliefsPage } from './beliefs_page'
-import { notice } from './faults'
+import { Notices } from './notices'
 import { RobotPage } from './robot_page'
 import { RulesPage } from './rules_page'
 import { SimulatorPage } from './simulator_page'
+import { isOld } from './freshness'
+import { followInTitle, StatusBar } from './status_bar'
+import { calls, robot, start } from './store'
 import { StudiesPage } from './studies_page'
-import { calls, can, isConnected, robot, start } from './store'
 
 const kPages = [
   { name: 'robot', title: 'Robot', needs: 'get /api/stream', Page: RobotPage },
@@ -25,9 +27,9 @@ const trouble = signal('')
 function App() {
   const offered = kPages.filter((p) => calls.value.has(p.needs))
   const current = offered.find((p) => p.name === page.value) ?? offered[0]
-  const isLiveServer = can('get', '/api/stream')
   return (
     <>
+      <StatusBar />
       <header>
         <h1>
           culprit <small>{robot.value?.robot}</small>
@@ -39,17 +41,9 @@ function App() {
             </a>
           ))}
         </nav>
-        <p class="status" role="status">
-          {notice.value && <span>{notice.value}</span>}
-          {!hasToken && calls.value.size > 0 && (
-            <span>Only to look at: open the address that culprit printed, with its token, to control it.</span>
-          )}
-          {isLiveServer && (
-            <span class={isConnected.value ? 'well' : 'sick'}>
-              {isConnected.value ? '● connected' : '○ connection lost; trying again'}
-            </span>
-          )}
-        </p>
+        {!hasToken && calls.value.size > 0 && (
+          <p class="view-only">Only to look at: open the address that culprit printed, with its token, to control it.</p>
+        )}
       </header>
       {current ? (
         <current.Page />
@@ -58,9 +52,12 @@ function App() {
           <p>{trouble.value || 'Asking culprit …'}</p>
         </main>
       )}
+      <Notices />
     </>
   )
 }
 
 render(<App />, document.getElementById('app')!)
+followInTitle()
+effect(() => void document.body.classList.toggle('is-old', isOld.value))
 start().catch((error: Error) => (trouble.value = error.message))

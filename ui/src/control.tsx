@@ -2,8 +2,9 @@
 // (POST /api/orders); what becomes of it is an event.
 import { useState } from 'preact/hooks'
 import { hasToken } from './api'
+import { lasting, when } from './clock'
 import { Author, order } from './order'
-import { can, control, now, robot } from './store'
+import { can, clockAt, control, now, robot } from './store'
 
 // Strategies that wait for a person's word: in front of all else.
 export function Approvals() {
@@ -106,7 +107,7 @@ function Silences() {
             <li class="bar">
               <span>
                 <b>{name}</b> is left alone
-                {s.until !== null && ` for ${Math.max(0, s.until - now.value).toFixed(0)} s more`}
+                {s.until !== null && ` until ${when(clockAt(s.until))}, ${lasting(s.until - now.value)} more`}
                 {s.reason && ` (${s.author}: ${s.reason})`}
               </span>
               <button
@@ -162,32 +163,20 @@ function ByHand() {
 
 export function Control() {
   if (!can('post', '/api/orders') || !control.value) return null
-  const { paused, dry_run } = control.value
   return (
     <section class="control" aria-label="Control">
-      <div class="bar">
-        <button
-          type="button"
-          class={paused ? 'primary' : 'danger'}
+      <label>
+        <input
+          type="checkbox"
           disabled={!hasToken}
-          onClick={() => void order(paused ? 'Resuming' : 'Pausing', { order: paused ? 'resume' : 'pause' })}
-        >
-          {paused ? '▶ Resume' : 'Ⅱ Pause'}
-        </button>
-        <label>
-          <input
-            type="checkbox"
-            disabled={!hasToken}
-            checked={dry_run}
-            onChange={(e) => {
-              const on = e.currentTarget.checked
-              void order(on ? 'Dry run' : 'Acting again', { order: 'dry_run', on })
-            }}
-          />{' '}
-          dry run: only say what would be done
-        </label>
-      </div>
-      {paused && <p class="sick">Ⅱ Paused: nothing is changed on the robot until you resume.</p>}
+          checked={control.value.dry_run}
+          onChange={(e) => {
+            const on = e.currentTarget.checked
+            void order(on ? 'Dry run' : 'Acting again', { order: 'dry_run', on })
+          }}
+        />{' '}
+        dry run: only say what would be done
+      </label>
       <details>
         <summary>More control</summary>
         <Author />

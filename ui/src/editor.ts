@@ -1,6 +1,6 @@
 // The text editor of rule files: CodeMirror, with what culprit's language server knows.
 import { autocompletion, type CompletionContext, type CompletionResult } from '@codemirror/autocomplete'
-import { defaultKeymap, history, historyKeymap } from '@codemirror/commands'
+import { defaultKeymap, history, historyKeymap, redo, undo } from '@codemirror/commands'
 import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language'
 import { type Diagnostic, lintGutter, linter } from '@codemirror/lint'
 import { EditorState, type Text } from '@codemirror/state'
@@ -118,6 +118,8 @@ export interface Found {
 export interface Editor {
   view: EditorView
   setText(text: string): void
+  undo(): void
+  redo(): void
   goTo(at: number): void
 }
 
@@ -201,6 +203,8 @@ export function makeEditor(
       if (next === view.state.doc.toString()) return
       view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: next } })
     },
+    undo: () => void undo(view),
+    redo: () => void redo(view),
     goTo(at) {
       view.dispatch({ selection: { anchor: at }, scrollIntoView: true })
       view.focus()

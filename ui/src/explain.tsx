@@ -1,16 +1,12 @@
-// Why: for each failure who is suspected, what was weighed and why not the others, and what happens
-// next.
+// Why: for each cause who is held responsible, what it makes fail, what was weighed and why not the others, and what
+// happens next.
+import { lasting, lastingSoFar, when } from './clock'
+import { nowByTheClock } from './freshness'
 import type { Failure, View } from './history'
-import { culprits, isLive, live, now, robot, rulesByComponent, selected, situation, state, stateOfComponent } from './store'
+import { conditionOf, headlineOf, healthOf, type Incident, incidentsOf, type Known, listed } from './incidents'
+import { doingOf, kSigns, type Tone } from './status'
+import { clockAt, culprits, incidents, isLive, known, live, now, robot, rulesByComponent, selected, situation, state, stateOfComponent } from './store'
 import type { Candidate, ComponentState, Criticality } from './types'
-
-export const kSigns: Record<string, string> = {
-  ERROR: '◆',
-  WARNING: '▲',
-  NON_CRITICAL: '○',
-  EXHAUSTED: '✖',
-  OK: '✓',
-}
 
 export const kWords: Record<Criticality, string> = {
   ERROR: 'error',
@@ -18,39 +14,10 @@ export const kWords: Record<Criticality, string> = {
   NON_CRITICAL: 'non-critical',
 }
 
-const listed = (words: string[]) =>
-  words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} and ${words[words.length - 1]}`
-
-function Headline({ view }: { view: View }) {
-  const failures = view.situation.value.failures
-  if (failures.length === 0)
-    return (
-      <p class="headline well">
-        <b>✓ All is well.</b> No rule sees a failure.
-      </p>
-    )
-  const blamed = [...view.culprits.value.keys()]
-  const exhausted = failures.filter((f) => f.phase === 'exhausted')
-  return (
-    <p class="headline sick">
-      {blamed.length > 0 ? (
-        <b>
-          ★ {listed(blamed)} {blamed.length > 1 ? 'are' : 'is'} held responsible
-        </b>
-      ) : (
-        <b>
-          {failures.length} {failures.length > 1 ? 'failures' : 'failure'}, nobody is being repaired
-        </b>
-      )}
-      {exhausted.length > 0 && (
-        <>
-          {' '}
-          Nothing helped against {listed(exhausted.map((f) => f.rule))}: a person must look.
-        </>
-      )}
-    </p>
-  )
-}
+// Of a run that is over nothing is known but what happened.
+const knownIn = (view: View): Known => (view === live ? known : (c) => ({ isGone: view.situation.value.gone.has(c) }))
+const incidentsIn = (view: View) =>
+  view === live ? incidents.value : incidentsOf(view.situation.value.failures, () => [], knownIn(view))
 
 function Suspects({ failure }: { failure: Failure }) {
   const suspects = failure.decision?.suspects ?? []
@@ -104,7 +71,7 @@ function Candidates({ list, chosen }: { list: Candidate[]; chosen?: string | nul
 }
 
 // What happens next, and when: of the present only, for the past knows what happened.
-function Next({ failure }: { failure: Failure }) {
+function Next({ failure, incident }: { failure: Failure; incident: Incident }) {
   if (!isLive.value) return null
   const place = robot.value?.rules.findIndex((r) => r.name === failure.rule) ?? -1
   const rule = state.value?.rules[place]
@@ -113,7 +80,13 @@ function Next({ failure }: { failure: Failure }) {
   const left = (at: number | null | undefined) => (at ? Math.max(0, at - t).toFixed(1) : null)
   if (rule.attempt) {
     const { stage, strategy, deadline } = rule.attempt
-    if (stage === 'adapting') return <p class="next">Now: {strategy} is being carried out.</p>
+    const { chosen } = rule.attempt
+    if (stage === 'adapting')
+      return (
+        <p class="next">
+          Now: {strategy} is being carried out, for {lasting(t - chosen)}.
+        </p>
+      )
     if (stage === 'undoing') return <p class="next">Now: what {strategy} changed is being undone.</p>
     return (
       <p class="next">
@@ -129,36 +102,89 @@ function Next({ failure }: { failure: Failure }) {
       </p>
     )
   if (rule.retry_at) return <p class="next">Next: tried anew in {left(rule.retry_at)} s.</p>
-  if (failure.phase === 'exhausted') return <p class="next">Nothing more will be tried.</p>
-  return <p class="next">Now: it waits.</p>
+  if (failure.phase === 'exhausted') return <p class="next">Nothing more will be tried: a person must look.</p>
+  return <p class="next">Now: {doingOf(incident)}.</p>
 }
 
-function FailureCard({ failure, view }: { failure: Failure; view: View }) {
+// By the clock; of a run that is over, by its own time.
+function Since({ failure, view }: { failure: Failure; view: View }) {
+  if (view !== live)
+    return <>at {failure.since.toFixed(1)} s, for {lasting((view.moment.value ?? view.newest.value) - failure.since)}</>
+  const since = failure.sinceClock ?? clockAt(failure.since)
+  const until = isLive.value ? nowByTheClock() : clockAt(view.moment.value!)
+  return <>since {when(since)}, for {lastingSoFar(until - since)}</>
+}
+
+function Why({ failure, isOpen }: { failure: Failure; isOpen: boolean }) {
   const decision = failure.decision
-  const since = (view.moment.value ?? view.newest.value) - failure.since
+  if (!decision?.suspects?.length && !decision?.candidates?.length) return null
   return (
-    <article class={`failure ${failure.criticality}`}>
-      <h3>
-        <span aria-hidden="true">{kSigns[failure.phase === 'exhausted' ? 'EXHAUSTED' : failure.criticality]}</span>{' '}
-        {failure.rule}{' '}
-        <small>
-          {kWords[failure.criticality]}, for {Math.max(0, since).toFixed(1)} s
-        </small>
-      </h3>
-      {decision && <p>{decision.text}.</p>}
-      {view === live && <Next failure={failure} />}
+    <details class="why" open={isOpen}>
+      <summary>Who may be responsible, what could be done</summary>
       <Suspects failure={failure} />
       <Candidates
-        list={decision?.candidates ?? []}
-        chosen={decision?.type === 'strategy_chosen' ? decision.strategy : null}
+        list={decision.candidates ?? []}
+        chosen={decision.type === 'strategy_chosen' ? decision.strategy : null}
       />
+    </details>
+  )
+}
+
+// Under its cause: what it waits for is told, the tables are those of the cause.
+function Consequence({ failure, view }: { failure: Failure; view: View }) {
+  return (
+    <li class={healthOf(failure)}>
+      <p>
+        <span aria-hidden="true">{kSigns[healthOf(failure) as Tone]}</span> <b>{failure.rule}</b>{' '}
+        <small class="muted">
+          <Since {...{ failure, view }} />
+        </small>
+      </p>
+      {failure.decision && <p class="muted">{failure.decision.text}.</p>}
+      <Why failure={failure} isOpen={false} />
+    </li>
+  )
+}
+
+const isWide = matchMedia('(min-width: 901px)')
+
+function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
+  const { root, consequences, health } = incident
+  return (
+    <article class={`incident ${health}`}>
+      <h2>
+        <span class={incident.isCertain ? 'culprit' : health} aria-hidden="true">
+          {incident.isCertain ? '★' : kSigns[health as Tone]}
+        </span>{' '}
+        {headlineOf(incident, knownIn(view))}
+      </h2>
+      <p class="muted">
+        {root.rule}: {root.phase === 'exhausted' ? 'given up' : kWords[root.criticality]}{' '}
+        <Since failure={root} view={view} />
+      </p>
+      {root.decision && <p>{root.decision.text}.</p>}
+      {view === live && <Next failure={root} incident={incident} />}
+      {consequences.length > 0 && (
+        <details class="consequences">
+          <summary>
+            → {consequences.length === 1 ? 'one consequence' : `${consequences.length} consequences`}:{' '}
+            {listed(consequences.map((f) => f.rule))}
+          </summary>
+          <ul>
+            {consequences.map((failure) => (
+              <Consequence key={failure.rule} {...{ failure, view }} />
+            ))}
+          </ul>
+        </details>
+      )}
+      <Why failure={root} isOpen={isWide.matches} />
     </article>
   )
 }
 
 function describeComponent(known: ComponentState | undefined): string {
   if (!known) return 'unknown'
-  const parts = [known.alive === null ? 'not seen yet' : known.alive ? 'alive' : 'not alive']
+  const parts = [conditionOf({ isGone: false, state: known }) || (known.alive === null ? 'not seen yet' : 'alive')]
   if (known.lifecycle) parts.push(known.lifecycle)
   if (known.adapting) parts.push(`being adapted (${known.adapting})`)
   if (known.remark) parts.push(known.remark)
@@ -205,14 +231,16 @@ export function Components() {
 export function Explanation({ view }: { view: View }) {
   const wanted = view === live ? selected.value : null
   const rules = robot.value?.rules ?? []
-  const failures = view.situation.value.failures.filter(
-    (f) => !wanted || rules.find((r) => r.name === f.rule)?.components.includes(wanted)
-  )
+  const isAbout = (f: Failure) => !wanted || !!rules.find((r) => r.name === f.rule)?.components.includes(wanted)
+  const all = incidentsIn(view)
+  const shown = all.filter((i) => [i.root, ...i.consequences].some(isAbout) || i.components.includes(wanted ?? ''))
   return (
     <section class="explanation" aria-label="Explanation">
-      <div aria-live="polite">
-        <Headline view={view} />
-      </div>
+      {all.length === 0 && (
+        <p class="headline well">
+          <b>✓ All is well.</b> No rule sees a failure{view.isNewest.value ? '' : ' at this moment'}.
+        </p>
+      )}
       {wanted && (
         <p class="muted">
           Only what concerns {wanted}.{' '}
@@ -221,8 +249,8 @@ export function Explanation({ view }: { view: View }) {
           </button>
         </p>
       )}
-      {failures.map((failure) => (
-        <FailureCard key={failure.rule} failure={failure} view={view} />
+      {shown.map((incident) => (
+        <IncidentCard key={incident.root.rule} {...{ incident, view }} />
       ))}
     </section>
   )

@@ -1,27 +1,12 @@
 // Breaking a demonstration on purpose.
-import { signal } from '@preact/signals'
 import { useEffect, useState } from 'preact/hooks'
-import { call, hasToken, Refusal } from './api'
+import { call, hasToken } from './api'
+import { act } from './notices'
 import { can } from './store'
 
 interface Fault {
   name: string
   component: string
-}
-
-export const notice = signal('') // what the last control came to
-
-// Does it, and says what came of it.
-export async function act(what: string, action: () => Promise<unknown>): Promise<boolean> {
-  notice.value = `${what} …`
-  try {
-    await action()
-    notice.value = `${what}: done`
-    return true
-  } catch (error) {
-    notice.value = `${what}: ${(error as Refusal).message}`
-    return false
-  }
 }
 
 export function Faults() {

@@ -3,8 +3,10 @@
 import cytoscape from 'cytoscape'
 import { computed, effect, signal } from '@preact/signals'
 import { useEffect, useRef } from 'preact/hooks'
-import { kLayer, layered, type Point } from './layout'
-import { culprits, graph, health, isLive, robot, selected, situation, state, stateOfComponent, stateOfTopic } from './store'
+import { kLayer, kRow, layered, placed, type Point } from './layout'
+import { lasting } from './clock'
+import { conditionOf } from './incidents'
+import { culprits, graph, health, isLive, known, robot, selected, situation, state, stateOfComponent, stateOfTopic } from './store'
 import { colour, isDark } from './theme'
 import type { Health } from './types'
 
@@ -13,6 +15,8 @@ export const search = signal('')
 
 const kInfrastructure = /^\/(rosout|parameter_events|tf|tf_static|clock|diagnostics)$/
 const kMostLabels = 80
+const kLeastText = 7 // pixels: what is smaller is no text
+const kLeastZoom = 0.62 // at which the names of nodes can be read
 
 const shortName = (name: string) => name.slice(name.lastIndexOf('/') + 1)
 const labelOf = (node: { node: string; component?: string }) => node.component ?? shortName(node.node)
@@ -111,9 +115,9 @@ function lineBelow(component: string | undefined): string {
   if (!component) return ''
   const live = isLive.value ? stateOfComponent(component) : undefined
   const decided = culprits.value.get(component)
-  if (decided?.phase === 'attempting') return `\n${decided.decision!.strategy}`
-  if (situation.value.gone.has(component)) return '\ngone'
-  if (live?.alive === false) return '\nnot alive'
+  if (decided?.phase === 'attempting') return `\n${decided.blame!.strategy}`
+  const condition = conditionOf(known(component))
+  if (condition) return `\n${condition}`
   if (live?.lifecycle && live.lifecycle !== 'active') return `\n${live.lifecycle}`
   return ''
 }
@@ -121,8 +125,8 @@ function lineBelow(component: string | undefined): string {
 function rateOf(channel: string): string {
   const topic = isLive.value ? stateOfTopic(channel) : undefined
   if (!topic || topic.rate === null) return ''
-  if (isSilent(channel)) return ` silent ${topic.age!.toFixed(1)} s`
-  return ` ${topic.rate.toFixed(1)} Hz`
+  if (isSilent(channel)) return `silent ${lasting(topic.age!)}`
+  return `${topic.rate.toFixed(1)} Hz`
 }
 
 function isSilent(channel: string): boolean {
@@ -135,7 +139,9 @@ function edgeLabel(channels: string[]): string {
   const watched = channels.filter((c) => rateOf(c))
   const first = watched[0] ?? channels[0]
   const more = channels.length > 1 ? ` +${channels.length - 1}` : ''
-  return (first ? shortName(first) : 'declared') + rateOf(first) + more
+  const name = (first ? shortName(first) : 'declared') + more
+  const rate = first ? rateOf(first) : ''
+  return rate ? `${name}\n${rate}` : name
 }
 
 function stylesheet(): cytoscape.StylesheetStyle[] {
@@ -158,8 +164,8 @@ function stylesheet(): cytoscape.StylesheetStyle[] {
         'font-size': 15,
         'font-family': 'system-ui, sans-serif',
         color: colour('text'),
-        width: 176,
-        height: 58,
+        width: kNode.width,
+        height: kNode.height,
         'border-width': 2,
       },
     },
@@ -185,12 +191,15 @@ function stylesheet(): cytoscape.StylesheetStyle[] {
       selector: 'edge',
       style: {
         label: 'data(label)',
-        'font-size': 12,
+        'font-size': 13,
+        'text-wrap': 'wrap',
+        'min-zoomed-font-size': kLeastText,
         'font-family': 'system-ui, sans-serif',
-        color: colour('muted'),
+        color: colour('text'),
         'text-background-color': colour('surface'),
-        'text-background-opacity': 0.9,
-        'text-background-padding': '2px',
+        'text-background-opacity': 1,
+        'text-background-padding': '3px',
+        'text-background-shape': 'roundrectangle',
         'curve-style': 'bezier',
         'target-arrow-shape': 'triangle',
         'line-color': colour('line'),
@@ -200,7 +209,7 @@ function stylesheet(): cytoscape.StylesheetStyle[] {
     },
     {
       selector: 'edge[?isLong]',
-      style: { 'curve-style': 'unbundled-bezier', 'control-point-distances': [90], 'control-point-weights': [0.5] },
+      style: { 'curve-style': 'unbundled-bezier', 'control-point-distances': 'data(bend)' as never, 'control-point-weights': [0.5] },
     },
     {
       selector: 'edge[?isSilent]',
@@ -218,13 +227,59 @@ function stylesheet(): cytoscape.StylesheetStyle[] {
   ]
 }
 
+const kNode = { width: 176, height: 58 }
+const kGap = 8 // between an edge and a node that it passes
+const kBends = [0, 90, -90, 150, -150, 220, -220, 300, -300]
+const kMostPassed = 200 // nodes: beyond, nobody follows a single edge
+
+// How far an edge has to bend so that it leads through no node: the control point of a curve of the second degree,
+// across the straight line, as Cytoscape counts it.
+function clearBend(from: Point, to: Point, others: Point[]): number {
+  if (others.length > kMostPassed) return kBends[1]
+  const [vx, vy] = [to.x - from.x, to.y - from.y]
+  const length = Math.hypot(vx, vy) || 1
+  const isClear = (bend: number) => {
+    const control = { x: (from.x + to.x) / 2 - (vy / length) * bend, y: (from.y + to.y) / 2 + (vx / length) * bend }
+    for (let t = 0.05; t < 1; t += 0.05) {
+      const at = (a: number, c: number, b: number) => (1 - t) ** 2 * a + 2 * t * (1 - t) * c + t ** 2 * b
+      const [x, y] = [at(from.x, control.x, to.x), at(from.y, control.y, to.y)]
+      const isHit = (p: Point) => Math.abs(p.x - x) < kNode.width / 2 + kGap && Math.abs(p.y - y) < kNode.height / 2 + kGap
+      if (others.some(isHit)) return false
+    }
+    return true
+  }
+  return kBends.find(isClear) ?? kBends[1]
+}
+
+const kDiscovery = 10_000 // ms
+const isUpright = matchMedia('(max-width: 700px)')
+const kUprightRow = 196
+const kUprightLayer = 130
+
+// Where the nodes of this robot stand, also after a reload.
+const placesKey = () => `culprit-places ${robot.peek()?.robot ?? ''}`
+function readPlaces(): Map<string, Point> {
+  try {
+    return new Map(JSON.parse(localStorage.getItem(placesKey()) ?? '[]'))
+  } catch {
+    return new Map()
+  }
+}
+function writePlaces(places: Map<string, Point>): void {
+  localStorage.setItem(placesKey(), JSON.stringify([...places]))
+}
+
 // Brings the drawing to what is to be shown, touching only what differs.
 class Drawing {
   private readonly cy: cytoscape.Core
   private points = new Map<string, Point>()
+  private held: Map<string, Point> // for ever
+  private bends = new Map<string, number>() // of edges that would lead through nodes
+  private readonly begun = Date.now()
   private structure = ''
 
   constructor(container: HTMLElement) {
+    this.held = readPlaces()
     this.cy = cytoscape({
       container,
       style: stylesheet(),
@@ -251,6 +306,7 @@ class Drawing {
           isSilent: edge.channels.some(isSilent),
           isCascade: cascade.value.has(id),
           isLong: this.isLong(edge),
+          bend: this.bends.get(id) ?? 0,
         })
       }
     })
@@ -288,15 +344,12 @@ class Drawing {
 
   private rebuild(): void {
     const { nodes, edges } = shown.value
-    this.points = layered(
-      nodes.map((n) => n.node),
-      [...edges.values()].map((e) => [e.from, e.to]),
-      this.points
-    )
+    this.place()
     const wanted = new Set([...nodes.map((n) => n.node), ...edges.keys()])
     this.cy.elements().filter((e) => !wanted.has(e.id())).remove()
+    this.bend()
     for (const node of nodes) {
-      const position = this.points.get(node.node)!
+      const position = this.onScreen(this.points.get(node.node)!)
       const known = this.cy.getElementById(node.node)
       if (known.nonempty()) known.position(position)
       else this.cy.add({ data: { id: node.node }, position: { ...position } })
@@ -307,11 +360,77 @@ class Drawing {
     }
   }
 
-  fit(): void {
+  // While a robot is discovered, what comes late would stand at the edge; then nothing moves any more.
+  private place(): void {
+    const { nodes, edges } = shown.value
+    const names = nodes.map((n) => n.node)
+    const links = [...edges.values()].map((e): [string, string] => [e.from, e.to])
+    const isDiscovered = Date.now() - this.begun > kDiscovery
+    if (this.held.size === 0 && !isDiscovered) {
+      this.points = layered(names, links, this.points)
+      return
+    }
+    if (this.held.size === 0) this.held = this.points
+    this.held = this.points = placed(names, links, this.held)
+    writePlaces(this.held)
+  }
+
+  private bend(): void {
+    const places = new Map([...this.points].map(([node, point]) => [node, this.onScreen(point)]))
+    this.bends.clear()
+    for (const [id, edge] of shown.value.edges) {
+      const [from, to] = [places.get(edge.from), places.get(edge.to)]
+      if (!from || !to || !this.isLong(edge)) continue // what is new is drawn soon
+      const others = shown.value.nodes.flatMap(({ node }) => places.get(node) ?? [])
+      this.bends.set(id, clearBend(from, to, others.filter((p) => p !== from && p !== to)))
+    }
+  }
+
+  // The data flow down a screen that is higher than wide.
+  private onScreen({ x, y }: Point): Point {
+    return isUpright.matches ? { x: (y / kRow) * kUprightRow, y: (x / kLayer) * kUprightLayer } : { x, y }
+  }
+
+  holdPlaces(): void {
+    if (this.held.size === 0 && this.points.size > 0) writePlaces((this.held = this.points))
+  }
+  layOutAnew(): void {
+    this.held.clear()
+    this.points.clear()
+    this.structure = ''
+    const { nodes, edges } = shown.value
+    const managed = nodes.filter((n) => n.component).map((n) => n.node)
+    const links = [...edges.values()].map((e): [string, string] => [e.from, e.to])
+    const own = links.filter(([from, to]) => managed.includes(from) && managed.includes(to))
+    this.held = layered(managed.length > 0 ? managed : nodes.map((n) => n.node), own, new Map())
+    this.draw()
+  }
+
+  zoom(factor: number): void {
+    const { width, height } = this.size()
+    this.cy.zoom({ level: this.cy.zoom() * factor, renderedPosition: { x: width / 2, y: height / 2 } })
+  }
+  private size() {
+    return { width: this.cy.width(), height: this.cy.height() }
+  }
+
+  // All of it if its names can be read then; else a part of it, with who is at fault in the middle.
+  fit(isWhole = false): void {
     this.cy.resize()
     this.cy.fit(undefined, 24)
     if (this.cy.zoom() > 1.3) this.cy.zoom(1.3)
-    this.cy.center()
+    if (isWhole || this.cy.zoom() >= kLeastZoom) return void this.cy.center()
+    this.cy.zoom(kLeastZoom)
+    const guilty = this.cy.nodes('[?isCulprit]')
+    const managed = this.cy.nodes('[?isManaged]')
+    this.cy.center(guilty.nonempty() ? guilty : managed.nonempty() ? managed : undefined)
+  }
+  turn(): void {
+    this.bend()
+    this.cy.batch(() => {
+      for (const [node, point] of this.points) this.cy.getElementById(node).position(this.onScreen(point))
+    })
+    this.fit()
   }
   restyle(): void {
     this.cy.style(stylesheet())
@@ -330,8 +449,12 @@ const readAll = () =>
 
 export function GraphView() {
   const place = useRef<HTMLDivElement>(null)
+  const held = useRef<Drawing | null>(null)
   useEffect(() => {
-    const drawing = new Drawing(place.current!)
+    const drawing = (held.current = new Drawing(place.current!))
+    const holding = setTimeout(() => drawing.holdPlaces(), kDiscovery)
+    const turn = () => drawing.turn()
+    isUpright.addEventListener('change', turn)
     let timer = 0
     const stop = effect(() => {
       readAll()
@@ -345,10 +468,12 @@ export function GraphView() {
       isDark.value // colours are those of the scheme
       drawing.restyle()
     })
-    const observer = new ResizeObserver(() => drawing.fit())
+    const observer = new ResizeObserver(() => drawing.turn())
     observer.observe(place.current!)
     return () => {
       observer.disconnect()
+      isUpright.removeEventListener('change', turn)
+      clearTimeout(holding)
       clearTimeout(timer)
       stopStyling()
       stop()
@@ -373,6 +498,20 @@ export function GraphView() {
           />
           all nodes and topics
         </label>
+        <span class="zoom" role="group" aria-label="Zoom of the graph">
+          <button type="button" aria-label="Smaller" title="Smaller" onClick={() => held.current?.zoom(1 / 1.3)}>
+            −
+          </button>
+          <button type="button" aria-label="Larger" title="Larger" onClick={() => held.current?.zoom(1.3)}>
+            +
+          </button>
+          <button type="button" aria-label="Show all of the graph" title="Show all of it" onClick={() => held.current?.fit(true)}>
+            ⤢
+          </button>
+          <button type="button" aria-label="Lay out anew" title="Lay out anew: nodes keep their places otherwise" onClick={() => held.current?.layOutAnew()}>
+            ⟲
+          </button>
+        </span>
         <span class="legend" aria-hidden="true">
           <b class="culprit">★ culprit</b> <b class="ERROR">◆ error</b>{' '}
           <b class="WARNING">▲ warning</b> <b class="NON_CRITICAL">○ non-critical</b>

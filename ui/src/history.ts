@@ -8,7 +8,10 @@ export interface Failure {
   criticality: Criticality
   phase: 'failing' | 'attempting' | 'exhausted'
   since: number
+  sinceClock?: number
   decision?: ManagerEvent // the last about it: a strategy was chosen, or it waits
+  blame?: ManagerEvent // the last that held somebody responsible, be something done about it or not
+  heldBack?: string // why what was chosen is not done
   tried: string[]
   retryAt?: number
 }
@@ -24,7 +27,7 @@ export const level = (health: Health) =>
   health === 'EXHAUSTED' ? 3 : kLevels.indexOf(health as Criticality)
 
 // Goes through what happened up to `t`.
-export function situationAt(history: ManagerEvent[], t: number): Situation {
+function situationAt(history: ManagerEvent[], t: number): Situation {
   const failures = new Map<string, Failure>()
   const gone = new Set<string>()
   for (const event of history) {
@@ -37,6 +40,7 @@ export function situationAt(history: ManagerEvent[], t: number): Situation {
           criticality: event.criticality!,
           phase: 'failing',
           since: event.t,
+          sinceClock: event.clock,
           tried: [],
         })
         break
@@ -46,12 +50,25 @@ export function situationAt(history: ManagerEvent[], t: number): Situation {
         break
       case 'strategy_chosen':
         if (!failure) break
-        failure.decision = event
+        failure.decision = failure.blame = event
+        failure.heldBack = undefined
         failure.phase = event.dry_run ? 'failing' : 'attempting'
         break
-      case 'failure_held_back':
       case 'approval_asked':
-        if (failure) failure.decision = event
+        if (!failure) break
+        failure.decision = failure.blame = event
+        failure.heldBack = undefined
+        break
+      case 'action_held_back': // paused, silenced, or beyond a limit: whose fault it is is known nevertheless
+        if (!failure) break
+        failure.heldBack = event.reason
+        if (failure.decision?.candidates === undefined) failure.decision = event
+        failure.blame = event
+        break
+      case 'failure_held_back':
+        if (!failure) break
+        failure.decision = event
+        if (event.candidates?.some((c) => c.excluded?.failure)) failure.blame = undefined // it is the fault of another
         break
       case 'strategy_abandoned':
         if (failure) failure.phase = 'failing'
@@ -81,10 +98,11 @@ export function situationAt(history: ManagerEvent[], t: number): Situation {
         break
     }
   }
-  const list = [...failures.values()]
-  list.sort((a, b) => level(b.criticality) - level(a.criticality) || a.since - b.since)
-  return { t, failures: list, gone }
+  return { t, failures: [...failures.values()], gone }
 }
+
+const sorted = (failures: Failure[]) =>
+  [...failures].sort((a, b) => level(b.criticality) - level(a.criticality) || a.since - b.since)
 
 export interface View {
   isOver: boolean // nothing more will happen
@@ -93,31 +111,47 @@ export interface View {
   moment: Signal<number | null> // in seconds, as all times of the events; null: the newest
   isNewest: ReadonlySignal<boolean>
   windowLength: Signal<number> // of the timeline, in seconds
+  windowEnd: Signal<number | null> // null: the newest
+  clockOf?: (t: number) => number // what the clock on the wall showed; nothing of a run that never was
   situation: ReadonlySignal<Situation>
-  // Who is being adapted, and for what: the components that are held responsible.
+  situationAt: (t: number | null) => Situation // of another moment; null: the newest
+  // The components that are held responsible, and for what.
   culprits: ReadonlySignal<Map<string, Failure>>
 }
 
 const kUsualWindow = 120
 
+interface Extent {
+  isOver: boolean
+  // Failures that are known of otherwise than by events, at the newest moment.
+  complete?: (failures: Failure[]) => Failure[]
+  clockOf?: (t: number) => number
+}
+
 export function viewOf(
   events: ReadonlySignal<ManagerEvent[]>,
   newest: ReadonlySignal<number>,
-  { isOver }: { isOver: boolean }
+  { isOver, complete, clockOf }: Extent
 ): View {
   const moment = signal<number | null>(null)
   const isNewest = computed(() => moment.value === null)
-  const situation = computed(() => situationAt(events.value, moment.value ?? Infinity))
+  const at = (t: number | null): Situation => {
+    const told = situationAt(events.value, t ?? Infinity)
+    const failures = t === null && complete ? [...told.failures, ...complete(told.failures)] : told.failures
+    return { ...told, failures: sorted(failures) }
+  }
+  const situation = computed(() => at(moment.value))
   const culprits = computed(() => {
     const blamed = new Map<string, Failure>()
     for (const failure of situation.value.failures) {
-      if (failure.decision?.type !== 'strategy_chosen' || failure.phase === 'exhausted') continue
-      for (const component of failure.decision.components ?? []) {
+      if (failure.phase === 'exhausted') continue
+      for (const component of failure.blame?.components ?? []) {
         if (!blamed.has(component)) blamed.set(component, failure)
       }
     }
     return blamed
   })
   const windowLength = signal(isOver ? Infinity : kUsualWindow)
-  return { isOver, events, newest, moment, isNewest, windowLength, situation, culprits }
+  const windowEnd = signal<number | null>(null)
+  return { isOver, events, newest, moment, isNewest, windowLength, windowEnd, clockOf, situation, situationAt: at, culprits }
 }

@@ -6,8 +6,8 @@ export interface Point {
   y: number
 }
 
-export const kLayer = 340
-const kRow = 92
+export const kLayer = 330
+export const kRow = 104
 const kSweeps = 4
 
 // `edges` lead from a producer to a consumer. `before` is the last layout.
@@ -36,6 +36,28 @@ export function layered(
       points.set(node, { x: x * kLayer, y: (row - (layer.length - 1) / 2) * kRow })
     })
   })
+  return points
+}
+
+// The same, but what has a place keeps it for ever: what is new stands beside what it is connected with.
+export function placed(nodes: string[], edges: [string, string][], held: Map<string, Point>): Map<string, Point> {
+  if (!nodes.some((n) => held.has(n))) return layered(nodes, edges, held)
+  const points = new Map([...held])
+  const isTaken = (x: number, y: number) =>
+    [...points.values()].some((p) => Math.abs(p.x - x) < kLayer / 2 && Math.abs(p.y - y) < kRow - 1)
+  for (const node of nodes) {
+    if (points.has(node)) continue
+    const wishes = edges.flatMap(([from, to]): Point[] => {
+      const other = points.get(from === node ? to : to === node ? from : '')
+      return other ? [{ x: other.x + (to === node ? kLayer : -kLayer), y: other.y }] : []
+    })
+    const wish = wishes[0] ?? { x: 0, y: 0 }
+    // Up and down from there in turn.
+    let step = 0
+    const y = () => wish.y + kRow * (step % 2 ? (step + 1) / 2 : -step / 2)
+    while (isTaken(wish.x, y())) ++step
+    points.set(node, { x: wish.x, y: y() })
+  }
   return points
 }
 

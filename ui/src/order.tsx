@@ -1,7 +1,7 @@
 // Orders to the manager, and who gives them.
 import { signal } from '@preact/signals'
 import { call } from './api'
-import { act, notice } from './faults'
+import { act, tell } from './notices'
 
 const kAuthorKey = 'culprit-author'
 const author = signal(localStorage.getItem(kAuthorKey) ?? '')
@@ -16,7 +16,7 @@ export async function order(what: string, body: Record<string, unknown>): Promis
     const all = { author: authorName(), ...body }
     text = (await call<{ text?: string }>('POST', '/api/orders', all)).text ?? text
   })
-  if (isDone) notice.value = `${what}: ${text}`
+  if (isDone) tell({ text: `${what}: ${text}` })
   return isDone
 }
 

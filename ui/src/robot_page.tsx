@@ -2,24 +2,29 @@ import { Approvals, Control } from './control'
 import { Components, Explanation } from './explain'
 import { Faults } from './faults'
 import { GraphView } from './graph_view'
+import { ModeNotes } from './status_bar'
 import { live } from './store'
 import { EventLog, Timeline } from './timeline'
 
+// The cause stands first also where there is but one column.
 export function RobotPage() {
   return (
     <main class="robot">
-      <Faults />
+      <div class="cause-first">
+        <ModeNotes />
+        <Approvals />
+        <Explanation view={live} />
+      </div>
       <div class="scene">
         <GraphView />
         <Timeline view={live} />
       </div>
-      <aside>
-        <Approvals />
-        <Explanation view={live} />
+      <div class="more">
         <Control />
+        <Faults />
         <Components />
         <EventLog view={live} />
-      </aside>
+      </div>
     </main>
   )
 }

@@ -64,32 +64,50 @@ export const kAdaptations: Record<string, string[]> = {
   call: ['service'],
 }
 
-export function newAdaptation(type: string, before?: Statement): Statement {
-  const statement: Statement = { statement: 'ADAPTATION', component: before?.component ?? 'component', type }
-  const kDefaults: Record<string, string> = {
-    parameter: 'parameter', value: 'true', topic: 'topic', mode: 'mode', service: 'service',
-  }
-  for (const member of kAdaptations[type]) statement[member] = before?.[member] ?? kDefaults[member]
-  statement.impact = before?.impact ?? 1
-  if (before?.above) statement.above = before.above
-  if (before?.comment) statement.comment = before.comment
+// In cycles, as the rules of the examples have it: a parameter is light, a new process is not.
+const kImpacts: Record<string, number> = { activate: 5, deactivate: 5, restart: 5, redeploy: 10, start: 10, stop: 10 }
+const kLightImpact = 2
+const kDefaults: Record<string, string> = {
+  parameter: 'parameter', value: 'true', topic: 'topic', mode: 'mode', service: 'service',
+}
+
+// Of another type than `before`, as far as it goes. An impact that nobody has changed follows the type.
+export function newAdaptation(type: string, before: Statement): Statement {
+  const statement: Statement = { statement: 'ADAPTATION', component: before.component, type }
+  for (const member of kAdaptations[type]) statement[member] = before[member] ?? kDefaults[member]
+  const usual = (of: unknown) => kImpacts[String(of)] ?? kLightImpact
+  const isUsual = before.impact === undefined || before.impact === usual(before.type)
+  statement.impact = isUsual ? usual(type) : before.impact
+  if (before.above) statement.above = before.above
+  if (before.comment) statement.comment = before.comment
   return statement
 }
 
-export function newStrategy(name: string): Statement[] {
+export function newStrategy(name: string, component: string): Statement[] {
   return [
     { statement: 'STRATEGY', name, probability: 50, confidence: 10 },
-    newAdaptation('restart'),
+    newAdaptation('restart', { statement: 'ADAPTATION', component }),
   ]
 }
 
-export function newRule(name: string): Statement[] {
+// That the component is dead is what every rule set asks first.
+export function newRule(document: RuleDocument, component: string): Statement[] {
+  const name = component.replace(/(^|_+)([a-z])/g, (_, __, letter: string) => letter.toUpperCase())
   return [
-    { statement: 'RULE', name, above: [''] },
-    { statement: 'POLICIES', criticality: 'WARNING' },
-    { statement: 'TRIGGER', expression: 'false' },
-    ...newStrategy('strategy'),
+    { statement: 'RULE', name: freeName(document, 'RULE', `${name}Dead`), above: [''] },
+    { statement: 'POLICIES', criticality: 'ERROR' },
+    { statement: 'TRIGGER', expression: `alive(${component}) == false` },
+    ...newStrategy(freeName(document, 'STRATEGY', 'strategy'), component),
   ]
+}
+
+// The component that the rule at or around `place` adapts first.
+export function componentOf(document: RuleDocument, place: number): string {
+  let begin = place
+  while (begin > 0 && document.statements[begin].statement !== 'RULE') --begin
+  const end = endOf(document, begin)
+  const adaptation = document.statements.slice(begin, end).find((s) => s.statement === 'ADAPTATION')
+  return String(adaptation?.component ?? 'my_node')
 }
 
 // A name that is not taken yet: "rule", "rule2".

@@ -1,9 +1,10 @@
 // Rules, strategies and adaptations as a form over the statements of the file.
 import type { ComponentChildren } from 'preact'
-import { useState } from 'preact/hooks'
+import { useEffect, useRef, useState } from 'preact/hooks'
 import {
   endOf,
   freeName,
+  componentOf,
   kAdaptations,
   newAdaptation,
   newRule,
@@ -14,11 +15,13 @@ import {
   withMember,
 } from './rule_document'
 import { names, ownName, parametersOf } from './live_names'
+import { setRefused, type Take, undo } from './rule_edits'
+import { tell } from './notices'
 import { graph, robot } from './store'
 
 interface Props {
   document: RuleDocument
-  change: (document: RuleDocument) => void
+  change: Take
 }
 
 const shown = (value: unknown): string =>
@@ -44,16 +47,21 @@ function Field(
 ) {
   const { document, change, place, member, kind = 'text' } = props
   const value = document.statements[place][member]
-  const [draft, setDraft] = useState<string | null>(null) // what is being typed
-  const take = (entered: string) => {
+  const [draft, setDraft] = useState<string | null>(null) // what is being typed, or was not taken
+  const [why, setWhy] = useState<string | null>(null) // it was not taken
+  const field = useRef({})
+  const settle = (reason: string | null) => {
+    setWhy(reason)
+    setRefused(field.current, reason !== null)
+    if (reason === null) setDraft(null)
+  }
+  useEffect(() => () => setRefused(field.current, false), [])
+  const take = async (entered: string) => {
     const trimmed = entered.trim()
-    if (trimmed === shown(value)) return
-    if (trimmed === '' && props.optional) return change(withMember(document, place, member, undefined))
-    const number = Number(trimmed)
-    let next: unknown = trimmed
-    if (kind === 'number' && trimmed !== '' && !Number.isNaN(number)) next = number
-    if (kind === 'hold') next = trimmed.split('/').map(Number)
-    change(withMember(document, place, member, next))
+    if (trimmed === shown(value)) return settle(null)
+    const next = valueOf(trimmed, kind, !!props.optional)
+    if (next instanceof Error) return settle(next.message)
+    settle(await change((d) => withMember(d, place, member, next)))
   }
   return (
     <label class={`field ${props.wide ? 'wide' : props.wider ? 'wider' : kind === 'text' ? '' : 'short'}`}>
@@ -64,14 +72,32 @@ function Field(
         value={draft ?? shown(value)}
         list={props.list}
         spellcheck={false}
+        aria-invalid={why !== null}
         onInput={(e) => setDraft(e.currentTarget.value)}
-        onChange={(e) => {
-          setDraft(null)
-          take(e.currentTarget.value)
+        onChange={(e) => void take(e.currentTarget.value)}
+        onKeyDown={(e) => {
+          if (e.key === 'Escape') settle(null)
         }}
       />
+      {why !== null && (
+        <small class="ERROR" role="alert">
+          ◆ Not taken: {why}
+          <button type="button" onClick={() => settle(null)}>
+            Back to “{shown(value)}”
+          </button>
+        </small>
+      )}
     </label>
   )
+}
+
+// What was entered as the member's value; undefined takes the member away.
+function valueOf(entered: string, kind: 'text' | 'number' | 'hold', isOptional: boolean): unknown {
+  if (entered === '') return isOptional ? undefined : new Error('something has to stand here')
+  if (kind === 'text') return entered
+  const numbers = (kind === 'hold' ? entered.split('/') : [entered]).map(Number)
+  if (numbers.some(Number.isNaN)) return new Error(kind === 'hold' ? 'two numbers such as 3/5' : 'a number has to stand here')
+  return kind === 'hold' ? numbers : numbers[0]
 }
 
 function Choice(props: { label: string; value: string; of: string[]; take: (v: string) => void }) {
@@ -88,9 +114,15 @@ function Choice(props: { label: string; value: string; of: string[]; take: (v: s
   )
 }
 
-function Remove({ what, onClick }: { what: string; onClick: () => void }) {
+// What is removed can be brought back, by the notice or by Undo.
+function Remove({ what, onClick }: { what: string; onClick: () => Promise<string | null> }) {
+  const remove = async () => {
+    const why = await onClick()
+    if (why === null) tell({ text: `Removed ${what}.`, undo })
+    else tell({ text: `Not removed: ${why}`, isTrouble: true })
+  }
   return (
-    <button type="button" class="remove" aria-label={`Remove ${what}`} title={`Remove ${what}`} onClick={onClick}>
+    <button type="button" class="remove" aria-label={`Remove ${what}`} title={`Remove ${what}`} onClick={() => void remove()}>
       ✕
     </button>
   )
@@ -109,11 +141,11 @@ function AdaptationForm({ document, change, place }: Props & { place: number }) 
         label="type"
         value={type}
         of={Object.keys(kAdaptations)}
-        take={(t) => change(replaced(document, place, 1, newAdaptation(t, statement)))}
+        take={(t) => change((d) => replaced(d, place, 1, newAdaptation(t, statement)))}
       />
       {(kAdaptations[type] ?? []).map(field)}
       <Field {...{ document, change, place }} member="impact" label="impact" kind="number" />
-      <Remove what="adaptation" onClick={() => change(replaced(document, place, 1))} />
+      <Remove what="adaptation" onClick={() => change((d) => replaced(d, place, 1))} />
     </div>
   )
 }
@@ -134,12 +166,12 @@ function StrategyForm({ document, change, place }: Props & { place: number }) {
         <Field {...props} member="probability" label="helps in %" kind="number" />
         <Field {...props} member="confidence" label="confidence" kind="number" />
         <Field {...props} member="when" label="only when" optional />
-        <Remove what={`strategy ${name}`} onClick={() => change(replaced(document, place, end - place))} />
+        <Remove what={`strategy ${name}`} onClick={() => change((d) => replaced(d, place, end - place))} />
       </div>
       {adaptations.map((i) => (
         <AdaptationForm key={i} {...{ document, change }} place={i} />
       ))}
-      <button type="button" onClick={() => change(replaced(document, end, 0, newAdaptation('set_parameter')))}>
+      <button type="button" onClick={() => change((d) => replaced(d, end, 0, newAdaptation('set_parameter', { statement: 'ADAPTATION', component: componentOf(d, place) })))}>
         + Adaptation
       </button>
     </fieldset>
@@ -166,7 +198,7 @@ function RuleCard({ document, change, place }: Props & { place: number }) {
               label="criticality"
               value={String(document.statements[policies].criticality)}
               of={['NON_CRITICAL', 'WARNING', 'ERROR']}
-              take={(c) => change(withMember(document, policies, 'criticality', c))}
+              take={(c) => change((d) => withMember(d, policies, 'criticality', c))}
             />
             <Field {...props} place={policies} member="for" label="for" optional />
             <Field {...props} place={policies} member="hold" label="hold n/k" kind="hold" optional />
@@ -174,7 +206,7 @@ function RuleCard({ document, change, place }: Props & { place: number }) {
             <Field {...props} place={policies} member="attempts" label="attempts" kind="number" optional />
           </>
         )}
-        <Remove what={`rule ${name}`} onClick={() => change(replaced(document, place, end - place))} />
+        <Remove what={`rule ${name}`} onClick={() => change((d) => replaced(d, place, end - place))} />
       </div>
       {trigger !== undefined && <Field {...props} place={trigger} member="expression" label="trigger" wide />}
       {within
@@ -184,7 +216,7 @@ function RuleCard({ document, change, place }: Props & { place: number }) {
         ))}
       <button
         type="button"
-        onClick={() => change(replaced(document, end, 0, ...newStrategy(freeName(document, 'STRATEGY', 'strategy'))))}
+        onClick={() => change((d) => replaced(d, end, 0, ...newStrategy(freeName(d, 'STRATEGY', 'strategy'), componentOf(d, place))))}
       >
         + Strategy
       </button>
@@ -218,6 +250,15 @@ function Suggestions({ document }: { document: RuleDocument }) {
   )
 }
 
+// One that no rule is about yet, if there is one: of the file, or else of the robot.
+function usualComponent(document: RuleDocument): string {
+  const declared = document.statements.filter((s) => s.statement === 'COMPONENT').map((s) => String(s.name))
+  const live = graph.value.nodes.map((n) => n.component ?? ownName(n.node))
+  const used = new Set(document.statements.filter((s) => s.statement === 'ADAPTATION').map((s) => String(s.component)))
+  const known = [...declared, ...live, ...Object.keys(names.value.nodes).map(ownName)]
+  return known.find((c) => !used.has(c)) ?? known[0] ?? 'my_node'
+}
+
 export function RuleForm({ document, change }: Props) {
   const rules = document.statements.flatMap((s, i) => (s.statement === 'RULE' ? [i] : []))
   return (
@@ -230,7 +271,7 @@ export function RuleForm({ document, change }: Props) {
         type="button"
         class="primary"
         onClick={() =>
-          change(replaced(document, document.statements.length, 0, ...newRule(freeName(document, 'RULE', 'NewRule'))))
+          change((d) => replaced(d, d.statements.length, 0, ...newRule(d, usualComponent(d))))
         }
       >
         + Rule

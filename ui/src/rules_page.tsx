@@ -4,7 +4,11 @@ import { useEffect, useRef, useState } from 'preact/hooks'
 import { call, hasToken, Refusal } from './api'
 import { diff } from './diff'
 import { type Editor, type Found, makeEditor } from './editor'
-import { act } from './faults'
+import { byTheClock } from './clock'
+import { draftOf, keepDraft, type Draft } from './drafts'
+import { merged } from './merge'
+import { act, tell } from './notices'
+import { accept, ask, type Edit, form, isNewest, onUndo, refusedFields, take } from './rule_edits'
 import { follow } from './live_names'
 import { authorName } from './order'
 import { relations, RuleConflicts } from './rule_conflicts'
@@ -22,45 +26,137 @@ interface File {
 const file = signal<File | null>(null) // as it was opened, or saved last
 const text = signal('')
 const found = signal<Found[]>([])
-const form = signal<RuleDocument | null>(null)
 const unreadable = signal('') // why there is no form of the text
-
-// Form and text follow one another by the server. Whichever was changed last counts: answers to what was asked
-// before it are dropped, or a slow one would take back what was entered since.
-let asked = 0
+const restored = signal<Draft | null>(null) // brought back after a reload
+const theirs = signal<File | null>(null) // what somebody else has saved meanwhile
 
 // The form of the text.
 async function readForm(): Promise<void> {
-  const mine = ++asked
+  const mine = ask()
+  const read = text.value
   try {
-    const document = await call<RuleDocument>('POST', '/api/rules/json', { text: text.value })
-    if (mine !== asked) return
-    form.value = document
+    const document = await call<RuleDocument>('POST', '/api/rules/json', { text: read })
+    if (!isNewest(mine)) return
+    accept(document, read)
     unreadable.value = ''
   } catch (error) {
-    if (mine === asked) unreadable.value = (error as Refusal).message
+    if (isNewest(mine)) unreadable.value = (error as Refusal).message
   }
+}
+
+// What is not saved is kept, with what it was begun with.
+function keep(): void {
+  if (!file.value) return
+  const { path, text: saved, version } = file.value
+  const isSame = saved === text.value
+  keepDraft(path, isSame ? null : { text: text.value, base: { text: saved, version }, at: Date.now() })
+}
+
+async function openFile(): Promise<void> {
+  const now = await call<File>('GET', '/api/rules')
+  const draft = draftOf(now.path)
+  if (!draft || draft.text === now.text) {
+    file.value = now
+    text.value = now.text
+    return
+  }
+  restored.value = draft
+  text.value = draft.text
+  if (draft.base.version !== now.version) theirs.value = now
+  file.value = { ...now, ...draft.base }
 }
 
 const canReload = () => can('post', '/api/rules/reload')
 const reload = () =>
   act('Reloading the rules', () => call('POST', '/api/rules/reload', { author: authorName() }))
 
+function Difference({ before, after }: { before: string; after: string }) {
+  return (
+    <pre class="diff" tabIndex={0}>
+      {diff(before, after).map((line) => (
+        <div class={line.sign === '+' ? 'added' : line.sign === '-' ? 'removed' : ''}>
+          {line.sign} {line.text}
+        </div>
+      ))}
+    </pre>
+  )
+}
+
+// Drafts of before a reload, and what somebody else has saved meanwhile. Nothing is taken away unasked.
+function Restored({ write }: { write: (text: string) => void }) {
+  const draft = restored.value
+  const other = theirs.value
+  if (!file.value || (!draft && !other)) return null
+  const take = (next: string) => {
+    if (other) file.value = other
+    theirs.value = restored.value = null
+    write(next)
+    keep()
+  }
+  if (!other)
+    return (
+      <section class="banner" role="status" aria-label="Draft">
+        <p>What you had not saved at {byTheClock(draft!.at / 1000)} is here again.</p>
+        <div class="bar">
+          <button type="button" onClick={() => (restored.value = null)}>
+            Go on
+          </button>
+          <button type="button" onClick={() => take(file.value!.text)}>
+            Discard it
+          </button>
+        </div>
+      </section>
+    )
+  const both = merged(file.value.text, text.value, other.text)
+  return (
+    <section class="banner" role="alert" aria-label="Conflict">
+      <p>
+        <b>{other.path} was changed by somebody else meanwhile.</b> Nothing was written. This is what they changed:
+      </p>
+      <Difference before={file.value.text} after={other.text} />
+      <div class="bar">
+        {both !== null && (
+          <button type="button" class="primary" onClick={() => take(both)}>
+            Bring both together
+          </button>
+        )}
+        <button type="button" onClick={() => take(text.value)}>
+          Keep mine
+        </button>
+        <button type="button" onClick={() => take(other.text)}>
+          Take theirs
+        </button>
+      </div>
+      {both === null && <p class="muted">Both changed the same lines, so that they cannot be brought together.</p>}
+    </section>
+  )
+}
+
 function Save({ onClose }: { onClose: () => void }) {
   const dialog = useRef<HTMLDialogElement>(null)
   useEffect(() => dialog.current!.showModal(), [])
   const errors = found.value.filter((f) => f.isError).length
+  const [why, setWhy] = useState('')
+  // What goes wrong is told here: the notices are behind the dialog.
   const save = async () => {
     const sent = text.value
-    const saved = await act(`Saving ${file.value!.path}`, async () => {
-      const { version } = await call<{ version: string }>('PUT', '/api/rules', {
-        text: sent,
-        version: file.value!.version,
-      })
+    setWhy('')
+    try {
+      const body = { text: sent, version: file.value!.version }
+      const { version } = await call<{ version: string }>('PUT', '/api/rules', body)
       file.value = { ...file.value!, text: sent, version }
-    })
-    if (saved) onClose()
-    return saved
+      keep()
+      tell({ text: `Saving ${file.value.path}: done` })
+      onClose()
+      return true
+    } catch (error) {
+      if ((error as Refusal).status === 409) {
+        theirs.value = await call<File>('GET', '/api/rules').catch(() => null)
+        if (theirs.value) onClose() // what both have changed is shown on the page
+        else setWhy((error as Refusal).message)
+      } else setWhy(`${(error as Refusal).message}. What you wrote is kept in this browser.`)
+      return false
+    }
   }
   return (
     <dialog ref={dialog} onClose={onClose} aria-label="Save the rules">
@@ -70,13 +166,12 @@ function Save({ onClose }: { onClose: () => void }) {
           ◆ The file has {errors} {errors > 1 ? 'errors' : 'error'}: culprit will not run it like this.
         </p>
       )}
-      <pre class="diff" tabIndex={0}>
-        {diff(file.value!.text, text.value).map((line) => (
-          <div class={line.sign === '+' ? 'added' : line.sign === '-' ? 'removed' : ''}>
-            {line.sign} {line.text}
-          </div>
-        ))}
-      </pre>
+      {why && (
+        <p class="sick" role="alert">
+          ◆ Not saved: {why}
+        </p>
+      )}
+      <Difference before={file.value!.text} after={text.value} />
       {canReload() && (
         <p class="muted">
           The manager that runs goes on with the rules it has until they are reloaded: what it has learned and
@@ -100,6 +195,12 @@ function Save({ onClose }: { onClose: () => void }) {
   )
 }
 
+function whyNotSave(): string {
+  if (file.value?.can_save === false) return 'these rules are part of the program'
+  if (refusedFields() > 0) return 'a field of the form holds what was not taken; mend it, or press Escape in it'
+  return theirs.value ? 'somebody else has changed the file: say above what shall count' : ''
+}
+
 export function RulesPage() {
   const place = useRef<HTMLDivElement>(null)
   const editor = useRef<Editor | null>(null)
@@ -108,16 +209,14 @@ export function RulesPage() {
   useEffect(() => {
     let isGone = false
     const open = async () => {
-      if (!file.value) {
-        file.value = await call<File>('GET', '/api/rules')
-        text.value = file.value.text
-      }
+      if (!file.value) await openFile()
       if (isGone) return
       editor.current = makeEditor(
         place.current!,
         text.value,
         (next) => {
           text.value = next
+          keep()
           void readForm()
         },
         (list) => (found.value = list)
@@ -126,6 +225,7 @@ export function RulesPage() {
     }
     void act('Opening the rules', open)
     const stopLooking = follow(() => text.value)
+    onUndo(() => editor.current?.undo())
     return () => {
       stopLooking()
       isGone = true
@@ -133,18 +233,7 @@ export function RulesPage() {
     }
   }, [])
 
-  const change = async (document: RuleDocument) => {
-    form.value = document
-    const mine = ++asked
-    try {
-      const reply = await call<{ text: string }>('POST', '/api/rules/text', document)
-      if (mine !== asked) return
-      editor.current?.setText(reply.text)
-      unreadable.value = ''
-    } catch (error) {
-      if (mine === asked) unreadable.value = (error as Refusal).message
-    }
-  }
+  const change = (edit: Edit) => take(edit, (next) => editor.current?.setText(next))
   const format = () =>
     act('Laying out', async () => {
       const reply = await call<{ result: { newText: string }[] | null }>('POST', '/api/rules/ask', {
@@ -161,19 +250,30 @@ export function RulesPage() {
       <div class="bar">
         <b>{file.value?.path}</b>
         <span class="muted">{isChanged ? 'changed' : 'as saved'}</span>
+        {refusedFields() > 0 && (
+          <span class="sick" role="status">
+            ◆ {refusedFields() === 1 ? 'one field is' : `${refusedFields()} fields are`} not in the text
+          </span>
+        )}
         <span class={errors > 0 ? 'sick' : 'well'} role="status">
           {errors > 0
             ? `◆ ${errors} ${errors > 1 ? 'errors' : 'error'}`
             : `✓ no errors, ${found.value.length} ${found.value.length === 1 ? 'warning' : 'warnings'}`}
         </span>
+        <button type="button" onClick={() => editor.current?.undo()}>
+          Undo
+        </button>
+        <button type="button" onClick={() => editor.current?.redo()}>
+          Redo
+        </button>
         <button type="button" disabled={!hasToken} onClick={() => void format()}>
           Lay out
         </button>
         <button
           type="button"
           class="primary"
-          disabled={!hasToken || !isChanged || !file.value?.can_save}
-          title={file.value?.can_save === false ? 'these rules are part of the program' : ''}
+          disabled={!hasToken || !isChanged || !file.value?.can_save || refusedFields() > 0 || !!theirs.value}
+          title={whyNotSave()}
           onClick={() => setSaving(true)}
         >
           Save …
@@ -189,30 +289,33 @@ export function RulesPage() {
           </button>
         )}
       </div>
-      <section class="form" aria-label="Form">
-        {unreadable.value && (
-          <pre class="sick unreadable" role="alert">
-            {unreadable.value}
-          </pre>
-        )}
-        {form.value && <RuleConflicts list={relations(form.value, text.value, found.value)} />}
-        {form.value && <RuleForm document={form.value} change={(d) => void change(d)} />}
-      </section>
-      <section class="text" aria-label="Text">
-        <div class="editor" ref={place} />
-        <ul class="found" aria-label="What the check says">
-          {found.value.map((f) => (
-            <li>
-              <button type="button" onClick={() => editor.current?.goTo(f.from)}>
-                <span class={f.isError ? 'ERROR' : 'WARNING'}>
-                  {f.isError ? '◆' : '▲'} line {f.line}
-                </span>{' '}
-                {f.message} <small>{f.code}</small>
-              </button>
-            </li>
-          ))}
-        </ul>
-      </section>
+      <Restored write={(next) => editor.current?.setText(next)} />
+      {unreadable.value && (
+        <pre class="sick unreadable" role="alert">
+          The form waits until the text can be read: {unreadable.value}
+        </pre>
+      )}
+      <div class="sides">
+        <section class="form" aria-label="Form" inert={!!unreadable.value}>
+          {form.value && <RuleConflicts list={relations(form.value, text.value, found.value)} />}
+          {form.value && <RuleForm document={form.value} change={change} />}
+        </section>
+        <section class="text" aria-label="Text">
+          <div class="editor" ref={place} />
+          <ul class="found" aria-label="What the check says">
+            {found.value.map((f) => (
+              <li>
+                <button type="button" onClick={() => editor.current?.goTo(f.from)}>
+                  <span class={f.isError ? 'ERROR' : 'WARNING'}>
+                    {f.isError ? '◆' : '▲'} line {f.line}
+                  </span>{' '}
+                  {f.message} <small>{f.code}</small>
+                </button>
+              </li>
+            ))}
+          </ul>
+        </section>
+      </div>
       {isSaving && <Save onClose={() => setSaving(false)} />}
     </main>
   )

@@ -41,9 +41,20 @@ const taken = signal<State | null>(null) // the robot as it was when one began t
 
 const isSignal = (input: string) => !input.includes('(')
 
+// As it was when one began to imagine.
 function usualCondition(place: number): Condition {
-  return taken.value?.components[place]?.lifecycle === 'inactive' ? 'inactive' : 'well'
+  const component = taken.value?.components[place]
+  if (component?.process === 'stopped') return 'stopped'
+  if (component?.process === 'hung') return 'hung'
+  if (component?.process === 'gone' || component?.alive === false) return 'killed'
+  return component?.lifecycle === 'inactive' ? 'inactive' : 'well'
 }
+
+function isUsuallySilent(place: number): boolean {
+  const topic = taken.value?.topics[place]
+  return !!topic && topic.rate !== null && topic.age !== null && topic.age > kSilentPeriods / topic.rate
+}
+const kSilentPeriods = 3
 
 function usualValue(place: number): string {
   const value = taken.value?.inputs[place]
@@ -69,7 +80,7 @@ function stateText(): string {
   })
   robot.value?.topics.forEach((topic, place) => {
     const rate = taken.value?.topics[place]?.rate ?? 10
-    lines.push(`TOPIC ${topic} ${silent.value[topic] ? 'silent' : `${rate}Hz`}`)
+    lines.push(`TOPIC ${topic} ${silent.value[topic] ?? isUsuallySilent(place) ? 'silent' : `${rate}Hz`}`)
   })
   robot.value?.inputs.forEach((input, place) => {
     const value = values.value[input] ?? usualValue(place)
@@ -78,7 +89,7 @@ function stateText(): string {
   return lines.join('\n') + '\n'
 }
 
-// Who hears an idle component does not wait for it.
+// Who hears an idle component does not wait for it. Who hears a dead one does.
 function producerWorks(name: string): boolean {
   const place = robot.value!.components.findIndex((c) => c.name === name)
   return usualCondition(place) !== 'inactive'
@@ -189,11 +200,11 @@ export function SimulatorPage() {
             </label>
           ))}
           <h3>Topics</h3>
-          {(robot.value?.topics ?? []).map((topic) => (
+          {(robot.value?.topics ?? []).map((topic, place) => (
             <label>
               <input
                 type="checkbox"
-                checked={!!silent.value[topic]}
+                checked={silent.value[topic] ?? isUsuallySilent(place)}
                 onChange={(e) => (silent.value = { ...silent.value, [topic]: e.currentTarget.checked })}
               />{' '}
               {topic} is silent

@@ -2,13 +2,14 @@
 // what happened.
 import { batch, computed, signal } from '@preact/signals'
 import { call, follow } from './api'
-import { level, viewOf } from './history'
+import { begun, connected, hearsSign, hearsState, nowByTheClock } from './freshness'
+import { level, viewOf, type Failure } from './history'
+import { incidentsOf, type Known } from './incidents'
 import type { ComponentState, ControlState, Graph, Health, ManagerEvent, Robot, Rule, State, TopicState } from './types'
 
 export const calls = signal<Set<string>>(new Set())
 export const can = (method: string, path: string) => calls.value.has(`${method} ${path}`)
 
-export const isConnected = signal(false)
 export const robot = signal<Robot | null>(null)
 export const graph = signal<Graph>({ nodes: [], edges: [] })
 export const state = signal<State | null>(null)
@@ -18,11 +19,14 @@ export const events = signal<ManagerEvent[]>([])
 export const selected = signal<string | null>(null) // a component
 
 const kMostEvents = 4096
+const kHiddenPeriod = 500 // ms
+const kServerPeriod = 2000 // ms
 
 export async function start(): Promise<void> {
   const about = await call<{ calls: string[] }>('GET', '/api/about')
   calls.value = new Set(about.calls)
-  if (!can('get', '/api/stream')) return
+  begun()
+  if (!can('get', '/api/stream')) return void watchServer()
   // What comes in bursts is drawn once for all of one frame. Of all but events only the newest counts.
   const newest: Partial<Record<string, unknown>> = {}
   let waiting: ManagerEvent[] = []
@@ -46,22 +50,38 @@ export async function start(): Promise<void> {
   }
   void follow(
     ({ event, data }) => {
-      const document = JSON.parse(data)
+      const told = JSON.parse(data)
       if (event === 'hello') {
-        if (document.resumed) return
+        if (told.resumed) return
         events.value = []
         waiting = []
       } else if (event === 'event') {
-        waiting.push({ ...document, number: ++count })
+        waiting.push({ ...told, number: ++count })
         if (waiting.length > kMostEvents) waiting.shift() // nobody looks: browsers draw no frames then
       } else {
         if (event === 'robot') delete newest.state
-        newest[event] = document
+        newest[event] = told
+        if (event === 'state') hearsState(told.clock)
       }
-      if (frame === 0) frame = requestAnimationFrame(show)
+      // A page that nobody sees draws no frames, but its title tells how the robot is.
+      if (frame === 0) frame = document.hidden ? window.setTimeout(show, kHiddenPeriod) : requestAnimationFrame(show)
     },
-    (connected) => (isConnected.value = connected)
+    hearsSign,
+    connected
   )
+}
+
+// Without a robot nothing is told, but that the server is there matters, too.
+async function watchServer(): Promise<void> {
+  for (;;) {
+    try {
+      await call('GET', '/api/about')
+      connected(true)
+    } catch {
+      connected(false)
+    }
+    await new Promise((resolve) => setTimeout(resolve, kServerPeriod))
+  }
 }
 
 // Where things stand in the lists of a state, and who is about whom: for robots of many parts.
@@ -88,8 +108,55 @@ export const now = computed(() =>
   Math.max(state.value?.t ?? 0, events.value.length ? events.value[events.value.length - 1].t : 0)
 )
 // The robot as it runs; the moment and all that follows from it.
-export const live = viewOf(events, now, { isOver: false })
+export const live = viewOf(events, now, {
+  isOver: false,
+  clockOf: clockAt,
+  // Events are forgotten after a while, failures are not.
+  complete: (failures) => {
+    const last = new Map(events.value.map((e) => [e.rule, e.t]))
+    return (robot.value?.rules ?? []).flatMap((rule, place): Failure[] => {
+      const told = state.value?.rules[place]
+      const isKnown = failures.some((f) => f.rule === rule.name)
+      if (!told || told.phase === 'quiet' || isKnown || state.value!.t <= (last.get(rule.name) ?? -1)) return []
+      const { name, criticality } = rule
+      const phase = told.phase === 'exhausted' ? 'exhausted' : told.attempt ? 'attempting' : 'failing'
+      const since = told.since ?? state.value!.t
+      return [{ rule: name, criticality, phase, since, sinceClock: clockAt(since), tried: [], retryAt: told.retry_at }]
+    })
+  },
+})
 export const { moment, isNewest: isLive, situation, culprits } = live
+
+// By the clock on the wall, when it was `t` seconds since culprit began to watch. Simulated time has its own pace,
+// so the nearest that was told of counts.
+export function clockAt(t: number): number {
+  let before = state.value ? { t: state.value.t, clock: state.value.clock } : { t, clock: nowByTheClock() }
+  const list = events.value
+  for (let i = list.length - 1; i >= 0 && before.t > t; --i) {
+    const { t: told, clock } = list[i]
+    if (clock !== undefined) before = { t: told, clock }
+  }
+  return before.clock + t - before.t
+}
+
+// What is known of a component at the moment that is looked at.
+export const known: Known = (component) => ({
+  isGone: situation.value.gone.has(component),
+  state: isLive.value ? stateOfComponent(component) : undefined,
+})
+const componentsOfRule = (name: string) => robot.value?.rules.find((r) => r.name === name)?.components ?? []
+export const incidents = computed(() => incidentsOf(situation.value.failures, componentsOfRule, known))
+
+// As the robot is now, whatever moment is looked at.
+const presentSituation = computed(() => (isLive.value ? situation.value : live.situationAt(null)))
+export const presentlyKnown: Known = (component) => ({
+  isGone: presentSituation.value.gone.has(component),
+  state: stateOfComponent(component),
+})
+export const present = computed(() => {
+  const { failures } = presentSituation.value
+  return { failures, incidents: incidentsOf(failures, componentsOfRule, presentlyKnown) }
+})
 
 // Health of components: as sick as the most critical failure whose strategies touch them.
 export const health = computed(() => {

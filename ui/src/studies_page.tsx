@@ -3,7 +3,7 @@ import { signal } from '@preact/signals'
 import { useEffect, useState } from 'preact/hooks'
 import { call, hasToken, Refusal, textOf } from './api'
 import { download } from './download'
-import { act, notice } from './faults'
+import { act, tell } from './notices'
 import { showRun, SingleRun } from './single_run'
 import { type StudyResult, type StudyTable, studyTable } from './study_table'
 
@@ -134,9 +134,9 @@ function Open() {
     if (!file) return
     try {
       open(file.name, JSON.parse(await file.text()))
-      notice.value = `Opening ${file.name}: done`
+      tell({ text: `Opening ${file.name}: done` })
     } catch (error) {
-      notice.value = `Opening ${file.name}: ${(error as Error).message}`
+      tell({ text: `Opening ${file.name}: ${(error as Error).message}`, isTrouble: true })
     }
   }
   return (
@@ -180,7 +180,7 @@ function Findings() {
 
 export function StudiesPage() {
   useEffect(() => {
-    const once = () => look().catch((error: Refusal) => (notice.value = error.message))
+    const once = () => look().catch((error: Refusal) => tell({ text: error.message, isTrouble: true }))
     void once()
     const timer = setInterval(() => {
       if (campaign.value?.state === 'running') void once()

@@ -45,6 +45,7 @@ export interface ComponentState {
   health: Health
   present: boolean
   alive: boolean | null
+  process?: 'running' | 'stopped' | 'hung' | 'gone'
   lifecycle?: string
   remark?: string
   adapting?: string
@@ -55,6 +56,7 @@ export interface TopicState {
 }
 export interface State {
   t: number
+  clock: number // on the wall, seconds since 1970
   rules: RuleState[]
   components: ComponentState[]
   topics: TopicState[]
@@ -66,6 +68,7 @@ export interface State {
 export interface ControlState {
   paused: boolean
   dry_run: boolean
+  hears: boolean // the robot
   silences: { component?: string; rule?: string; until: number | null; author: string; reason: string }[]
   asked: { rule: string; strategy: string }[]
 }
@@ -86,6 +89,7 @@ export interface Suspect {
 export interface ManagerEvent {
   number: number // of this page's counting
   t: number
+  clock?: number // on the wall, seconds since 1970; runs that are played have none
   type: string // the name that the journal has for it, too
   label: string // for people
   severity: 'info' | 'warning' | 'error'
@@ -103,4 +107,6 @@ export interface ManagerEvent {
   suspects?: Suspect[]
   retry_at?: number | null
   reaction_s?: number
+  reason?: string
+  remark?: string
 }

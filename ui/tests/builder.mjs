@@ -27,6 +27,7 @@ await session(['web', path], async (page) => {
   }
   await form.getByRole('button', { name: '+ Rule' }).click()
   await fill(form, 'rule', 'SegmentationBad')
+  await form.getByLabel('criticality').selectOption('WARNING')
   await fill(form, 'trigger', 'segmentation_entropy > 0.06')
 
   const named = (name) => form.getByRole('group', { name: `Strategy ${name}`, exact: true })

@@ -8,13 +8,14 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs'
 import { createRequire } from 'node:module'
 import { join } from 'node:path'
 import { promisify } from 'node:util'
+import { stub } from './stub.mjs'
 
 const [program, modules, folder] = process.argv.slice(2)
 const require = createRequire(join(modules, 'package.json'))
 const { chromium } = require('playwright-core')
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8')
 
-const kPatience = 60_000 // ms, for what a robot takes its time for
+const kPatience = Number(process.env.CULPRIT_PATIENCE ?? 60_000) // ms, for what a robot takes its time for
 
 export const file = (name) => join(folder, name)
 
@@ -53,9 +54,17 @@ export async function expectSoon(holds, message) {
   expect(holds(), message)
 }
 
-// Runs `steps` with a page of `culprit <args>`, and what it prints. Whatever the page complains of is a failure.
-export async function session(args, steps) {
-  const server = serve([...args, '--port', '0'])
+// Runs `steps` with a page of `culprit <args>`, and what it prints.
+export const session = (args, steps) => browse(serve([...args, '--port', '0']), steps)
+
+// Runs `steps` with a page of a stub that answers these calls (stub.mjs).
+export async function stubbed(calls, steps) {
+  const server = await stub(modules, calls)
+  await browse({ ...server, address: Promise.resolve(server.address) }, steps)
+}
+
+// Whatever the page complains of is a failure.
+async function browse(server, steps) {
   const profile = mkdtempSync(join(folder, 'browser-'))
   const complaints = []
   let browser
@@ -73,8 +82,8 @@ export async function session(args, steps) {
     page.setDefaultTimeout(kPatience)
     page.on('pageerror', (error) => complaints.push(String(error)))
     page.on('console', (message) => {
-      // What the server refuses is told to the person by the page itself.
-      const isRefusal = message.text().includes('responded with a status of 4')
+      // What the server refuses, and that it is gone, is told to the person by the page itself.
+      const isRefusal = /responded with a status of 4|ERR_INCOMPLETE_CHUNKED|ERR_CONNECTION_REFUSED/.test(message.text())
       if (message.type() === 'error' && !isRefusal) complaints.push(message.text())
     })
     await page.goto(address)

@@ -1,0 +1,35 @@
+// The web app as files: what culprit serves, and the tests of the page that need no robot.
+import { readFileSync } from 'node:fs'
+import { createRequire } from 'node:module'
+import { dirname, join } from 'node:path'
+import { fileURLToPath } from 'node:url'
+
+const source = join(dirname(fileURLToPath(import.meta.url)), 'src')
+
+// `modules` is the folder of node_modules.
+export function bundle(modules) {
+  const require = createRequire(join(modules, 'package.json'))
+  const { buildSync } = require('esbuild')
+  const { outputFiles } = buildSync({
+    entryPoints: [join(source, 'app.tsx')],
+    nodePaths: [join(modules, 'node_modules')],
+    bundle: true,
+    minify: true,
+    write: false,
+    outdir: '/',
+    format: 'esm',
+    target: 'es2021',
+    jsx: 'automatic',
+    jsxImportSource: 'preact',
+    legalComments: 'none',
+  })
+  return [
+    ['/', 'text/html; charset=utf-8', readFileSync(join(source, 'index.html'))],
+    ['/icon.svg', 'image/svg+xml', readFileSync(join(source, 'icon.svg'))],
+    ...outputFiles.map((file) =>
+      file.path.endsWith('.css')
+        ? ['/app.css', 'text/css; charset=utf-8', file.contents]
+        : ['/app.js', 'text/javascript; charset=utf-8', file.contents]
+    ),
+  ].map(([path, type, contents]) => ({ path, type, contents }))
+}

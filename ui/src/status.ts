@@ -1,0 +1,119 @@
+// How the robot is and what culprit does about it, in the words of the status bar: the same on every page, in the
+// title of the window and in its icon.
+import { computed } from '@preact/signals'
+import { lastingSoFar, when } from './clock'
+import { freshness, nowByTheClock } from './freshness'
+import { headlineOf, type Incident, listed } from './incidents'
+import { can, clockAt, control, present, presentlyKnown, robot, state } from './store'
+
+export type Tone = 'OK' | 'NON_CRITICAL' | 'WARNING' | 'ERROR' | 'EXHAUSTED' | 'unknown' | 'lost'
+export interface Mode {
+  name: 'paused' | 'deaf' | 'dry-run' | 'approval' | 'silenced' | 'acting' | 'none' | 'none-now'
+  word: string
+  explanation: string
+}
+export interface Status {
+  tone: Tone
+  sign: string
+  word: string // of a few letters
+  headline: string
+  detail: string
+  modes: Mode[] // the one that matters most first
+}
+
+export const kSigns: Record<Tone, string> = {
+  ERROR: '◆',
+  WARNING: '▲',
+  NON_CRITICAL: '○',
+  EXHAUSTED: '✖',
+  OK: '✓',
+  unknown: '…',
+  lost: '⚠',
+}
+const kHealthWords: Record<string, string> = {
+  ERROR: 'Error',
+  WARNING: 'Warning',
+  NON_CRITICAL: 'Minor',
+  EXHAUSTED: 'Gave up',
+}
+
+// What keeps culprit from acting as it usually does.
+export const modes = computed((): Mode[] => {
+  const now = control.value
+  if (!now) return [{ name: 'none', word: '', explanation: '' }]
+  const list: Mode[] = []
+  if (now.paused) list.push({ name: 'paused', word: 'Ⅱ Paused', explanation: 'Nothing is changed on the robot until you resume.' })
+  if (now.hears === false) list.push({ name: 'deaf', word: '⚠ Deaf', explanation: 'The robot cannot be heard: nothing is judged, nothing is done.' })
+  if (now.asked.length > 0) list.push({ name: 'approval', word: '? Approval', explanation: `Waits for your word: ${listed(now.asked.map((a) => a.strategy))}.` })
+  if (now.dry_run) list.push({ name: 'dry-run', word: '◌ Dry run', explanation: 'Culprit only says what it would do.' })
+  if (now.silences.length > 0)
+    list.push({ name: 'silenced', word: '∅ Silenced', explanation: `Left alone: ${listed(now.silences.map((s) => s.component ?? s.rule ?? ''))}.` })
+  return list.length > 0 ? list : [{ name: 'acting', word: '● Acting', explanation: 'Culprit repairs what fails.' }]
+})
+
+export const sinceOf = (incident: Incident) => incident.sinceClock ?? clockAt(incident.since)
+
+// What is being done about it, or why nothing is.
+export function doingOf(incident: Incident): string {
+  const { root } = incident
+  if (root.phase === 'exhausted') return 'nothing helped: a person must look'
+  if (control.value?.paused) return 'paused: nothing is done'
+  if (control.value?.asked.some((a) => a.rule === root.rule)) return 'waits for your approval'
+  if (root.blame?.type === 'strategy_chosen' && root.phase === 'attempting') return `being repaired: ${listed(root.blame.actions ?? []) || root.blame.strategy}`
+  if (root.blame?.dry_run) return `would be repaired: ${listed(root.blame.actions ?? []) || root.blame.strategy}`
+  if (root.heldBack) return `not repaired: ${root.heldBack}`
+  return 'nothing is done yet'
+}
+
+function ofIncidents(incidents: Incident[]): Pick<Status, 'tone' | 'sign' | 'word' | 'headline' | 'detail'> {
+  const worst = incidents[0]
+  const since = sinceOf(worst)
+  const others = incidents.slice(1)
+  const more = others.length > 0 ? `; also ${listed(others.map((i) => headlineOf(i, presentlyKnown)))}` : ''
+  const suffering = worst.consequences.length > 0 ? ` → ${listed(worst.consequences.map((f) => f.rule))}` : ''
+  return {
+    tone: worst.health as Tone,
+    sign: kSigns[worst.health as Tone],
+    word: kHealthWords[worst.health],
+    headline: headlineOf(worst, presentlyKnown) + suffering,
+    detail: `since ${when(since)} (${lastingSoFar(nowByTheClock() - since)}), ${doingOf(worst)}${more}`,
+  }
+}
+
+function ofRobot(): Pick<Status, 'tone' | 'sign' | 'word' | 'headline' | 'detail'> {
+  if (!state.value) return { tone: 'unknown', sign: kSigns.unknown, word: 'Asking', headline: 'Nothing is known yet', detail: 'culprit has not told of the robot so far' }
+  const { incidents } = present.value
+  if (incidents.length > 0) return ofIncidents(incidents)
+  const count = robot.value?.rules.length ?? 0
+  const detail = `no failure is seen by ${count} ${count === 1 ? 'rule' : 'rules'}`
+  if (control.value?.hears === false) return { tone: 'unknown', sign: '?', word: 'Unknown', headline: 'The robot cannot be heard', detail: 'nothing is judged until it is' }
+  return { tone: 'OK', sign: kSigns.OK, word: 'Well', headline: 'All is well', detail }
+}
+
+export const status = computed((): Status => {
+  const fresh = freshness.value
+  if (fresh.kind === 'lost' || fresh.kind === 'stuck') {
+    const was = can('get', '/api/stream') && state.value ? ` It was: ${ofRobot().headline}.` : ''
+    const why = fresh.kind === 'lost' ? 'Disconnected' : 'Nothing new from culprit'
+    return {
+      tone: 'lost',
+      sign: kSigns.lost,
+      word: 'Old',
+      headline: `${why} since ${when(fresh.since)}`,
+      detail: `What you see is old.${was}`,
+      modes: modes.value.filter((m) => m.word).map((m) => ({ ...m, name: 'none-now', word: `was: ${m.word.replace(/^\S /, '')}` })),
+    }
+  }
+  if (!can('get', '/api/stream'))
+    return { tone: 'unknown', sign: '–', word: 'No robot', headline: 'No robot is watched here', detail: 'rules, simulations and studies only', modes: [] }
+  return { ...ofRobot(), modes: modes.value }
+})
+
+// The title says the worst first: of a tab one sees two or three words.
+export const title = computed(() => {
+  const { sign, headline, tone, modes: all } = status.value
+  const mode = all[0] && !['acting', 'none', 'none-now'].includes(all[0].name) ? `${all[0].word} · ` : ''
+  const name = robot.value?.robot ? `${robot.value.robot} · culprit` : 'culprit'
+  if (tone === 'unknown' && !can('get', '/api/stream')) return 'culprit'
+  return `${tone === 'lost' ? '' : mode}${sign} ${headline} · ${name}`
+})

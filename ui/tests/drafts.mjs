@@ -1,0 +1,129 @@
+// Nothing that was written is lost: not by a mistake in a field, a reload, a slip of the finger, or somebody else who
+// writes the same file.
+import { readFileSync, writeFileSync } from 'node:fs'
+import { expect, file, isAccessible, picture, session } from './session.mjs'
+
+const kRules = `COMPONENT camera  NODE /camera
+COMPONENT lidar   NODE /lidar
+
+RULE CameraSilent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 500ms
+    STRATEGY wake 50 10
+      ADAPTATION camera restart 5
+
+RULE LidarSilent
+  POLICIES WARNING
+  TRIGGER age(/scan) > 1s
+    STRATEGY turn 60 10
+      ADAPTATION lidar restart 5
+`
+const path = file('drafts.rules')
+writeFileSync(path, kRules)
+
+const formOf = (page) => page.getByRole('region', { name: 'Form' })
+const text = (page) => page.locator('.cm-content')
+async function enter(field, value) {
+  await field.fill(value)
+  await field.press('Tab')
+}
+
+// What is wrong stays in its field, with what is wrong about it; everything else goes on.
+async function mistake(page) {
+  const form = formOf(page)
+  const trigger = form.getByLabel('trigger').first()
+  await enter(trigger, 'nonsense(( > 3')
+  const alert = form.getByRole('alert')
+  await alert.getByText('Not taken: there is no function').waitFor()
+  expect(!(await alert.innerText()).includes('/statements'), 'the message is for programs')
+  expect((await trigger.inputValue()) === 'nonsense(( > 3', 'what was entered is gone')
+  await isAccessible(page)
+  await picture(page, 'mistake')
+  await enter(form.getByLabel('helps in %').first(), '77')
+  await text(page).filter({ hasText: 'STRATEGY wake 77 10' }).waitFor()
+  expect(await page.getByRole('button', { name: 'Save …' }).isDisabled(), 'what was not taken can be saved over')
+  await trigger.press('Escape')
+  await alert.waitFor({ state: 'detached' })
+  expect((await trigger.inputValue()) === 'age(/rgb) > 500ms', 'Escape does not bring back what stood there')
+}
+
+async function reload(page) {
+  await page.reload()
+  const draft = page.getByRole('status', { name: 'Draft' })
+  await draft.getByText('is here again').waitFor()
+  await text(page).filter({ hasText: 'STRATEGY wake 77 10' }).waitFor()
+  await isAccessible(page)
+  await draft.getByRole('button', { name: 'Go on' }).click()
+}
+
+async function slip(page) {
+  await page.getByRole('button', { name: 'Remove rule LidarSilent' }).click()
+  await text(page).filter({ hasNotText: 'LidarSilent' }).waitFor()
+  await page.getByRole('status', { name: 'Notice' }).getByRole('button', { name: 'Undo' }).click()
+  await text(page).filter({ hasText: 'LidarSilent' }).waitFor()
+  await formOf(page).getByRole('group', { name: 'Strategy turn' }).waitFor()
+}
+
+async function save(page) {
+  await page.getByRole('button', { name: 'Save …' }).click()
+  await page.getByRole('dialog').getByRole('button', { name: 'Save', exact: true }).click()
+}
+
+async function conflict(page) {
+  writeFileSync(path, kRules.replace('turn 60 10', 'turn 61 10'))
+  await save(page)
+  const both = page.getByRole('alert', { name: 'Conflict' })
+  await both.getByText('+     STRATEGY turn 61 10').waitFor()
+  expect((await page.getByRole('dialog').count()) === 0, 'the conflict is behind a dialog')
+  expect(!readFileSync(path, 'utf8').includes('wake 77'), 'it was written nevertheless')
+  await isAccessible(page)
+  await picture(page, 'rules-conflict')
+  await page.reload() // the conflict is not forgotten, either
+  await both.getByRole('button', { name: 'Bring both together' }).click()
+  await save(page)
+  await page.getByText('as saved').waitFor()
+  const saved = readFileSync(path, 'utf8')
+  expect(saved === kRules.replace('turn 60', 'turn 61').replace('wake 50', 'wake 77'), `this was saved:\n${saved}`)
+}
+
+// Both changed the same line: a person says which it shall be.
+async function choice(page) {
+  await enter(formOf(page).getByLabel('helps in %').first(), '78')
+  await text(page).filter({ hasText: 'wake 78' }).waitFor()
+  writeFileSync(path, readFileSync(path, 'utf8').replace('wake 77', 'wake 70'))
+  await save(page)
+  const both = page.getByRole('alert', { name: 'Conflict' })
+  await both.getByText('cannot be brought together').waitFor()
+  expect((await both.getByRole('button', { name: 'Bring both together' }).count()) === 0, 'a wrong merge is offered')
+  await both.getByRole('button', { name: 'Keep mine' }).click()
+  await save(page)
+  await page.getByText('as saved').waitFor()
+  expect(readFileSync(path, 'utf8').includes('wake 78'), 'mine was not kept')
+}
+
+async function aNewRule(page) {
+  await page.getByRole('button', { name: '+ Rule' }).click()
+  await text(page).filter({ hasText: 'alive(' }).waitFor()
+  await page.getByText('no errors').waitFor()
+}
+
+async function noServer(page, server) {
+  await enter(formOf(page).getByLabel('helps in %').first(), '55')
+  await text(page).filter({ hasText: 'wake 55' }).waitFor()
+  await server.end()
+  await page.getByRole('region', { name: 'Status' }).getByText('Disconnected').waitFor()
+  await page.getByRole('button', { name: 'Save …' }).click()
+  const dialog = page.getByRole('dialog')
+  await dialog.getByRole('button', { name: 'Save', exact: true }).click()
+  await dialog.getByText('is kept in this browser').waitFor()
+}
+
+await session(['web', path], async (page, server) => {
+  await mistake(page)
+  await reload(page)
+  await slip(page)
+  await conflict(page)
+  await choice(page)
+  await aNewRule(page)
+  await noServer(page, server)
+})

@@ -1,0 +1,109 @@
+// The robot of the stub: five components of a camera's pipeline, and the states that an operator may find it in.
+
+const kComponents = ['camera', 'depth', 'image_enhancement', 'fusion', 'segmentation']
+const kTopics = ['/rgb', '/depth', '/rgb_enhanced', '/fused', '/segments']
+const strategy = (name, components, actions, impact) => ({ name, impact, components, prior: [9, 1], actions })
+const kRules = [
+  { name: 'RGBDead', criticality: 'ERROR', attempts: 3, components: ['camera'], inputs: [0], strategies: [
+    strategy('rgb_restart', ['camera'], ['restart camera'], 5), strategy('rgb_redeploy', ['camera'], ['redeploy camera'], 10)] },
+  { name: 'FusionSilent', criticality: 'ERROR', attempts: 3, components: ['fusion'], inputs: [1], strategies: [
+    strategy('fusion_restart', ['fusion'], ['restart fusion'], 5)] },
+  { name: 'SegmentationBad', criticality: 'WARNING', attempts: 3, components: ['segmentation'], inputs: [2], strategies: [
+    strategy('recalibration', ['segmentation'], ['set recalibration of segmentation to true'], 2)] },
+]
+
+export const kRobot = {
+  robot: 'rover', cycle_s: 0.2,
+  components: kComponents.map((name) => ({ name, can_start: true })),
+  topics: kTopics, inputs: ['alive(camera)', 'age(/fused)', 'segmentation_entropy'], rules: kRules,
+}
+export const kGraph = {
+  nodes: [
+    ...kComponents.map((component) => ({ node: `/${component}`, present: true, component })),
+    { node: '/rviz', present: true }, { node: '/recorder', present: true },
+  ],
+  edges: [
+    ['/image_enhancement', '/camera', '/rgb'], ['/fusion', '/camera', '/rgb'], ['/fusion', '/depth', '/depth'],
+    ['/fusion', '/image_enhancement', '/rgb_enhanced'], ['/segmentation', '/fusion', '/fused'],
+    ['/rviz', '/segmentation', '/segments'], ['/recorder', '/camera', '/rgb'],
+  ],
+}
+export const kControl = { paused: false, dry_run: false, hears: true, silences: [], asked: [] }
+
+// At 14:03:22 by the clock of this machine something broke.
+const broken = () => {
+  const date = new Date()
+  date.setHours(14, 3, 22, 0)
+  return date.getTime() / 1000
+}
+export const kBegan = broken() - 770 // when culprit began to watch
+const kBroken = 770
+
+export const state = (t, { dead = null, ...rules } = {}) => ({
+  t, clock: kBegan + t,
+  rules: kRules.map(({ name }) => ({ phase: 'quiet', trigger: false, ...rules[name] })),
+  components: kComponents.map((name) => ({
+    health: 'OK', present: name !== dead, alive: name !== dead, process: name === dead ? 'gone' : 'running', lifecycle: 'active' })),
+  topics: kTopics.map((_, i) => ({ rate: 10 + i, age: dead && i !== 1 ? t - kBroken : 0.05 })),
+  inputs: [!dead, 0.1, 0.04], beliefs: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), couplings: [],
+})
+
+const event = (t, type, label, severity, tone, text, more) => ({ t, clock: kBegan + t, type, label, severity, tone, text, ...more })
+const kSuspects = [{ component: 'camera', failure: 'RGBDead', probability: 0.97 }, { component: 'fusion', failure: 'FusionSilent', probability: 0.03 }]
+const because = (failure) => ({ condition: 'dependency', component: 'camera', failure, text: `camera may be the cause, by ${failure}` })
+const candidate = (name, excluded = null) => ({ strategy: name, impact: 5, cost: excluded ? 0 : 0.55, value: 0.9, resolves: 0.9, excluded })
+const kAll = [candidate('rgb_restart', { condition: 'tried', text: 'it was tried already' }), candidate('rgb_redeploy')]
+const detected = (t, rule, criticality) => event(t, 'failure_detected', 'detected', criticality === 'ERROR' ? 'error' : 'warning', 'alarm', `${rule} detected`, { rule, criticality })
+const waits = (t, rule, name) => event(t, 'failure_held_back', 'waits', 'info', 'aside', `${rule} waits: it depends on camera, which may be the cause of RGBDead`, { rule, candidates: [candidate(name, because('RGBDead'))], suspects: kSuspects })
+
+// The camera died, and two others suffer from it.
+const kCameraDead = [
+  event(1, 'component_found', 'found', 'info', 'aside', 'camera is there (process 12)', { component: 'camera' }),
+  event(kBroken, 'component_lost', 'lost', 'warning', 'warning', 'camera is gone: killed by signal 9', { component: 'camera', remark: 'killed by signal 9' }),
+  detected(kBroken + 0.01, 'RGBDead', 'ERROR'),
+  detected(kBroken + 0.4, 'FusionSilent', 'ERROR'),
+  waits(kBroken + 0.41, 'FusionSilent', 'fusion_restart'),
+  detected(kBroken + 0.9, 'SegmentationBad', 'WARNING'),
+  waits(kBroken + 0.91, 'SegmentationBad', 'recalibration'),
+]
+const reasons = { rule: 'RGBDead', strategy: 'rgb_redeploy', components: ['camera'], candidates: kAll, suspects: kSuspects }
+const chosen = (dry_run) => event(kBroken + 0.02, 'strategy_chosen', 'decided', 'warning', 'action', 'camera is held responsible for RGBDead: redeploy camera', { ...reasons, explains: ['FusionSilent', 'SegmentationBad'], actions: ['redeploy camera'], dry_run })
+const heldBack = (reason) => event(kBroken + 0.02, 'action_held_back', 'held back', 'warning', 'warning', `RGBDead.rgb_redeploy is held back: ${reason}`, { rule: 'RGBDead', strategy: 'rgb_redeploy', components: ['camera'], reason })
+const heldBackWithReasons = event(kBroken + 0.03, 'failure_held_back', 'waits', 'info', 'aside', 'RGBDead waits', { rule: 'RGBDead', candidates: [kAll[0], candidate('rgb_redeploy', { condition: 'withheld', text: 'paused by a person' })], suspects: kSuspects })
+
+const failing = { phase: 'failing', since: kBroken + 0.01, attempts: 1 }
+const kSuffering = { dead: 'camera', FusionSilent: { phase: 'failing', since: kBroken + 0.4, attempts: 0 }, SegmentationBad: { phase: 'failing', since: kBroken + 0.9, attempts: 0 } }
+const kAttempting = { phase: 'attempting', since: kBroken + 0.01, attempts: 1, attempt: { strategy: 'rgb_redeploy', stage: 'adapting', chosen: kBroken + 0.02, deadline: kBroken + 9 } }
+
+// What each is told by, and what an operator must read at once: cause, level, mode.
+export const kStates = {
+  well: { events: [], control: {}, state: {}, cause: 'All is well', level: 'Well', mode: 'Acting' },
+  ill: { events: [...kCameraDead, chosen(false)], control: {}, state: { ...kSuffering, RGBDead: kAttempting },
+    cause: 'camera is dead', level: 'Error', mode: 'Acting', also: ['since 14:03:22', 'being repaired: redeploy camera'] },
+  paused: { events: [...kCameraDead, heldBack('paused by a person'), heldBackWithReasons], control: { paused: true }, state: { ...kSuffering, RGBDead: failing },
+    cause: 'camera is dead', level: 'Error', mode: 'Paused', also: ['since 14:03:22', 'nothing is done'] },
+  silenced: { events: [...kCameraDead, heldBack('silenced by ada: the lens is cleaned')], control: { silences: [{ component: 'camera', until: kBroken + 600, author: 'ada', reason: 'the lens is cleaned' }] }, state: { ...kSuffering, RGBDead: failing },
+    cause: 'camera is dead', level: 'Error', mode: 'Silenced', also: ['since 14:03:22', 'silenced by ada'] },
+  'dry-run': { events: [...kCameraDead, chosen(true)], control: { dry_run: true }, state: { ...kSuffering, RGBDead: failing },
+    cause: 'camera is dead', level: 'Error', mode: 'Dry run', also: ['would be repaired: redeploy camera'] },
+  approval: { events: [...kCameraDead, event(kBroken + 0.02, 'approval_asked', 'asks', 'warning', 'person', 'shall RGBDead.rgb_redeploy redeploy camera? It waits for approval', reasons)],
+    control: { asked: [{ rule: 'RGBDead', strategy: 'rgb_redeploy' }] }, state: { ...kSuffering, RGBDead: failing },
+    cause: 'camera is dead', level: 'Error', mode: 'Approval', also: ['waits for your approval'] },
+  warning: { events: [detected(kBroken, 'SegmentationBad', 'WARNING')], control: {}, state: { SegmentationBad: { phase: 'failing', since: kBroken, attempts: 0 } },
+    cause: 'SegmentationBad fails', level: 'Warning', mode: 'Acting', also: ['since 14:03:22'] },
+  exhausted: { events: [...kCameraDead, chosen(false), event(kBroken + 5, 'rule_exhausted', 'exhausted', 'error', 'alarm', 'RGBDead is given up', { rule: 'RGBDead' })], control: {}, state: { ...kSuffering, RGBDead: { ...failing, phase: 'exhausted' } },
+    cause: 'camera is dead', level: 'Gave up', mode: 'Acting', also: ['a person must look'] },
+  deaf: { events: [], control: { hears: false }, state: {}, cause: 'The robot cannot be heard', level: 'Unknown', mode: 'Deaf' },
+}
+export const kNow = kBroken + 12
+
+// Events forgotten long ago: the failure itself is not.
+export const kForgotten = { events: [], control: {}, state: { RGBDead: failing }, cause: 'RGBDead fails', level: 'Error', mode: 'Acting' }
+
+export function play(server, { events, control, state: rules }, t = kNow) {
+  server.tell('robot', kRobot)
+  server.tell('graph', kGraph)
+  server.tell('control', { ...kControl, ...control })
+  for (const each of events) server.tell('event', each)
+  server.tell('state', state(t, rules))
+}

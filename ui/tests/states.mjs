@@ -1,0 +1,164 @@
+// Every state of the robot that an operator may find, on every size of screen, light and dark: what must be seen
+// without scrolling is seen, whole and at its place. Positions are compared, not pictures: those differ from one version
+// of Chromium and its fonts to the next.
+import { kForgotten, kNow, kStates, play, state } from './robots.mjs'
+import { expect, isAccessible, isUsableByKeyboard, picture, stubbed } from './session.mjs'
+
+const kSizes = {
+  desktop: { width: 1440, height: 900 },
+  laptop: { width: 1024, height: 768 },
+  tablet: { width: 820, height: 1180 },
+  phone: { width: 390, height: 844 },
+}
+const kCalls = {
+  'get /api/stream': () => [200, {}],
+  'post /api/orders': () => [202, { number: 1, text: 'kept' }],
+  'get /api/rules': () => [200, { path: 'rover.rules', text: '', version: '1', can_save: true }],
+  'post /api/rules/json': () => [200, { version: 1, statements: [] }],
+  'post /api/rules/ask': () => [200, { diagnostics: [], result: null }],
+  'post /api/what-if': () => [200, { failures: [], near: [], unknown: [] }],
+  'get /api/studies': () => [200, { study: null }],
+}
+const kPages = ['robot', 'rules', 'beliefs', 'simulator', 'studies']
+
+// Is all of `locator` on the screen, and nothing over it?
+async function isSeen(page, locator, what) {
+  const seen = await locator.evaluate((element) => {
+    const box = element.getBoundingClientRect()
+    const isWithin = box.width > 0 && box.top >= 0 && box.left >= 0 && box.bottom <= innerHeight && box.right <= innerWidth
+    const top = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2)
+    const isCut = element.scrollWidth > element.clientWidth + 1 || element.scrollHeight > element.clientHeight + 1
+    return { isWithin, isOnTop: element === top || element.contains(top), isCut, box: JSON.stringify(box) }
+  })
+  expect(seen.isWithin && seen.isOnTop && !seen.isCut, `${what} is not seen: ${JSON.stringify(seen)}`)
+  return seen.box
+}
+
+// Where the brake is, by size: nothing may move it.
+const brakes = new Map()
+
+async function looksRight(page, name, { cause, level, mode, also = [] }) {
+  const bar = page.getByRole('region', { name: 'Status' })
+  await bar.getByText(cause).first().waitFor()
+  await bar.locator('.level').getByText(level).waitFor()
+  for (const [size, viewport] of Object.entries(kSizes)) {
+    await page.setViewportSize(viewport)
+    for (const colorScheme of ['light', 'dark']) {
+      await page.emulateMedia({ colorScheme })
+      const at = `${name}, ${size}, ${colorScheme}`
+      await isSeen(page, bar.locator('.cause b'), `the cause (${at})`)
+      await isSeen(page, bar.locator('.level'), `the level (${at})`)
+      await isSeen(page, bar.locator('.mode').first(), `the mode (${at})`)
+      await isSeen(page, bar.locator('.freshness'), `the freshness (${at})`)
+      const brake = await isSeen(page, bar.getByRole('button'), `Pause (${at})`)
+      expect((brakes.get(size) ?? brake) === brake, `Pause has moved (${at}): ${brakes.get(size)} ${brake}`)
+      brakes.set(size, brake)
+      expect((await bar.locator('.mode').first().innerText()).includes(mode), `the mode is not ${mode} (${at})`)
+      for (const text of also) expect((await bar.locator('.detail').innerText()).includes(text), `the bar does not say ${text} (${at}): ${await bar.innerText()}`)
+    }
+  }
+  await page.setViewportSize(kSizes.desktop)
+}
+
+// What nobody told of again would be old: a robot tells its state five times a second.
+function keepTelling(server, { state: rules }) {
+  const telling = setInterval(() => server.tell('state', state(kNow, rules)), 200)
+  telling.unref()
+  return () => clearInterval(telling)
+}
+
+async function everyState(page, server) {
+  for (const [name, wanted] of Object.entries({ ...kStates, forgotten: kForgotten })) {
+    server.forget()
+    play(server, wanted)
+    const stop = keepTelling(server, wanted)
+    await page.reload()
+    await looksRight(page, name, wanted)
+    await picture(page, `state-${name}`)
+    if (['ill', 'paused', 'approval'].includes(name)) await isAccessible(page)
+    stop()
+  }
+}
+
+// On every page the same, and the window says it, too.
+async function everyPage(page, server) {
+  server.forget()
+  play(server, kStates.ill)
+  const stop = keepTelling(server, kStates.ill)
+  for (const name of kPages) {
+    await page.evaluate((hash) => (location.hash = hash), name)
+    await page.locator('nav a[aria-current="page"]', { hasText: new RegExp(name, 'i') }).waitFor()
+    await looksRight(page, `ill, on ${name}`, kStates.ill)
+    expect((await page.title()).startsWith('◆ camera is dead'), `the title is ${await page.title()}`)
+    for (const link of await page.locator('nav a').all()) {
+      await page.setViewportSize(kSizes.phone)
+      await isSeen(page, link, `on a phone the way to ${await link.innerText()}`)
+    }
+    await page.setViewportSize(kSizes.desktop)
+    await isAccessible(page)
+    await isUsableByKeyboard(page)
+  }
+  expect((await page.locator('link[rel="icon"]').getAttribute('href')).startsWith('data:image/svg'), 'the icon does not follow')
+  stop()
+}
+
+// What one begins to imagine with is the robot as it is: with its dead camera.
+async function imaginesTheRobotAsItIs(page, server) {
+  server.forget()
+  play(server, kStates.ill)
+  const stop = keepTelling(server, kStates.ill)
+  await page.reload()
+  await page.evaluate(() => (location.hash = 'simulator'))
+  await page.getByRole('button', { name: 'As the robot is now' }).click()
+  const camera = page.locator('label', { hasText: /^camera/ }).getByRole('combobox')
+  expect((await camera.inputValue()) === 'killed', `a dead camera is imagined to be ${await camera.inputValue()}`)
+  expect(await page.getByLabel('/rgb is silent').isChecked(), 'a topic that is silent is imagined to be heard')
+  expect(!(await page.getByLabel('/depth is silent').isChecked()), 'a topic that is heard is imagined to be silent')
+  const asked = server.received.filter(([call]) => call === 'post /api/what-if').at(-1)[1].state
+  expect(/COMPONENT camera .*KILLED/.test(asked), `the planner is asked about\n${asked}`)
+  stop()
+}
+
+async function theKeyPauses(page, server) {
+  server.received.length = 0
+  await page.keyboard.press('Alt+KeyP')
+  await page.getByRole('status', { name: 'Notice' }).getByText('Pausing: kept').waitFor()
+  server.tell('control', { paused: true, dry_run: false, hears: true, silences: [], asked: [] })
+  await page.getByRole('button', { name: 'Resume' }).waitFor()
+  await page.keyboard.press('Alt+KeyP') // whoever is in a hurry presses twice
+  const orders = server.received.filter(([call]) => call === 'post /api/orders').map(([, body]) => body.order)
+  expect(orders.join() === 'pause', `these were ordered: ${orders}`)
+}
+
+// The page says so at once if the connection ends, and soon if it only falls silent.
+async function isNeverOldInSecret(page, server) {
+  const bar = page.getByRole('region', { name: 'Status' })
+  server.forget()
+  play(server, kStates.well)
+  await page.reload()
+  await bar.getByText('All is well').waitFor()
+  await bar.getByText('Nothing new from culprit since 14:03:34').waitFor() // the server lives, its manager tells nothing
+  server.tell('state', state(kNow + 1, {}))
+  await bar.getByText('All is well').waitFor()
+  server.fallSilent()
+  await bar.getByText('Disconnected since 14:03:35').waitFor()
+  await looksRight(page, 'silent', { cause: 'Disconnected since 14:03:35', level: 'Old', mode: 'was: Acting', also: ['What you see is old', 'It was: All is well'] })
+  expect((await page.title()).startsWith('⚠ Disconnected'), `the title is ${await page.title()}`)
+  expect((await page.locator('main').evaluate((e) => getComputedStyle(e).filter)).includes('grayscale'), 'what is old is in colour')
+  server.forget()
+  play(server, kStates.ill)
+  await bar.getByText('camera is dead').waitFor()
+  server.leave()
+  await bar.getByText('Disconnected since 14:03:34').waitFor()
+  await picture(page, 'state-disconnected')
+  await isAccessible(page)
+}
+
+await stubbed(kCalls, async (page, server) => {
+  await page.getByRole('region', { name: 'Status' }).waitFor()
+  await everyState(page, server)
+  await everyPage(page, server)
+  await imaginesTheRobotAsItIs(page, server)
+  await theKeyPauses(page, server)
+  await isNeverOldInSecret(page, server)
+})

@@ -1,0 +1,80 @@
+// A culprit that plays what the page shall show: the calls of the API that the page needs, and a stream that tells
+// what a test wants it to tell. Beside the tests with the real program, it reaches the states that a robot is seldom in.
+import { createServer } from 'node:http'
+import { bundle } from '../bundle.mjs'
+
+// By module folder: bundling takes a second.
+export async function stub(modules, calls = {}) {
+  const assets = new Map(bundle(modules).map((a) => [a.path, a]))
+  const readers = new Set()
+  const said = [] // what a reader who comes later is told
+  const received = []
+  let isSilent = false
+  const json = (response, status, body) => {
+    response.writeHead(status, { 'Content-Type': 'application/json' })
+    response.end(JSON.stringify(body))
+  }
+  const block = ({ kind, data }) => `event: ${kind}\ndata: ${JSON.stringify(data)}\n\n`
+  const stream = (response) => {
+    response.writeHead(200, { 'Content-Type': 'text/event-stream' })
+    response.write(block({ kind: 'hello', data: { resumed: false } }))
+    for (const each of said) response.write(block(each))
+    readers.add(response)
+    response.on('close', () => readers.delete(response))
+  }
+  const answer = async (request, response) => {
+    const asset = assets.get(request.url)
+    if (asset) {
+      response.writeHead(200, { 'Content-Type': asset.type })
+      return response.end(asset.contents)
+    }
+    const name = `${request.method.toLowerCase()} ${request.url}`
+    if (name === 'get /api/stream') return stream(response)
+    if (name === 'get /api/about') return json(response, 200, { calls: Object.keys(calls) })
+    let body = ''
+    for await (const part of request) body += part
+    const sent = body ? JSON.parse(body) : null
+    received.push([name, sent])
+    if (!calls[name]) return json(response, 404, { error: 'there is no such page or call' })
+    const [status, reply] = calls[name](sent)
+    json(response, status, reply)
+  }
+  const server = createServer((request, response) => void answer(request, response))
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve))
+  const { port } = server.address()
+  const write = (text) => readers.forEach((r) => r.write(text))
+  const heart = setInterval(() => isSilent || write(': nothing new\n\n'), 500)
+  heart.unref()
+  return {
+    address: `http://127.0.0.1:${port}/#token=a-token-of-the-stub`,
+    received,
+    tell(kind, data) {
+      if (kind !== 'event') said.splice(0, said.length, ...said.filter((each) => each.kind !== kind))
+      said.push({ kind, data })
+      write(block({ kind, data }))
+    },
+    // Connections end, and nothing is known any more; whoever comes again is told what is told from now on.
+    forget() {
+      isSilent = false
+      said.length = 0
+      readers.forEach((r) => r.end())
+      readers.clear()
+    },
+    // From now on the connections are open, but nothing comes.
+    fallSilent() {
+      isSilent = true
+    },
+    // Ends the connections and takes no more of them.
+    leave() {
+      readers.forEach((r) => r.destroy())
+      server.close()
+      server.closeAllConnections()
+    },
+    async end() {
+      clearInterval(heart)
+      readers.forEach((r) => r.end())
+      server.close()
+      server.closeAllConnections()
+    },
+  }
+}
