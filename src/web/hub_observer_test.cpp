@@ -55,10 +55,16 @@ TEST(HubObserver, SaysWhetherTheRobotIsHeard) {
 }
 
 TEST(HubObserver, TellsAProcessThatIsStoppedFromOneThatIsGone) {
+  const auto seen = [](std::size_t component, ProcessState process) {
+    const int pid = 12 + static_cast<int>(component);
+    return Observation{Time(), ProcessSeen{ComponentId(component), process, pid, ""}};
+  };
   const ToldOnce told({{Time(), NodeAppeared{"/camera"}},
-                       {Time(), ProcessSeen{ComponentId(0), ProcessState::kStopped, 12, ""}},
                        {Time(), NodeAppeared{"/lidar"}},
-                       {Time(), ProcessSeen{ComponentId(1), ProcessState::kGone, 13, ""}}});
+                       seen(0, ProcessState::kRunning),
+                       seen(1, ProcessState::kRunning),
+                       seen(0, ProcessState::kStopped),
+                       seen(1, ProcessState::kGone)});
   const Json state = told.latest(Kind::kState);
   EXPECT_EQ(state["components"][0]["process"], "stopped");
   EXPECT_EQ(state["components"][1]["process"], "gone");

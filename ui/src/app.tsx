@@ -2,6 +2,7 @@ import './app.css'
 import { effect, signal } from '@preact/signals'
 import { render } from 'preact'
 import { hasToken } from './api'
+import { IncidentsPage, showIncident } from './incidents_page'
 import { BeliefsPage } from './beliefs_page'
 import { Notices } from './notices'
 import { RobotPage } from './robot_page'
@@ -14,14 +15,22 @@ import { StudiesPage } from './studies_page'
 
 const kPages = [
   { name: 'robot', title: 'Robot', needs: 'get /api/stream', Page: RobotPage },
+  { name: 'incidents', title: 'Incidents', needs: 'get /api/stream', Page: IncidentsPage },
   { name: 'rules', title: 'Rules', needs: 'get /api/rules', Page: RulesPage },
   { name: 'beliefs', title: 'Beliefs', needs: 'get /api/stream', Page: BeliefsPage },
   { name: 'simulator', title: 'Simulator', needs: 'post /api/what-if', Page: SimulatorPage },
   { name: 'studies', title: 'Studies', needs: 'get /api/studies', Page: StudiesPage },
 ]
 
-const page = signal(location.hash.slice(1))
-addEventListener('hashchange', () => (page.value = location.hash.slice(1)))
+const page = signal('')
+// "#incidents/m9k2" is a place within a page.
+function follow(): void {
+  const [name, place = ''] = location.hash.slice(1).split('/')
+  page.value = name
+  if (name === 'incidents') showIncident(place)
+}
+addEventListener('hashchange', follow)
+follow()
 const trouble = signal('')
 
 function App() {

@@ -1,12 +1,12 @@
 // Why: for each cause who is held responsible, what it makes fail, what was weighed and why not the others, and what
 // happens next.
-import { lasting, lastingSoFar, when } from './clock'
+import { byTheClock, lasting, lastingSoFar, when } from './clock'
 import { nowByTheClock } from './freshness'
 import type { Failure, View } from './history'
 import { conditionOf, headlineOf, healthOf, type Incident, incidentsOf, type Known, listed } from './incidents'
 import { doingOf, kSigns, type Tone } from './status'
 import { clockAt, culprits, incidents, isLive, known, live, now, robot, rulesByComponent, selected, situation, state, stateOfComponent } from './store'
-import type { Candidate, ComponentState, Criticality } from './types'
+import type { Candidate, ComponentState, Criticality, ManagerEvent } from './types'
 
 export const kWords: Record<Criticality, string> = {
   ERROR: 'error',
@@ -19,8 +19,8 @@ const knownIn = (view: View): Known => (view === live ? known : (c) => ({ isGone
 const incidentsIn = (view: View) =>
   view === live ? incidents.value : incidentsOf(view.situation.value.failures, () => [], knownIn(view))
 
-function Suspects({ failure }: { failure: Failure }) {
-  const suspects = failure.decision?.suspects ?? []
+export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: string }) {
+  const suspects = decision.suspects ?? []
   if (suspects.length === 0) return null
   return (
     <table class="suspects">
@@ -33,7 +33,7 @@ function Suspects({ failure }: { failure: Failure }) {
               <meter min={0} max={1} value={s.probability} aria-label={`probability for ${s.component}`} />
             </td>
             <td class="number">{(100 * s.probability).toFixed(0)} %</td>
-            <td class="muted">{s.failure === failure.rule ? '' : `by ${s.failure}`}</td>
+            <td class="muted">{s.failure === rule ? '' : `by ${s.failure}`}</td>
           </tr>
         ))}
       </tbody>
@@ -45,7 +45,7 @@ function Suspects({ failure }: { failure: Failure }) {
 export const costOf = ({ cost, excluded }: { cost: number; excluded: unknown }) =>
   excluded && cost === 0 ? '–' : cost.toFixed(2)
 
-function Candidates({ list, chosen }: { list: Candidate[]; chosen?: string | null }) {
+export function Candidates({ list, chosen }: { list: Candidate[]; chosen?: string | null }) {
   if (list.length === 0) return null
   return (
     <table class="candidates">
@@ -121,7 +121,7 @@ function Why({ failure, isOpen }: { failure: Failure; isOpen: boolean }) {
   return (
     <details class="why" open={isOpen}>
       <summary>Who may be responsible, what could be done</summary>
-      <Suspects failure={failure} />
+      <Suspects decision={decision} rule={failure.rule} />
       <Candidates
         list={decision.candidates ?? []}
         chosen={decision.type === 'strategy_chosen' ? decision.strategy : null}
@@ -236,6 +236,12 @@ export function Explanation({ view }: { view: View }) {
   const shown = all.filter((i) => [i.root, ...i.consequences].some(isAbout) || i.components.includes(wanted ?? ''))
   return (
     <section class="explanation" aria-label="Explanation">
+      {view === live && !isLive.value && (
+        <p class="past">
+          You look at <b>{byTheClock(clockAt(view.moment.value!), 1)}</b>, {lastingSoFar(now.value - view.moment.value!)} before
+          what was told last. <button type="button" onClick={() => (view.moment.value = null)}>Back to now</button>
+        </p>
+      )}
       {all.length === 0 && (
         <p class="headline well">
           <b>✓ All is well.</b> No rule sees a failure{view.isNewest.value ? '' : ' at this moment'}.

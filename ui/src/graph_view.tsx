@@ -16,7 +16,7 @@ export const search = signal('')
 const kInfrastructure = /^\/(rosout|parameter_events|tf|tf_static|clock|diagnostics)$/
 const kMostLabels = 80
 const kLeastText = 7 // pixels: what is smaller is no text
-const kLeastZoom = 0.62 // at which the names of nodes can be read
+const kLeastZoom = 0.5 // at which the names of nodes can be read
 
 const shortName = (name: string) => name.slice(name.lastIndexOf('/') + 1)
 const labelOf = (node: { node: string; component?: string }) => node.component ?? shortName(node.node)
@@ -161,7 +161,7 @@ function stylesheet(): cytoscape.StylesheetStyle[] {
         'text-wrap': 'wrap',
         'text-valign': 'center',
         'line-height': 1.2,
-        'font-size': 15,
+        'font-size': 17,
         'font-family': 'system-ui, sans-serif',
         color: colour('text'),
         width: kNode.width,
@@ -198,7 +198,8 @@ function stylesheet(): cytoscape.StylesheetStyle[] {
         color: colour('text'),
         'text-background-color': colour('surface'),
         'text-background-opacity': 1,
-        'text-background-padding': '3px',
+        'text-background-padding': '2px',
+        'text-margin-y': -19, // beside the edge, which stays to be seen
         'text-background-shape': 'roundrectangle',
         'curve-style': 'bezier',
         'target-arrow-shape': 'triangle',
@@ -227,7 +228,7 @@ function stylesheet(): cytoscape.StylesheetStyle[] {
   ]
 }
 
-const kNode = { width: 176, height: 58 }
+const kNode = { width: 192, height: 58 }
 const kGap = 8 // between an edge and a node that it passes
 const kBends = [0, 90, -90, 150, -150, 220, -220, 300, -300]
 const kMostPassed = 200 // nodes: beyond, nobody follows a single edge
@@ -253,7 +254,7 @@ function clearBend(from: Point, to: Point, others: Point[]): number {
 
 const kDiscovery = 10_000 // ms
 const isUpright = matchMedia('(max-width: 700px)')
-const kUprightRow = 196
+const kUprightRow = 208
 const kUprightLayer = 130
 
 // Where the nodes of this robot stand, also after a reload.

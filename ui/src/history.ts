@@ -112,6 +112,7 @@ export interface View {
   isNewest: ReadonlySignal<boolean>
   windowLength: Signal<number> // of the timeline, in seconds
   windowEnd: Signal<number | null> // null: the newest
+  oldest: () => number // from when on it is about the robot
   clockOf?: (t: number) => number // what the clock on the wall showed; nothing of a run that never was
   situation: ReadonlySignal<Situation>
   situationAt: (t: number | null) => Situation // of another moment; null: the newest
@@ -126,12 +127,13 @@ interface Extent {
   // Failures that are known of otherwise than by events, at the newest moment.
   complete?: (failures: Failure[]) => Failure[]
   clockOf?: (t: number) => number
+  oldest?: () => number
 }
 
 export function viewOf(
   events: ReadonlySignal<ManagerEvent[]>,
   newest: ReadonlySignal<number>,
-  { isOver, complete, clockOf }: Extent
+  { isOver, complete, clockOf, oldest = () => 0 }: Extent
 ): View {
   const moment = signal<number | null>(null)
   const isNewest = computed(() => moment.value === null)
@@ -153,5 +155,5 @@ export function viewOf(
   })
   const windowLength = signal(isOver ? Infinity : kUsualWindow)
   const windowEnd = signal<number | null>(null)
-  return { isOver, events, newest, moment, isNewest, windowLength, windowEnd, clockOf, situation, situationAt: at, culprits }
+  return { isOver, events, newest, moment, isNewest, windowLength, windowEnd, clockOf, oldest, situation, situationAt: at, culprits }
 }

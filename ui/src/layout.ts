@@ -6,8 +6,8 @@ export interface Point {
   y: number
 }
 
-export const kLayer = 330
-export const kRow = 104
+export const kLayer = 340
+export const kRow = 132
 const kSweeps = 4
 
 // `edges` lead from a producer to a consumer. `before` is the last layout.

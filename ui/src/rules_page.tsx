@@ -223,7 +223,7 @@ export function RulesPage() {
       )
       await readForm()
     }
-    void act('Opening the rules', open)
+    open().catch((error: Error) => tell({ text: `Opening the rules: ${error.message}`, isTrouble: true }))
     const stopLooking = follow(() => text.value)
     onUndo(() => editor.current?.undo())
     return () => {

@@ -28,7 +28,7 @@ addEventListener('keydown', (e) => {
 })
 
 function Brake() {
-  if (!can('post', '/api/orders')) return <span class="brake" />
+  if (!can('post', '/api/orders')) return <span class="brake-place" />
   const isPaused = control.value?.paused ?? false
   const why = hasToken
     ? isPaused

@@ -147,6 +147,26 @@ function Open() {
   )
 }
 
+// Somebody who has never seen a result.
+function First() {
+  if (opened.value || campaign.value) return null
+  const start = () =>
+    act('Starting sunset', () => call('POST', '/api/studies', { study: 'sunset', runs: 1, seed: 1 })).then(() => look())
+  return (
+    <section class="banner" aria-label="To begin with">
+      <p>
+        A campaign breaks a simulated robot again and again, lets several managers repair it, and compares them: how often they
+        hit the right component, and how long the robot is down. The smallest one takes a minute.
+      </p>
+      <p>
+        <button type="button" class="primary" disabled={!hasToken} onClick={() => void start()}>
+          See a first one: SUNSET, one run of each configuration
+        </button>
+      </p>
+    </section>
+  )
+}
+
 function Findings() {
   if (!opened.value) return null
   const { columns, rows } = opened.value.table
@@ -190,6 +210,7 @@ export function StudiesPage() {
   return (
     <main class="studies">
       <h2>Campaigns over the exemplars</h2>
+      <First />
       <Start />
       <Open />
       <Progress />

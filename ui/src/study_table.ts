@@ -6,12 +6,24 @@ export interface StudyTable {
   columns: string[]
   rows: Record<string, string>[]
 }
+interface Spread {
+  mean: number
+  sd?: number
+}
+type Found = Spread | string
 
-const rounded = (value: number) => (value === 0 ? '0' : Number(value.toPrecision(3)).toString())
-const shown = (value: Cell): string => {
+const isSpread = (cell: Found | undefined): cell is Spread => typeof cell === 'object'
+const found = (value: Cell): Found => {
   if (value === null) return '–'
-  if (typeof value === 'number') return Number.isInteger(value) ? String(value) : rounded(value)
+  if (typeof value === 'number') return { mean: value }
   return value === true ? 'yes' : value === false ? 'no' : value
+}
+
+// As many decimals for all of a column: three figures of its largest, none of what is counted.
+function decimalsOf(cells: Spread[]): number {
+  if (cells.every((c) => Number.isInteger(c.mean) && c.sd === undefined)) return 0
+  const largest = Math.max(...cells.map((c) => Math.abs(c.mean)))
+  return largest === 0 ? 0 : Math.max(0, Math.min(4, 2 - Math.floor(Math.log10(largest))))
 }
 
 export interface StudyResult {
@@ -38,15 +50,15 @@ export function rowName(row: Record<string, unknown>): string {
 }
 
 // { mean, sd } is one cell; other objects give a column for each member.
-function flatten(row: Record<string, unknown>, prefix: string, into: Record<string, string>): void {
+function flatten(row: Record<string, unknown>, prefix: string, into: Record<string, Found>): void {
   for (const [key, value] of Object.entries(row)) {
     const name = (prefix ? `${prefix} ` : '') + key.replace(/_/g, ' ')
     if (value !== null && typeof value === 'object' && !Array.isArray(value)) {
       const { mean, sd } = value as { mean?: Cell; sd?: Cell }
       if (mean === undefined) flatten(value as Record<string, unknown>, name, into)
-      else into[name] = typeof mean === 'number' && typeof sd === 'number' ? `${rounded(mean)} ± ${rounded(sd)}` : shown(mean)
+      else into[name] = typeof mean === 'number' && typeof sd === 'number' ? { mean, sd } : found(mean)
     } else if (!Array.isArray(value)) {
-      into[name] = shown(value as Cell)
+      into[name] = found(value as Cell)
     }
   }
 }
@@ -57,9 +69,16 @@ export function studyTable(document: unknown): StudyTable {
   const isTable = Array.isArray(rows) && rows.length > 0 && rows.every((r) => r !== null && typeof r === 'object')
   if (!isTable) throw new Error('this is not what culprit study --json writes: it has no rows')
   const flat = rows.map((row) => {
-    const cells: Record<string, string> = {}
+    const cells: Record<string, Found> = {}
     flatten(row as Record<string, unknown>, '', cells)
     return cells
   })
-  return { columns: [...new Set(flat.flatMap((cells) => Object.keys(cells)))], rows: flat }
+  const columns = [...new Set(flat.flatMap((cells) => Object.keys(cells)))]
+  const decimals = new Map(columns.map((c) => [c, decimalsOf(flat.map((cells) => cells[c]).filter(isSpread))]))
+  const shown = (cell: Found | undefined, column: string): string => {
+    if (!isSpread(cell)) return cell ?? ''
+    const fixed = (value: number) => value.toFixed(decimals.get(column))
+    return cell.sd === undefined ? fixed(cell.mean) : `${fixed(cell.mean)} ± ${fixed(cell.sd)}`
+  }
+  return { columns, rows: flat.map((cells) => Object.fromEntries(columns.map((c) => [c, shown(cells[c], c)]))) }
 }

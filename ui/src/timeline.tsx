@@ -126,12 +126,12 @@ function Bars({ lane, row, begin, end }: { lane: Lane; row: number; begin: numbe
 // What is shown: the newest while nobody looks elsewhere, else what is around the moment.
 function windowOf(view: View): { begin: number; end: number } {
   const newest = Math.max(view.newest.value, 1)
-  const length = Math.max(kShortest, Math.min(view.windowLength.value, Math.max(newest, kUsualLength)))
+  const oldest = Math.min(view.oldest(), newest - kShortest)
+  const length = Math.max(kShortest, Math.min(view.windowLength.value, newest - oldest))
   const wanted = view.windowEnd.value ?? newest
-  const end = Math.max(Math.min(wanted, newest), Math.min(length, newest))
-  return { begin: Math.max(0, end - length), end }
+  const end = Math.max(Math.min(wanted, newest), oldest + length)
+  return { begin: end - length, end }
 }
-const kUsualLength = 30
 
 function Zoom({ view }: { view: View }) {
   const { begin, end } = windowOf(view)
@@ -145,16 +145,16 @@ function Zoom({ view }: { view: View }) {
     // What one looks at stays in sight.
     const centre = view.moment.value ?? (factor < 1 ? end - length / 2 : end)
     const to = Math.min(newest, centre + length / 2)
-    show(Math.max(0, to - length), to)
+    show(Math.max(view.oldest(), to - length), to)
   }
   const pan = (share: number) => {
     const length = end - begin
-    const to = Math.min(newest, Math.max(length, end + share * length))
+    const to = Math.min(newest, Math.max(view.oldest() + length, end + share * length))
     show(to - length, to)
   }
   return (
     <span class="zoom" role="group" aria-label="Time shown">
-      <button type="button" aria-label="Earlier" title="Earlier" disabled={begin <= 0} onClick={() => pan(-0.5)}>
+      <button type="button" aria-label="Earlier" title="Earlier" disabled={begin <= view.oldest()} onClick={() => pan(-0.5)}>
         ◀
       </button>
       <button type="button" aria-label="Show a longer time" title="Show a longer time" onClick={() => zoom(3)}>

@@ -39,7 +39,15 @@ await session(['demo', '--stay', '--speed', '2'], async (page) => {
 
   await page.getByRole('button', { name: 'Pause' }).click()
   await page.getByText('Paused: nothing is changed').waitFor()
+  // Also who is paused is told whose fault it is, and that nothing is done.
+  await page.getByRole('button', { name: 'Inject fault' }).click()
+  const bar = page.getByRole('region', { name: 'Status' })
+  await bar.getByText('camera is dead').waitFor()
+  await bar.getByText('paused: nothing is done').waitFor()
+  await explanation.getByRole('heading', { name: 'camera is dead' }).waitFor()
+  await picture(page, 'paused')
   await page.getByRole('button', { name: 'Resume' }).click()
+  await well.waitFor()
   await page.getByRole('button', { name: 'Pause' }).waitFor()
   await isAccessible(page)
   await isUsableByKeyboard(page)

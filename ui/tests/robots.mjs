@@ -95,6 +95,11 @@ export const kStates = {
     cause: 'camera is dead', level: 'Gave up', mode: 'Acting', also: ['a person must look'] },
   deaf: { events: [], control: { hears: false }, state: {}, cause: 'The robot cannot be heard', level: 'Unknown', mode: 'Deaf' },
 }
+// It is over: 3 s later all of it was well. Names are only text.
+export const kHealed = {
+  events: [...kCameraDead, chosen(false), ...kRules.map(({ name }) => event(kBroken + 3.01, 'failure_resolved', 'resolved', 'info', 'relief', `${name} resolved <b>rover</b>`, { rule: name, strategy: name === 'RGBDead' ? 'rgb_redeploy' : null, reaction_s: 3 }))],
+  control: {}, state: {},
+}
 export const kNow = kBroken + 12
 
 // Events forgotten long ago: the failure itself is not.
@@ -104,6 +109,6 @@ export function play(server, { events, control, state: rules }, t = kNow) {
   server.tell('robot', kRobot)
   server.tell('graph', kGraph)
   server.tell('control', { ...kControl, ...control })
-  for (const each of events) server.tell('event', each)
+  for (const each of [...events].sort((a, b) => a.t - b.t)) server.tell('event', each)
   server.tell('state', state(t, rules))
 }

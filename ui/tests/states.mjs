@@ -1,7 +1,8 @@
 // Every state of the robot that an operator may find, on every size of screen, light and dark: what must be seen
 // without scrolling is seen, whole and at its place. Positions are compared, not pictures: those differ from one version
 // of Chromium and its fonts to the next.
-import { kForgotten, kNow, kStates, play, state } from './robots.mjs'
+import { readFileSync } from 'node:fs'
+import { kForgotten, kHealed, kNow, kStates, play, state } from './robots.mjs'
 import { expect, isAccessible, isUsableByKeyboard, picture, stubbed } from './session.mjs'
 
 const kSizes = {
@@ -19,7 +20,7 @@ const kCalls = {
   'post /api/what-if': () => [200, { failures: [], near: [], unknown: [] }],
   'get /api/studies': () => [200, { study: null }],
 }
-const kPages = ['robot', 'rules', 'beliefs', 'simulator', 'studies']
+const kPages = ['robot', 'incidents', 'rules', 'beliefs', 'simulator', 'studies']
 
 // Is all of `locator` on the screen, and nothing over it?
 async function isSeen(page, locator, what) {
@@ -102,6 +103,32 @@ async function everyPage(page, server) {
   stop()
 }
 
+// One time that it was not well, with what was decided; a link that lasts; and a file for somebody who has no culprit.
+async function tellsAnIncident(page, server) {
+  server.forget()
+  play(server, kHealed)
+  const stop = keepTelling(server, kHealed)
+  await page.goto(`${new URL(page.url()).origin}/#incidents`)
+  await page.reload()
+  const link = page.getByRole('row', { name: /14:03:22.*camera.*FusionSilent, SegmentationBad.*3\.0 s.*rgb_redeploy/ }).getByRole('link')
+  await link.click()
+  await page.reload() // the link is about this one and no other, also later
+  const incident = page.getByRole('region', { name: 'Incident', exact: true })
+  await incident.getByRole('heading', { name: 'camera, 14:03:22' }).waitFor()
+  expect((await incident.locator('.tick text').count()) > 2, 'the timeline has no axis')
+  await incident.locator('summary', { hasText: 'camera is held responsible for RGBDead' }).click()
+  await incident.getByRole('row', { name: /rgb_restart.*it was tried already/ }).waitFor()
+  await isAccessible(page)
+  await picture(page, 'incident')
+  const saving = page.waitForEvent('download')
+  await incident.getByRole('button', { name: 'Save as a page to send …' }).click()
+  const html = readFileSync(await (await saving).path(), 'utf8')
+  for (const text of ['<title>camera', 'rgb_redeploy', 'it was tried already', 'killed by signal 9', '<svg']) expect(html.includes(text), `the file is without ${text}`)
+  expect(!/<script|src=|href=/.test(html), 'the file needs something beside itself')
+  expect(html.includes('&lt;b&gt;rover') && !html.includes('<b>rover'), 'a name is not only text')
+  stop()
+}
+
 // What one begins to imagine with is the robot as it is: with its dead camera.
 async function imaginesTheRobotAsItIs(page, server) {
   server.forget()
@@ -158,6 +185,7 @@ await stubbed(kCalls, async (page, server) => {
   await page.getByRole('region', { name: 'Status' }).waitFor()
   await everyState(page, server)
   await everyPage(page, server)
+  await tellsAnIncident(page, server)
   await imaginesTheRobotAsItIs(page, server)
   await theKeyPauses(page, server)
   await isNeverOldInSecret(page, server)

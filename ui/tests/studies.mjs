@@ -81,7 +81,7 @@ async function result(page) {
   const input = page.getByLabel('or open a result')
   writeFileSync(file('result.json'), JSON.stringify({ rows: [{ planner: 'mine', wrong_component: { mean: 0.25, sd: 0.5 } }] }))
   await input.setInputFiles(file('result.json'))
-  await page.getByRole('cell', { name: '0.25 ± 0.5' }).waitFor()
+  await page.getByRole('cell', { name: '0.250 ± 0.500' }).waitFor()
   writeFileSync(file('nonsense.json'), '{"rows": 1}')
   await input.setInputFiles(file('nonsense.json'))
   await page.getByText('it has no rows').waitFor()
