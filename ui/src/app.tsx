@@ -10,8 +10,9 @@ import { RulesPage } from './rules_page'
 import { SimulatorPage } from './simulator_page'
 import { isOld } from './freshness'
 import { followInTitle, StatusBar } from './status_bar'
-import { calls, robot, start } from './store'
+import { calls, can, robot, start } from './store'
 import { StudiesPage } from './studies_page'
+import { WallPage } from './wall_page'
 
 const kPages = [
   { name: 'robot', title: 'Robot', needs: 'get /api/stream', Page: RobotPage },
@@ -35,6 +36,7 @@ const trouble = signal('')
 
 function App() {
   const offered = kPages.filter((p) => calls.value.has(p.needs))
+  if (page.value === 'wall' && can('get', '/api/stream')) return <WallPage />
   const current = offered.find((p) => p.name === page.value) ?? offered[0]
   return (
     <>

@@ -39,7 +39,7 @@ function Density({ entry }: { entry: Entry }) {
     const x = Array.from({ length: 201 }, (_, i) => i / 200)
     const plot = new uPlot(
       {
-        width: Math.min(640, place.current!.clientWidth),
+        width: Math.min(640, place.current!.clientWidth || 640),
         height: 300,
         scales: { x: { time: false } },
         axes: [
@@ -64,6 +64,19 @@ function Density({ entry }: { entry: Entry }) {
       </figcaption>
       <div ref={place} />
     </figure>
+  )
+}
+
+// What one can be sure of, as a bar; what is believed, as a line; what the rules say, as a ring.
+function Interval({ low, high, now, prior }: { low: number; high: number; now: number; prior: number }) {
+  const x = (p: number) => `${2 + 96 * p}%`
+  return (
+    <svg class="interval" width="100%" height="18" aria-hidden="true">
+      <line x1={x(0)} x2={x(1)} y1="9" y2="9" class="track" />
+      <rect x={x(low)} width={`${96 * (high - low)}%`} y="4" height="10" rx="3" />
+      <line x1={x(now)} x2={x(now)} y1="1" y2="17" class="now" />
+      <circle cx={x(prior)} cy="9" r="4" />
+    </svg>
   )
 }
 
@@ -159,6 +172,7 @@ export function BeliefsPage() {
               <th scope="col">rules say</th>
               <th scope="col">believed now</th>
               <th scope="col">90 % sure of</th>
+              <th scope="col" class="interval-head">0 % to 100 %</th>
               <th scope="col">learned from</th>
             </tr>
           </thead>
@@ -180,6 +194,9 @@ export function BeliefsPage() {
                   <td class="number">{percent(a / (a + b))}</td>
                   <td class="number">
                     {percent(low)} to {percent(high)}
+                  </td>
+                  <td>
+                    <Interval low={low} high={high} now={a / (a + b)} prior={prior[0] / (prior[0] + prior[1])} />
                   </td>
                   <td class="number">
                     {seen < 0.5 ? 'nothing yet' : `${seen.toFixed(0)} outcome${seen < 1.5 ? '' : 's'}`}

@@ -24,6 +24,9 @@ export function RobotPage() {
         <Faults />
         <Components />
         <EventLog view={live} />
+        <p>
+          <a href="#wall">Wall view</a>: big and dark, nothing to press
+        </p>
       </div>
     </main>
   )

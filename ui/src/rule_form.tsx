@@ -15,6 +15,7 @@ import {
   withMember,
 } from './rule_document'
 import { names, ownName, parametersOf } from './live_names'
+import { SentenceForm } from './sentence_form'
 import { setRefused, type Take, undo } from './rule_edits'
 import { tell } from './notices'
 import { graph, robot } from './store'
@@ -187,6 +188,8 @@ function RuleCard({ document, change, place }: Props & { place: number }) {
   const trigger = at('TRIGGER')
   const name = String(document.statements[place].name)
   const props = { document, change }
+  const [why, setWhy] = useState<string | null>(null) // the sentence was not taken
+  const say = async (next: string) => setWhy(await change((d) => withMember(d, trigger!, 'expression', next)))
   return (
     <details class="rule" open>
       <summary>{name}</summary>
@@ -208,6 +211,18 @@ function RuleCard({ document, change, place }: Props & { place: number }) {
         )}
         <Remove what={`rule ${name}`} onClick={() => change((d) => replaced(d, place, end - place))} />
       </div>
+      {trigger !== undefined && (
+        <SentenceForm
+          document={document}
+          trigger={String(document.statements[trigger].expression)}
+          take={(next) => void say(next)}
+        />
+      )}
+      {why !== null && (
+        <small class="ERROR" role="alert">
+          ◆ Not taken: {why}
+        </small>
+      )}
       {trigger !== undefined && <Field {...props} place={trigger} member="expression" label="trigger" wide />}
       {within
         .filter(([s]) => s.statement === 'STRATEGY')
@@ -243,6 +258,8 @@ function Suggestions({ document }: { document: RuleDocument }) {
       {list('components', [...declared, ...live])}
       {list('topics', topics)}
       {list('services', names.value.services)}
+      {list('signals', document.statements.filter((s) => s.statement === 'SIGNAL').map((s) => String(s.name)))}
+      {list('constants', document.statements.filter((s) => s.statement === 'CONST').map((s) => String(s.name)))}
       {[...new Set([...declared, ...live])].map((component) =>
         list(`parameters of ${component}`, parametersOf(component, document))
       )}

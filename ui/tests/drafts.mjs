@@ -105,6 +105,25 @@ async function aNewRule(page) {
   await page.getByRole('button', { name: '+ Rule' }).click()
   await text(page).filter({ hasText: 'alive(' }).waitFor()
   await page.getByText('no errors').waitFor()
+  // Its trigger, said as a sentence by choosing and typing, and read back from what was typed as text.
+  const sentence = formOf(page).getByRole('group', { name: 'Sentence' }).last()
+  const clause = (place) => sentence.locator('.clause').nth(place)
+  await clause(0).getByLabel('what is looked at').selectOption('a topic is silent for longer than')
+  await enter(clause(0).getByLabel('its name'), '/scan')
+  await enter(clause(0).getByLabel('how much'), '2s')
+  await sentence.getByRole('button', { name: '+ and …' }).click()
+  await clause(1).getByLabel('what is looked at').selectOption('the lifecycle of a component')
+  await enter(clause(1).getByLabel('its name'), 'lidar')
+  await clause(1).getByLabel('how it compares').selectOption('is')
+  await clause(1).getByLabel('which state').selectOption('inactive')
+  await text(page).filter({ hasText: 'TRIGGER age(/scan) > 2s && lifecycle(lidar) == "inactive"' }).waitFor()
+  await isAccessible(page)
+  await picture(page, 'sentence')
+  const trigger = formOf(page).getByLabel('trigger').last()
+  await enter(trigger, 'rate(/scan) < 3')
+  await page.waitForFunction(() => [...document.querySelectorAll('.clause select')].at(-1).value === 'slow') // it follows the text
+  await enter(trigger, 'age(/scan) > 2s || alive(lidar) == false')
+  await formOf(page).getByText('more than a sentence can say').last().waitFor()
 }
 
 async function noServer(page, server) {

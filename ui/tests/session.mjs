@@ -83,7 +83,7 @@ async function browse(server, steps) {
     page.on('pageerror', (error) => complaints.push(String(error)))
     page.on('console', (message) => {
       // What the server refuses, and that it is gone, is told to the person by the page itself.
-      const isRefusal = /responded with a status of 4|ERR_INCOMPLETE_CHUNKED|ERR_CONNECTION_REFUSED/.test(message.text())
+      const isRefusal = /responded with a status of 4|ERR_INCOMPLETE_CHUNKED|ERR_CONNECTION_(REFUSED|RESET)|ERR_EMPTY_RESPONSE/.test(message.text())
       if (message.type() === 'error' && !isRefusal) complaints.push(message.text())
     })
     await page.goto(address)

@@ -103,6 +103,32 @@ async function everyPage(page, server) {
   stop()
 }
 
+// For a screen on a wall: the same words, and nothing to press but the way back.
+async function hangsOnTheWall(page, server) {
+  server.forget()
+  play(server, kStates.ill)
+  const stop = keepTelling(server, kStates.ill)
+  await page.evaluate(() => (location.hash = 'wall'))
+  await page.emulateMedia({ colorScheme: 'light' })
+  const cause = page.getByRole('heading', { name: 'camera is dead' })
+  await cause.waitFor()
+  for (const viewport of [kSizes.desktop, { width: 1920, height: 1080 }]) {
+    await page.setViewportSize(viewport)
+    await isSeen(page, cause, 'the cause on the wall')
+    await isSeen(page, page.locator('.wall footer time'), 'the freshness on the wall')
+    await isSeen(page, page.locator('.tile.is-blamed'), 'the culprit on the wall')
+  }
+  expect((await page.getByRole('button').count()) === 0, 'there is something to press on the wall')
+  const background = await page.locator('main').evaluate((e) => getComputedStyle(e).backgroundColor)
+  expect(background === 'rgb(18, 22, 28)', `the wall is not dark: ${background}`)
+  await isAccessible(page)
+  await picture(page, 'wall')
+  await page.setViewportSize(kSizes.desktop)
+  await page.getByRole('link', { name: 'Leave' }).click()
+  await page.getByRole('navigation').waitFor()
+  stop()
+}
+
 // One time that it was not well, with what was decided; a link that lasts; and a file for somebody who has no culprit.
 async function tellsAnIncident(page, server) {
   server.forget()
@@ -185,6 +211,7 @@ await stubbed(kCalls, async (page, server) => {
   await page.getByRole('region', { name: 'Status' }).waitFor()
   await everyState(page, server)
   await everyPage(page, server)
+  await hangsOnTheWall(page, server)
   await tellsAnIncident(page, server)
   await imaginesTheRobotAsItIs(page, server)
   await theKeyPauses(page, server)
