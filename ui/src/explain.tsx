@@ -1,12 +1,13 @@
 // Why: for each cause who is held responsible, what it makes fail, what was weighed and why not the others, and what
 // happens next.
+import { ComponentPanel } from './component_panel'
 import { byTheClock, lasting, lastingSoFar, when } from './clock'
 import { nowByTheClock } from './freshness'
 import type { Failure, View } from './history'
-import { conditionOf, headlineOf, healthOf, type Incident, incidentsOf, type Known, listed } from './incidents'
+import { headlineOf, healthOf, type Incident, incidentsOf, type Known, listed } from './incidents'
 import { doingOf, kSigns, type Tone } from './status'
-import { clockAt, culprits, incidents, isLive, known, live, now, robot, rulesByComponent, selected, situation, state, stateOfComponent } from './store'
-import type { Candidate, ComponentState, Criticality, ManagerEvent } from './types'
+import { clockAt, culprits, incidents, isLive, known, live, now, robot, rulesByComponent, selected, situation, state } from './store'
+import type { Candidate, Criticality, ManagerEvent } from './types'
 
 export const kWords: Record<Criticality, string> = {
   ERROR: 'error',
@@ -182,15 +183,6 @@ function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
   )
 }
 
-function describeComponent(known: ComponentState | undefined): string {
-  if (!known) return 'unknown'
-  const parts = [conditionOf({ isGone: false, state: known }) || (known.alive === null ? 'not seen yet' : 'alive')]
-  if (known.lifecycle) parts.push(known.lifecycle)
-  if (known.adapting) parts.push(`being adapted (${known.adapting})`)
-  if (known.remark) parts.push(known.remark)
-  return parts.join(', ')
-}
-
 // The same as the graph in words, for whoever cannot see or point at it.
 export function Components() {
   const sick = new Set(situation.value.failures.map((f) => f.rule))
@@ -211,19 +203,11 @@ export function Components() {
               >
                 <span aria-hidden="true">{sign}</span> {c.name}
               </button>
-              {selected.value === c.name && (
-                <div class="details">
-                  <p>{isLive.value ? describeComponent(stateOfComponent(c.name)) : 'its state is shown live only'}</p>
-                  <p>
-                    Rules about it: {listed(rules.map((r) => r.name)) || 'none'}
-                    {failing.length > 0 && `; failing: ${listed(failing.map((r) => r.name))}`}.
-                  </p>
-                </div>
-              )}
             </li>
           )
         })}
       </ul>
+      {selected.value && <ComponentPanel key={selected.value} name={selected.value} />}
     </section>
   )
 }

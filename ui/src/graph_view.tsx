@@ -199,7 +199,7 @@ function stylesheet(): cytoscape.StylesheetStyle[] {
         'text-background-color': colour('surface'),
         'text-background-opacity': 1,
         'text-background-padding': '2px',
-        'text-margin-y': -19, // beside the edge, which stays to be seen
+        'text-margin-y': 'data(aside)' as never, // beside the edge, which stays to be seen
         'text-background-shape': 'roundrectangle',
         'curve-style': 'bezier',
         'target-arrow-shape': 'triangle',
@@ -252,6 +252,7 @@ function clearBend(from: Point, to: Point, others: Point[]): number {
   return kBends.find(isClear) ?? kBends[1]
 }
 
+const kAside = 19 // from an edge to its label
 const kDiscovery = 10_000 // ms
 const isUpright = matchMedia('(max-width: 700px)')
 const kUprightRow = 208
@@ -275,6 +276,7 @@ class Drawing {
   private readonly cy: cytoscape.Core
   private points = new Map<string, Point>()
   private held: Map<string, Point> // for ever
+  private middle = 0 // of what is shown
   private bends = new Map<string, number>() // of edges that would lead through nodes
   private readonly begun = Date.now()
   private structure = ''
@@ -308,6 +310,7 @@ class Drawing {
           isCascade: cascade.value.has(id),
           isLong: this.isLong(edge),
           bend: this.bends.get(id) ?? 0,
+          aside: this.aside(edge),
         })
       }
     })
@@ -376,9 +379,17 @@ class Drawing {
     writePlaces(this.held)
   }
 
+  // Labels stand outside, where fewer edges are.
+  private aside({ from, to }: { from: string; to: string }): number {
+    const [a, b] = [this.points.get(from)!, this.points.get(to)!]
+    return a.y + b.y > 2 * this.middle ? kAside : -kAside
+  }
+
   private bend(): void {
     const places = new Map([...this.points].map(([node, point]) => [node, this.onScreen(point)]))
     this.bends.clear()
+    const rows = shown.value.nodes.flatMap(({ node }) => this.points.get(node)?.y ?? [])
+    this.middle = (Math.min(...rows) + Math.max(...rows)) / 2
     for (const [id, edge] of shown.value.edges) {
       const [from, to] = [places.get(edge.from), places.get(edge.to)]
       if (!from || !to || !this.isLong(edge)) continue // what is new is drawn soon

@@ -103,6 +103,21 @@ async function everyPage(page, server) {
   stop()
 }
 
+// Whoever asks about a component is told all that is known of it.
+async function tellsOfAComponent(page, server) {
+  server.forget()
+  play(server, kStates.ill)
+  const stop = keepTelling(server, kStates.ill)
+  await page.evaluate(() => (location.hash = 'robot'))
+  await page.reload()
+  await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'camera' }).click()
+  const panel = page.getByRole('region', { name: 'About camera' })
+  for (const text of ['/camera', 'gone', 'RGBDead.rgb_restart and RGBDead.rgb_redeploy', 'silent for 12 s', 'killed by signal 9']) await panel.getByText(text).first().waitFor()
+  await isAccessible(page)
+  await picture(page, 'component')
+  stop()
+}
+
 // For a screen on a wall: the same words, and nothing to press but the way back.
 async function hangsOnTheWall(page, server) {
   server.forget()
@@ -211,6 +226,7 @@ await stubbed(kCalls, async (page, server) => {
   await page.getByRole('region', { name: 'Status' }).waitFor()
   await everyState(page, server)
   await everyPage(page, server)
+  await tellsOfAComponent(page, server)
   await hangsOnTheWall(page, server)
   await tellsAnIncident(page, server)
   await imaginesTheRobotAsItIs(page, server)
