@@ -11,6 +11,7 @@
 #include "live/preflight.h"
 #include "live/robot_survey.h"
 #include "terminal/console.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
@@ -112,10 +113,8 @@ void add_check(CLI::App& app, int& exit_code) {
       "--robot", options->robot,
       "Check also against the live robot: nodes, topics, parameters, diagnostics and services "
       "that it has not");
-  command->add_option("--wait", options->wait_seconds, "How long to look at the robot, in seconds")
-      ->needs(robot)
-      ->check(CLI::Range(0.1, 600.0))
-      ->capture_default_str();
+  add_seconds(*command, "--wait", options->wait_seconds, "How long to look at the robot", 0.1, 600)
+      ->needs(robot);
   command
       ->add_option("--format", options->format,
                    "text for people; json or sarif (2.1.0) for programs, on stdout")

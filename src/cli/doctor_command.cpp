@@ -12,6 +12,7 @@
 #include "doctor/look.h"
 #include "ros2/options.h"
 #include "terminal/console.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
@@ -84,9 +85,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
       "doctor",
       "Say what is wrong with the robot, without a rule: looks for some seconds, changes "
       "nothing, and exits with 0 if it finds nothing");
-  command->add_option("--for", options->seconds, "How long to look, in seconds")
-      ->check(CLI::Range(0.1, 600.0))
-      ->capture_default_str();
+  add_seconds(*command, "--for", options->seconds, "How long to look", 0.1, 600);
   command->add_flag("--json", options->json, "For programs");
   command->callback([options, &exit_code] { exit_code = examine_robot(*options); });
 }

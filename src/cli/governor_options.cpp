@@ -7,6 +7,7 @@
 
 #include "journal/history.h"
 #include "journal/json.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
@@ -58,15 +59,12 @@ void GovernorOptions::add_to(CLI::App& command) {
   const std::string kGroup = "The governor (docs/governor.md)";
   command.add_flag("--approve", approve, "Ask a person before each strategy")->group(kGroup);
   const auto time = [&](const char* option, double& value, const char* help) {
-    command.add_option(option, value, help)
-        ->check(CLI::Range(0.0, kLongest))
-        ->capture_default_str()
-        ->group(kGroup);
+    add_seconds(command, option, value, help, 0, kLongest)->group(kGroup);
   };
   const auto intensity = [&](const char* option, std::string& value, const char* help) {
     command.add_option(option, value, help)->capture_default_str()->group(kGroup);
   };
-  time("--quiet", quiet_seconds, "Begin nothing in the first so many seconds");
+  time("--quiet", quiet_seconds, "Begin nothing for so long after the start");
   intensity("--intensity", overall, "At most so many strategies in such a time, or none");
   intensity("--intensity-kind", per_kind,
             "The same of each kind: reconfigurations, lifecycle changes, restarts of processes");
@@ -75,10 +73,10 @@ void GovernorOptions::add_to(CLI::App& command) {
             "A component is restarted at most so often in such a time, whatever its failures; "
             "beyond, a person must look");
   time("--backoff", backoff_seconds,
-       "Seconds between two restarts of a component, doubled with each; 0: no back-off");
-  time("--backoff-most", backoff_most_seconds, "At most so many seconds");
+       "The time between two restarts of a component, doubled with each; 0: no back-off");
+  time("--backoff-most", backoff_most_seconds, "At most so long");
   time("--healthy", healthy_seconds,
-       "A failure that stayed away, and a component that was well, for so many seconds is proven "
+       "A failure that stayed away, and a component that was well, for so long is proven "
        "well: only then is learned from it, and attempts are counted anew");
   command
       .add_option("--storm", storm_percent,

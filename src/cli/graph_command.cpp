@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "knowledge/dependency_graph.h"
 #include "live/live_robot.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
@@ -129,9 +130,7 @@ void add_graph(CLI::App& app, int& exit_code) {
   command
       ->add_flag("--dot", options->dot, "For Graphviz: culprit graph --dot | dot -Tsvg > robot.svg")
       ->excludes(json);
-  command->add_option("--wait", options->wait_seconds, "How long to look, in seconds")
-      ->check(CLI::Range(0.1, 600.0))
-      ->capture_default_str();
+  add_seconds(*command, "--wait", options->wait_seconds, "How long to look", 0.1, 600);
   command->callback([options, &exit_code] { exit_code = show_graph(*options); });
 }
 

@@ -14,6 +14,7 @@
 #include "live/robot_survey.h"
 #include "ros2/options.h"
 #include "terminal/console.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
@@ -74,9 +75,7 @@ void add_init(CLI::App& app, int& exit_code) {
       "init",
       "Draft a rule file from a live robot that is well: its components, how they are started, and "
       "how long their topics pause. Changes nothing on the robot");
-  command->add_option("--for", options->seconds, "How long to watch it, in seconds")
-      ->check(CLI::Range(5.0, 3600.0))
-      ->capture_default_str();
+  add_seconds(*command, "--for", options->seconds, "How long to watch it", 5, 3600);
   command->add_option("-o,--output", options->output,
                       "Where to write the draft (default: stdout). No file is overwritten");
   command->callback([options, &exit_code] { exit_code = draft_rules(*options); });

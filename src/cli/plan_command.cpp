@@ -18,6 +18,7 @@
 #include "rule_test/state.h"
 #include "terminal/console.h"
 #include "terminal/planner_options.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
@@ -160,11 +161,8 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->add_option("--format", options->format, "text for people, json for programs")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
-  command
-      ->add_option("--settle", options->settle_seconds,
-                   "With --robot: so many seconds are given to discovery")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
+  add_seconds(*command, "--settle", options->settle_seconds,
+              "With --robot: the time that is given to discovery", 0, 3600);
   command->add_option("--message-path", options->message_path,
                       "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
   options->planner.add_to(*command);

@@ -3,6 +3,7 @@
 #include "base/environment.h"
 #include "live/robot_survey.h"
 #include "live/run_journal.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 
@@ -51,11 +52,8 @@ void RunOptions::add_to(CLI::App& command) {
   command.add_flag("--improvise", improvise,
                    "Also repair components that no rule adapts, by what they offer: restart, "
                    "redeploy");
-  command
-      .add_option("--settle", settle_seconds,
-                  "For so many seconds, nothing is called missing because it was not seen")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
+  add_seconds(command, "--settle", settle_seconds,
+              "For so long, nothing is called missing because it was not seen", 0, 3600);
   command.add_option("--state-dir", state_folder, "Where logs of started components go")
       ->default_str("~/.local/state/culprit");
   auto* kept = command.add_option(

@@ -1,0 +1,38 @@
+#include "terminal/seconds_option.h"
+
+#include <fmt/core.h>
+
+#include "base/units.h"
+
+namespace culprit {
+namespace {
+
+// A number of seconds is left as it is; what is neither that nor a duration, too: CLI11 says then
+// what is wrong with it.
+std::string in_seconds(std::string& text) {
+  if (text.find_first_not_of("+-.0123456789eE") == std::string::npos) return "";
+  const auto time = parse_duration(text);
+  if (!time) return time.error();
+  text = fmt::format("{}", seconds(*time));
+  return "";
+}
+
+}  // namespace
+
+CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& value,
+                         const std::string& what, double least, double most) {
+  const auto in_range = [=](const std::string& text) {
+    double number = 0;
+    const bool is_number = CLI::detail::lexical_cast(text, number);
+    if (is_number && number >= least && number <= most) return std::string();
+    return fmt::format("{} is not from {} to {}", text, to_string(from_seconds(least)),
+                       to_string(from_seconds(most)));
+  };
+  return command.add_option(name, value, what)
+      ->check(CLI::Validator(in_range, ""))
+      ->transform(CLI::Validator(in_seconds, ""))
+      ->type_name("DURATION")
+      ->default_str(to_string(from_seconds(value)));
+}
+
+}  // namespace culprit
