@@ -21,6 +21,7 @@
 #include "journal/json.h"
 #include "journal/reader.h"
 #include "journal/session.h"
+#include "live/robot_survey.h"
 #include "owners/proc.h"
 #include "plan/bayes/bayes_planner.h"
 #include "replay/replay.h"
@@ -36,6 +37,37 @@ using testing::HasSubstr;
 int setting(const char* name, int otherwise) {
   const char* value = std::getenv(name);
   return value == nullptr ? otherwise : std::atoi(value);
+}
+
+// What the robot's nodes are set to, and how old the pictures are that they send: for whoever has to
+// find out why it does not get well.
+std::string state_of_the_robot() {
+  auto survey = live::open_survey();
+  if (!survey) return survey.error();
+  LiveInterest interest;
+  for (const sunset::Member member : sunset::kManagedMembers)
+    interest.nodes.insert("/managed_subsystem/" + std::string(name_of(member)));
+  for (const std::string_view topic :
+       {sunset::topics::kRgbCamera, sunset::topics::kDepthCamera, sunset::topics::kSensorsFused})
+    interest.fields_of_topics[std::string(topic)] = {"header.stamp.sec", "header.stamp.nanosec"};
+  (*survey)->ask_for(interest);
+  std::this_thread::sleep_for(4s);  // a rate is counted over two
+  const LiveInventory robot = (*survey)->inventory();
+  std::string text;
+  for (const auto& [name, node] : robot.nodes) {
+    text += name + " (process " + std::to_string(node.pid) + ") " + node.lifecycle;
+    for (const auto& [parameter, value] :
+         node.parameters.value_or(decltype(node.parameters)::value_type{}))
+      text += " " + parameter + "=" + (value ? to_string(*value) : "?");
+    text += "\n";
+  }
+  for (const auto& [name, topic] : robot.topics) {
+    if (!topic.rate) continue;
+    text += name + " " + std::to_string(*topic.rate) + " Hz";
+    for (const auto& [field, value] : topic.fields) text += " " + field + "=" + to_string(value);
+    text += "\n";
+  }
+  return text;
 }
 
 // Each belief of the journal grows by one outcome at a time, each of which was said; what one run
@@ -226,7 +258,7 @@ TEST_F(Chaos, CulpritMayBeKilledAtAnyInstant) {
     let_live(culprit);
     if (i - ended_well == kKillsUntilWell) {
       if (!robot.is_well_within(180s)) {
-        ADD_FAILURE() << robot.complaint() << "\n" << culprit.output();
+        ADD_FAILURE() << robot.complaint() << "\n" << state_of_the_robot() << culprit.output();
         break;
       }
       ended_well = i;
