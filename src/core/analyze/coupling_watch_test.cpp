@@ -58,8 +58,8 @@ struct Two {
   }
 
   // What the effect's rule reads may be five seconds old.
-  void read_seldom() {
-    for (const InputId id : rules[kEffect].inputs) knowledge.signals.set_latency(id, 5s);
+  void read_seldom(Duration latency = 5s) {
+    for (const InputId id : rules[kEffect].inputs) knowledge.signals.set_latency(id, latency);
   }
   // A strategy of `rule` that began at `begin` and took effect a second later.
   Attempt attempt(RuleId rule, Time begin) const {
@@ -140,6 +140,16 @@ TEST(CouplingWatch, TakesWhatCameToLightWithTheRepairForNoLateEffect) {
     EXPECT_TRUE(watch.is_echo(two.attempt(kEffect, Two::kCame + 7900ms)))
         << "a reading from before may still be believed";
   }
+}
+
+// It has the usual time from the end of the change on: ten cycles.
+TEST(CouplingWatch, GivesWhatCameToLightWithTheRepairTheUsualTimeToGo) {
+  Two two("", 4s, "WARNING");
+  two.read_seldom(2s);
+  CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+  watch.ended(two.attempt(kCause, Two::kCame + 2s), Two::kCame + 5s);
+  EXPECT_TRUE(watch.is_echo(two.attempt(kEffect, Two::kCame + 6900ms)));
+  EXPECT_FALSE(watch.is_echo(two.attempt(kEffect, Two::kCame + 7100ms)));
 }
 
 }  // namespace

@@ -227,5 +227,18 @@ RC_GTEST_PROP(DependencyGraph, CondensesTheSameWhateverCameAndWent, ()) {
   check_condensation(rules, graph);
 }
 
+// The network decides how many there are.
+TEST(DependencyGraph, TakesInAsManyNodesAsItMayAndNoMore) {
+  Graph graph("COMPONENT c NODE /c LAUNCH \"c\"\n");
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i < DependencyGraph::kMaxNodes + 2; ++i) {
+    const std::string number = std::to_string(i);
+    taken += (*graph).endpoint_appeared("/n" + number, kPublisher, "/t" + number);
+  }
+  EXPECT_EQ(taken, DependencyGraph::kMaxNodes - 1) << "the component has its place";
+  EXPECT_FALSE((*graph).endpoint_appeared("/one_more", kPublisher, "/t0"));
+  EXPECT_TRUE((*graph).endpoint_appeared("/n1", kPublisher, "/t0")) << "it is known";
+}
+
 }  // namespace
 }  // namespace culprit

@@ -247,6 +247,18 @@ TEST(ProvenHealth, OnlyTheLastResortIsLeftAcrossACrashOfCulprit) {
   EXPECT_GE(robot.count("FusionSilent is exhausted"), 1u) << transcript(robot);
 }
 
+TEST(ProvenHealth, WhatIsTriedAnewAfterAPauseIsSoAcrossACrashOfCulprit) {
+  TestRobot robot = robot_that_is_well(20s);
+  robot["camera"].fault = "a person";
+  const Time end = robot.now + 60s;
+  while (robot.count("trying anew after a pause") == 0 && robot.now < end) robot.run_for(100ms);
+  const std::size_t before = robot.count("camera is held responsible");
+  ASSERT_EQ(before, 2u) << transcript(robot);
+  crash_and_go_on(robot, 20s);
+  robot.run_for(60s);
+  EXPECT_EQ(robot.count("camera is held responsible"), 4u) << transcript(robot);
+}
+
 // As the paper has it; what its studies are run with.
 TEST(ProvenHealth, WithNoneAskedForEachVerdictCountsByItself) {
   TestRobot robot = robot_that_is_well(0s);

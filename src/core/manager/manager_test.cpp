@@ -85,6 +85,15 @@ TEST(Manager, BlamesEveryComponentWithoutTheDependencyGraph) {
   EXPECT_TRUE(robot.was_asked("segmentation:"));
 }
 
+// Its clock is not ours: what comes from the future is of now.
+TEST_P(ManagerWith, IsNotCarriedIntoTheFutureByAnObservation) {
+  TestRobot robot = pipeline();
+  const Observation early{robot.now + 1h, NodeAppeared{"/somebody", 0}};
+  EXPECT_TRUE(robot.manager().step(robot.now, {&early, 1}).empty());
+  robot.run_for(2s);
+  EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+}
+
 TEST_P(ManagerWith, RedeploysWhenARestartDidNotHelp) {
   TestRobot robot = pipeline();
   robot["fusion"].fault = "redeploy";

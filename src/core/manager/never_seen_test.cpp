@@ -153,6 +153,10 @@ TEST(NeverSeen, ARequiredComponentIsToldAndNothingElse) {
   EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
   EXPECT_EQ(robot.count("lidar is REQUIRED and was never seen: the robot has no node /lidar"), 1u)
       << transcript(robot);
+  const auto& components = robot.manager().knowledge().components;
+  EXPECT_TRUE(components[ComponentId(0)].is_missed);
+  robot.tell(NodeAppeared{"/lidar", 7});
+  EXPECT_FALSE(components[ComponentId(0)].is_missed) << "a person is told no longer";
 }
 
 TEST(NeverSeen, AFailureThatNeedsNoMoreThanWhatIsSeenIsActedOn) {
