@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <system_error>
 
+#include "base/environment.h"
 #include "live/rule_trust.h"
 #include "owners/setup.h"
 #include "owners/spawn.h"
@@ -56,7 +57,8 @@ std::optional<LiveInventory::LaunchTrouble> launch_trouble(const Component& comp
     return Found{component.name, Found::Clause::kFolder, component.folder,
                  "there is no folder " + component.folder};
   if (!component.setup.empty()) return std::nullopt;
-  owners::Program program{component.launch, {}, "/dev/null", component.environment};
+  // Looked for where culprit run looks for it.
+  owners::Program program{component.launch, {own_folder()}, "/dev/null", component.environment};
   program.folder = component.folder;
   if (const auto could = could_run(program); !could)
     return Found{component.name, Found::Clause::kLaunch, component.launch.front(), could.error()};

@@ -61,6 +61,12 @@ TEST_F(Setups, AProgramIsLookedForWhereTheRulesSay) {
   EXPECT_EQ(found->why, "there is no program 'only_there' in PATH");
 }
 
+// culprit's own folder, which is hardly in PATH.
+TEST_F(Setups, AProgramIsLookedForBesideCulpritToo) {
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").filename();
+  EXPECT_FALSE(trouble("LAUNCH \"" + self + " 1\""));
+}
+
 // A rule file that is checked may be somebody else's.
 TEST_F(Setups, NothingIsRunToCheckThem) {
   EXPECT_FALSE(trouble("LAUNCH \"only_there 1\" SETUP " + setup.string()));
