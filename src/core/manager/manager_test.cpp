@@ -85,6 +85,34 @@ TEST(Manager, BlamesEveryComponentWithoutTheDependencyGraph) {
   EXPECT_TRUE(robot.was_asked("segmentation:"));
 }
 
+// An answer to one command must not be taken for one to another.
+TEST_P(ManagerWith, NumbersItsCommandsUpwards) {
+  TestRobot robot = pipeline();
+  std::vector<std::uint64_t> numbers;
+  robot.before_commands = [&](std::vector<Observation>&, std::span<const Command> commands) {
+    for (const Command& command : commands) numbers.push_back(command.id.number);
+    return true;
+  };
+  robot["camera"].fault = "redeploy";
+  robot.run_for(20s);
+  EXPECT_GE(numbers.size(), 4u) << transcript(robot);
+  EXPECT_TRUE(std::is_sorted(numbers.begin(), numbers.end(), std::less_equal<>()));
+}
+
+// Nothing comes from this robot any more that would wake the manager.
+TEST(Manager, WakesByItselfToTryAnewAfterAPause) {
+  TestRobot robot(
+      "COMPONENT camera NODE /camera\n"
+      "RULE Blurred\n  POLICIES ERROR ATTEMPTS 4\n  TRIGGER blur > 1\n"
+      "    STRATEGY refocus 60 10\n      ADAPTATION camera set_parameter focus 1 5\n");
+  robot.add("camera");
+  robot.discover();
+  robot.run_for(6s);
+  robot.signal("blur", Value(2.0));
+  robot.run_for(120s);
+  EXPECT_GE(robot.count("camera is held responsible"), 2u) << transcript(robot);
+}
+
 // Its clock is not ours: what comes from the future is of now.
 TEST_P(ManagerWith, IsNotCarriedIntoTheFutureByAnObservation) {
   TestRobot robot = pipeline();
