@@ -111,6 +111,7 @@ TEST(DependencyGraph, ANodeThatIsThereAppearsOnce) {
   EXPECT_FALSE((*graph).node_appeared("/camera"));
   EXPECT_EQ((*graph).changes(), changes);
   EXPECT_TRUE((*graph).node_vanished("/camera"));
+  EXPECT_EQ((*graph).changes(), changes + 1);
   EXPECT_TRUE((*graph).node_appeared("/camera"));
 }
 

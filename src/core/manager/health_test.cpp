@@ -259,6 +259,19 @@ TEST(ProvenHealth, WhatIsTriedAnewAfterAPauseIsSoAcrossACrashOfCulprit) {
   EXPECT_EQ(robot.count("camera is held responsible"), 4u) << transcript(robot);
 }
 
+TEST(ProvenHealth, WhatWasProvenWellAcrossACrashIsNotHeldAgainstTheNextFailure) {
+  TestRobot robot = robot_that_is_well(20s);
+  robot["camera"].fault = "redeploy";
+  robot.run_for(5s);
+  ASSERT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);
+  crash_and_go_on(robot, 20s);
+  robot.run_for(30s);
+  robot["camera"].fault = "redeploy";
+  robot.run_for(5s);
+  EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 2u) << transcript(robot);
+  EXPECT_EQ(robot.count("nothing left to try"), 0u) << transcript(robot);
+}
+
 // As the paper has it; what its studies are run with.
 TEST(ProvenHealth, WithNoneAskedForEachVerdictCountsByItself) {
   TestRobot robot = robot_that_is_well(0s);

@@ -359,6 +359,22 @@ TEST(Manager, ProvesAParameterByReadingItBack) {
   EXPECT_EQ(robot.count("Dark resolved by brighten"), 1u) << transcript(robot);
 }
 
+TEST(Manager, IncreasesAParameterByNumbersOfBothKinds) {
+  for (const auto& [by, after] : {std::pair{"0.5", 1.5}, std::pair{"2", 3.0}}) {
+    TestRobot robot(
+        "COMPONENT camera NODE /camera\nRULE Dark\n  POLICIES WARNING\n  TRIGGER light < 0.5\n"
+        "    STRATEGY more 90 10\n      ADAPTATION camera increase_parameter gain " +
+        std::string(by) + " 5\n");
+    robot.add("camera").parameters = {{"gain", Value(1.0)}};
+    robot.discover();
+    robot.signal("light", Value(1.0));
+    robot.run_for(6s);
+    robot.signal("light", Value(0.2));
+    robot.run_for(300ms);
+    EXPECT_EQ(robot["camera"].parameters["gain"], Value(after)) << transcript(robot);
+  }
+}
+
 TEST(Manager, UndoesAStrategyThatFailedBeforeTheNext) {
   TestRobot robot = dark_camera();
   robot.signal("brightness", Value(0.2));
