@@ -12,7 +12,16 @@ const lastState = signal(0)
 const skew = signal(0) // s, of the robot's clock before this browser's
 const tick = signal(Date.now())
 
-setInterval(() => (tick.value = Date.now()), kTick)
+// A page that was busy or asleep itself first hears what has come meanwhile.
+const kLate = 1000 // ms
+let ticked = Date.now()
+setInterval(() => {
+  const now = Date.now()
+  const isLate = now - ticked > kLate
+  ticked = now
+  if (isLate) setTimeout(() => (tick.value = Date.now()), kTick)
+  else tick.value = now
+}, kTick)
 
 export function begun(): void {
   lastSign.value = tick.value = Date.now()

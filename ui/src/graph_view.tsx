@@ -276,6 +276,7 @@ class Drawing {
   private readonly cy: cytoscape.Core
   private points = new Map<string, Point>()
   private held: Map<string, Point> // for ever
+  private wanted = `${showsAll.peek()} ${search.peek()}`
   private middle = 0 // of what is shown
   private bends = new Map<string, number>() // of edges that would lead through nodes
   private readonly begun = Date.now()
@@ -369,6 +370,10 @@ class Drawing {
     const { nodes, edges } = shown.value
     const names = nodes.map((n) => n.node)
     const links = [...edges.values()].map((e): [string, string] => [e.from, e.to])
+    // Whoever asks for more or for less sees what is there stay where it is.
+    const wanted = `${showsAll.value} ${search.value}`
+    if (wanted !== this.wanted) this.holdPlaces()
+    this.wanted = wanted
     const isDiscovered = Date.now() - this.begun > kDiscovery
     if (this.held.size === 0 && !isDiscovered) {
       this.points = layered(names, links, this.points)

@@ -2,7 +2,8 @@
 import { ticks } from './axis'
 import { byTheCalendar, byTheClock, lasting } from './clock'
 import type { PastIncident } from './past_incidents'
-import type { ManagerEvent } from './types'
+import { costOf } from './explain'
+import type { Candidate, ManagerEvent } from './types'
 
 export interface Report {
   incident: PastIncident
@@ -37,7 +38,10 @@ function timeline({ incident, end, clockOf }: Report): string {
     const own = incident.events.filter((e) => e.rule === rule)
     const bars: string[] = []
     let from: ManagerEvent | null = null
-    const bar = (to: number) => `<rect class="${from!.criticality}" x="${x(from!.t)}" y="${row * kRow + 5}" width="${Math.max(3, x(to) - x(from!.t))}" height="${kRow - 10}" rx="2"/>`
+    const bar = (to: number) => {
+      const width = Math.max(3, x(to) - x(from!.t))
+      return `<rect class="${from!.criticality}" x="${x(from!.t)}" y="${row * kRow + 5}" width="${width}" height="${kRow - 10}" rx="2"/>`
+    }
     for (const event of own) {
       if (event.type === 'failure_detected') from = event
       if (from && (event.type === 'failure_resolved' || event.type === 'failure_lost')) {
@@ -46,11 +50,15 @@ function timeline({ incident, end, clockOf }: Report): string {
       }
     }
     if (from) bars.push(bar(end))
-    const marks = own.filter((e) => e.type === 'strategy_chosen').map((e) => `<text x="${x(e.t)}" y="${row * kRow + 17}" text-anchor="middle">${e.dry_run ? '▽' : '▼'}</text>`)
+    const mark = (e: ManagerEvent) => `<text x="${x(e.t)}" y="${row * kRow + 17}" text-anchor="middle">${e.dry_run ? '▽' : '▼'}</text>`
+    const marks = own.filter((e) => e.type === 'strategy_chosen').map(mark)
     return `<text x="0" y="${row * kRow + 17}">${safe(rule)}</text>${bars.join('')}${marks.join('')}`
   })
   const height = incident.rules.length * kRow
-  const axis = ticks(begin, last, 6, clockOf).map((tick) => `<line x1="${x(tick.at)}" x2="${x(tick.at)}" y1="0" y2="${height}"/><text x="${x(tick.at)}" y="${height + 16}" text-anchor="middle">${safe(tick.label)}</text>`)
+  const axis = ticks(begin, last, 6, clockOf).map(({ at, label }) => {
+    const line = `<line x1="${x(at)}" x2="${x(at)}" y1="0" y2="${height}"/>`
+    return `${line}<text x="${x(at)}" y="${height + 16}" text-anchor="middle">${safe(label)}</text>`
+  })
   return `<svg viewBox="0 0 ${kWide} ${height + 22}" role="img" aria-label="Failures over time">${axis.join('')}${rows.join('')}</svg>`
 }
 
@@ -60,7 +68,8 @@ const table = (head: string[], rows: string[]) => `<table><thead><tr>${head.map(
 function decision(event: ManagerEvent, clockOf: Report['clockOf']): string {
   const time = byTheClock(event.clock ?? clockOf(event.t), 2)
   const isChosen = (name: string) => event.type === 'strategy_chosen' && event.strategy === name
-  const candidates = (event.candidates ?? []).map((c) => row([safe(c.strategy), c.excluded && c.cost === 0 ? '–' : c.cost.toFixed(2), isChosen(c.strategy) ? '<b>chosen</b>' : safe(c.excluded?.text ?? '')]))
+  const why = (c: Candidate) => (isChosen(c.strategy) ? '<b>chosen</b>' : safe(c.excluded?.text ?? ''))
+  const candidates = (event.candidates ?? []).map((c) => row([safe(c.strategy), costOf(c), why(c)]))
   const suspects = (event.suspects ?? []).map((s) => `${safe(s.component)} ${(100 * s.probability).toFixed(0)} %`).join(', ')
   return `<h3><time>${time}</time> ${safe(event.text)}</h3>${suspects && `<p>Who may be responsible: ${suspects}</p>`}${table(['strategy', 'cost', 'why, or why not'], candidates)}`
 }

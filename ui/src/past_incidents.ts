@@ -30,6 +30,19 @@ function learn(incident: PastIncident, event: ManagerEvent): void {
   if (event.type === 'rule_exhausted') incident.isGivenUp = true
 }
 
+const begun = (event: ManagerEvent, before: ManagerEvent[]): PastIncident => ({
+  id: idOf(event),
+  from: event.t,
+  to: null,
+  clock: event.clock ?? event.t,
+  causes: [],
+  rules: [],
+  helped: [],
+  isGivenUp: false,
+  worst: 'OK',
+  events: before,
+})
+
 // Newest first. What came shortly before belongs to it: a component is lost before a rule sees it.
 export function pastIncidents(events: ManagerEvent[]): PastIncident[] {
   const list: PastIncident[] = []
@@ -38,8 +51,8 @@ export function pastIncidents(events: ManagerEvent[]): PastIncident[] {
   events.forEach((event, place) => {
     if (event.type === 'failure_detected') {
       if (!now) {
-        const before = events.slice(Math.max(0, place - kBefore), place).filter((e) => event.t - e.t < kShortly && e.type === 'component_lost')
-        now = { id: idOf(event), from: event.t, to: null, clock: event.clock ?? event.t, causes: [], rules: [], helped: [], isGivenUp: false, worst: 'OK', events: before }
+        const isPart = (e: ManagerEvent) => e.type === 'component_lost' && event.t - e.t < kShortly
+        now = begun(event, events.slice(Math.max(0, place - kBefore), place).filter(isPart))
         list.unshift(now)
       }
       open.add(event.rule!)

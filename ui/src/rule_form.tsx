@@ -1,5 +1,6 @@
 // Rules, strategies and adaptations as a form over the statements of the file.
 import type { ComponentChildren } from 'preact'
+import { kDeclarations, namesOf, placeFor } from './declarations'
 import { useEffect, useRef, useState } from 'preact/hooks'
 import {
   endOf,
@@ -25,8 +26,9 @@ interface Props {
   change: Take
 }
 
-const shown = (value: unknown): string =>
-  value === undefined ? '' : Array.isArray(value) ? value.join('/') : String(value)
+type FieldKind = 'text' | 'number' | 'hold' | 'list'
+const shown = (value: unknown, kind: FieldKind = 'text'): string =>
+  value === undefined ? '' : Array.isArray(value) ? value.join(kind === 'list' ? ' ' : '/') : String(value)
 
 // The names to offer for a member of an adaptation of `component`.
 const listOf = (member: string, component: string) =>
@@ -39,7 +41,7 @@ function Field(
     place: number
     member: string
     label: string
-    kind?: 'text' | 'number' | 'hold'
+    kind?: FieldKind
     optional?: boolean
     wide?: boolean // a line of its own
     wider?: boolean
@@ -59,7 +61,7 @@ function Field(
   useEffect(() => () => setRefused(field.current, false), [])
   const take = async (entered: string) => {
     const trimmed = entered.trim()
-    if (trimmed === shown(value)) return settle(null)
+    if (trimmed === shown(value, kind)) return settle(null)
     const next = valueOf(trimmed, kind, !!props.optional)
     if (next instanceof Error) return settle(next.message)
     settle(await change((d) => withMember(d, place, member, next)))
@@ -70,7 +72,7 @@ function Field(
       <input
         type="text"
         inputMode={kind === 'number' ? 'decimal' : 'text'}
-        value={draft ?? shown(value)}
+        value={draft ?? shown(value, kind)}
         list={props.list}
         spellcheck={false}
         aria-invalid={why !== null}
@@ -84,7 +86,7 @@ function Field(
         <small class="ERROR" role="alert">
           ◆ Not taken: {why}
           <button type="button" onClick={() => settle(null)}>
-            Back to “{shown(value)}”
+            Back to “{shown(value, kind)}”
           </button>
         </small>
       )}
@@ -93,9 +95,10 @@ function Field(
 }
 
 // What was entered as the member's value; undefined takes the member away.
-function valueOf(entered: string, kind: 'text' | 'number' | 'hold', isOptional: boolean): unknown {
+function valueOf(entered: string, kind: FieldKind, isOptional: boolean): unknown {
   if (entered === '') return isOptional ? undefined : new Error('something has to stand here')
   if (kind === 'text') return entered
+  if (kind === 'list') return entered.split(/[\s,]+/)
   const numbers = (kind === 'hold' ? entered.split('/') : [entered]).map(Number)
   if (numbers.some(Number.isNaN)) return new Error(kind === 'hold' ? 'two numbers such as 3/5' : 'a number has to stand here')
   return kind === 'hold' ? numbers : numbers[0]
@@ -111,6 +114,22 @@ function Choice(props: { label: string; value: string; of: string[]; take: (v: s
           <option>{o}</option>
         ))}
       </select>
+    </label>
+  )
+}
+
+function Check({ document, change, place, member, label }: Props & { place: number; member: string; label: string }) {
+  return (
+    <label class="check">
+      <input
+        type="checkbox"
+        checked={document.statements[place][member] === true}
+        onChange={(e) => {
+          const isOn = e.currentTarget.checked
+          void change((d) => withMember(d, place, member, isOn || undefined))
+        }}
+      />{' '}
+      {label}
     </label>
   )
 }
@@ -167,6 +186,7 @@ function StrategyForm({ document, change, place }: Props & { place: number }) {
         <Field {...props} member="probability" label="helps in %" kind="number" />
         <Field {...props} member="confidence" label="confidence" kind="number" />
         <Field {...props} member="when" label="only when" optional />
+        <Check {...props} member="last_resort" label="as a last resort" />
         <Remove what={`strategy ${name}`} onClick={() => change((d) => replaced(d, place, end - place))} />
       </div>
       {adaptations.map((i) => (
@@ -176,6 +196,74 @@ function StrategyForm({ document, change, place }: Props & { place: number }) {
         + Adaptation
       </button>
     </fieldset>
+  )
+}
+
+function DeclarationForm({ document, change, place }: Props & { place: number }) {
+  const statement = document.statements[place]
+  const { title, members, more } = kDeclarations[statement.statement]
+  const has = (member: string) => statement[member] !== undefined
+  const label = `${title} ${statement.name ?? statement.consumer ?? ''}`.trim()
+  return (
+    <div class="adaptation" role="group" aria-label={label}>
+      <b class="keyword">{title}</b>
+      {[...members, ...Object.keys(more)].filter(has).map((member) => (
+        <Field
+          key={member}
+          {...{ document, change, place, member }}
+          label={member}
+          kind={member === 'producers' ? 'list' : 'text'}
+          optional={member in more}
+          wider={['launch', 'expression', 'producers'].includes(member)}
+          list={{ topic: 'topics', component: 'components', consumer: 'components' }[member]}
+        />
+      ))}
+      {Object.keys(more).some((member) => !has(member)) && (
+        <label class="field choice">
+          <span>say more</span>
+          <select
+            value=""
+            onChange={(e) => {
+              const member = e.currentTarget.value
+              if (member) void change((d) => withMember(d, place, member, more[member]))
+              e.currentTarget.value = ''
+            }}
+          >
+            <option value="">…</option>
+            {Object.keys(more)
+              .filter((member) => !has(member))
+              .map((member) => (
+                <option>{member}</option>
+              ))}
+          </select>
+        </label>
+      )}
+      <Remove what={label} onClick={() => change((d) => replaced(d, place, 1))} />
+    </div>
+  )
+}
+
+// What the rules are about: components, signals, constants, dependencies, interlocks.
+function Declarations({ document, change }: Props) {
+  const places = document.statements.flatMap((s, place) => (kDeclarations[s.statement] ? [place] : []))
+  const add = (keyword: string) => {
+    const fresh = (d: RuleDocument): Statement => ({ statement: keyword, ...kDeclarations[keyword].fresh(d) })
+    return change((d) => replaced(d, placeFor(d, keyword), 0, fresh(d)))
+  }
+  return (
+    <details class="rule declarations">
+      <summary>What the rules are about: {namesOf(document, 'COMPONENT').join(', ') || 'nothing declared'}</summary>
+      {places.map((place) => (
+        <DeclarationForm key={place} {...{ document, change, place }} />
+      ))}
+      <div class="bar">
+        {Object.entries(kDeclarations).map(([keyword, { title }]) => (
+          <button type="button" onClick={() => void add(keyword)}>
+            + {title}
+          </button>
+        ))}
+      </div>
+    </details>
   )
 }
 
@@ -207,6 +295,7 @@ function RuleCard({ document, change, place }: Props & { place: number }) {
             <Field {...props} place={policies} member="hold" label="hold n/k" kind="hold" optional />
             <Field {...props} place={policies} member="cooldown" label="cooldown" optional />
             <Field {...props} place={policies} member="attempts" label="attempts" kind="number" optional />
+            <Check {...props} place={policies} member="on_change" label="on change" />
           </>
         )}
         <Remove what={`rule ${name}`} onClick={() => change((d) => replaced(d, place, end - place))} />
@@ -240,7 +329,7 @@ function RuleCard({ document, change, place }: Props & { place: number }) {
 }
 
 function Suggestions({ document }: { document: RuleDocument }) {
-  const declared = document.statements.filter((s) => s.statement === 'COMPONENT').map((s) => String(s.name))
+  const declared = namesOf(document, 'COMPONENT')
   const live = [
     ...graph.value.nodes.map((n) => n.component ?? ownName(n.node)),
     ...Object.keys(names.value.nodes).map(ownName),
@@ -258,8 +347,8 @@ function Suggestions({ document }: { document: RuleDocument }) {
       {list('components', [...declared, ...live])}
       {list('topics', topics)}
       {list('services', names.value.services)}
-      {list('signals', document.statements.filter((s) => s.statement === 'SIGNAL').map((s) => String(s.name)))}
-      {list('constants', document.statements.filter((s) => s.statement === 'CONST').map((s) => String(s.name)))}
+      {list('signals', namesOf(document, 'SIGNAL'))}
+      {list('constants', namesOf(document, 'CONST'))}
       {[...new Set([...declared, ...live])].map((component) =>
         list(`parameters of ${component}`, parametersOf(component, document))
       )}
@@ -269,7 +358,7 @@ function Suggestions({ document }: { document: RuleDocument }) {
 
 // One that no rule is about yet, if there is one: of the file, or else of the robot.
 function usualComponent(document: RuleDocument): string {
-  const declared = document.statements.filter((s) => s.statement === 'COMPONENT').map((s) => String(s.name))
+  const declared = namesOf(document, 'COMPONENT')
   const live = graph.value.nodes.map((n) => n.component ?? ownName(n.node))
   const used = new Set(document.statements.filter((s) => s.statement === 'ADAPTATION').map((s) => String(s.component)))
   const known = [...declared, ...live, ...Object.keys(names.value.nodes).map(ownName)]
@@ -281,6 +370,7 @@ export function RuleForm({ document, change }: Props) {
   return (
     <>
       <Suggestions document={document} />
+      <Declarations document={document} change={change} />
       {rules.map((place) => (
         <RuleCard key={String(place)} {...{ document, change, place }} />
       ))}

@@ -2,6 +2,7 @@
 // it is now.
 import { useState } from 'preact/hooks'
 import { lasting } from './clock'
+import { namesOf } from './declarations'
 import { names, ownName } from './live_names'
 import type { RuleDocument } from './rule_document'
 import { type Clause, kComparisons, kKinds, type Kind, sentenceOf, usualClause, written } from './sentence'
@@ -10,15 +11,11 @@ import { graph, robot, state, stateOfComponent, stateOfTopic } from './store'
 const kStates = ['unconfigured', 'inactive', 'active', 'finalized']
 const kLists: Record<Kind, string> = { silent: 'topics', slow: 'topics', dead: 'components', state: 'components', value: 'signals' }
 
-function declared(document: RuleDocument, keyword: string): string[] {
-  return document.statements.filter((s) => s.statement === keyword).map((s) => String(s.name))
-}
-
 // The first that there is of what a clause of this kind is about.
 function firstName(kind: Kind, document: RuleDocument): string {
-  const components = [...declared(document, 'COMPONENT'), ...graph.value.nodes.map((n) => n.component ?? ownName(n.node))]
+  const components = [...namesOf(document, 'COMPONENT'), ...graph.value.nodes.map((n) => n.component ?? ownName(n.node))]
   const topics = [...(robot.value?.topics ?? []), ...names.value.topics]
-  const all = { topics, components, signals: declared(document, 'SIGNAL') }[kLists[kind]] ?? []
+  const all = { topics, components, signals: namesOf(document, 'SIGNAL') }[kLists[kind]] ?? []
   return all[0] ?? { topics: '/topic', components: 'my_node', signals: 'my_signal' }[kLists[kind]]!
 }
 

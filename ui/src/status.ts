@@ -8,7 +8,7 @@ import { can, clockAt, control, present, presentlyKnown, robot, state } from './
 
 export type Tone = 'OK' | 'NON_CRITICAL' | 'WARNING' | 'ERROR' | 'EXHAUSTED' | 'unknown' | 'lost'
 export interface Mode {
-  name: 'paused' | 'deaf' | 'dry-run' | 'approval' | 'silenced' | 'acting' | 'none' | 'none-now'
+  name: 'paused' | 'deaf' | 'dry-run' | 'approval' | 'silenced' | 'acting' | 'none' | 'bygone'
   word: string
   explanation: string
 }
@@ -42,13 +42,16 @@ export const modes = computed((): Mode[] => {
   const now = control.value
   if (!now) return [{ name: 'none', word: '', explanation: '' }]
   const list: Mode[] = []
-  if (now.paused) list.push({ name: 'paused', word: 'Ⅱ Paused', explanation: 'Nothing is changed on the robot until you resume.' })
-  if (now.hears === false) list.push({ name: 'deaf', word: '⚠ Deaf', explanation: 'The robot cannot be heard: nothing is judged, nothing is done.' })
-  if (now.asked.length > 0) list.push({ name: 'approval', word: '? Approval', explanation: `Waits for your word: ${listed(now.asked.map((a) => a.strategy))}.` })
-  if (now.dry_run) list.push({ name: 'dry-run', word: '◌ Dry run', explanation: 'Culprit only says what it would do.' })
-  if (now.silences.length > 0)
-    list.push({ name: 'silenced', word: '∅ Silenced', explanation: `Left alone: ${listed(now.silences.map((s) => s.component ?? s.rule ?? ''))}.` })
-  return list.length > 0 ? list : [{ name: 'acting', word: '● Acting', explanation: 'Culprit repairs what fails.' }]
+  const add = (name: Mode['name'], word: string, explanation: string) => list.push({ name, word, explanation })
+  const asked = listed(now.asked.map((a) => a.strategy))
+  const silenced = listed(now.silences.map((s) => s.component ?? s.rule ?? ''))
+  if (now.paused) add('paused', 'Ⅱ Paused', 'Nothing is changed on the robot until you resume.')
+  if (now.hears === false) add('deaf', '⚠ Deaf', 'The robot cannot be heard: nothing is judged, nothing is done.')
+  if (asked) add('approval', '? Approval', `Waits for your word: ${asked}.`)
+  if (now.dry_run) add('dry-run', '◌ Dry run', 'Culprit only says what it would do.')
+  if (silenced) add('silenced', '∅ Silenced', `Left alone: ${silenced}.`)
+  if (list.length === 0) add('acting', '● Acting', 'Culprit repairs what fails.')
+  return list
 })
 
 export const sinceOf = (incident: Incident) => incident.sinceClock ?? clockAt(incident.since)
@@ -59,13 +62,17 @@ export function doingOf(incident: Incident): string {
   if (root.phase === 'exhausted') return 'nothing helped: a person must look'
   if (control.value?.paused) return 'paused: nothing is done'
   if (control.value?.asked.some((a) => a.rule === root.rule)) return 'waits for your approval'
-  if (root.blame?.type === 'strategy_chosen' && root.phase === 'attempting') return `being repaired: ${listed(root.blame.actions ?? []) || root.blame.strategy}`
-  if (root.blame?.dry_run) return `would be repaired: ${listed(root.blame.actions ?? []) || root.blame.strategy}`
+  const actions = listed(root.blame?.actions ?? []) || root.blame?.strategy
+  if (root.blame?.type === 'strategy_chosen' && root.phase === 'attempting') return `being repaired: ${actions}`
+  if (root.blame?.dry_run) return `would be repaired: ${actions}`
   if (root.heldBack) return `not repaired: ${root.heldBack}`
   return 'nothing is done yet'
 }
 
-function ofIncidents(incidents: Incident[]): Pick<Status, 'tone' | 'sign' | 'word' | 'headline' | 'detail'> {
+type Told = Omit<Status, 'modes'>
+const told = (tone: Tone, sign: string, word: string, headline: string, detail: string): Told => ({ tone, sign, word, headline, detail })
+
+function ofIncidents(incidents: Incident[]): Told {
   const worst = incidents[0]
   const since = sinceOf(worst)
   const others = incidents.slice(1)
@@ -80,14 +87,16 @@ function ofIncidents(incidents: Incident[]): Pick<Status, 'tone' | 'sign' | 'wor
   }
 }
 
-function ofRobot(): Pick<Status, 'tone' | 'sign' | 'word' | 'headline' | 'detail'> {
-  if (!state.value) return { tone: 'unknown', sign: kSigns.unknown, word: 'Asking', headline: 'Nothing is known yet', detail: 'culprit has not told of the robot so far' }
+function ofRobot(): Told {
+  if (!state.value)
+    return told('unknown', kSigns.unknown, 'Asking', 'Nothing is known yet', 'culprit has not told of the robot so far')
   const { incidents } = present.value
   if (incidents.length > 0) return ofIncidents(incidents)
   const count = robot.value?.rules.length ?? 0
   const detail = `no failure is seen by ${count} ${count === 1 ? 'rule' : 'rules'}`
-  if (control.value?.hears === false) return { tone: 'unknown', sign: '?', word: 'Unknown', headline: 'The robot cannot be heard', detail: 'nothing is judged until it is' }
-  return { tone: 'OK', sign: kSigns.OK, word: 'Well', headline: 'All is well', detail }
+  if (control.value?.hears === false)
+    return told('unknown', '?', 'Unknown', 'The robot cannot be heard', 'nothing is judged until it is')
+  return told('OK', kSigns.OK, 'Well', 'All is well', detail)
 }
 
 export const status = computed((): Status => {
@@ -95,24 +104,21 @@ export const status = computed((): Status => {
   if (fresh.kind === 'lost' || fresh.kind === 'stuck') {
     const was = can('get', '/api/stream') && state.value ? ` It was: ${ofRobot().headline}.` : ''
     const why = fresh.kind === 'lost' ? 'Disconnected' : 'Nothing new from culprit'
+    const wasMode = (m: Mode): Mode => ({ ...m, name: 'bygone', word: `was: ${m.word.replace(/^\S /, '')}` })
     return {
-      tone: 'lost',
-      sign: kSigns.lost,
-      word: 'Old',
-      headline: `${why} since ${when(fresh.since)}`,
-      detail: `What you see is old.${was}`,
-      modes: modes.value.filter((m) => m.word).map((m) => ({ ...m, name: 'none-now', word: `was: ${m.word.replace(/^\S /, '')}` })),
+      ...told('lost', kSigns.lost, 'Old', `${why} since ${when(fresh.since)}`, `What you see is old.${was}`),
+      modes: modes.value.filter((m) => m.word).map(wasMode),
     }
   }
   if (!can('get', '/api/stream'))
-    return { tone: 'unknown', sign: '–', word: 'No robot', headline: 'No robot is watched here', detail: 'rules, simulations and studies only', modes: [] }
+    return { ...told('unknown', '–', 'No robot', 'No robot is watched here', 'rules and studies only'), modes: [] }
   return { ...ofRobot(), modes: modes.value }
 })
 
 // The title says the worst first: of a tab one sees two or three words.
 export const title = computed(() => {
   const { sign, headline, tone, modes: all } = status.value
-  const mode = all[0] && !['acting', 'none', 'none-now'].includes(all[0].name) ? `${all[0].word} · ` : ''
+  const mode = all[0] && !['acting', 'none', 'bygone'].includes(all[0].name) ? `${all[0].word} · ` : ''
   const name = robot.value?.robot ? `${robot.value.robot} · culprit` : 'culprit'
   if (tone === 'unknown' && !can('get', '/api/stream')) return 'culprit'
   return `${tone === 'lost' ? '' : mode}${sign} ${headline} · ${name}`

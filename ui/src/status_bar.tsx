@@ -99,7 +99,7 @@ const kMostModes = 2
 
 // In two lines, what the modes mean.
 export function ModeNotes() {
-  const notes = status.value.modes.filter((m) => !['acting', 'none', 'none-now', 'approval'].includes(m.name))
+  const notes = status.value.modes.filter((m) => !['acting', 'none', 'bygone', 'approval'].includes(m.name))
   return (
     <>
       {notes.map((m) => (

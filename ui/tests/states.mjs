@@ -118,6 +118,32 @@ async function tellsOfAComponent(page, server) {
   stop()
 }
 
+// Also what comes to it later does not move what is there.
+async function keepsItsPlaces(page) {
+  const places = () => page.evaluate(() => JSON.parse(localStorage.getItem('culprit-places rover') ?? '[]'))
+  const all = page.getByLabel('all nodes and topics')
+  const shown = async (count) => {
+    await page.waitForFunction((n) => JSON.parse(localStorage.getItem('culprit-places rover') ?? '[]').length === n, count)
+    return new Map(await places())
+  }
+  await page.evaluate(() => localStorage.clear())
+  await page.evaluate(() => (location.hash = 'robot'))
+  await page.reload()
+  await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'camera' }).waitFor()
+  await page.waitForTimeout(300) // until it is drawn: nothing in the page says so
+  await all.check()
+  const before = await shown(7)
+  await all.uncheck()
+  await page.reload()
+  await all.check()
+  await page.waitForTimeout(300)
+  const after = await shown(7)
+  for (const [node, { x, y }] of before) expect(after.get(node).x === x && after.get(node).y === y, `${node} has moved`)
+  const taken = new Set([...after.values()].map(({ x, y }) => `${x} ${y}`))
+  expect(taken.size === after.size, 'two nodes stand at one place')
+  await all.uncheck()
+}
+
 // For a screen on a wall: the same words, and nothing to press but the way back.
 async function hangsOnTheWall(page, server) {
   server.forget()
@@ -227,6 +253,7 @@ await stubbed(kCalls, async (page, server) => {
   await everyState(page, server)
   await everyPage(page, server)
   await tellsOfAComponent(page, server)
+  await keepsItsPlaces(page)
   await hangsOnTheWall(page, server)
   await tellsAnIncident(page, server)
   await imaginesTheRobotAsItIs(page, server)
