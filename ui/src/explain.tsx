@@ -160,7 +160,8 @@ function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
         {headlineOf(incident, knownIn(view))}
       </h2>
       <p class="muted">
-        {root.rule}: {root.phase === 'exhausted' ? 'given up' : kWords[root.criticality]}{' '}
+        {root.rule}: {kWords[root.criticality]}{root.phase === 'exhausted' ? ', given up, ' : ' '}
+        
         <Since failure={root} view={view} />
       </p>
       {root.decision && <p>{root.decision.text}.</p>}

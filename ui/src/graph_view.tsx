@@ -306,7 +306,7 @@ class Drawing {
       for (const node of nodes) this.show(node)
       for (const [id, edge] of edges) {
         this.tell(id, {
-          label: edgeLabel(edge.channels),
+          label: isUpright.matches && this.isLong(edge) ? '' : edgeLabel(edge.channels), // it would lie under nodes
           isSilent: edge.channels.some(isSilent),
           isCascade: cascade.value.has(id),
           isLong: this.isLong(edge),

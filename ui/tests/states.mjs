@@ -28,6 +28,7 @@ async function isSeen(page, locator, what) {
     const box = element.getBoundingClientRect()
     const isWithin = box.width > 0 && box.top >= 0 && box.left >= 0 && box.bottom <= innerHeight && box.right <= innerWidth
     const top = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2)
+    // Of a sentence as much as of a word: what is cut off is not read.
     const isCut = element.scrollWidth > element.clientWidth + 1 || element.scrollHeight > element.clientHeight + 1
     return { isWithin, isOnTop: element === top || element.contains(top), isCut, box: JSON.stringify(box) }
   })
@@ -47,7 +48,8 @@ async function looksRight(page, name, { cause, level, mode, also = [] }) {
     for (const colorScheme of ['light', 'dark']) {
       await page.emulateMedia({ colorScheme })
       const at = `${name}, ${size}, ${colorScheme}`
-      await isSeen(page, bar.locator('.cause b'), `the cause (${at})`)
+      await isSeen(page, bar.locator('.cause p').first(), `the cause (${at})`)
+      await isSeen(page, bar.locator('.cause .detail'), `what is done about it (${at})`)
       await isSeen(page, bar.locator('.level'), `the level (${at})`)
       await isSeen(page, bar.locator('.mode').first(), `the mode (${at})`)
       await isSeen(page, bar.locator('.freshness'), `the freshness (${at})`)
