@@ -10,7 +10,7 @@ build:
 # Programs, rules, documents, the manual page, and culprit::core for programs of others.
 PREFIX ?= /usr/local
 install: build
-	cmake --install build/release --prefix $(PREFIX)
+	cmake --install build/release --strip --prefix $(PREFIX)
 
 demo:
 	@scripts/install-dependencies

@@ -29,6 +29,12 @@ if(CULPRIT_SANITIZE)
   target_link_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE})
 endif()
 
+# Whoever builds tests has memory: without collecting garbage g++ needs 1.3 GB for the largest file instead of 1.0, and a tenth less time.
+if(CULPRIT_TESTS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(culprit_options INTERFACE $<BUILD_INTERFACE:--param=ggc-min-expand=1000>
+                                                   $<BUILD_INTERFACE:--param=ggc-min-heapsize=1048576>)
+endif()
+
 # Some hundred programs and tests are linked: in a third of the time by lld, if it is there.
 if(CULPRIT_TESTS)
   find_program(culprit_lld ld.lld)
