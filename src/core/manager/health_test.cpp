@@ -255,6 +255,10 @@ TEST(ProvenHealth, WhatIsTriedAnewAfterAPauseIsSoAcrossACrashOfCulprit) {
   const std::size_t before = robot.count("camera is held responsible");
   ASSERT_EQ(before, 2u) << transcript(robot);
   crash_and_go_on(robot, 20s);
+  const Time last = robot.now + 60s;
+  while (robot.count("camera is held responsible") == before && robot.now < last)
+    robot.run_for(100ms);
+  EXPECT_EQ(robot.count("nothing left to try"), 1u) << transcript(robot);
   robot.run_for(60s);
   EXPECT_EQ(robot.count("camera is held responsible"), 4u) << transcript(robot);
 }
