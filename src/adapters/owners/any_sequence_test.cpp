@@ -85,11 +85,11 @@ Reply reply_to(Asked& inbox, CommandId command) {
 // By LAUNCH, while a launch file starts one, too, now and then.
 class Launched : public Kept {
  public:
-  Launched() {
+  explicit Launched(const std::string& clauses = "") {
     fs::copy_file("/bin/sleep", program_);
-    rules_ =
-        *check(Source("one.rules", "COMPONENT one NODE /one LAUNCH \"" + program_ + " 1000\"\n"))
-             .rules;
+    rules_ = *check(Source("one.rules", "COMPONENT one NODE /one LAUNCH \"" + program_ +
+                                            " 1000\" " + clauses + "\n"))
+                  .rules;
   }
   ~Launched() override {
     supervisor_.reset();
@@ -130,9 +130,7 @@ class Launched : public Kept {
   }
   // Its parent ends, so it is nobody's here. Nobody but a person could end one of several.
   void start_by_another() override {
-    for (const int pid : processes()) {
-      if (!carries_mark(pid, robot_ + "/one")) return;
-    }
+    if (!are_all_culprits()) return;
     const pid_t parent = fork();
     if (parent == 0) {
       if (fork() == 0) {
@@ -150,12 +148,63 @@ class Launched : public Kept {
 
  private:
   test::TestFolder folder_;
+
+ protected:
+  bool are_all_culprits() {
+    return std::ranges::all_of(processes(),
+                               [&](int pid) { return carries_mark(pid, robot_ + "/one"); });
+  }
+
   std::string program_ = fs::canonical(folder_.path()) / "one";
   std::string robot_ = "test/" + folder_.path().string();
+
+ private:
   RuleSet rules_;
   Inbox inbox_;
   std::unique_ptr<Supervisor> supervisor_;
   std::uint64_t commands_ = 0;
+};
+
+// By a launcher that starts it again (RESPAWNED), and may itself end, or begin late.
+class Respawned : public Launched {
+ public:
+  Respawned() : Launched("RESPAWNED") { begin_launcher(); }
+  ~Respawned() override { end_launcher(); }
+  bool start() override {
+    // A culprit that never saw the launcher waits for it: a person has to start that again.
+    if (!is_alive(launcher_) && processes().empty()) begin_launcher();
+    return Launched::start();
+  }
+  void break_it(bool is_broken) override {
+    if (is_broken) {
+      end_launcher();
+    } else {
+      start_by_another();
+    }
+  }
+  // What is left of an earlier launcher is nobody's, and nobody but a person could end one of several.
+  void start_by_another() override {
+    if (!is_alive(launcher_) && are_all_culprits()) begin_launcher();
+  }
+
+ private:
+  void begin_launcher() {
+    launcher_ = fork();
+    if (launcher_ == 0) {
+      setsid();
+      execl("/bin/sh", "sh", "-c", "while :; do \"$0\" 1000; sleep 0.02; done", program_.c_str(),
+            nullptr);
+      _exit(1);
+    }
+  }
+  void end_launcher() {
+    if (launcher_ == 0) return;
+    kill(launcher_, SIGKILL);
+    waitpid(launcher_, nullptr, 0);
+    launcher_ = 0;
+  }
+
+  int launcher_ = 0;
 };
 
 // By somebody who is asked.
@@ -250,6 +299,9 @@ void settle(Kept& kept) {
     if (all.size() == 1 && state_letter(all.front()) != 'T') return;
     if (all.empty()) {
       kept.start();
+      // Who starts it again may take its time.
+      for (const Time end = later(live_now(), 5s); kept.processes().empty() && live_now() < end;)
+        std::this_thread::sleep_for(5ms);
     } else {
       kept.redeploy();
     }
@@ -319,6 +371,10 @@ void play_all(Make make) {
 
 TEST(AnySequenceOfFaults, LeavesOneOfWhatCulpritLaunches) {
   play_all([](unsigned) { return std::make_unique<Launched>(); });
+}
+
+TEST(AnySequenceOfFaults, LeavesOneOfWhatALauncherStartsAgain) {
+  play_all([](unsigned) { return std::make_unique<Respawned>(); });
 }
 
 TEST(AnySequenceOfFaults, LeavesOneOfWhatAStandInForSystemdRuns) {
