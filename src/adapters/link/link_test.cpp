@@ -222,6 +222,22 @@ TEST(Link, ReadsWhatWasLatchedBeforeItCame) {
   EXPECT_TRUE(linked.wait<SignalRead>([](const SignalRead& r) { return r.value == Value(4.5); }));
 }
 
+TEST(Link, HearsTopicsWithKeys) {
+  const TestDomain domain;
+  Robot robot(domain);
+  const auto publisher =
+      RawPublisher::create(robot.managed->node().entry(), "/visibility", "std_msgs/msg/Float64",
+                           {.durability = Durability::kTransientLocal, .keys = Keys::kSome});
+  ASSERT_TRUE(publisher);
+  Linked linked(domain);
+  ASSERT_TRUE(linked.sees("/robot"));
+  double value = 0;
+  Timer timer(robot.context->executor(), 20ms,
+              [&] { (*publisher)->publish(encode(msg::Float64{value += 1})); });
+  EXPECT_TRUE(linked.reads("visibility"));
+  EXPECT_TRUE(linked.wait<SampleArrived>([](const SampleArrived&) { return true; }));
+}
+
 TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
   const TestDomain domain;
   Robot robot(domain);

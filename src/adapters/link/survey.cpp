@@ -221,7 +221,8 @@ void Survey::read_topic_with(const std::string& topic, const std::string& type,
                              const Expected<MessageLibrary*>& library) {
   const auto wanted = interest_.fields_of_topics.find(topic);
   if (wanted == interest_.fields_of_topics.end() || topics_read_.contains(topic)) return;
-  auto reading = TopicReading::open(node_->entry(), topic, type, wanted->second, library);
+  auto reading = TopicReading::open(node_->entry(), topic, type, topics_[topic].offered.keys,
+                                    wanted->second, library);
   if (!reading) return;
   reading->publisher_offers(topics_[topic].offered);
   const MutexLock lock(mutex_);

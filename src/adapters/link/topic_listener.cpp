@@ -6,13 +6,13 @@ namespace culprit::ros2 {
 
 Expected<std::unique_ptr<TopicListener>> TopicListener::open(NodeEntry& self,
                                                              const std::string& topic,
-                                                             const std::string& type,
+                                                             const std::string& type, Keys keys,
                                                              PayloadUse use, Callbacks callbacks) {
   std::unique_ptr<TopicListener> listener(
-      new TopicListener(self, topic, type, use, std::move(callbacks)));
-  constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
+      new TopicListener(self, topic, type, keys, use, std::move(callbacks)));
+  const Qos qos{.reliability = Reliability::kBestEffort, .depth = 1, .keys = keys};
   auto now = RawSubscription::create(
-      self, topic, type, kQos, use,
+      self, topic, type, qos, use,
       [raw = listener.get()](const Sample& sample) {
         raw->callbacks_.on_arrival(sample);
         raw->read(sample);
@@ -23,11 +23,12 @@ Expected<std::unique_ptr<TopicListener>> TopicListener::open(NodeEntry& self,
   return listener;
 }
 
-TopicListener::TopicListener(NodeEntry& self, std::string topic, std::string type, PayloadUse use,
-                             Callbacks callbacks)
+TopicListener::TopicListener(NodeEntry& self, std::string topic, std::string type, Keys keys,
+                             PayloadUse use, Callbacks callbacks)
     : self_(self),
       topic_(std::move(topic)),
       type_(std::move(type)),
+      keys_(keys),
       use_(use),
       callbacks_(std::move(callbacks)) {}
 
@@ -35,8 +36,8 @@ Expected<void> TopicListener::publisher_offers(const Qos& offered) {
   const bool latches = offered.durability == Durability::kTransientLocal &&
                        offered.reliability == Reliability::kReliable;
   if (!latches || latched_ || use_ != PayloadUse::kWhole) return {};
-  constexpr Qos kQos{.durability = Durability::kTransientLocal, .depth = 1};
-  auto latched = RawSubscription::create(self_, topic_, type_, kQos, use_,
+  const Qos qos{.durability = Durability::kTransientLocal, .depth = 1, .keys = keys_};
+  auto latched = RawSubscription::create(self_, topic_, type_, qos, use_,
                                          [this](const Sample& sample) { read(sample); });
   if (!latched) return Error{latched.error()};
   latched_ = std::move(*latched);

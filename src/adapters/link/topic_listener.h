@@ -31,16 +31,18 @@ class TopicListener {
     std::function<void()> on_unheard;
   };
 
-  // `self` outlives the listener. `type` is "package/msg/Type".
+  // `self` outlives the listener. `type` is "package/msg/Type". `keys`: whether its publishers have
+  // them; the others are not heard.
   static Expected<std::unique_ptr<TopicListener>> open(NodeEntry& self, const std::string& topic,
-                                                       const std::string& type, PayloadUse use,
-                                                       Callbacks callbacks);
+                                                       const std::string& type, Keys keys,
+                                                       PayloadUse use, Callbacks callbacks);
+  Keys keys() const { return keys_; }
 
   // A publisher offers this. If it latches, what it published before is read, too.
   Expected<void> publisher_offers(const Qos& offered);
 
  private:
-  TopicListener(NodeEntry& self, std::string topic, std::string type, PayloadUse use,
+  TopicListener(NodeEntry& self, std::string topic, std::string type, Keys keys, PayloadUse use,
                 Callbacks callbacks);
   void read(const Sample& sample);
   bool is_news(const SampleIdentity& identity) CULPRIT_REQUIRES(mutex_);
@@ -48,6 +50,7 @@ class TopicListener {
   NodeEntry& self_;
   const std::string topic_;
   const std::string type_;
+  const Keys keys_;
   const PayloadUse use_;
   const Callbacks callbacks_;
   Mutex mutex_;

@@ -7,7 +7,7 @@
 namespace culprit::ros2 {
 
 std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::string& topic,
-                                                 const std::string& type,
+                                                 const std::string& type, Keys keys,
                                                  const std::set<std::string>& fields,
                                                  const Expected<MessageLibrary*>& library) {
   std::unique_ptr<TopicReading> reading(new TopicReading);
@@ -22,7 +22,7 @@ std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::str
   }
   reading->since_ = live_now();
   auto listener = TopicListener::open(
-      self, topic, type, reading->readers_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
+      self, topic, type, keys, reading->readers_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
       {.on_arrival = [raw = reading.get()](const Sample&) { raw->on_arrival(); },
        .on_message = [raw = reading.get()](const Sample& sample) { raw->on_message(sample); },
        .on_unheard = {}});

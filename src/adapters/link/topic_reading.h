@@ -26,7 +26,7 @@ class TopicReading {
   // `self` outlives the reading; `library` has the type, or says why it is not known. Fields that
   // cannot be read are told of. Nothing if the topic cannot be read with this type.
   static std::unique_ptr<TopicReading> open(NodeEntry& self, const std::string& topic,
-                                            const std::string& type,
+                                            const std::string& type, Keys keys,
                                             const std::set<std::string>& fields,
                                             const Expected<MessageLibrary*>& library);
 

@@ -26,9 +26,13 @@ void TopicWatch::publisher_seen(const std::string& type, const Qos& offered,
   if (listener_ && type != type_)
     return tell_once(name + " is published as " + type + " too; only its " + type_ +
                      " messages are watched");
+  if (listener_ && offered.keys != listener_->keys())
+    return tell_once(name + " is published with keys and without; only those " +
+                     (listener_->keys() == Keys::kSome ? "with" : "without") +
+                     " them, which came first, are watched");
   if (!listener_) {
     if (!compile_fields(type, library) && !counts_) return;
-    if (const auto listening = listen(type); !listening) {
+    if (const auto listening = listen(type, offered.keys); !listening) {
       fields_.clear();
       return tell_once("cannot watch " + name + ": " + listening.error());
     }
@@ -37,9 +41,10 @@ void TopicWatch::publisher_seen(const std::string& type, const Qos& offered,
     tell_once("cannot read what " + name + " has latched: " + latched.error());
 }
 
-Expected<void> TopicWatch::listen(const std::string& type) {
+Expected<void> TopicWatch::listen(const std::string& type, Keys keys) {
   auto listener = TopicListener::open(
-      self_, rules_[topic_].name, type, fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
+      self_, rules_[topic_].name, type, keys,
+      fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
       {.on_arrival =
            [this](const Sample& sample) {
              if (counts_)

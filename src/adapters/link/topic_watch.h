@@ -39,7 +39,7 @@ class TopicWatch {
     std::optional<Value> last;
   };
   bool compile_fields(const std::string& type, const Expected<MessageLibrary*>& library);
-  Expected<void> listen(const std::string& type);
+  Expected<void> listen(const std::string& type, Keys keys);
   void tell_once(std::string trouble);
   void on_message(const Sample& sample);
   void on_unheard();

@@ -99,13 +99,13 @@ struct Outgoing {
   ByteView payload;
 };
 
-// A keyless type of which only the name is known; its samples are payloads, passed on as they are.
+// A type of which only the name is known; its samples are payloads, passed on as they are.
 class RawType final : public dds::TopicDataType {
  public:
-  explicit RawType(const std::string& name) {
+  explicit RawType(const std::string& name, Keys keys = Keys::kNone) {
     setName(name.c_str());
     m_typeSize = 256;  // of the first allocation only; the memory policy grows it
-    m_isGetKeyDefined = false;
+    m_isGetKeyDefined = keys == Keys::kSome;
     auto_fill_type_object(false);
     auto_fill_type_information(false);
   }
@@ -135,7 +135,13 @@ class RawType final : public dds::TopicDataType {
 
   void* createData() override { return new Incoming; }
   void deleteData(void* data) override { delete static_cast<Incoming*>(data); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
+  // Where the key is in a payload is not known, nor does it matter to whoever takes each sample: they
+  // are of one instance, unless the writer says which.
+  bool getKey(void*, rtps::InstanceHandle_t* handle, bool) override {
+    handle->value.clear();
+    handle->value[0] = 1;
+    return m_isGetKeyDefined;
+  }
   bool is_bounded() const override { return false; }
 };
 
@@ -182,9 +188,12 @@ void apply(EntityQos& entity, const Qos& qos, const std::string& user_data) {
   entity.history().kind = keeps_all ? dds::KEEP_ALL_HISTORY_QOS : dds::KEEP_LAST_HISTORY_QOS;
   const auto depth = static_cast<std::int32_t>(qos.depth);
   entity.history().depth = depth;
-  entity.resource_limits().max_instances = 1;                                    // no keys
-  entity.resource_limits().max_samples = keeps_all ? 0 : std::max(5000, depth);  // 0: no limit
-  entity.resource_limits().max_samples_per_instance = entity.resource_limits().max_samples;
+  // Of keys those are forgotten first of which no sample waits to be taken.
+  const std::int32_t instances = qos.keys == Keys::kSome ? 16 : 1;
+  const std::int32_t samples = keeps_all ? 0 : std::max(5000 / instances, depth);  // 0: no limit
+  entity.resource_limits().max_instances = instances;
+  entity.resource_limits().max_samples = instances * samples;
+  entity.resource_limits().max_samples_per_instance = samples;
   entity.resource_limits().allocated_samples = std::min(10, depth);
   entity.deadline().period = to_duration(qos.deadline);
   entity.lifespan().duration = to_duration(qos.lifespan);
@@ -320,6 +329,7 @@ EndpointInfo to_info(const ProxyData& data) {
                            : Durability::kVolatile;
   out.qos.deadline = from_duration(qos.m_deadline.period);
   out.qos.lifespan = from_duration(qos.m_lifespan.duration);
+  out.qos.keys = out.guid.has_keys() ? Keys::kSome : Keys::kNone;
   return out;
 }
 

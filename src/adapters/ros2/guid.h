@@ -28,8 +28,10 @@ struct Guid {
     std::memcpy(p.bytes.data(), bytes.data(), p.bytes.size());
     return p;
   }
-  // Entity kinds (RTPS 2.3 §9.3.1.2): readers are 0x04 and 0x07, writers 0x02 and 0x03.
+  // Entity kinds (RTPS 2.3 §9.3.1.2): readers are 0x04 and, with keys, 0x07, writers 0x03 and, with
+  // keys, 0x02.
   bool is_reader() const { return (bytes[15] & 0x04) != 0; }
+  bool has_keys() const { return (bytes[15] & 0x07) == 0x02 || (bytes[15] & 0x07) == 0x07; }
 };
 
 // The identity of one sample: the RTPS sequence number that its writer gave it. All zero: none.

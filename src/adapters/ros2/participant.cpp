@@ -21,9 +21,12 @@ class Topics {
  public:
   explicit Topics(dds::DomainParticipant& participant) : participant_(participant) {}
 
-  Expected<dds::Topic*> acquire(const std::string& name, const std::string& type) {
+  Expected<dds::Topic*> acquire(const std::string& name, const std::string& type, Keys keys) {
     const MutexLock lock(mutex_);
     if (const auto found = topics_.find(name); found != topics_.end()) {
+      if (found->second.keys != keys)
+        return Error{"the topic " + printable(name) + " is in use " + of(found->second.keys) +
+                     ", not " + of(keys)};
       if (found->second.topic->get_type_name() != type) {
         return Error{"the topic " + printable(name) + " is in use with the type " +
                      printable(found->second.topic->get_type_name()) + ", not " + printable(type)};
@@ -31,12 +34,10 @@ class Topics {
       ++found->second.users;
       return found->second.topic;
     }
-    if (!participant_.find_type(type)) {
-      dds::TypeSupport(new fast_dds::RawType(type)).register_type(&participant_);
-    }
+    if (auto has_type = know(type, keys); !has_type) return Error{has_type.error()};
     dds::Topic* topic = participant_.create_topic(name, type, dds::TopicQos());
     if (topic == nullptr) return Error{"the topic " + printable(name) + " cannot be created"};
-    topics_.emplace(name, Entry{topic, 1});
+    topics_.emplace(name, Entry{topic, 1, keys});
     return topic;
   }
 
@@ -52,7 +53,20 @@ class Topics {
   struct Entry {
     dds::Topic* topic;
     int users;
+    Keys keys;
   };
+  static std::string of(Keys keys) { return keys == Keys::kSome ? "with keys" : "without keys"; }
+
+  // A type has keys or not, for all topics that it has at the same time.
+  Expected<void> know(const std::string& type, Keys keys) {
+    const dds::TypeSupport known = participant_.find_type(type);
+    if (known && known->m_isGetKeyDefined == (keys == Keys::kSome)) return {};
+    if (known && !fast_dds::ok(participant_.unregister_type(type)))
+      return Error{"the type " + printable(type) + " is in use on another topic, not " + of(keys)};
+    dds::TypeSupport(new fast_dds::RawType(type, keys)).register_type(&participant_);
+    return {};
+  }
+
   dds::DomainParticipant& participant_;
   Mutex mutex_;
   std::map<std::string, Entry> topics_ CULPRIT_GUARDED_BY(mutex_);
@@ -142,7 +156,7 @@ class Reader::Impl final : public dds::DataReaderListener {
 
   // The destructor undoes whatever of this succeeded.
   Expected<void> open(const std::string& likely_refusal) {
-    const auto topic = topics_.acquire(options_.topic, options_.type);
+    const auto topic = topics_.acquire(options_.topic, options_.type, options_.qos.keys);
     if (!topic) return Error{topic.error()};
     has_topic_ = true;
     // With the listener from the start: known writers match, and may send, before this returns.
@@ -218,7 +232,7 @@ class Writer::Impl final : public dds::DataWriterListener {
       : publisher_(publisher), topics_(topics), options_(std::move(options)) {}
 
   Expected<void> open(const std::string& likely_refusal) {
-    const auto topic = topics_.acquire(options_.topic, options_.type);
+    const auto topic = topics_.acquire(options_.topic, options_.type, options_.qos.keys);
     if (!topic) return Error{topic.error()};
     has_topic_ = true;
     writer_ =

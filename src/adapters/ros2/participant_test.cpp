@@ -181,15 +181,40 @@ TEST(Participant, ATopicHasOneType) {
   EXPECT_THAT(second.error(), HasSubstr("the topic t is in use with the type T, not Other"));
 }
 
+TEST(Participant, AReaderWithKeysHearsAllSamplesOfAWriterWithKeys) {
+  Pair pair({.keys = Keys::kSome});
+  EXPECT_TRUE(pair.writer->guid().has_keys());
+  EXPECT_TRUE(pair.reader->guid().has_keys() && pair.reader->guid().is_reader());
+  for (int i = 0; i < 5; ++i) pair.writer->write(kSmall);
+  ASSERT_TRUE(pair.received.wait_for_count(5));
+  EXPECT_EQ(pair.received.all().back().payload, kSmall);
+}
+
+TEST(Participant, WhetherATopicHasKeysIsPartOfWhatItIs) {
+  const TestDomain domain;
+  const auto participant = join(domain);
+  const auto keyed = participant->create_writer({"t", "T", {.keys = Keys::kSome}, "", {}});
+  ASSERT_TRUE(keyed);
+  const auto other = participant->create_writer({"t", "T", {}, "", {}});
+  ASSERT_FALSE(other);
+  EXPECT_THAT(other.error(), HasSubstr("the topic t is in use with keys, not without keys"));
+  const auto elsewhere = participant->create_writer({"u", "T", {}, "", {}});
+  ASSERT_FALSE(elsewhere);
+  EXPECT_THAT(elsewhere.error(), HasSubstr("the type T is in use on another topic"));
+}
+
 TEST(Participant, ATopicIsFreeAgainWhenItsLastUserIsGone) {
   const TestDomain domain;
   const auto participant = join(domain);
-  for (const char* type : {"T", "Other", "T"}) {
-    const auto writer = participant->create_writer({"t", type, {}, "", {}});
-    const auto reader = participant->create_reader({"t", type, {}, PayloadUse::kWhole, "", {}},
-                                                   [](const Sample&) {});
-    EXPECT_TRUE(writer);
-    EXPECT_TRUE(reader);
+  for (const Keys keys : {Keys::kNone, Keys::kSome, Keys::kNone}) {
+    for (const char* type : {"T", "Other", "T"}) {
+      const Qos qos{.keys = keys};
+      const auto writer = participant->create_writer({"t", type, qos, "", {}});
+      const auto reader = participant->create_reader({"t", type, qos, PayloadUse::kWhole, "", {}},
+                                                     [](const Sample&) {});
+      EXPECT_TRUE(writer);
+      EXPECT_TRUE(reader);
+    }
   }
 }
 

@@ -14,6 +14,9 @@ namespace culprit::ros2 {
 
 enum class Reliability : std::uint8_t { kBestEffort, kReliable };
 enum class Durability : std::uint8_t { kVolatile, kTransientLocal };
+// Whether the samples of a topic have keys (`@key` in its type; ROS 2 Kilted and later). It is part of
+// what an endpoint is, and a reader matches no writer of the other kind.
+enum class Keys : std::uint8_t { kNone, kSome };
 enum class History : std::uint8_t { kKeepLast, kKeepAll };
 
 inline constexpr Duration kInfinite = Duration::max();
@@ -25,6 +28,7 @@ struct Qos {
   std::uint32_t depth = 10;  // with kKeepLast, >= 1; of a discovered endpoint it is not known
   Duration deadline = kInfinite;
   Duration lifespan = kInfinite;
+  Keys keys = Keys::kNone;
   bool operator==(const Qos&) const = default;
 };
 

@@ -55,6 +55,10 @@ std::optional<Mismatch> mismatch(const ros2::Qos& offered, const ros2::Qos& requ
   if (requested.durability == Durability::kTransientLocal &&
       offered.durability == Durability::kVolatile)
     return Mismatch{"durability", "volatile", "transient local"};
+  if (offered.keys != requested.keys) {
+    const auto words = [](ros2::Keys keys) { return keys == ros2::Keys::kSome ? "some" : "none"; };
+    return Mismatch{"keys", words(offered.keys), words(requested.keys)};
+  }
   if (offered.deadline > requested.deadline)
     return Mismatch{"deadline", seconds(offered.deadline), seconds(requested.deadline)};
   return std::nullopt;
