@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/run_options.h"
 #include "live/live_run.h"
+#include "live/node_name.h"
 #include "live/robot_names.h"
 #include "live/rule_trust.h"
 #include "terminal/command.h"
@@ -78,6 +79,11 @@ int run(const RunOptions& options) {
   say(stderr, "{}", rules->remarks);
   auto session = options.session(rules->rules);
   if (!session) return fail(session.error(), kUsage);
+  std::optional<live::NodeNameClaim> node_name;
+  if (options.node_name.empty()) {
+    node_name.emplace(session->robot.link.participant);
+    session->robot.link.name.name = node_name->name();
+  }
   auto role = claim_robot(rules->rules, options);
   if (!role) return fail(role.error(), kUsage);
   if (!role->reason().empty()) say(stdout, "culprit: {}\n", role->reason());

@@ -1,6 +1,7 @@
 #include "cli/run_options.h"
 
 #include "base/environment.h"
+#include "base/name_grammar.h"
 #include "live/robot_survey.h"
 #include "live/run_journal.h"
 #include "terminal/seconds_option.h"
@@ -27,6 +28,7 @@ Expected<live::LiveSession::Options> RunOptions::session(const RuleSet& rule_set
   out.robot.link.participant = *participant;
   out.robot.link.types = live::sources_of_types(message_path);
   out.robot.link.use_sim_time = use_sim_time;
+  if (!node_name.empty()) out.robot.link.name.name = node_name;
   out.robot.link.parameters = {
       {"rules", Value(rules)}, {"planner", Value(planner.name)}, {"dry_run", Value(dry_run)}};
   out.robot.supervisor = {state_path() / "log", {own_folder()}};
@@ -68,6 +70,14 @@ void RunOptions::add_to(CLI::App& command) {
                      "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
   command.add_flag("--use-sim-time", use_sim_time,
                    "The robot is simulated: nothing is judged while its /clock stands still");
+  command
+      .add_option("--node-name", node_name,
+                  "What culprit's own node is called, where a culprit of another machine is "
+                  "called /culprit, too (default: culprit, or culprit_2 and so on beside others "
+                  "of this machine)")
+      ->check([](const std::string& name) {
+        return is_valid_node_name(name) ? std::string() : "'" + name + "' is no name of a node";
+      });
   command
       .add_option("--forgetting", forgetting,
                   "What was learned n outcomes ago weighs this to the n-th power; 1: nothing is "

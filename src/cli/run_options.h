@@ -28,6 +28,7 @@ struct RunOptions {
   bool no_journal = false;
   std::vector<std::filesystem::path> message_path;
   bool use_sim_time = false;
+  std::string node_name;  // empty: the first that no other culprit of this machine has
   bool is_on_web = false;
   WebOptions web;
 

@@ -293,10 +293,15 @@ void Link::remind() {
 void Link::on_joined(const GraphNode& node) {
   inbox_.put(NodeAppeared{node.name, node.pid});
   pids_[node.name] = node.pid;
+  if (node.name == node_->name().full() && !std::exchange(is_namesake_told_, true))
+    inbox_.put(LinkTrouble{"another node is called " + node.name + ", too" +
+                           (node.host.empty() ? "" : ", on " + printable(node.host)) +
+                           ": who asks for one of them may reach the other; start one culprit "
+                           "with --node-name"});
   for (auto& [manager, systems] : systems_) std::erase(systems, node.name);
   const auto component = binding_.bind(node.name);
   if (!component) return;
-  make_link(*component, node.name);
+  make_link(*component, node.name)->lives_in(node.pid);
   if (node.pid == 0 || needs_of(*component, rules_).is_to_answer) {
     probed_[node.name] = {*component, node.pid};
   } else {

@@ -132,7 +132,8 @@ class Link {
     int pid = 0;  // 0: not known
   };
   std::map<std::string, ToProbe> probed_;  // by node
-  std::map<std::string, int> pids_;        // of nodes that are there; 0 where it is not known
+  bool is_namesake_told_ = false;
+  std::map<std::string, int> pids_;  // of nodes that are there; 0 where it is not known
   std::map<std::string, std::vector<std::string>> systems_;  // by the mode manager's node
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;

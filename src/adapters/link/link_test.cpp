@@ -238,6 +238,17 @@ TEST(Link, HearsTopicsWithKeys) {
   EXPECT_TRUE(linked.wait<SampleArrived>([](const SampleArrived&) { return true; }));
 }
 
+TEST(Link, TellsOfANodeThatHasItsName) {
+  const TestDomain domain;
+  LiveContext other(domain.options());
+  NodeEntry namesake(*other, {"/", "culprit"});
+  Linked linked(domain);
+  EXPECT_TRUE(linked.wait<LinkTrouble>([](const LinkTrouble& t) {
+    return t.text.find("another node is called /culprit, too") != std::string::npos &&
+           t.text.find("--node-name") != std::string::npos;
+  }));
+}
+
 TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
   const TestDomain domain;
   Robot robot(domain);

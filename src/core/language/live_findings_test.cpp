@@ -72,6 +72,7 @@ TEST(LiveFindings, ToolsAndCulpritAreNoRobot) {
   LiveInventory robot;
   EXPECT_FALSE(robot.has_robot());
   robot.nodes["/culprit"];
+  robot.nodes["/culprit_2"];
   robot.nodes["/_ros2cli_1234"];
   EXPECT_FALSE(robot.has_robot());
   robot.nodes["/lidar"];
