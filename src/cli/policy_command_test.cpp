@@ -130,6 +130,16 @@ TEST(UnitSettings, WhatAnEngineOrAContainerStartsIsNoProgramOfCulprits) {
   EXPECT_THAT(text, Not(HasSubstr("part")));
 }
 
+TEST(UnitSettings, WhatIsAskedOverSshTakesAProgramAndAKey) {
+  const std::string rules =
+      "COMPONENT camera UNIT camera.service HOST rover2\nRULE r\n POLICIES ERROR\n"
+      " TRIGGER age(/rgb) > 1s\n  STRATEGY a 50 10\n   ADAPTATION camera redeploy 1\n";
+  const std::string text = unit_settings(*check(Source("test.rules", rules)).rules, {"/r"});
+  EXPECT_THAT(text, Not(HasSubstr("NoExecPaths"))) << "ssh is executed";
+  EXPECT_THAT(text, Not(HasSubstr("DynamicUser")));
+  EXPECT_THAT(text, HasSubstr("asked over ssh, so User=\n# needs a home with a key"));
+}
+
 TEST(UnitSettings, OtherUsersProcessesTakeCapabilities) {
   const UnitOptions options{"/r", NodeOwner::kOtherUsers};
   EXPECT_THAT(settings("stop", "redeploy", options),

@@ -14,6 +14,7 @@ struct Processes {
   std::vector<std::string> ended;
   std::vector<std::string> of_systemd;  // that is asked to do it
   std::vector<std::string> of_engines;  // likewise
+  std::vector<std::string> elsewhere;   // likewise, over ssh
 };
 
 // The component whose process it lives in: its container's, if that is one.
@@ -35,6 +36,10 @@ Processes processes_of(const RuleSet& rules) {
       const bool redeploys = adaptation.type == AdaptationType::kRedeploy;
       const bool starts_or_ends = redeploys || adaptation.type == AdaptationType::kStart ||
                                   adaptation.type == AdaptationType::kStop;
+      if (starts_or_ends && !rules[adaptation.component].host().empty()) {
+        add(processes.elsewhere, adaptation.component);
+        continue;
+      }
       if (starts_or_ends && rules[adaptation.component].unit) {
         add(processes.of_systemd, adaptation.component);
         continue;
@@ -66,12 +71,13 @@ std::string quoted(const std::string& text, Variables variables = Variables::kAr
 }
 
 std::string start_settings(const Processes& processes) {
-  if (processes.started.empty()) {
+  if (processes.started.empty() && processes.elsewhere.empty()) {
     return "# No program is ever started: nothing but culprit can be executed, and what reloads "
            "it.\n"
            "NoExecPaths=/\n"
            "ExecPaths=/usr/bin/culprit /usr/bin/kill -/usr/lib -/usr/lib32 -/usr/lib64\n";
   }
+  if (processes.started.empty()) return "";
   return fmt::format(
       "# These are started and live in this sandbox: {}.\n"
       "# What one of them needs has to be allowed here. A driver needs its device:\n"
@@ -91,7 +97,7 @@ std::string end_settings(const Processes& processes, NodeOwner nodes) {
       return fmt::format("# These are ended, so User= has to be whoever runs them: {}.\n",
                          fmt::join(processes.ended, ", "));
     if (!processes.started.empty() || !processes.of_systemd.empty() ||
-        !processes.of_engines.empty())
+        !processes.of_engines.empty() || !processes.elsewhere.empty())
       return "";
     return "# No process is ever ended or started: it need not be anybody.\n"
            "User=\n"
@@ -131,6 +137,11 @@ std::string unit_settings(const RuleSet& rules, const UnitOptions& options) {
         "\n# Container engines are asked to start and end these, so User= needs their sockets "
         "(docs/security.md): {}.\n",
         fmt::join(processes.of_engines, ", "));
+  if (!processes.elsewhere.empty())
+    text += fmt::format(
+        "\n# These are started and ended on other computers, which are asked over ssh, so User=\n"
+        "# needs a home with a key that they take without a password (docs/security.md): {}.\n",
+        fmt::join(processes.elsewhere, ", "));
   const std::string more = end_settings(processes, options.nodes);
   return more.empty() ? text : text + "\n" + more;
 }

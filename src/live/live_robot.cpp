@@ -89,7 +89,29 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
     if (!component || appeared->pid == 0) continue;
     supervisor_->adopt(*component, appeared->pid, observations[i].at);
     units_.found(*component, appeared->pid);
-    engines_.found(*component, appeared->pid);
+  }
+  tell_what_ends_together(before, observations);
+}
+
+// Of what a container loads, and of what has an owner, nothing else is ended: it is reloaded, or
+// refused. What something else started is ended by itself, without its group.
+void LiveRobot::tell_what_ends_together(std::size_t before,
+                                        std::vector<Observation>& observations) {
+  const bool is_news = std::any_of(observations.begin() + static_cast<std::ptrdiff_t>(before),
+                                   observations.end(), [](const Observation& each) {
+                                     return std::holds_alternative<NodeAppeared>(each.what) ||
+                                            std::holds_alternative<NodeVanished>(each.what);
+                                   });
+  if (!is_news) return;
+  for (std::size_t c = 0; c < rules_.components.size(); ++c) {
+    const ComponentId component(c);
+    if (rules_[component].has_owner() || composed_->is_responsible_for(component)) continue;
+    std::vector<ComponentId> others =
+        containers_.end_with(component, supervisor_->has_started(component));
+    std::vector<ComponentId>& told = ends_with_[component];
+    if (told == others) continue;
+    told = others;
+    observations.push_back({live_now(), EndsWith{component, std::move(others)}});
   }
 }
 
@@ -170,8 +192,7 @@ void LiveRobot::start(CommandId command, ComponentId component, Duration patienc
 }
 
 void LiveRobot::start_process(CommandId command, ComponentId component) {
-  if (rules_[component].unit) return units_.start(command, component);
-  if (rules_[component].engine) return engines_.start(command, component);
+  if (auto* units = units_.of(component)) return units->start(command, component);
   supervisor_->start(command, component);
 }
 
@@ -217,8 +238,7 @@ void LiveRobot::stop_process(const Command& command) {
 
 void LiveRobot::end_process(CommandId command, ComponentId component, int pid,
                             owners::Ending ending, owners::Hangs hangs) {
-  if (rules_[component].unit) return units_.stop(command, component, pid, ending);
-  if (rules_[component].engine) return engines_.stop(command, component, pid, ending);
+  if (auto* units = units_.of(component)) return units->stop(command, component, pid, ending);
   supervisor_->stop(command, component, ending, hangs);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -57,14 +58,11 @@ class LiveRobot : public Robot {
 
  private:
   explicit LiveRobot(const RuleSet& rules)
-      : rules_(rules),
-        binding_(rules),
-        containers_(rules),
-        units_(rules, inbox_),
-        engines_(rules, inbox_, owners::Units::Of::kEngines) {}
+      : rules_(rules), binding_(rules), containers_(rules), units_(rules, inbox_) {}
 
   void listen(Time until, std::vector<Observation>& observations);
   void witness(std::size_t before, std::vector<Observation>& observations);
+  void tell_what_ends_together(std::size_t before, std::vector<Observation>& observations);
   void stop_process(const Command& command);
   void start_process(CommandId command, ComponentId component);
   void end_process(CommandId command, ComponentId component, int pid, owners::Ending ending,
@@ -74,12 +72,12 @@ class LiveRobot : public Robot {
   Inbox inbox_;
   ComponentBinding binding_;
   owners::ComponentContainers containers_;
-  owners::Units units_;
-  owners::Units engines_;
+  owners::AllUnits units_;  // and containers of engines
   std::unique_ptr<owners::Supervisor> supervisor_;
   std::unique_ptr<ros2::Link> link_;
   std::unique_ptr<owners::ContainerClients> container_clients_;
   std::unique_ptr<owners::ComposedNodes> composed_;
+  std::map<ComponentId, std::vector<ComponentId>> ends_with_;  // as it was told
   bool judges_ = true;  // the manager was told that what it hears is all that there is
   std::optional<Time> deaf_since_;
 };

@@ -14,7 +14,7 @@ export const kDeclarations: Record<string, Kind> = {
   COMPONENT: {
     title: 'Component',
     members: ['name'],
-    more: { node: '/my_node', launch: 'ros2 run my_package my_node', unit: 'my_node.service', env: 'NAME=value', setup: '/opt/ros/humble/setup.bash', cwd: '/tmp' },
+    more: { node: '/my_node', launch: 'ros2 run my_package my_node', unit: 'my_node.service', host: 'user@computer', env: 'NAME=value', setup: '/opt/ros/humble/setup.bash', cwd: '/tmp' },
     fresh: (document) => {
       const name = freeName(document, 'COMPONENT', 'my_node')
       return { name, node: `/${name}` }

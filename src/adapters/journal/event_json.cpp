@@ -59,6 +59,7 @@ class EventWriter {
       json_["components"].push_back(name(component));
     json_["explains"] = Json::array();
     for (const RuleId rule : e.explains) json_["explains"].push_back(name(rule));
+    for (const ComponentId component : e.also_ended) json_["also_ended"].push_back(name(component));
     add_reasons(e.suspects, e.candidates);
   }
   void operator()(const FailureHeldBack& e) const {

@@ -25,7 +25,9 @@ enum class Tag : std::uint8_t {
   kOverslept = 18,
   kStatusHeard = 19,
   kParametersListed = 20,
-  kProcessWorked = 21
+  kProcessWorked = 21,
+  kHostReached = 22,
+  kEndsWith = 23
 };
 
 enum class OrderTag : std::uint8_t {
@@ -130,6 +132,17 @@ class Encoder {
     head(Tag::kProcessWorked, age);
     out_.natural(o.component.index);
     out_.integer(o.pid);
+  }
+  void write(const HostReached& o, Duration age) {
+    head(Tag::kHostReached, age);
+    out_.natural(o.component.index);
+    out_.byte(o.is_reached ? 1 : 0);
+  }
+  void write(const EndsWith& o, Duration age) {
+    head(Tag::kEndsWith, age);
+    out_.natural(o.component.index);
+    out_.natural(o.others.size());
+    for (const ComponentId other : o.others) out_.natural(other.index);
   }
   void write(const Probed& o, Duration age) {
     head(Tag::kProbed, age);
@@ -317,6 +330,17 @@ class Decoder {
       case Tag::kProcessWorked: {
         const auto component = id<ComponentId>(rules_.components.size());
         return ProcessWorked{component, pid()};
+      }
+      case Tag::kHostReached: {
+        const auto component = id<ComponentId>(rules_.components.size());
+        return HostReached{component, in_.byte() != 0};
+      }
+      case Tag::kEndsWith: {
+        EndsWith seen;
+        seen.component = id<ComponentId>(rules_.components.size());
+        for (std::uint64_t left = in_.natural(); left > 0 && in_.is_good(); --left)
+          seen.others.push_back(id<ComponentId>(rules_.components.size()));
+        return seen;
       }
       case Tag::kProbed: {
         const auto component = id<ComponentId>(rules_.components.size());

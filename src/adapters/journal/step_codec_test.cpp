@@ -69,7 +69,7 @@ decltype(Order::what) any_order() {
 decltype(Observation::what) anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 20)) {
+  switch (*rc::gen::inRange(0, 22)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -112,6 +112,11 @@ decltype(Observation::what) anything() {
       return ParametersListed{component, *rc::gen::arbitrary<std::vector<std::string>>()};
     case 18:
       return ProcessWorked{component, *rc::gen::inRange(0, 100000)};
+    case 19:
+      return HostReached{component, *rc::gen::arbitrary<bool>()};
+    case 20:
+      return EndsWith{component, std::vector<ComponentId>(*rc::gen::inRange<std::size_t>(0, 3),
+                                                          ComponentId(1))};
     default:
       return LinkTrouble{text};
   }

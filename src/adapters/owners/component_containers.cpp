@@ -1,5 +1,7 @@
 #include "owners/component_containers.h"
 
+#include <unistd.h>
+
 namespace culprit::owners {
 namespace {
 
@@ -45,6 +47,23 @@ std::vector<std::string> ComponentContainers::nodes_in(const std::set<int>& proc
     if (processes.contains(process)) nodes.push_back(node);
   }
   return nodes;
+}
+
+std::vector<ComponentId> ComponentContainers::end_with(ComponentId component,
+                                                       bool ends_group) const {
+  const auto last = last_.find(component);
+  if (last == last_.end() || last->second == 0) return {};
+  const pid_t group = ends_group ? getpgid(last->second) : -1;
+  std::vector<ComponentId> others;
+  for (const auto& [other, process] : last_) {
+    const auto is_there = processes_.find(binding_.node_of(other));
+    if (other == component || process == 0 || is_there == processes_.end() ||
+        is_there->second != process)
+      continue;
+    if (process == last->second || (group > 0 && getpgid(process) == group))
+      others.push_back(other);
+  }
+  return others;
 }
 
 std::optional<ComponentId> ComponentContainers::would_lose(ComponentId component) const {

@@ -34,6 +34,10 @@ class ComponentContainers {
   // The nodes of these processes that are there, by full name.
   std::vector<std::string> nodes_in(const std::set<int>& processes) const;
 
+  // The other components whose nodes are there and end with the component's process: they live in
+  // it, or, if `ends_group`, in the process group that it is in.
+  std::vector<ComponentId> end_with(ComponentId component, bool ends_group) const;
+
   // Another component in the same process that would not come back with this one, for the rules start
   // it in another way. One that they do not start is taken for the same program's. Nothing: there is
   // none, or the component is the container that the others live in.

@@ -1,5 +1,9 @@
 #include "owners/component_containers.h"
 
+#include <csignal>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -100,6 +104,48 @@ TEST(ComponentsOfOneProcess, EndTogetherOnlyIfTheyComeBackTogether) {
   EXPECT_FALSE(containers.would_lose(ComponentId(0))) << "it is not there any more";
   appear("/a", 0);
   EXPECT_FALSE(containers.would_lose(ComponentId(0))) << "whose process is not known";
+}
+
+// A process of its own, in the group of `leader`; 0: in one of its own.
+int sleeper(int leader) {
+  const int pid = fork();
+  if (pid == 0) {
+    pause();
+    _exit(0);
+  }
+  setpgid(pid, leader);
+  return pid;
+}
+
+TEST(ComponentsOfOneProcess, EndTogetherWithWhatTheSameLaunchStarted) {
+  const RuleSet rules = *check(Source("launch.rules",
+                                      "COMPONENT a NODE /a LAUNCH \"ros2 launch both\"\n"
+                                      "COMPONENT b NODE /b\nCOMPONENT c NODE /c\n"
+                                      "COMPONENT d NODE /d\n"))
+                             .rules;
+  ComponentContainers containers(rules);
+  const int a = sleeper(0);
+  const int b = sleeper(a);
+  const int d = sleeper(0);
+  const auto appear = [&](const char* node, int pid) {
+    containers.observe({Time(), NodeAppeared{node, pid}});
+  };
+  appear("/a", a);
+  appear("/b", b);
+  appear("/c", a);
+  appear("/d", d);
+  const std::vector<ComponentId> in_process{ComponentId(2)};
+  const std::vector<ComponentId> in_group{ComponentId(1), ComponentId(2)};
+  EXPECT_EQ(containers.end_with(ComponentId(0), false), in_process);
+  EXPECT_EQ(containers.end_with(ComponentId(0), true), in_group);
+  containers.observe({Time(), NodeVanished{"/b"}});
+  EXPECT_EQ(containers.end_with(ComponentId(0), true), in_process);
+  appear("/a", 0);
+  EXPECT_TRUE(containers.end_with(ComponentId(0), true).empty()) << "on another computer";
+  for (const int pid : {a, b, d}) {
+    kill(pid, SIGKILL);
+    waitpid(pid, nullptr, 0);
+  }
 }
 
 }  // namespace

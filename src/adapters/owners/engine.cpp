@@ -16,6 +16,7 @@
 #include "base/live_clock.h"
 #include "owners/file_descriptor.h"
 #include "owners/proc.h"
+#include "owners/remote_program.h"
 
 namespace culprit::owners {
 namespace {
@@ -90,15 +91,96 @@ std::optional<T> member(const json& object, const char* name) {
 
 }  // namespace
 
-std::string Engine::name() const {
+class Engine::Connection {
+ public:
+  explicit Connection(const Engine& engine) : engine_(engine) {}
+
+  Expected<void> open() { return engine_.host_.empty() ? open_here() : open_there(); }
+  // What it may take longer than an engine of this machine.
+  Duration extra() const { return remote_ ? RemoteProgram::kPatience : Duration::zero(); }
+
+  Expected<void> send(const std::string& request, Time end) {
+    for (std::size_t sent = 0; sent < request.size();) {
+      const ssize_t part =
+          ::send(way(), request.data() + sent, request.size() - sent, MSG_NOSIGNAL);
+      if (part > 0) {
+        sent += static_cast<std::size_t>(part);
+      } else if (errno != EAGAIN && errno != EINTR) {
+        return failed(errno);
+      } else if (!wait_for(way(), POLLOUT, end)) {
+        return failed(ETIMEDOUT);
+      }
+    }
+    return {};
+  }
+
+  // All that comes until the other side ends it; nothing if that is not in time.
+  Expected<std::optional<std::string>> receive(Time end) {
+    std::string text;
+    while (true) {
+      if (!wait_for(way(), POLLIN, end)) return std::optional<std::string>();
+      char part[1 << 14];
+      const ssize_t size = recv(way(), part, sizeof part, 0);
+      if (size < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+      if (size < 0 || (size == 0 && text.empty() && remote_)) return failed(errno);
+      if (size == 0 || text.size() > kLongestAnswer) return std::optional(std::move(text));
+      text.append(part, static_cast<std::size_t>(size));
+    }
+  }
+
+  Error failed(int error) {
+    if (remote_) return Error{remote_->trouble()};
+    if (error == EACCES || error == EPERM)
+      return Error{engine_.name() + ": culprit may not use " + path_ +
+                   "; give its user the right (docs/security.md)"};
+    return Error{engine_.name() + ": it cannot be reached at " + path_ + ": " +
+                 std::strerror(error) + "; is it running?"};
+  }
+
+ private:
+  int way() const { return remote_ ? remote_->socket() : socket_.get(); }
+
+  Expected<void> open_here() {
+    auto path = socket_of(engine_.which_);
+    if (!path) return Error{engine_.name() + ": " + path.error()};
+    path_ = std::move(*path);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path_.size() >= sizeof address.sun_path) return failed(ENAMETOOLONG);
+    std::memcpy(address.sun_path, path_.c_str(), path_.size());
+    socket_ = FileDescriptor(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    if (!socket_) return failed(errno);
+    if (connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+      return failed(errno);
+    return {};
+  }
+
+  Expected<void> open_there() {
+    auto remote = RemoteProgram::begin(engine_.host_, {engine_.program(), "system", "dial-stdio"});
+    if (!remote) return Error{remote.error()};
+    remote_ = std::move(*remote);
+    return {};
+  }
+
+  const Engine& engine_;
+  std::string path_;
+  FileDescriptor socket_;
+  std::optional<RemoteProgram> remote_;
+};
+
+std::string Engine::program() const {
   return which_ == EngineContainer::Engine::kDocker ? "docker" : "podman";
 }
 
+std::string Engine::name() const { return program() + (host_.empty() ? "" : " on " + host_); }
+
 std::string Engine::where_to_look(const std::string& container) const {
-  return name() + " logs " + container;
+  return (host_.empty() ? "" : "ssh " + host_ + " ") + program() + " logs " + container;
 }
 
-std::string Engine::what_lists_all() const { return name() + " ps -a"; }
+std::string Engine::what_lists_all() const {
+  return (host_.empty() ? "" : "ssh " + host_ + " ") + program() + " ps -a";
+}
 
 Error Engine::no_form(const std::string& what) const {
   return Error{name() + ": what it answers to " + what + " is not of the engine's API"};
@@ -107,51 +189,23 @@ Error Engine::no_form(const std::string& what) const {
 // HTTP/1.0: one request on a connection, and the answer ends with it.
 Expected<Engine::Answer> Engine::ask(const std::string& method, const std::string& target,
                                      Duration patience) {
-  const auto path = socket_of(which_);
-  if (!path) return Error{name() + ": " + path.error()};
-  const auto failed = [&](int error) {
-    if (error == EACCES || error == EPERM)
-      return Error{name() + ": culprit may not use " + *path +
-                   "; give its user the right (docs/security.md)"};
-    return Error{name() + ": it cannot be reached at " + *path + ": " + std::strerror(error) +
-                 "; is it running?"};
-  };
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path->size() >= sizeof address.sun_path) return failed(ENAMETOOLONG);
-  std::memcpy(address.sun_path, path->c_str(), path->size());
-  const FileDescriptor to(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (!to) return failed(errno);
-  const Time end = later(live_now(), patience);
-  if (connect(to.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-    return failed(errno);
+  was_reached_ = false;
+  Connection connection(*this);
+  if (auto opened = connection.open(); !opened) return Error{opened.error()};
+  const Time end = later(live_now(), patience + connection.extra());
   const std::string request =
       method + " " + target + " HTTP/1.0\r\nHost: engine\r\nContent-Length: 0\r\n\r\n";
-  for (std::size_t sent = 0; sent < request.size();) {
-    const ssize_t part = send(to.get(), request.data() + sent, request.size() - sent, MSG_NOSIGNAL);
-    if (part > 0) {
-      sent += static_cast<std::size_t>(part);
-    } else if (errno != EAGAIN && errno != EINTR) {
-      return failed(errno);
-    } else if (!wait_for(to.get(), POLLOUT, end)) {
-      return failed(ETIMEDOUT);
-    }
-  }
-  std::string text;
-  while (true) {
-    if (!wait_for(to.get(), POLLIN, end)) return Answer{};
-    char part[1 << 14];
-    const ssize_t size = recv(to.get(), part, sizeof part, 0);
-    if (size == 0) break;
-    if (size < 0 && (errno == EAGAIN || errno == EINTR)) continue;
-    if (size < 0) return failed(errno);
-    text.append(part, static_cast<std::size_t>(size));
-    if (text.size() > kLongestAnswer) return no_form(method + " " + target);
-  }
+  if (auto sent = connection.send(request, end); !sent) return Error{sent.error()};
+  const auto received = connection.receive(end);
+  if (!received) return Error{received.error()};
+  if (!*received) return Answer{};
+  const std::string& text = **received;
+  was_reached_ = true;
   // "HTTP/1.0 200 OK"
   constexpr std::size_t kStatus = 9;
   const std::size_t body = text.find("\r\n\r\n");
-  if (!text.starts_with("HTTP/1.") || text.size() < kStatus + 3 || body == std::string::npos)
+  if (!text.starts_with("HTTP/1.") || text.size() < kStatus + 3 || body == std::string::npos ||
+      text.size() > kLongestAnswer)
     return no_form(method + " " + target);
   return Answer{std::atoi(text.substr(kStatus, 3).c_str()), text.substr(body + 4)};
 }
@@ -178,7 +232,7 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
   state.load_state = "loaded";
   state.main_pid = static_cast<int>(*pid);
   if (*status == "paused")
-    return Error{container + " is paused, and is left to whoever did that: " + name() +
+    return Error{container + " is paused, and is left to whoever did that: " + program() +
                  " unpause " + container};
   if (*status == "running") {
     if (state.main_pid == 0) return no_form(what);

@@ -1,5 +1,6 @@
-// A container engine (docker, podman), asked over the REST API of its socket on this machine (Docker
-// Engine API; podman speaks the same).
+// A container engine (docker, podman), asked over the REST API of its socket (Docker Engine API;
+// podman speaks the same). That of another computer is asked through its own `docker system
+// dial-stdio` or `podman system dial-stdio`, over ssh.
 //
 // Every call has a time limit, and blocks its thread for so long at most. What comes back is not
 // trusted: it has the form that the API documents, or is an error. Whoever may use the socket may do
@@ -21,7 +22,9 @@ class Engine : public ServiceOwner {
   // How long the engine gives a process to end before it kills it.
   static constexpr Duration kPolite = std::chrono::seconds(3);
 
-  explicit Engine(EngineContainer::Engine which) : which_(which) {}
+  // `host`: the computer, as ssh is told; empty: this one.
+  explicit Engine(EngineContainer::Engine which, std::string host = {})
+      : which_(which), host_(std::move(host)) {}
 
   Expected<UnitState> state_of(const std::string& container) override;
   Expected<void> start(const std::string& container) override;
@@ -34,21 +37,30 @@ class Engine : public ServiceOwner {
   Expected<std::vector<std::string>> services() override;
   Expected<void> may_manage(const std::string& container) override;
 
+  bool was_reached() const override { return was_reached_; }
+
   std::string name() const override;
   std::string where_to_look(const std::string& container) const override;
   std::string what_lists_all() const override;
 
  private:
   struct Answer {
-    int status = 0;
+    int status = 0;  // 0: none came in time
     std::string body;
   };
+  // One that is open, and how to say what is wrong with it.
+  class Connection;
   Expected<Answer> ask(const std::string& method, const std::string& target, Duration patience);
   // Asks for a change. What is not answered in time may be done all the same.
   Expected<void> change(const std::string& container, const std::string& what, Duration patience);
   Error no_form(const std::string& what) const;
 
+  // Its program: what people know it as.
+  std::string program() const;
+
   const EngineContainer::Engine which_;
+  const std::string host_;
+  bool was_reached_ = false;
   std::map<std::string, int> last_pids_;  // the engine forgets them
 };
 

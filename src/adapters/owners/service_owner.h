@@ -49,6 +49,9 @@ class ServiceOwner {
   // Whether culprit has the right to start and to end it. Errors: it has not.
   virtual Expected<void> may_manage(const std::string& service) = 0;
 
+  // Whether there was anybody to answer the last call, whatever the answer was.
+  virtual bool was_reached() const = 0;
+
   // For people: "systemd", "docker".
   virtual std::string name() const = 0;
   // What says why a service failed: "journalctl -u lidar.service".

@@ -4,18 +4,13 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
-#include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <string_view>
-#include <sys/prctl.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
 
 #include "base/live_clock.h"
-#include "owners/file_descriptor.h"
+#include "owners/piped_program.h"
 #include "owners/spawn.h"
 
 namespace culprit::owners {
@@ -30,58 +25,6 @@ constexpr const char* kLine =
 bool begins_with_any(std::string_view variable, std::initializer_list<std::string_view> names) {
   return std::any_of(names.begin(), names.end(),
                      [&](std::string_view name) { return variable.starts_with(name); });
-}
-
-struct Pipe {
-  FileDescriptor read_end;
-  FileDescriptor write_end;
-};
-
-Expected<Pipe> make_pipe() {
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) return Error{std::strerror(errno)};
-  return Pipe{FileDescriptor(ends[0]), FileDescriptor(ends[1])};
-}
-
-// On a thread of its own: a thread that gave up its ambient capabilities does not get them back.
-Expected<int> begin_shell(const std::filesystem::path& file, std::vector<std::string> environment,
-                          int out, int err) {
-  std::vector<std::string> words = {"bash", "--noprofile",   "--norc",     "-c",
-                                    kLine,  "culprit-setup", file.native()};
-  const auto pointers_to = [](std::vector<std::string>& texts) {
-    std::vector<char*> pointers;
-    for (std::string& text : texts) pointers.push_back(text.data());
-    pointers.push_back(nullptr);
-    return pointers;
-  };
-  const std::vector<char*> arguments = pointers_to(words);
-  const std::vector<char*> variables = pointers_to(environment);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&files, err, STDERR_FILENO);
-  posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigset_t all;
-  sigemptyset(&none);
-  sigfillset(&all);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setsigdefault(&attributes, &all);
-  posix_spawnattr_setflags(&attributes,
-                           POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSID);
-  pid_t pid = 0;
-  int why = 0;
-  std::thread([&] {
-    prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
-    why = posix_spawn(&pid, "/bin/bash", &files, &attributes, arguments.data(), variables.data());
-  }).join();
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
-  if (why != 0) return Error{std::string("/bin/bash cannot be run: ") + std::strerror(why)};
-  return pid;
 }
 
 // False at the end, and when there is too much.
@@ -110,13 +53,8 @@ Over read_all(int out, int err, Time end, std::string& printed, std::string& err
 }
 
 // ": No such file or directory", of what it said last.
-std::string last_words(std::string errors) {
-  while (!errors.empty() && errors.back() == '\n') errors.pop_back();
-  std::string line = errors.substr(errors.rfind('\n') + 1);
-  constexpr std::size_t kShown = 200;
-  if (line.size() > kShown) line.resize(kShown);
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+std::string last_words(const std::string& errors) {
+  const std::string line = last_line(errors);
   return line.empty() ? "" : ": " + line;
 }
 
@@ -133,7 +71,9 @@ Expected<std::vector<std::string>> environment_after(const std::filesystem::path
   auto err = make_pipe();
   if (!out) return Error{name + ": " + out.error()};
   if (!err) return Error{name + ": " + err.error()};
-  const auto pid = begin_shell(file, before, out->write_end.get(), err->write_end.get());
+  const auto pid = begin_piped(
+      {"/bin/bash", "--noprofile", "--norc", "-c", kLine, "culprit-setup", file.native()}, before,
+      {.out = out->write_end.get(), .err = err->write_end.get()});
   out->write_end = FileDescriptor();
   err->write_end = FileDescriptor();
   if (!pid) return Error{name + ": " + pid.error()};

@@ -45,13 +45,6 @@ std::vector<std::string> places_of(const Program& program) {
   return places;
 }
 
-std::vector<char*> pointers_to(std::vector<std::string>& words) {
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
 // All that is needed from fork() to execve(). After the fork of a program with threads only system
 // calls are safe, on what was made ready before.
 struct Preparation {
@@ -169,6 +162,13 @@ std::string description(const Failure& failure, const std::string& name,
 }
 
 }  // namespace
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
 
 std::vector<std::string> environment_with(const std::vector<std::string>& added) {
   std::vector<std::string> all;

@@ -77,6 +77,9 @@ class Launch {
   std::filesystem::path folder_;
 };
 
+// As execve(2) takes them, with a null behind. They point into `texts`.
+std::vector<char*> pointers_to(std::vector<std::string>& texts);
+
 // What we have in our environment, without what `added` has a value for, and `added`.
 std::vector<std::string> environment_with(const std::vector<std::string>& added);
 

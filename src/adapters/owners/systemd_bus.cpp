@@ -5,6 +5,7 @@
 #include <climits>
 #include <csignal>
 #include <cstring>
+#include <fcntl.h>
 #include <set>
 
 #include <systemd/sd-bus.h>
@@ -70,36 +71,67 @@ std::optional<UnitState::Activity> activity_of(const std::string& text) {
 
 constexpr const char* kMayNot = "culprit may not: ";
 
-constexpr const char* kRight =
-    "; give its user the right (docs/security.md), or run the unit in that user's own systemd "
-    "(UNIT ... USER)";
-
 }  // namespace
 
 std::string SystemdBus::name() const {
-  return whose_ == Whose::kUser ? "the user's systemd" : "systemd";
+  return std::string(whose_ == Whose::kUser ? "the user's systemd" : "systemd") +
+         (host_.empty() ? "" : " on " + host_);
 }
 
 std::string SystemdBus::where_to_look(const std::string& unit) const {
-  return std::string("journalctl ") + (whose_ == Whose::kUser ? "--user -u " : "-u ") + unit;
+  return (host_.empty() ? "" : "ssh " + host_ + " ") + "journalctl " +
+         (whose_ == Whose::kUser ? "--user -u " : "-u ") + unit;
 }
 
-std::string SystemdBus::what_lists_all() const { return "systemctl list-unit-files"; }
+std::string SystemdBus::what_lists_all() const {
+  return (host_.empty() ? "" : "ssh " + host_ + " ") + "systemctl list-unit-files";
+}
+
+std::string SystemdBus::remedy() const {
+  const std::string whom = host_.empty() ? "its user" : "the user of " + host_;
+  return "; give " + whom +
+         " the right (docs/security.md), or run the unit in that user's own systemd (UNIT ... "
+         "USER)";
+}
 
 void SystemdBus::Closing::operator()(sd_bus* bus) const { sd_bus_close_unref(bus); }
 
 SystemdBus::Message::~Message() { sd_bus_message_unref(it); }
 
+Expected<void> SystemdBus::open() {
+  const bool is_of_user = whose_ == Whose::kUser;
+  sd_bus* bus = nullptr;
+  int opened = 0;
+  if (host_.empty()) {
+    opened = is_of_user ? sd_bus_open_user(&bus) : sd_bus_open_system(&bus);
+    bus_.reset(bus);
+  } else {
+    std::vector<std::string> bridge{"systemd-stdio-bridge"};
+    // Its --user is not heeded everywhere (systemd 252), and the shell there knows the folder.
+    if (is_of_user) bridge.push_back("-punix:path=$XDG_RUNTIME_DIR/bus");
+    auto remote = RemoteProgram::begin(host_, std::move(bridge));
+    if (!remote) return Error{remote.error()};
+    remote_ = std::move(*remote);
+    opened = sd_bus_new(&bus);
+    bus_.reset(bus);
+    const int way = fcntl(remote_->socket(), F_DUPFD_CLOEXEC, 0);  // the bus closes it
+    if (opened >= 0) opened = way < 0 ? -errno : sd_bus_set_fd(bus, way, way);
+    if (opened >= 0) opened = sd_bus_set_bus_client(bus, 1);
+    if (opened >= 0) opened = sd_bus_start(bus);
+  }
+  return opened < 0 ? Expected<void>(failed("it cannot be reached", opened, BusError()))
+                    : Expected<void>();
+}
+
 Expected<void> SystemdBus::connect() {
   if (bus_ && sd_bus_is_open(bus_.get()) > 0) return {};
   bus_.reset();
-  sd_bus* bus = nullptr;
-  const int opened = whose_ == Whose::kUser ? sd_bus_open_user(&bus) : sd_bus_open_system(&bus);
-  if (opened < 0) return failed("it cannot be reached", opened, BusError());
-  bus_.reset(bus);
+  remote_.reset();
+  if (auto opened = open(); !opened) return opened;
+  sd_bus* bus = bus_.get();
   sd_bus_set_method_call_timeout(bus, microseconds(kPatience));
   // A call would wait for the connection without its limit.
-  const Time end = later(live_now(), kPatience);
+  const Time end = later(live_now(), remote_ ? RemoteProgram::kPatience : kPatience);
   while (sd_bus_is_ready(bus) <= 0) {
     const int progress = sd_bus_process(bus, nullptr);
     if (progress < 0) return failed("it cannot be reached", progress, BusError());
@@ -110,14 +142,19 @@ Expected<void> SystemdBus::connect() {
 }
 
 Error SystemdBus::failed(const std::string& what, int error, const BusError& why) {
-  const bool is_of_user = whose_ == Whose::kUser;
-  const std::string text = (is_of_user ? "the user's systemd: " : "systemd: ") + what + ": ";
-  if (is_denied(why)) return Error{text + kMayNot + shown(why.it.message) + kRight};
+  const std::string text = name() + ": " + what + ": ";
+  if (is_denied(why)) return Error{text + kMayNot + shown(why.it.message) + remedy()};
   if (is_of_systemd(why)) return Error{text + shown(why.it.message)};
   // The connection may be at fault, or what comes over it: the next call makes another one.
   bus_.reset();
-  const std::string address = is_of_user ? "DBUS_SESSION_BUS_ADDRESS or XDG_RUNTIME_DIR of culprit"
-                                         : "/run/dbus/system_bus_socket";
+  if (remote_) {
+    const std::string trouble = remote_->trouble();
+    remote_.reset();
+    return Error{trouble};
+  }
+  const std::string address = whose_ == Whose::kUser
+                                  ? "DBUS_SESSION_BUS_ADDRESS or XDG_RUNTIME_DIR of culprit"
+                                  : "/run/dbus/system_bus_socket";
   return Error{text + std::strerror(-error) + "; is it running, and is " + address + " its bus?"};
 }
 

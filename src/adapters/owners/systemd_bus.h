@@ -1,5 +1,6 @@
 // systemd, asked over D-Bus: what its services do, and to start and to end them
-// (org.freedesktop.systemd1(5)).
+// (org.freedesktop.systemd1(5)). That of another computer is asked through its own
+// systemd-stdio-bridge(1), over ssh.
 //
 // Every call has a time limit, and blocks its thread for so long at most. What comes back is not
 // trusted: it is of the type that systemd documents, or an error. The connection is made by the
@@ -7,12 +8,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/expected.h"
 #include "base/time.h"
 #include "language/rule_set.h"
+#include "owners/remote_program.h"
 #include "owners/service_owner.h"
 
 struct sd_bus;
@@ -27,7 +30,8 @@ class SystemdBus : public ServiceOwner {
   enum class Whose : std::uint8_t { kSystem, kUser };
   static constexpr Duration kPatience = std::chrono::seconds(2);
 
-  explicit SystemdBus(Whose whose) : whose_(whose) {}
+  // `host`: the computer, as ssh is told; empty: this one.
+  explicit SystemdBus(Whose whose, std::string host = {}) : whose_(whose), host_(std::move(host)) {}
 
   // Errors say what is wrong and what to do. Where systemd refused, nothing was done.
   Expected<UnitState> state_of(const std::string& unit) override;
@@ -43,6 +47,8 @@ class SystemdBus : public ServiceOwner {
   Expected<std::vector<std::string>> services() override;
   // Whether culprit has the right to start and to end it. Errors: it has not.
   Expected<void> may_manage(const std::string& unit) override;
+
+  bool was_reached() const override { return bus_ != nullptr; }
 
   std::string name() const override;
   std::string where_to_look(const std::string& unit) const override;
@@ -61,6 +67,7 @@ class SystemdBus : public ServiceOwner {
   };
 
   Expected<void> connect();
+  Expected<void> open();
   Expected<void> ask(const char* method, const std::string& unit);
   Error failed(const std::string& what, int error, const BusError& why);
   template <class... Values>
@@ -71,7 +78,11 @@ class SystemdBus : public ServiceOwner {
   Expected<int> process(const std::string& path, const char* name);
   Expected<bool> has_job(const std::string& path);
 
+  std::string remedy() const;
+
   Whose whose_;
+  std::string host_;
+  std::optional<RemoteProgram> remote_;  // that the bus is reached through; nothing: it is here
   std::unique_ptr<sd_bus, Closing> bus_;
 };
 

@@ -19,12 +19,13 @@ namespace culprit::owners {
 
 struct AsksAnOwner : testing::Test {
   // `clauses` say who runs the component.
-  void manage(const std::string& name, const std::string& clauses, Units::Of whose) {
+  void manage(const std::string& name, const std::string& clauses, Units::Of whose,
+              const std::string& host = {}) {
     units.reset();
     rules = *check(Source("test.rules", "COMPONENT " + name + " NODE /" + name + " " + clauses +
                                             "\nCOMPONENT camera NODE /camera\n"))
                  .rules;
-    units.emplace(rules, inbox, whose);
+    units.emplace(rules, inbox, whose, host);
   }
 
   // The first observation of that kind that fits.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <set>
 
 #include "base/closest.h"
 #include "base/live_clock.h"
@@ -55,8 +56,8 @@ Expected<void> could_manage_with(ServiceOwner& owner, const std::string& name) {
 
 }  // namespace
 
-Units::Units(const RuleSet& rules, Inbox& inbox, Of whose)
-    : rules_(rules), inbox_(inbox), whose_(whose) {
+Units::Units(const RuleSet& rules, Inbox& inbox, Of whose, std::string host)
+    : rules_(rules), inbox_(inbox), whose_(whose), host_(std::move(host)) {
   for (std::size_t c = 0; c < rules_.components.size(); ++c) {
     if (is_ours(ComponentId(c))) components_.push_back(ComponentId(c));
   }
@@ -75,7 +76,8 @@ Units::~Units() {
 
 bool Units::is_ours(ComponentId component) const {
   const Component& what = rules_[component];
-  return whose_ == Of::kSystemd ? what.unit.has_value() : what.engine.has_value();
+  return (whose_ == Of::kSystemd ? what.unit.has_value() : what.engine.has_value()) &&
+         what.host() == host_;
 }
 
 const std::string& Units::name_of(ComponentId component) const {
@@ -90,8 +92,18 @@ ServiceOwner& Units::owner_of(ComponentId component) {
   return what.unit->is_of_user ? user_ : system_;
 }
 
+// Numbers of processes here say nothing of those on another computer.
+bool Units::runs_here(int pid, std::optional<Time> began) const {
+  return is_here() && is_running(pid, began);
+}
+
+Duration Units::idle_period() const {
+  if (is_here()) return kIdlePeriod;
+  return whose_ == Of::kSystemd ? kRemoteIdlePeriod : kEngineIdlePeriod;
+}
+
 void Units::found(ComponentId component, int pid) {
-  if (components_.empty()) return;
+  if (components_.empty() || !is_here()) return;
   {
     const MutexLock lock(mutex_);
     found_.push_back({component, pid, started_at(pid)});
@@ -110,6 +122,8 @@ void Units::stop(CommandId command, ComponentId component, int pid, Ending endin
 
 void Units::add(Errand errand) {
   errand.until = later(live_now(), kStart);
+  errand.since = live_now();
+  errand.latest = later(errand.since, kEnd);
   {
     const MutexLock lock(mutex_);
     errands_.push_back(std::move(errand));
@@ -133,37 +147,77 @@ void Units::run() {
     if (live_now() >= next_look) {
       look_at_all();
       look_for_work();
-      next_look = later(live_now(), kIdlePeriod);
+      next_look = later(live_now(), idle_period());
     }
     lock.lock();
     const auto has_news = [&]() CULPRIT_REQUIRES(mutex_) {
       return is_ending_ || !errands_.empty() || !found_.empty();
     };
-    const Duration wait = under_way.empty() ? next_look - live_now() : Duration(kPeriod);
+    const Duration period = is_here() ? Duration(kPeriod) : Duration(kRemotePeriod);
+    const Duration wait = under_way.empty() ? next_look - live_now() : period;
     something_came_.wait_for(lock, std::max(wait, Duration::zero()), has_news);
   }
+}
+
+void Units::look_at_all() {
+  std::optional<std::string> trouble;
+  for (const ComponentId component : components_) {
+    ServiceOwner& owner = owner_of(component);
+    const auto state = owner.state_of(name_of(component));
+    if (state) {
+      look_at(component, *state);
+    } else if (!is_here() && !owner.was_reached()) {
+      trouble = state.error();
+      break;  // nor will the others be answered
+    }
+  }
+  if (!is_here()) note_reach(trouble);
 }
 
 // What failed is proven to be dead, also if its node was never seen, and if it never had a main
 // process; what is inactive only if it was active before: it may have been stopped on purpose before
 // anybody looked.
-void Units::look_at_all() {
-  for (const ComponentId component : components_) {
-    const std::string& name = name_of(component);
-    const auto state = owner_of(component).state_of(name);
-    if (!state || !state->is_loaded) continue;
-    const auto before = before_.find(component);
-    const bool is_first = before == before_.end();
-    const bool has_ended =
-        !is_first && before->second != Activity::kInactive && before->second != Activity::kFailed;
-    const bool has_failed =
-        state->activity == Activity::kFailed && (is_first || before->second != Activity::kFailed);
-    before_.insert_or_assign(component, state->activity);
-    if (state->is_over() && (has_failed || has_ended)) {
-      inbox_.put(ProcessSeen{component, ProcessState::kGone, state->last_main_pid,
-                             in_words(*state, name)});
-    }
+void Units::look_at(ComponentId component, const UnitState& state) {
+  if (!state.is_loaded) return;
+  note_main_process(component, state);
+  const auto before = before_.find(component);
+  const bool is_first = before == before_.end();
+  const bool has_ended =
+      !is_first && before->second != Activity::kInactive && before->second != Activity::kFailed;
+  const bool has_failed =
+      state.activity == Activity::kFailed && (is_first || before->second != Activity::kFailed);
+  before_.insert_or_assign(component, state.activity);
+  if (state.is_over() && (has_failed || has_ended)) {
+    inbox_.put(ProcessSeen{component, ProcessState::kGone, is_here() ? state.last_main_pid : 0,
+                           in_words(state, name_of(component))});
   }
+}
+
+// That it is lost is said at once; that it is back, when its nodes had the time to be heard again.
+void Units::note_reach(const std::optional<std::string>& trouble) {
+  if (trouble) {
+    // A connection that was lost says little of why.
+    constexpr int kEnough = 2;
+    if (++failures_ < kEnough) return;
+    returned_ = kLongAgo;
+    if (!std::exchange(is_reached_, false)) return;
+    inbox_.put(LinkTrouble{*trouble + "; until it can be asked, what it runs is taken for neither "
+                                      "alive nor dead"});
+  } else {
+    failures_ = 0;
+    if (is_reached_) return;
+    if (returned_ == kLongAgo) returned_ = live_now();
+    if (live_now() < later(returned_, kReturn)) return;
+    is_reached_ = true;
+  }
+  for (const ComponentId component : components_) inbox_.put(HostReached{component, is_reached_});
+}
+
+void Units::note_main_process(ComponentId component, const UnitState& state) {
+  if (is_here() || state.main_pid == 0) return;
+  const auto [known, is_first] = elsewhere_.try_emplace(component, Elsewhere{state.main_pid});
+  if (!is_first && known->second.main_pid != state.main_pid)
+    known->second = {state.main_pid, live_now()};
 }
 
 // Of all in its session, which is the node's where `ros2 run` is the main process.
@@ -192,7 +246,12 @@ void Units::note(const Found& found) {
 
 bool Units::answer(const Errand& errand, Outcome outcome, std::string text, int pid) {
   Reply reply{errand.command, outcome, {}, std::move(text)};
-  if (pid != 0) {
+  if (!is_here()) {
+    // What it runs now is what was asked for.
+    elsewhere_.erase(errand.component);
+    if (pid != 0) elsewhere_.emplace(errand.component, Elsewhere{pid});
+    if (pid != 0) inbox_.put(ProcessSeen{errand.component, ProcessState::kRunning, 0, ""});
+  } else if (pid != 0) {
     coming_up_.push_back({errand.component, pid, started_at(pid), live_now()});
     inbox_.put(ProcessSeen{errand.component, ProcessState::kRunning, pid, ""});
     reply.value = Value(std::int64_t{pid});
@@ -206,11 +265,14 @@ bool Units::advance(Errand& errand) {
   ServiceOwner& owner = owner_of(errand.component);
   const auto state = owner.state_of(name);
   if (!state) {
-    if (errand.was_asked && live_now() < errand.until) return false;
+    // A connection that was lost is made anew.
+    if (!is_here() && live_now() < later(errand.since, kReconnect)) return false;
+    if (errand.was_asked && live_now() < std::min(errand.until, errand.latest)) return false;
     return answer(errand, errand.was_asked ? Outcome::kTimedOut : Outcome::kRefused, state.error());
   }
   if (!state->is_loaded)
     return answer(errand, Outcome::kRefused, not_loaded(name, *state, owner).message);
+  if (!errand.was_asked) note_main_process(errand.component, *state);
   const bool is_start = errand.kind == Errand::Kind::kStart;
   if (!errand.was_asked) return is_start ? begin_start(errand, *state) : begin_end(errand, *state);
   return is_start ? watch_start(errand, *state) : watch_end(errand, *state);
@@ -221,7 +283,8 @@ bool Units::advance(Errand& errand) {
 bool Units::begin_start(Errand& errand, const UnitState& state) {
   const std::string& name = name_of(errand.component);
   // systemd has not noticed yet.
-  if (state.main_pid != 0 && has_ended(state.main_pid) && live_now() < errand.until) return false;
+  if (is_here() && state.main_pid != 0 && has_ended(state.main_pid) && live_now() < errand.until)
+    return false;
   if (!state.is_over() && state.activity != Activity::kDeactivating)
     return answer(errand, Outcome::kDone,
                   owner_of(errand.component).name() + " has started " + name, state.main_pid);
@@ -263,7 +326,12 @@ std::optional<std::string> Units::who_else_would_end(ComponentId component) {
 bool Units::begin_end(Errand& errand, const UnitState& state) {
   const std::string& name = name_of(errand.component);
   ServiceOwner& bus = owner_of(errand.component);
-  const bool runs = is_running(errand.pid, errand.began);
+  if (!is_here() && errand.pid != 0)
+    return answer(errand, Outcome::kRefused,
+                  "process " + std::to_string(errand.pid) + " is of this computer, and " +
+                      rules_[errand.component].name + " is declared to run on " + host_ +
+                      ": nothing is ended; correct HOST, or end by hand what should not be here");
+  const bool runs = runs_here(errand.pid, errand.began);
   if (runs) {
     const auto is_its = bus.runs(name, errand.pid);
     if (!is_its) return answer(errand, Outcome::kRefused, is_its.error());
@@ -280,6 +348,10 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
     return false;
   const bool is_to_replace = errand.kind == Errand::Kind::kReplace;
   if (!runs && state.is_over() && !state.has_job) return answer(errand, Outcome::kDone, "");
+  const auto elsewhere = elsewhere_.find(errand.component);
+  if (is_to_replace && elsewhere != elsewhere_.end() &&
+      live_now() < later(elsewhere->second.since, kFresh))
+    return answer(errand, Outcome::kDone, bus.name() + " has started it again");
   if (is_to_replace && errand.pid != 0 && !runs) {
     // systemd started it again, or will; but not where what has ended was a child of the main
     // process, which does not know.
@@ -296,9 +368,9 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
   if (!asked) return answer(errand, Outcome::kRefused, asked.error());
   errand.was_asked = true;
   errand.main_pid = state.main_pid;
-  const bool acts = !is_stopped(errand.pid) && !is_stopped(errand.main_pid);
+  const bool acts = !is_here() || (!is_stopped(errand.pid) && !is_stopped(errand.main_pid));
   errand.escalate = acts ? later(live_now(), kPolite) : live_now();
-  errand.until = later(live_now(), kEnd);
+  errand.until = errand.latest;
   return false;
 }
 
@@ -307,7 +379,7 @@ bool Units::watch_end(Errand& errand, const UnitState& state) {
   const bool is_left_by_systemd = errand.kind == Errand::Kind::kEnd
                                       ? state.is_over() && !state.has_job
                                       : state.main_pid != errand.main_pid || state.is_over();
-  const bool runs = is_running(errand.pid, errand.began);
+  const bool runs = runs_here(errand.pid, errand.began);
   if (is_left_by_systemd && !runs) return answer(errand, Outcome::kDone, "");
   const Time now = live_now();
   if (now >= errand.until) {
@@ -328,15 +400,37 @@ bool Units::watch_end(Errand& errand, const UnitState& state) {
   return false;
 }
 
+// ---- all of them
+
+AllUnits::AllUnits(const RuleSet& rules, Inbox& inbox) {
+  std::set<std::pair<Units::Of, std::string>> made;
+  for (const Component& each : rules.components) {
+    const auto whose = each.unit ? Units::Of::kSystemd : Units::Of::kEngines;
+    if (each.has_owner() && made.emplace(whose, each.host()).second)
+      all_.push_back(std::make_unique<Units>(rules, inbox, whose, each.host()));
+  }
+}
+
+void AllUnits::found(ComponentId component, int pid) {
+  for (const auto& each : all_) each->found(component, pid);
+}
+
+Units* AllUnits::of(ComponentId component) {
+  const auto its = std::find_if(all_.begin(), all_.end(),
+                                [&](const auto& each) { return each->is_ours(component); });
+  return its == all_.end() ? nullptr : its->get();
+}
+
 // ---- before anything breaks
 
 Expected<void> could_manage(const SystemdUnit& unit) {
-  SystemdBus bus(unit.is_of_user ? SystemdBus::Whose::kUser : SystemdBus::Whose::kSystem);
+  SystemdBus bus(unit.is_of_user ? SystemdBus::Whose::kUser : SystemdBus::Whose::kSystem,
+                 unit.host);
   return could_manage_with(bus, unit.name);
 }
 
 Expected<void> could_manage(const EngineContainer& container) {
-  Engine engine(container.engine);
+  Engine engine(container.engine, container.host);
   return could_manage_with(engine, container.name);
 }
 

@@ -154,6 +154,7 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
           is_container(adaptation.component, knowledge.rules)) {
         gone.pid = state.known_pid();
         back.instead_of = gone.pid;
+        if (!component.host().empty()) back.instead_of_seen = state.node_seen;
       }
       std::vector<Goal> goals{gone, back};
       // A managed node comes back unconfigured unless it brings itself up: it is brought to where

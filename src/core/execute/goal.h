@@ -45,10 +45,13 @@ struct GoneGoal {
 };
 // `instead_of`: set if the process may have been started already. Then one with another pid will
 // do; otherwise one that appears from now on is wanted.
+// `instead_of_seen`: likewise of a process on another computer, of which nothing is seen but when its
+// node joined the graph.
 struct PresentGoal {
   static constexpr Duration kMost = std::chrono::minutes(5);
 
   std::optional<int> instead_of{};
+  std::optional<Time> instead_of_seen{};
   // From the start; and, while the process works (ProcessWorked), from when it did last, kMost in
   // all.
   Duration patience = std::chrono::seconds(20);

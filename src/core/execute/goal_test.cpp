@@ -60,6 +60,19 @@ TEST(Goal, OfARedeployedUnitIsAnyProcessButTheOneThatIsThere) {
   EXPECT_EQ(std::get<PresentGoal>((*goals)[1]).instead_of, 7);
 }
 
+TEST(Goal, OfAUnitOnAnotherComputerIsANodeThatJoinedLater) {
+  const RuleSet rules =
+      *check(Source("unit.rules",
+                    "COMPONENT c NODE /c UNIT c.service HOST rover2\nRULE Dead\nPOLICIES ERROR\n"
+                    "TRIGGER !alive(c)\nSTRATEGY again 90 10\nADAPTATION c redeploy 5\n"))
+           .rules;
+  Knowledge knowledge{rules};
+  knowledge.components[ComponentId(0)].node_seen = Time(std::chrono::seconds(4));
+  const auto goals = goals_of(rules.strategies[0].adaptations.front(), knowledge);
+  ASSERT_EQ(goals->size(), 2u);
+  EXPECT_EQ(std::get<PresentGoal>((*goals)[1]).instead_of_seen, Time(std::chrono::seconds(4)));
+}
+
 TEST(Goal, OfAStartIsToBeActive) {
   Goals goals;
   EXPECT_EQ(goals.of(1).size(), 1u);

@@ -285,7 +285,9 @@ std::optional<Pursuit::Request> Pursuit::pursue(const GoneGoal& goal, const Know
 std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal, const Knowledge& knowledge,
                                                 Time now) {
   const ComponentState& state = knowledge.components[component_];
-  const bool is_there = goal.instead_of && state.in_graph && state.known_pid() != *goal.instead_of;
+  const bool is_another = (goal.instead_of && state.known_pid() != *goal.instead_of) ||
+                          (goal.instead_of_seen && state.node_seen > *goal.instead_of_seen);
+  const bool is_there = state.in_graph && is_another;
   if (is_there && !has_changed_anything()) return reach();
   // Started before culprit ended, and not in the graph yet. If it was stopped since, none is begun
   // beside it either.

@@ -32,10 +32,17 @@ std::vector<Goal> goals_of_process(const Sent& sent, const Adaptation& adaptatio
   const auto* stop = last_of<StopProcess>(sent);
   const bool is_started = last_of<StartProcess>(sent) != nullptr;
   const int old_pid = stop != nullptr ? std::get<StopProcess>(stop->command.what).pid : 0;
+  // Whether another process took its place on another computer nobody sees from here: who runs it
+  // there was asked for both, and is not asked again.
+  const bool is_elsewhere = !knowledge.rules[adaptation.component].host().empty();
+  const bool is_to_stop = adaptation.type == AdaptationType::kStop;
   std::vector<Goal> goals;
-  if (!is_started && stop != nullptr) goals.push_back(GoneGoal{old_pid});
-  if (adaptation.type == AdaptationType::kStop) return goals;
-  goals.push_back(PresentGoal{old_pid});
+  if (!is_started && stop != nullptr && (is_to_stop || !is_elsewhere))
+    goals.push_back(GoneGoal{old_pid});
+  if (is_to_stop) return goals;
+  PresentGoal back{old_pid};
+  if (is_elsewhere) back.instead_of_seen = kLongAgo;
+  goals.push_back(back);
   const auto* was = std::get_if<Lifecycle>(&sent.front()->command.purpose.before);
   if (was != nullptr && (*was == Lifecycle::kActive || *was == Lifecycle::kInactive))
     goals.push_back(bringing_up(adaptation, *was, knowledge));

@@ -41,9 +41,12 @@ struct ComponentState {
   Time worked = kLongAgo;          // when its process was said to work last (ProcessWorked)
   bool took_place = false;  // its process took another's place, and its lifecycle was not read yet
 
+  std::vector<ComponentId> ends_with;  // other components whose processes end with its (EndsWith)
+
   // Does it work as a process and as a node? Nothing until something is known of it.
   std::optional<bool> alive;
-  bool is_missed = false;  // it was never seen, and had its time to show itself
+  bool is_out_of_reach = false;  // the computer that runs it cannot be asked (HostReached)
+  bool is_missed = false;        // it was never seen, and had its time to show itself
 
   // Its process runs, or is somewhere else, and it does nothing more.
   bool hangs() const { return in_graph && process == ProcessState::kRunning && alive == false; }

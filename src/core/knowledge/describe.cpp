@@ -44,6 +44,9 @@ class Describer {
     std::vector<std::string> actions;
     for (const Adaptation& adaptation : strategy.adaptations)
       actions.push_back(describe(adaptation, rules_));
+    std::vector<std::string> ended;
+    for (const ComponentId component : e.also_ended) ended.push_back(rules_[component].name);
+    const std::string with = ended.empty() ? "" : ", which also ends " + listed(ended);
     const auto chosen = std::find_if(e.candidates.begin(), e.candidates.end(),
                                      [&](const Candidate& c) { return c.strategy == e.strategy; });
     std::string reason = strategy.name;
@@ -53,7 +56,7 @@ class Describer {
     }
     return listed(blamed) + (blamed.size() == 1 ? " is" : " are") + " held responsible for " +
            listed(failures) + doubt(e) + ": " + (e.dry_run ? "would " : "") + listed(actions) +
-           " (" + reason + ")";
+           with + " (" + reason + ")";
   }
   std::string operator()(const FailureHeldBack& e) const {
     if (e.candidates.empty()) return "";
@@ -361,10 +364,11 @@ namespace {
 // Who is asked to end and to start it, where culprit does neither.
 std::string by_whom(const Component& component) {
   using Engine = EngineContainer::Engine;
-  if (component.unit) return " (" + component.unit->name + ")";
+  const std::string where = component.host().empty() ? ")" : " on " + component.host() + ")";
+  if (component.unit) return " (" + component.unit->name + where;
   if (component.engine)
     return std::string(component.engine->engine == Engine::kPodman ? " (podman " : " (docker ") +
-           component.engine->name + ")";
+           component.engine->name + where;
   if (component.composed) return " (in " + component.composed->container + ")";
   return component.is_respawned ? " (respawned)" : "";
 }

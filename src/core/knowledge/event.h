@@ -79,7 +79,8 @@ struct StrategyChosen {
   std::vector<Candidate> candidates;  // all of the same failure, this one included, by cost
   std::vector<RuleId> explains;  // failures downstream that are expected to go away with this one
   bool dry_run = false;          // it is only said, not done
-  std::vector<Suspect> suspects{};  // likeliest first; of a planner that weighs them
+  std::vector<Suspect> suspects{};        // likeliest first; of a planner that weighs them
+  std::vector<ComponentId> also_ended{};  // components whose processes end with it, besides its own
 };
 
 // A failure is there, and nothing is done about it now.

@@ -39,7 +39,8 @@ TEST(EventWords, SayWhoIsAskedToStartAndToEnd) {
                                       "COMPONENT lidar NODE /lidar UNIT lidar.service\n"
                                       "COMPONENT slam NODE /slam CONTAINER podman slam_1\n"
                                       "COMPONENT part NODE /part IN /box PLUGIN a::B\n"
-                                      "COMPONENT radar NODE /radar RESPAWNED\n"))
+                                      "COMPONENT radar NODE /radar RESPAWNED\n"
+                                      "COMPONENT far NODE /far UNIT far.service HOST ann@rover2\n"))
                              .rules;
   const auto redeploys = [&](std::uint32_t component) {
     Adaptation adaptation{};
@@ -52,6 +53,21 @@ TEST(EventWords, SayWhoIsAskedToStartAndToEnd) {
   EXPECT_EQ(redeploys(2), "redeploy slam (podman slam_1)");
   EXPECT_EQ(redeploys(3), "redeploy part (in /box)");
   EXPECT_EQ(redeploys(4), "redeploy radar (respawned)");
+  EXPECT_EQ(redeploys(5), "redeploy far (far.service on ann@rover2)");
+}
+
+TEST(EventWords, SayWhatADecisionEndsBesides) {
+  const RuleSet rules = *check(Source("test",
+                                      "COMPONENT box NODE /box LAUNCH \"box\"\n"
+                                      "COMPONENT one NODE /one\nCOMPONENT two NODE /two\n"
+                                      "RULE Gone\nPOLICIES ERROR\nTRIGGER !alive(box)\n"
+                                      "STRATEGY again 90 10\nADAPTATION box redeploy 5\n"))
+                             .rules;
+  StrategyChosen chosen{};
+  chosen.strategy = StrategyId(0);
+  chosen.also_ended = {ComponentId(1), ComponentId(2)};
+  EXPECT_EQ(describe({{}, chosen}, rules),
+            "box is held responsible for Gone: redeploy box, which also ends one and two (again)");
 }
 
 }  // namespace

@@ -220,6 +220,10 @@ class Parser {
         if (!component.engine) return false;
         component.engine_container = read_.name_or_text(s, "the container's name");
         if (!component.engine_container) return false;
+      } else if (clause.text == "HOST" && !component.host) {
+        s.next();
+        component.host = read_.name_or_text(s, "the computer that runs it, as ssh is told");
+        if (!component.host) return false;
       } else if (clause.text == "IN" && !component.container) {
         s.next();
         component.container = read_.ros_name(s, "the full name of the node that loads it");
@@ -252,8 +256,9 @@ class Parser {
         if (!lifecycle(s, component)) return false;
       } else {
         return read_.unexpected_clause(
-            clause, {"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "CONTAINER", "IN", "PLUGIN",
-                     "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+            clause,
+            {"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "CONTAINER", "HOST", "IN", "PLUGIN",
+             "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
       }
     }
     file_.components.push_back(std::move(component));

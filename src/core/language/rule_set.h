@@ -26,14 +26,16 @@ using syntax::LifecycleDriver;
 struct SystemdUnit {
   std::string name;         // "lidar.service"
   bool is_of_user = false;  // of the user's own systemd, not of the system's
+  std::string host{};       // the computer, as ssh is told: "robot@rover2"; empty: this one
   bool operator==(const SystemdUnit&) const = default;
 };
 
-// A container that an engine of this machine runs, by name or id.
+// A container that an engine runs, by name or id.
 struct EngineContainer {
   enum class Engine : std::uint8_t { kDocker, kPodman };
   Engine engine = Engine::kDocker;
   std::string name;
+  std::string host{};  // as of a unit
   bool operator==(const EngineContainer&) const = default;
 };
 
@@ -71,6 +73,8 @@ struct Component {
 
   // Whether somebody else runs it, whose word of its process is proof.
   bool has_owner() const { return unit || engine; }
+  // The computer where that one is asked, over ssh; empty: this one.
+  std::string host() const { return unit ? unit->host : engine ? engine->host : ""; }
 
   // Whether it can be told to start.
   bool can_start() const { return has_owner() || composed || !launch.empty(); }

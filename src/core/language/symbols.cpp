@@ -112,6 +112,7 @@ void Symbols::declare_component(const syntax::Component& written) {
   }
   declare_launch(written, component);
   if (written.unit) component.unit = declared_unit(written);
+  if (!written.unit && !written.engine) declared_host(written);
   declare_engine(written, component);
   declare_composition(written, component);
   declared_components_.push_back(components_.emplace(component.name, id).first->first);
@@ -168,6 +169,36 @@ void Symbols::declare_launch(const syntax::Component& written, Component& compon
   }
 }
 
+// Only who can be asked over ssh to start and to end it can be asked on another computer.
+std::string Symbols::declared_host(const syntax::Component& written) {
+  if (!written.host) return "";
+  const std::string& host = written.host->text;
+  const auto report = [&](std::string cause, std::string remedy) {
+    diagnostics_.push_back(
+        {Code::kSyntax, Severity::kError, written.host->span, std::move(cause), std::move(remedy)});
+  };
+  const auto may_be_there = [](unsigned char c) {
+    constexpr std::string_view kOthers = "@._-:%";
+    return c < 128 &&
+           (std::isalnum(c) != 0 || kOthers.find(static_cast<char>(c)) != std::string_view::npos);
+  };
+  const auto at = host.find('@');
+  const bool is_name = !host.empty() && std::all_of(host.begin(), host.end(), may_be_there) &&
+                       std::isalnum(static_cast<unsigned char>(host.front())) != 0 &&
+                       (at == std::string::npos ||
+                        (at + 1 < host.size() && host.find('@', at + 1) == std::string::npos &&
+                         std::isalnum(static_cast<unsigned char>(host[at + 1])) != 0));
+  if (!is_name)
+    report("this is no computer that ssh could be told",
+           "write HOST computer or HOST user@computer; what else it needs, as a port, is for "
+           "~/.ssh/config");
+  if (!written.unit && !written.engine)
+    report("component '" + written.name.text +
+               "' has a HOST, and nobody there who could be asked to start and to end it",
+           "declare its UNIT or its CONTAINER on that computer, or leave HOST out");
+  return host;
+}
+
 // One container runs one component, and nobody else does.
 void Symbols::declare_engine(const syntax::Component& written, Component& component) {
   if (!written.engine) return;
@@ -179,7 +210,8 @@ void Symbols::declare_engine(const syntax::Component& written, Component& compon
   };
   using Engine = EngineContainer::Engine;
   const bool is_podman = written.engine->text == "podman";
-  EngineContainer container{is_podman ? Engine::kPodman : Engine::kDocker, name.text};
+  EngineContainer container{is_podman ? Engine::kPodman : Engine::kDocker, name.text,
+                            declared_host(written)};
   if (!is_podman && written.engine->text != "docker")
     report(Code::kSyntax, *written.engine, "this is no engine that culprit knows",
            "write docker or podman, and the container's name: CONTAINER podman slam");
@@ -284,7 +316,7 @@ SystemdUnit Symbols::declared_unit(const syntax::Component& written) {
     diagnostics_.push_back(
         {code, Severity::kError, name.span, std::move(cause), std::move(remedy)});
   };
-  SystemdUnit unit{name.text, written.is_users_unit};
+  SystemdUnit unit{name.text, written.is_users_unit, declared_host(written)};
   if (!is_service_unit(unit.name)) {
     report(Code::kSyntax, "this is no service of systemd",
            "write its whole name, as systemctl list-units does: UNIT lidar.service");

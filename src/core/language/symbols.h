@@ -70,6 +70,7 @@ class Symbols {
   bool first_declaration(const syntax::Name& name, const char* what);
   void declare_component(const syntax::Component& component);
   void declare_launch(const syntax::Component& written, Component& component);
+  std::string declared_host(const syntax::Component& written);
   void declare_engine(const syntax::Component& written, Component& component);
   void declare_composition(const syntax::Component& written, Component& component);
   SystemdUnit declared_unit(const syntax::Component& written);

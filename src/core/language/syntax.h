@@ -95,6 +95,7 @@ struct Component {
   bool is_users_unit = false;
   std::optional<Name> engine{};  // "docker" or "podman"
   std::optional<Name> engine_container{};
+  std::optional<Name> host{};       // the computer that runs it, as ssh is told: "robot@rover2"
   std::optional<Name> container{};  // the node that loads it
   std::optional<Name> plugin{};
   std::optional<Name> package{};

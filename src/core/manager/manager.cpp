@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "plan/allowed.h"
+#include "plan/also_ended.h"
 #include "plan/awaits_repair.h"
 #include "plan/beside_exhausted.h"
 #include "plan/explained_by.h"
@@ -274,7 +275,8 @@ void Manager::carry_out(const Decision& decision, Time now) {
   if (!is_dry) make_way_for(strategy, now);
   knowledge_.events.tell(
       now, StrategyChosen{strategy, decision.candidates, plan::explained_by(strategy, knowledge_),
-                          is_dry, decision.suspects});
+                          is_dry, decision.suspects,
+                          plan::also_ended(knowledge_.rules[strategy], knowledge_)});
   if (is_dry) {
     knowledge_.states.advise(decision.rule);
     return;

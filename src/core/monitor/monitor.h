@@ -113,6 +113,8 @@ class Monitor {
   void on(Time at, const ProcessWorked& seen);
   void on(Time at, const StatusHeard& seen);
   void on(Time at, const ParametersListed& seen);
+  void on(Time at, const HostReached& seen);
+  void on(Time at, const EndsWith& seen);
   void on(Time, const Reply&) {}  // the executor's
   void on(Time, const Order&) {}  // the governor's
   void on(Time at, const LinkTrouble& seen);

@@ -227,6 +227,15 @@ void Monitor::on(Time at, const ProcessWorked& seen) {
   if (seen.pid == state.pid && state.process == ProcessState::kRunning) state.worked = at;
 }
 
+void Monitor::on(Time at, const HostReached& seen) {
+  write_.components[seen.component].is_out_of_reach = !seen.is_reached;
+  update_alive(seen.component, at, "its node left the graph");
+}
+
+void Monitor::on(Time, const EndsWith& seen) {
+  write_.components[seen.component].ends_with = seen.others;
+}
+
 void Monitor::on(Time at, const LinkTrouble& seen) { write_.events.tell(at, Trouble{seen.text}); }
 
 // The node or its process is gone or is another now: what was known of it does not hold any more.
@@ -286,7 +295,7 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
       state.in_graph && state.process == ProcessState::kRunning && !does_not_answer(component, at);
   if (!knowledge_.sightings.has(component)) return;           // it may be a name that nobody has
   if (!is_alive && !state.alive && at < discovered_) return;  // it may still be discovered
-  const bool may_be_unheard = is_deaf_ || at < graced_;
+  const bool may_be_unheard = is_deaf_ || at < graced_ || state.is_out_of_reach;
   if (!is_alive && may_be_unheard && state.process == ProcessState::kRunning) {
     state.alive.reset();
     return update_alive_inputs(component, Slot());

@@ -259,6 +259,24 @@ TEST(Monitor, KnowsWhetherAComponentIsAlive) {
   EXPECT_EQ(alive(), true) << "the old process's end says nothing about the new one";
 }
 
+TEST(Monitor, AComponentWhoseComputerCannotBeAskedIsNeitherAliveNorDead) {
+  Watched watched(rule("!alive(c)"));
+  const auto alive = [&] { return watched.knowledge.components[ComponentId(0)].alive; };
+  watched.observe(1s, NodeAppeared{"/c", 0});
+  watched.observe(2s, HostReached{ComponentId(0), false});
+  EXPECT_EQ(alive(), true) << "it is heard";
+  watched.observe(3s, NodeVanished{"/c"});
+  EXPECT_EQ(alive(), std::nullopt);
+  EXPECT_FALSE(watched.knowledge.signals[InputId(0)].known);
+  watched.observe(14s, HostReached{ComponentId(0), true});
+  EXPECT_EQ(alive(), false) << "it had the time to be heard";
+  watched.observe(15s, NodeAppeared{"/c", 0});
+  EXPECT_EQ(alive(), true);
+  watched.observe(16s, ProcessSeen{ComponentId(0), ProcessState::kGone, 0, "c.service failed"});
+  watched.observe(17s, HostReached{ComponentId(0), false});
+  EXPECT_EQ(alive(), false) << "what its owner said is proof";
+}
+
 TEST(Monitor, LosesAComponentThatDoesNotAnswerProbes) {
   Watched watched(rule("!alive(c)"));
   watched.observe(1s, NodeAppeared{"/c", 0});

@@ -21,6 +21,11 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
   const bool is_alive = state.alive.value_or(false);
   const Component& component = knowledge.rules[adaptation.component];
+  const bool is_of_process = adaptation.type == AdaptationType::kRedeploy ||
+                             adaptation.type == AdaptationType::kStart ||
+                             adaptation.type == AdaptationType::kStop;
+  if (is_of_process && state.is_out_of_reach)
+    return "is on " + component.host() + ", which cannot be asked";
   switch (adaptation.type) {
     case AdaptationType::kRedeploy:
       return component.can_start_again() ? "" : "has no LAUNCH command";

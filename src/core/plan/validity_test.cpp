@@ -28,5 +28,21 @@ TEST(Validity, AsksOfEachComponentOnlyWhatItsFirstAdaptationNeeds) {
   EXPECT_EQ(invalid("Dark.both")->component, scene.component("lamp"));
 }
 
+TEST(Validity, RulesOutToEndOrStartWhatIsOnAComputerThatCannotBeAsked) {
+  Scene scene(
+      "COMPONENT lidar NODE /lidar UNIT lidar.service HOST rover2\n"
+      "RULE Dark\nPOLICIES ERROR\nTRIGGER brightness < 0.5\n"
+      "STRATEGY again 50 10\nADAPTATION lidar redeploy 5\n"
+      "STRATEGY tune 50 10\nADAPTATION lidar set_parameter gain 1 2\n");
+  const auto invalid = [&](const char* strategy) {
+    return invalidity(scene.rules()[scene.strategy(strategy)], *scene);
+  };
+  EXPECT_FALSE(invalid("Dark.again"));
+  scene->components[scene.component("lidar")].is_out_of_reach = true;
+  ASSERT_TRUE(invalid("Dark.again"));
+  EXPECT_EQ(invalid("Dark.again")->reason, "lidar is on rover2, which cannot be asked");
+  EXPECT_FALSE(invalid("Dark.tune")) << "its node is heard";
+}
+
 }  // namespace
 }  // namespace culprit::plan

@@ -115,6 +115,20 @@ struct ProcessWorked {
   int pid = 0;
 };
 
+// The computer that runs a component (HOST) cannot be asked, or can be again. Of a component that is
+// not heard of meanwhile nobody knows whether it works.
+struct HostReached {
+  ComponentId component;
+  bool is_reached = false;
+};
+
+// To end the component's process is to end these components', too: they live in it, or it started
+// them.
+struct EndsWith {
+  ComponentId component;
+  std::vector<ComponentId> others;
+};
+
 // A component whose process is not known (another machine, a container) was asked whether it is
 // there.
 struct Probed {
@@ -184,7 +198,7 @@ struct Observation {
   std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived,
                SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply,
                LinkTrouble, Order, NamesakesSeen, HearingLost, HearingRegained, Overslept,
-               StatusHeard, ParametersListed, ProcessWorked>
+               StatusHeard, ParametersListed, ProcessWorked, HostReached, EndsWith>
       what;
 };
 

@@ -90,14 +90,15 @@ class Completion {
       if (words_.back() == "NODE" || words_.back() == "IN") return names(&live_nodes);
       if (words_.back() == "CONTAINER") return keywords({"docker", "podman"});
       if (words_.back() == "LIFECYCLE") return keywords({"self", "managed", "launcher"});
-      for (const char* takes_text :
-           {"UNIT", "LAUNCH", "ENV", "SETUP", "CWD", "PLUGIN", "PACKAGE", "PARAMETERS", "REMAP"}) {
+      for (const char* takes_text : {"UNIT", "HOST", "LAUNCH", "ENV", "SETUP", "CWD", "PLUGIN",
+                                     "PACKAGE", "PARAMETERS", "REMAP"}) {
         if (words_.back() == takes_text) return {};
       }
       if (words_[words_.size() - 2] == "UNIT")
-        return keywords({"USER", "NODE", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
-      return keywords({"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "CONTAINER", "IN", "PLUGIN",
-                       "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+        return keywords({"USER", "HOST", "NODE", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+      return keywords({"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "CONTAINER", "HOST", "IN",
+                       "PLUGIN", "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED",
+                       "LIFECYCLE"});
     }
     if (statement == "SIGNAL") return signal();
     if (statement == "IGNORE") {

@@ -73,6 +73,11 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     is_known = renumber(process->component, components_);
   } else if (auto* worked = std::get_if<ProcessWorked>(&out.what)) {
     is_known = renumber(worked->component, components_);
+  } else if (auto* reached = std::get_if<HostReached>(&out.what)) {
+    is_known = renumber(reached->component, components_);
+  } else if (auto* ends = std::get_if<EndsWith>(&out.what)) {
+    is_known = renumber(ends->component, components_);
+    std::erase_if(ends->others, [&](ComponentId& each) { return !renumber(each, components_); });
   } else if (auto* probed = std::get_if<Probed>(&out.what)) {
     is_known = renumber(probed->component, components_);
   } else if (std::holds_alternative<Reply>(out.what) || std::holds_alternative<Order>(out.what)) {

@@ -26,6 +26,7 @@ std::vector<Form> table() {
         {"UNIT", "unit", kName},
         {"USER", "user", kFlag},
         {"CONTAINER", "container", kNamePair},
+        {"HOST", "host", kName},
         {"IN", "in", kName},
         {"PLUGIN", "plugin", kName},
         {"PACKAGE", "package", kName},

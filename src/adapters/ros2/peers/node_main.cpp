@@ -1,6 +1,9 @@
 // A managed node in a process of its own, for tests to watch, steer and kill:
 //
-//     ros2_peer_node <domain> [--hangs-if FILE] [--container] [--keeps-if FILE] <full name>...
+//     ros2_peer_node <domain> [--subnet] [--hangs-if FILE] [--container] [--keeps-if FILE]
+//                    <full name>...
+//
+// It is heard on this machine only, unless --subnet.
 //
 // If there is FILE when it is activated, it takes the file away and does nothing more.
 //
@@ -249,8 +252,6 @@ int main(int argc, char** argv) {
   std::from_chars(domain.data(), domain.data() + domain.size(), options.domain);
   options.reach = Reach::kLocalhost;
   options.gid_size = GidSize::kHumbleAndOlder;
-  auto context = Context::create(executor, options);
-  if (!context) return fail(context.error());
   std::string hangs_if;
   std::string keeps_if;
   bool is_container = false;
@@ -259,6 +260,8 @@ int main(int argc, char** argv) {
     const std::string_view argument = argv[i];
     if (argument == "--container") {
       is_container = true;
+    } else if (argument == "--subnet") {
+      options.reach = Reach::kSubnet;
     } else if (argument == "--hangs-if" && i + 1 < argc) {
       hangs_if = argv[++i];
     } else if (argument == "--keeps-if" && i + 1 < argc) {
@@ -270,6 +273,8 @@ int main(int argc, char** argv) {
     }
   }
   if (names.empty()) return fail("no name");
+  auto context = Context::create(executor, options);
+  if (!context) return fail(context.error());
   PeerNode first(executor, hangs_if);
   if (auto opened = first.open(**context, names.front()); !opened) return fail(opened.error());
   std::optional<Container> container;

@@ -64,6 +64,36 @@ TEST(BayesPlanner, FollowsTheObjective) {
   EXPECT_EQ(scene.plan(kFewAdaptations), "A.redeploy") << "90 % beats 50 % where each counts one";
 }
 
+TEST(BayesPlanner, CountsWhatARedeployAlsoEnds) {
+  Scene scene = robot();
+  scene.fail("A").tried("A.restart");
+  scene.plan(kBalanced);
+  const double alone = scene.candidate("A.redeploy").cost;
+  scene->components[scene.component("a")].ends_with = {scene.component("d")};
+  EXPECT_EQ(scene.plan(kBalanced), "A.redeploy");
+  EXPECT_GT(scene.candidate("A.redeploy").cost, alone);
+}
+
+TEST(BayesPlanner, EndsNothingBesidesThatIsBeingAdapted) {
+  Scene scene = robot();
+  scene->components[scene.component("a")].ends_with = {scene.component("d")};
+  scene.fail("A").fail("D").attempt("D.restart").tried("A.restart");
+  EXPECT_EQ(scene.plan(kBalanced), "");
+  EXPECT_EQ(scene.candidate("A.redeploy").excluded, Condition::kAdapting);
+  EXPECT_EQ(scene.candidate("A.redeploy").component, scene.component("d"));
+  Scene other = robot();
+  other->components[other.component("a")].ends_with = {other.component("d")};
+  other.fail("A").fail("D");
+  EXPECT_EQ(other.plan(kFewRedeployments), "A.restart D.restart") << "a restart ends no process";
+}
+
+TEST(BayesPlanner, WaitsLikeAnyOtherIfTheDeadCouldOnlyComeBackWithTheLiving) {
+  Scene scene = robot();
+  scene.fail("A").fail("D").attempt("D.restart").process("a", ProcessState::kGone);
+  scene->components[scene.component("a")].ends_with = {scene.component("d")};
+  EXPECT_EQ(scene.plan(kBalanced), "");
+}
+
 TEST(BayesPlanner, TriesWhatIsLeft) {
   Scene scene = robot();
   scene.fail("A").tried("A.restart");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "plan/also_ended.h"
 #include "plan/bayes/seen_down.h"
 #include "plan/bayes/suspicion.h"
 
@@ -52,8 +53,11 @@ std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
                                                 std::span<const RuleId> suspicious) {
   std::vector<ComponentId> all;
   const auto add = [&](RuleId rule) {
-    const auto& touched = knowledge.rules[rule].components;
-    all.insert(all.end(), touched.begin(), touched.end());
+    for (const ComponentId c : knowledge.rules[rule].components) {
+      const auto& others = knowledge.components[c].ends_with;
+      all.push_back(c);
+      all.insert(all.end(), others.begin(), others.end());
+    }
   };
   std::for_each(knowledge.states.active().begin(), knowledge.states.active().end(), add);
   std::for_each(knowledge.states.exhausted().begin(), knowledge.states.exhausted().end(), add);
@@ -94,7 +98,7 @@ Exclusions::Exclusions(const Knowledge& knowledge, const Reach& reach, const Lev
   for (const RuleId rule : knowledge.states.active()) {
     const auto& attempt = knowledge.states[rule].attempt;
     if (!attempt || attempt->stage == Attempt::Stage::kSuspended) continue;
-    const auto& adapted = knowledge.rules[attempt->strategy].components;
+    const auto adapted = all_affected(knowledge.rules[attempt->strategy], knowledge);
     const bool has_effect = attempt->stage == Attempt::Stage::kWaiting;
     if (has_effect) {
       mark_below(judged_, knowledge.rules[rule].components, rule);
@@ -118,7 +122,7 @@ Exclusions::Exclusions(const Knowledge& knowledge, const Reach& reach, const Lev
 
 std::optional<Exclusions::Obstacle> Exclusions::reserved(const Strategy& strategy) const {
   const Marks& marks = holding_[level_of(strategy.rule)];
-  for (const ComponentId c : strategy.components) {
+  for (const ComponentId c : all_affected(strategy, knowledge_)) {
     const std::size_t place = reach_.place_of(c);
     if (has(marks.bits(), place)) return Obstacle{Condition::kAdapting, c, marks.failure[place]};
   }
@@ -171,7 +175,7 @@ std::optional<Exclusions::Obstacle> Exclusions::in_the_way(std::size_t place,
 }
 
 void Exclusions::add(const Strategy& strategy) {
-  for (const ComponentId c : strategy.components) {
+  for (const ComponentId c : all_affected(strategy, knowledge_)) {
     added_.mark(reach_.place_of(c), strategy.rule);
     if (!only_revives(strategy, knowledge_)) guarded_.mark(reach_.place_of(c), strategy.rule);
   }

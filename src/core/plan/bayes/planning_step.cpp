@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "plan/also_ended.h"
 #include "plan/bayes/bayes_planner.h"
 #include "plan/bayes/seen_down.h"
 #include "plan/bayes/suspicion.h"
@@ -217,10 +218,13 @@ std::vector<Try> PlanningStep::tries_of(std::size_t failure,
 
 double PlanningStep::disruption(const Strategy& strategy) const {
   std::size_t down = 0;
+  const auto add = [&](ComponentId component) {
+    down += 1 + reach_.dependents(reach_.place_of(component));
+  };
   for (const Adaptation& adaptation : strategy.adaptations) {
-    if (takes_down(adaptation))
-      down += 1 + reach_.dependents(reach_.place_of(adaptation.component));
+    if (takes_down(adaptation)) add(adaptation.component);
   }
+  for (const ComponentId component : also_ended(strategy, knowledge_)) add(component);
   const auto all = static_cast<double>(knowledge_.rules.components.size());
   return std::min(1.0, static_cast<double>(down) / all);
 }
@@ -240,7 +244,7 @@ void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
       watchers_->are_upstream_of(rule))
     return exclude(weighed, {Condition::kSuspect, likeliest_component(rule), rule});
   if (const auto held = exclusions_.reserved(strategy)) return exclude(weighed, *held);
-  for (const ComponentId c : strategy.components) {
+  for (const ComponentId c : all_affected(strategy, knowledge_)) {
     if (const auto obstacle = exclusions_.obstacle(reach_.place_of(c), strategy, chance))
       return exclude(weighed, *obstacle);
   }
@@ -319,7 +323,8 @@ bool PlanningStep::is_taken(WeighedCandidate& weighed) const {
     weighed.candidate.excluded = Condition::kOneEach;
     return true;
   }
-  for (const ComponentId c : knowledge_.rules[weighed.candidate.strategy].components) {
+  for (const ComponentId c :
+       all_affected(knowledge_.rules[weighed.candidate.strategy], knowledge_)) {
     const auto conflict = exclusions_.conflict(reach_.place_of(c));
     if (!conflict) continue;
     exclude(weighed, *conflict);
@@ -351,7 +356,8 @@ std::vector<PlanningStep::WeighedCandidate*> PlanningStep::chosen_together(
   BitRows near(open.size(), reach_.size());
   std::vector<Item> items;
   for (std::size_t e = 0; e < open.size(); ++e) {
-    for (const ComponentId c : knowledge_.rules[open[e]->candidate.strategy].components) {
+    for (const ComponentId c :
+         all_affected(knowledge_.rules[open[e]->candidate.strategy], knowledge_)) {
       const std::size_t place = reach_.place_of(c);
       set(takes[e], place);
       add(near[e], reach_.upstream(place));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "plan/also_ended.h"
+
 namespace culprit::plan {
 
 bool is_seen_down(ComponentId component, const Knowledge& knowledge) {
@@ -29,9 +31,12 @@ bool revives(const Strategy& strategy, const Knowledge& knowledge) {
 }
 
 bool only_revives(const Strategy& strategy, const Knowledge& knowledge) {
-  return std::all_of(strategy.components.begin(), strategy.components.end(), [&](ComponentId c) {
-    return is_seen_down(c, knowledge) && replaces(strategy, c);
-  });
+  const std::vector<ComponentId> others = also_ended(strategy, knowledge);
+  return std::all_of(
+             strategy.components.begin(), strategy.components.end(),
+             [&](ComponentId c) { return is_seen_down(c, knowledge) && replaces(strategy, c); }) &&
+         std::all_of(others.begin(), others.end(),
+                     [&](ComponentId c) { return is_seen_down(c, knowledge); });
 }
 
 }  // namespace culprit::plan
