@@ -1,16 +1,20 @@
 #include "live/preflight.h"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/core.h>
 
+#include "base/ros_names.h"
 #include "language/live_checks.h"
 #include "language/live_findings.h"
+#include "link/service_call.h"
 #include "live/robot_survey.h"
 #include "live/setups.h"
 #include "owners/found_owner.h"
 #include "owners/parameter_file.h"
 #include "owners/plugin_index.h"
+#include "owners/remote_program.h"
 #include "owners/units.h"
 #include "robot/inbox.h"
 
@@ -104,6 +108,47 @@ void find_owners(const RuleSet& rules, LiveInventory& robot) {
   }
 }
 
+// Who of those that run the components could not be asked.
+void find_owner_troubles(const RuleSet& rules, const std::stop_token& stop, LiveInventory& robot) {
+  std::map<std::string, bool> reached{{"", true}};
+  for (const Component& component : rules.components) {
+    if (stop.stop_requested()) return;
+    if (!component.has_owner()) continue;
+    const std::string host = component.host();
+    if (const auto [asked, is_first] = reached.try_emplace(host, true); is_first) {
+      const auto could = owners::could_reach(host);
+      asked->second = could.has_value();
+      if (!could) robot.host_troubles.push_back({host, could.error()});
+    }
+    if (!reached[host]) continue;
+    if (component.engine) {
+      if (const auto could = owners::could_manage(*component.engine); !could)
+        robot.container_troubles.push_back({*component.engine, could.error()});
+    }
+    if (component.unit) {
+      if (const auto could = owners::could_manage(*component.unit); !could)
+        robot.unit_troubles.push_back({*component.unit, could.error()});
+    }
+  }
+}
+
+// What could not be asked of the services that are there.
+void find_request_troubles(const RuleSet& rules,
+                           const std::vector<std::filesystem::path>& message_path,
+                           LiveInventory& robot) {
+  for (const Strategy& strategy : rules.strategies) {
+    for (const Adaptation& each : strategy.adaptations) {
+      const std::string node = robot.node_of(rules[each.component]);
+      if (each.type != AdaptationType::kCall || node.empty()) continue;
+      const auto service = robot.services.find(service_of(each.subject, node));
+      if (service == robot.services.end()) continue;
+      const auto could = ros2::ServiceCall::prepare(service->second, each.request, message_path,
+                                                    robot.nodes.at(node).pid);
+      if (!could) robot.request_troubles.push_back({service->first, each.request, could.error()});
+    }
+  }
+}
+
 // What its container, where that runs, could not load.
 void find_composition_troubles(const Component& component, LiveInventory& robot) {
   using Clause = LiveInventory::LaunchTrouble::Clause;
@@ -142,16 +187,8 @@ LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& s
   LiveInventory robot = survey.inventory();
   for (const RuleSet* each : rules) {
     find_owners(*each, robot);
-    for (const Component& component : each->components) {
-      if (stop.stop_requested()) continue;
-      if (component.engine) {
-        if (const auto could = owners::could_manage(*component.engine); !could)
-          robot.container_troubles.push_back({*component.engine, could.error()});
-      }
-      if (!component.unit) continue;
-      if (const auto could = owners::could_manage(*component.unit); !could)
-        robot.unit_troubles.push_back({*component.unit, could.error()});
-    }
+    find_owner_troubles(*each, stop, robot);
+    find_request_troubles(*each, survey.message_path(), robot);
     for (const Component& component : each->components) {
       if (stop.stop_requested()) break;
       if (component.composed) find_composition_troubles(component, robot);

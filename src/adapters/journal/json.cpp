@@ -40,7 +40,10 @@ struct RequestWriter {
     return {{"set_parameter", {{"name", r.name}, {"value", of_value(r.value)}}}};
   }
   Json operator()(const ReadParameter& r) const { return {{"read_parameter", r.name}}; }
-  Json operator()(const CallService& r) const { return {{"call_service", r.service}}; }
+  Json operator()(const CallService& r) const {
+    if (r.request.empty()) return {{"call_service", r.service}};
+    return {{"call_service", {{"service", r.service}, {"request", r.request}}}};
+  }
   Json operator()(const ChangeMode& r) const { return {{"change_mode", r.mode}}; }
   Json operator()(const ReadMode&) const { return {{"read_mode", nullptr}}; }
   Json operator()(const StopProcess& r) const { return {{"stop_process", r.pid}}; }
@@ -96,6 +99,8 @@ Expected<decltype(Command::what)> request_from_json(const Json& json) {
     const auto value = value_from(what.value("value", Json()));
     if (value) return Request(SetParameter{text_of(what, "name"), *value});
   }
+  if (word == "call_service" && what.is_object())
+    return Request(CallService{text_of(what, "service"), text_of(what, "request")});
   if (!what.is_string()) return unknown;
   const std::string text = what.get<std::string>();
   if (word == "call_service") return Request(CallService{text});

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "base/tracer.h"
+#include "link/list_parameter.h"
+#include "link/service_call.h"
 #include "ros2/lifecycle.h"
 #include "ros2/parameter_store.h"
 #include "ros2/services.h"
@@ -55,13 +57,15 @@ msg::Transition to_message(Transition transition) {
 }  // namespace
 
 ComponentLink::ComponentLink(NodeEntry& self, ComponentId component, std::string node,
-                             const RuleSet& rules, Inbox& inbox)
+                             const RuleSet& rules, Inbox& inbox,
+                             std::vector<std::filesystem::path> message_path)
     : self_(self),
       component_(component),
       node_(std::move(node)),
       rules_(rules),
       needs_(needs_of(component, rules)),
-      inbox_(inbox) {}
+      inbox_(inbox),
+      message_path_(std::move(message_path)) {}
 
 void ComponentLink::service_seen(const std::string& service, const std::string& type) {
   {
@@ -191,8 +195,9 @@ void ComponentLink::read_parameters() {
                    if (result.outcome != CallOutcome::kAnswered) return;
                    const auto response = decode<srv::GetParameters::Response>(result.reply);
                    if (!response) return;
-                   auto value =
-                       response->values.size() == 1 ? to_value(response->values[0]) : std::nullopt;
+                   auto value = response->values.size() == 1
+                                    ? read_value(rules_.parameters[p].name, response->values[0])
+                                    : std::nullopt;
                    if (value) {
                      inbox_.put(ParameterRead{ParameterId(p), std::move(*value)});
                    } else {
@@ -256,35 +261,38 @@ void ComponentLink::reply(const Command& command, Answer answer) {
   inbox_.put(Reply{command.id, answer.outcome, std::move(answer.value), std::move(answer.text)});
 }
 
+std::optional<ComponentLink::Answer> ComponentLink::why_unanswered(const CallResult& result,
+                                                                   const Command& command,
+                                                                   const std::string& type) const {
+  switch (result.outcome) {
+    case CallOutcome::kUnreachable:
+      return Answer{Outcome::kUnreachable, {}, node_ + " offers no " + type + " that answers"};
+    case CallOutcome::kTimedOut:
+      return Answer{Outcome::kTimedOut, {}, "no answer within " + to_string(command.timeout)};
+    case CallOutcome::kAnswered:
+      break;
+  }
+  return std::nullopt;
+}
+
 template <class Service, class Understand>
 void ComponentLink::ask(ServiceClient* client, const typename Service::Request& request,
                         Repeat repeat, const Command& command, Understand understand) {
   if (client == nullptr)
     return reply(command, {Outcome::kUnreachable, {}, "no client could be made"});
-  client->call(
-      encode(request), repeat, command.timeout,
-      [this, command, understand](const CallResult& result) {
-        switch (result.outcome) {
-          case CallOutcome::kUnreachable:
-            return reply(command,
-                         {Outcome::kUnreachable,
-                          {},
-                          node_ + " offers no " + std::string(Service::kType) + " that answers"});
-          case CallOutcome::kTimedOut:
-            return reply(
-                command,
-                {Outcome::kTimedOut, {}, "no answer within " + to_string(command.timeout)});
-          case CallOutcome::kAnswered:
-            break;
-        }
-        const auto response = decode<typename Service::Response>(result.reply);
-        if (!response) {
-          return reply(command, {Outcome::kRefused,
+  client->call(encode(request), repeat, command.timeout,
+               [this, command, understand](const CallResult& result) {
+                 if (const auto none = why_unanswered(result, command, std::string(Service::kType)))
+                   return reply(command, *none);
+                 const auto response = decode<typename Service::Response>(result.reply);
+                 if (!response) {
+                   return reply(command,
+                                {Outcome::kRefused,
                                  {},
                                  "the answer is no " + std::string(Service::kType) + " response"});
-        }
-        reply(command, understand(*response));
-      });
+                 }
+                 reply(command, understand(*response));
+               });
 }
 
 void ComponentLink::run(const Command& command, const ChangeLifecycle& what) {
@@ -304,9 +312,38 @@ void ComponentLink::run(const Command& command, const ReadLifecycle&) {
                      });
 }
 
+// What is a list goes as one: the rules have its text.
+Expected<msg::ParameterValue> ComponentLink::to_set(const std::string& name, const Value& value) {
+  std::uint8_t type = 0;
+  {
+    const MutexLock lock(lists_mutex_);
+    const auto list = lists_.find(name);
+    if (list != lists_.end()) type = list->second;
+  }
+  if (type == 0) return to_parameter_value(value);
+  const auto* text = std::get_if<std::string>(&value);
+  auto list = text != nullptr ? list_parameter(*text, type) : std::nullopt;
+  if (!list)
+    return Error{"parameter " + name + " is a list, and " + to_string(value) +
+                 " is none with elements of its type; write it as \"[1, 2]\""};
+  return std::move(*list);
+}
+
+std::optional<Value> ComponentLink::read_value(const std::string& name,
+                                               const msg::ParameterValue& value) {
+  {
+    const MutexLock lock(lists_mutex_);
+    lists_.erase(name);
+    if (is_list(value)) lists_[name] = value.type;
+  }
+  return value_or_list(value);
+}
+
 void ComponentLink::run(const Command& command, const SetParameter& what) {
+  auto value = to_set(what.name, what.value);
+  if (!value) return reply(command, {Outcome::kRefused, {}, value.error()});
   ask<srv::SetParameters>(
-      parameters(), {{{what.name, to_parameter_value(what.value)}}}, Repeat::kNever, command,
+      parameters(), {{{what.name, std::move(*value)}}}, Repeat::kNever, command,
       [name = what.name](const srv::SetParameters::Response& response) {
         if (response.results.size() != 1) {
           return Answer{Outcome::kRefused, {}, "there is no parameter " + name};
@@ -317,15 +354,15 @@ void ComponentLink::run(const Command& command, const SetParameter& what) {
 }
 
 void ComponentLink::run(const Command& command, const ReadParameter& what) {
-  ask<srv::GetParameters>(
-      parameter_reader(), {{what.name}}, Repeat::kUntilAnswered, command,
-      [name = what.name](const srv::GetParameters::Response& response) {
-        const bool is_there = response.values.size() == 1 && response.values[0].type != 0;
-        if (!is_there) return Answer{Outcome::kRefused, {}, "there is no parameter " + name};
-        auto value = to_value(response.values[0]);
-        if (!value) return Answer{Outcome::kRefused, {}, "parameter " + name + " is a list"};
-        return Answer{Outcome::kDone, std::move(*value), ""};
-      });
+  ask<srv::GetParameters>(parameter_reader(), {{what.name}}, Repeat::kUntilAnswered, command,
+                          [this, name = what.name](const srv::GetParameters::Response& response) {
+                            auto value = response.values.size() == 1
+                                             ? read_value(name, response.values[0])
+                                             : std::nullopt;
+                            if (!value)
+                              return Answer{Outcome::kRefused, {}, "there is no parameter " + name};
+                            return Answer{Outcome::kDone, std::move(*value), ""};
+                          });
 }
 
 void ComponentLink::run(const Command& command, const CallService& what) {
@@ -338,16 +375,19 @@ void ComponentLink::run(const Command& command, const CallService& what) {
   if (type.empty())
     return reply(command,
                  {Outcome::kUnreachable, {}, node_ + " offers no service " + what.service});
-  if (type != srv::Trigger::kType) {
-    return reply(command, {Outcome::kRefused,
-                           {},
-                           what.service + " is a " + type + "; only " +
-                               std::string(srv::Trigger::kType) + " can be called"});
-  }
-  ask<srv::Trigger>(
-      routine(what.service, type), {}, Repeat::kNever, command,
-      [](const srv::Trigger::Response& response) {
-        return Answer{response.success ? Outcome::kDone : Outcome::kRefused, {}, response.message};
+  const auto call = ServiceCall::prepare(type, what.request, message_path_, pid_);
+  if (!call) return reply(command, {Outcome::kRefused, {}, call.error()});
+  ServiceClient* client = routine(what.service, type);
+  if (client == nullptr)
+    return reply(command, {Outcome::kUnreachable, {}, "no client could be made"});
+  client->call(
+      call->request(), Repeat::kNever, command.timeout,
+      [this, command, type, asked = *call](const CallResult& result) {
+        if (const auto none = why_unanswered(result, command, type)) return reply(command, *none);
+        const auto verdict = asked.judge(result.reply);
+        if (!verdict)
+          return reply(command, {Outcome::kRefused, {}, "the answer is no " + type + " response"});
+        reply(command, {verdict->is_done ? Outcome::kDone : Outcome::kRefused, {}, verdict->text});
       });
 }
 

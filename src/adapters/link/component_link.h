@@ -9,6 +9,7 @@
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "link/component_needs.h"
 #include "robot/command.h"
 #include "robot/inbox.h"
+#include "ros2/messages.h"
 #include "ros2/service_client.h"
 #include "ros2/subscription.h"
 
@@ -29,8 +31,12 @@ namespace culprit::ros2 {
 class ComponentLink {
  public:
   // `self` is our own node, `node` the component's full name. All references must outlive the link.
+  // `message_path`: where .srv files are.
   ComponentLink(NodeEntry& self, ComponentId component, std::string node, const RuleSet& rules,
-                Inbox& inbox);
+                Inbox& inbox, std::vector<std::filesystem::path> message_path = {});
+
+  // The process of the node, on this machine; 0: it is not known.
+  void lives_in(int pid) { pid_ = pid; }
 
   // The node was seen to offer a service: readies the client, reads the present state.
   void service_seen(const std::string& service, const std::string& type);
@@ -73,6 +79,11 @@ class ComponentLink {
   void ask(ServiceClient* client, const typename Service::Request& request, Repeat repeat,
            const Command& command, Understand understand);
   void reply(const Command& command, Answer answer);
+  Expected<msg::ParameterValue> to_set(const std::string& name, const Value& value);
+  std::optional<Value> read_value(const std::string& name, const msg::ParameterValue& value);
+  // Nothing: it was answered.
+  std::optional<Answer> why_unanswered(const CallResult& result, const Command& command,
+                                       const std::string& type) const;
 
   bool has_lifecycle();
   enum class Told : std::uint8_t { kAlways, kIfNew };
@@ -97,7 +108,9 @@ class ComponentLink {
   const RuleSet& rules_;
   const ComponentNeeds needs_;
   Inbox& inbox_;
+  const std::vector<std::filesystem::path> message_path_;
   // Not under the mutex: a receive thread that waited for it would stop whoever makes a client.
+  std::atomic<int> pid_ = 0;
   std::atomic<Lifecycle> told_ = Lifecycle::kUnknown;
   std::atomic<bool> misses_parameter_ = false;  // found since it was asked for its names
 
@@ -112,6 +125,9 @@ class ComponentLink {
   std::map<std::string, std::unique_ptr<ServiceClient>> routines_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, std::string> services_
       CULPRIT_GUARDED_BY(mutex_);  // that the node offers: name -> type
+  Mutex lists_mutex_;              // another one: receive threads take it
+  std::map<std::string, std::uint8_t> lists_
+      CULPRIT_GUARDED_BY(lists_mutex_);  // parameters that were read to be lists -> type
   std::unique_ptr<RawSubscription> transitions_;
 };
 

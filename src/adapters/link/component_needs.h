@@ -17,7 +17,7 @@ struct ComponentNeeds {
   // Whether it is alive is read, or it may be replaced: that its process runs does not tell that it
   // works.
   bool is_to_answer = false;
-  std::vector<std::string> routines{};  // Trigger services, as the rules name them
+  std::vector<std::string> routines{};  // services that are called, as the rules name them
 };
 
 ComponentNeeds needs_of(ComponentId component, const RuleSet& rules);

@@ -8,6 +8,7 @@
 #include <set>
 #include <unistd.h>
 
+#include "link/list_parameter.h"
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
 
@@ -365,7 +366,7 @@ void Link::on_parameter_event(const msg::ParameterEvent& event) {
       for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
         const Parameter& wanted = rules_.parameters[p];
         if (wanted.component != *component || wanted.name != changed.name) continue;
-        if (auto value = to_value(changed.value))
+        if (auto value = value_or_list(changed.value))
           inbox_.put(ParameterRead{ParameterId(p), std::move(*value)});
       }
     }
@@ -408,7 +409,8 @@ ComponentLink* Link::make_link(ComponentId component, const std::string& node) {
   const MutexLock lock(mutex_);
   auto& link = links_[component.index];
   if (!link)
-    link = std::make_unique<ComponentLink>(node_->entry(), component, node, rules_, inbox_);
+    link = std::make_unique<ComponentLink>(node_->entry(), component, node, rules_, inbox_,
+                                           options_.types.message_path);
   return link.get();
 }
 

@@ -434,9 +434,28 @@ TEST(Link, SaysWhyAParameterCannotBe) {
   const Reply none = linked.ask(ReadParameter{"volume"});
   EXPECT_EQ(none.outcome, Outcome::kRefused);
   EXPECT_EQ(none.text, "there is no parameter volume");
-  EXPECT_EQ(linked.ask(ReadParameter{"names"}).text, "parameter names is a list");
   EXPECT_EQ(linked.ask(SetParameter{"volume", Value(1.0)}).outcome, Outcome::kRefused);
   EXPECT_EQ(linked.ask(SetParameter{"gain", Value(std::string("x"))}).outcome, Outcome::kRefused);
+}
+
+TEST(Link, ReadsAndSetsParametersThatAreLists) {
+  const TestDomain domain;
+  Robot robot(domain);
+  Linked linked(domain);
+  const auto reads = [&] {
+    const Reply reply = linked.ask(ReadParameter{"names"});
+    const auto* value = std::get_if<Value>(&reply.value);
+    return value != nullptr ? std::get<std::string>(*value) : reply.text;
+  };
+  const auto set = [&](const std::string& text) {
+    return linked.ask(SetParameter{"names", Value(text)});
+  };
+  EXPECT_EQ(reads(), "[]");
+  EXPECT_EQ(set("[left, \"the right one\"]").outcome, Outcome::kDone);
+  EXPECT_EQ(reads(), "[\"left\", \"the right one\"]");
+  EXPECT_EQ(set("left").outcome, Outcome::kRefused);
+  EXPECT_NE(set("[1, 2]").text.find("parameter names is a list"), std::string::npos);
+  EXPECT_EQ(reads(), "[\"left\", \"the right one\"]");
 }
 
 TEST(Link, CallsRoutines) {
@@ -451,9 +470,9 @@ TEST(Link, CallsRoutines) {
           ++calls;
           return srv::Trigger::Response{calls == 1, "call " + std::to_string(calls)};
         })));
-    services.push_back(
-        std::move(*node.create_service<srv::SetBool>("~/light", [](const srv::SetBool::Request&) {
-          return srv::SetBool::Response{true, ""};
+    services.push_back(std::move(
+        *node.create_service<srv::SetBool>("~/light", [](const srv::SetBool::Request& request) {
+          return srv::SetBool::Response{request.data, request.data ? "" : "it is day"};
         })));
   });
   Linked linked(domain);
@@ -465,7 +484,11 @@ TEST(Link, CallsRoutines) {
   const Reply second = linked.ask(CallService{"/robot/calibrate"});
   EXPECT_EQ(second.outcome, Outcome::kRefused);
   EXPECT_EQ(second.text, "call 2");
-  EXPECT_EQ(linked.ask(CallService{"/robot/light"}).outcome, Outcome::kRefused) << "not a Trigger";
+  EXPECT_EQ(linked.ask(CallService{"/robot/light", "data: true"}).outcome, Outcome::kDone);
+  EXPECT_EQ(linked.ask(CallService{"/robot/light"}).text, "it is day") << "it was asked for false";
+  const Reply mistyped = linked.ask(CallService{"/robot/light", "dat: true"});
+  EXPECT_EQ(mistyped.outcome, Outcome::kRefused);
+  EXPECT_NE(mistyped.text.find("did you mean 'data'?"), std::string::npos) << mistyped.text;
   EXPECT_EQ(linked.ask(CallService{"/robot/nothing"}).outcome, Outcome::kUnreachable);
 }
 

@@ -44,6 +44,10 @@ class Survey {
   // How the messages came of the topics that were asked for, since they are.
   std::map<std::string, Rhythm> rhythms() const;
 
+  const std::vector<std::filesystem::path>& message_path() const {
+    return options_.types.message_path;
+  }
+
  private:
   struct TopicUse {
     std::set<std::string> publishers;  // nodes

@@ -17,15 +17,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostKept = 1000;  // files: the network decides how many types there are
 constexpr std::size_t kMostTold = 1000;
 
-// The files that the publisher's process was started with. None of a process that is elsewhere or
-// may not be looked at.
-MessageLibrary files_of(int pid) {
-  const auto prefixes = pid == 0 ? std::nullopt : environment_of(pid, "AMENT_PREFIX_PATH");
-  if (!prefixes) return MessageLibrary();
-  return MessageLibrary(message_directories({}, *prefixes),
-                        "/proc/" + std::to_string(pid) + "/root");
-}
-
 bool is_what_it_says(MessageLibrary& library, const TypeFinder::Publication& publication) {
   const auto hash = library.hash_of(publication.type);
   return hash && *hash == publication.hash;
@@ -69,13 +60,20 @@ Error unknown(const TypeFinder::Publication& publication, const std::string& why
 
 }  // namespace
 
+MessageLibrary files_of_process(int pid) {
+  const auto prefixes = pid == 0 ? std::nullopt : environment_of(pid, "AMENT_PREFIX_PATH");
+  if (!prefixes) return MessageLibrary();
+  return MessageLibrary(message_directories({}, *prefixes),
+                        "/proc/" + std::to_string(pid) + "/root");
+}
+
 TypeFinder::TypeFinder(Node& self, Options options)
     : self_(self), options_(std::move(options)), library_(options_.message_path) {}
 
 void TypeFinder::find(const Publication& publication, Callback found) {
   if (!is_valid_type_name(publication.type))
     return found(Error{"'" + printable(publication.type) + "' is not the name of a type"});
-  MessageLibrary files = files_of(publication.pid);
+  MessageLibrary files = files_of_process(publication.pid);
   if (MessageLibrary* library = among_files(publication, files)) return found(library);
   if (publication.hash.empty()) return found(unknown(publication, ""));
   if (!is_hash(publication.hash))

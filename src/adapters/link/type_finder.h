@@ -20,6 +20,10 @@
 
 namespace culprit::ros2 {
 
+// The files that the process was started with (AMENT_PREFIX_PATH), below its own root directory. None
+// of a process that is elsewhere, or may not be looked at; 0: it is not known.
+MessageLibrary files_of_process(int pid);
+
 // On the executor's thread.
 class TypeFinder {
  public:

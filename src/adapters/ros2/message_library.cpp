@@ -43,6 +43,36 @@ std::optional<std::string> read_whole(int file) {
   return text;
 }
 
+// Where a type is defined: a file below a search directory, and which part of it.
+struct Place {
+  std::filesystem::path file;
+  enum class Part : std::uint8_t { kWhole, kRequest, kResponse } part = Part::kWhole;
+};
+
+// A service's two messages stand in one file.
+Place place_of(std::string_view type) {
+  for (const auto& [suffix, part] :
+       {std::pair<std::string_view, Place::Part>("_Request", Place::Part::kRequest),
+        {"_Response", Place::Part::kResponse}}) {
+    if (type.find("/srv/") == std::string_view::npos || !type.ends_with(suffix)) continue;
+    return {std::string(type.substr(0, type.size() - suffix.size())) + ".srv", part};
+  }
+  return {std::string(type) + ".msg"};
+}
+
+// A line of three hyphens stands between the request and the response.
+std::string part_of(const std::string& text, Place::Part part) {
+  if (part == Place::Part::kWhole) return text;
+  std::size_t begin = 0;
+  while (begin < text.size() && text.compare(begin, 3, "---") != 0) {
+    const std::size_t end = text.find('\n', begin);
+    begin = end == std::string::npos ? text.size() : end + 1;
+  }
+  if (part == Place::Part::kRequest) return text.substr(0, begin);
+  const std::size_t line = text.find('\n', begin);
+  return line == std::string::npos ? "" : text.substr(line + 1);
+}
+
 }  // namespace
 
 MessageLibrary::MessageLibrary(std::vector<std::filesystem::path> directories,
@@ -81,10 +111,11 @@ Expected<const MessageDefinition*> MessageLibrary::find(std::string_view type) {
 Expected<MessageDefinition> MessageLibrary::load(std::string_view type) const {
   if (const auto learned = learned_.find(type); learned != learned_.end())
     return parse_message_definition(learned->second, type, type);
-  const std::filesystem::path below = std::string(type) + ".msg";
+  const auto& [below, part] = place_of(type);
   for (const auto& directory : directories_) {
     for (const auto& path : {directory / below, directory / "share" / below}) {
-      if (const auto text = read(path)) return parse_message_definition(*text, type, path.string());
+      if (const auto text = read(path))
+        return parse_message_definition(part_of(*text, part), type, path.string());
     }
   }
   if (const auto text = standard_message(type)) {

@@ -18,7 +18,8 @@ namespace culprit::ros2 {
 class MessageLibrary {
  public:
   // In each directory, the first one first: <package>/msg/<Type>.msg, then
-  // share/<package>/msg/<Type>.msg. `root`: what directories, and links below them, are meant to
+  // share/<package>/msg/<Type>.msg; of "package/srv/Type_Request" and "..._Response" the parts of
+  // <package>/srv/<Type>.srv. `root`: what directories, and links below them, are meant to
   // be below (/proc/PID/root for what a process in a container sees); nothing above it is read.
   explicit MessageLibrary(std::vector<std::filesystem::path> directories = {},
                           std::filesystem::path root = "/");

@@ -78,6 +78,9 @@ constexpr auto kMessages = std::to_array<StandardMessage>({
      "uint8 type\nbool bool_value\nint64 integer_value\nfloat64 double_value\nstring string_value\n"
      "byte[] byte_array_value\nbool[] bool_array_value\nint64[] integer_array_value\n"
      "float64[] double_array_value\nstring[] string_array_value"},
+    {"rcl_interfaces/msg/SetParametersResult", "bool successful\nstring reason"},
+    {"rcl_interfaces/srv/SetParametersAtomically_Request", "Parameter[] parameters"},
+    {"rcl_interfaces/srv/SetParametersAtomically_Response", "SetParametersResult result"},
 
     {"rosgraph_msgs/msg/Clock", "builtin_interfaces/Time clock"},
 
@@ -157,6 +160,13 @@ constexpr auto kMessages = std::to_array<StandardMessage>({
     {"std_msgs/msg/UInt32", "uint32 data"},
     {"std_msgs/msg/UInt64", "uint64 data"},
     {"std_msgs/msg/UInt8", "uint8 data"},
+
+    {"std_srvs/srv/Empty_Request", ""},
+    {"std_srvs/srv/Empty_Response", ""},
+    {"std_srvs/srv/SetBool_Request", "bool data"},
+    {"std_srvs/srv/SetBool_Response", "bool success\nstring message"},
+    {"std_srvs/srv/Trigger_Request", ""},
+    {"std_srvs/srv/Trigger_Response", "bool success\nstring message"},
 
     {"system_modes_msgs/msg/Mode", "string label"},
     {"system_modes_msgs/msg/ModeEvent", "uint64 timestamp\nMode start_mode\nMode goal_mode"},

@@ -178,7 +178,8 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       return std::vector<Goal>{ModeGoal{adaptation.subject}};
     case AdaptationType::kCall:
       return std::vector<Goal>{ServiceGoal{
-          service_of(adaptation.subject, knowledge.graph.node_name(adaptation.component))}};
+          service_of(adaptation.subject, knowledge.graph.node_name(adaptation.component)),
+          adaptation.request}};
   }
   return std::vector<Goal>{};
 }

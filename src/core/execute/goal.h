@@ -37,6 +37,7 @@ struct ModeGoal {
 // Nothing to look at: the routine says itself whether it succeeded.
 struct ServiceGoal {
   std::string service;
+  std::string request{};
 };
 // Reached at once if another process than `pid` has taken its place; 0: whichever is there is
 // meant.

@@ -4,11 +4,33 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/value_list.h"
+
 namespace culprit::execute {
 
 using namespace std::chrono_literals;
 
+namespace {
+
+// A list is a text (base/value_list.h), of which there are several: the one that is read back is written
+// as it is, with the elements of its type.
+std::optional<Value> list_like(const Value& value, const Value& present) {
+  const auto* wanted = std::get_if<std::string>(&value);
+  const auto* text = std::get_if<std::string>(&present);
+  if (wanted == nullptr || text == nullptr) return std::nullopt;
+  auto list = list_from_text(*wanted);
+  const auto before = list_from_text(*text);
+  if (!list || !before || text_of_list(*before) != *text) return std::nullopt;
+  for (Value& each : *list) {
+    if (!before->empty()) each = in_type_of(each, before->front());
+  }
+  return text_of_list(*list);
+}
+
+}  // namespace
+
 Value in_type_of(const Value& value, const Value& present) {
+  if (auto list = list_like(value, present)) return *list;
   if (const auto* whole = std::get_if<std::int64_t>(&value);
       whole != nullptr && std::holds_alternative<double>(present)) {
     return static_cast<double>(*whole);
@@ -255,7 +277,7 @@ std::optional<Pursuit::Request> Pursuit::pursue(const ModeGoal& goal, Time now) 
 }
 
 std::optional<Pursuit::Request> Pursuit::pursue(const ServiceGoal& goal, Time now) {
-  if (!has_changed_anything()) return change(CallService{goal.service}, now);
+  if (!has_changed_anything()) return change(CallService{goal.service, goal.request}, now);
   return answer_->outcome == Outcome::kDone ? reach() : give_up(why(*answer_));
 }
 

@@ -268,5 +268,14 @@ TEST(PursuitOfAParameter, LooksFirstForWhatIsNot) {
   EXPECT_TRUE(is<ReadParameter>(pursuit.advance(one.knowledge, kStart)));
 }
 
+TEST(Pursuit, ComparesListsAsListsAndInTheirType) {
+  const auto text = [](const char* list) { return Value(std::string(list)); };
+  EXPECT_EQ(in_type_of(text("[1,2]"), text("[0.5]")), text("[1.0, 2.0]"));
+  EXPECT_EQ(in_type_of(text("[left]"), text("[\"a\", \"b\"]")), text("[\"left\"]"));
+  EXPECT_EQ(in_type_of(text("[]"), text("[1]")), text("[]"));
+  EXPECT_EQ(in_type_of(text("[left]"), text("plain")), text("[left]")) << "it is a text";
+  EXPECT_EQ(in_type_of(text("[left]"), text("[right]")), text("[left]")) << "it was written so";
+}
+
 }  // namespace
 }  // namespace culprit::execute

@@ -389,7 +389,8 @@ std::string describe(const Adaptation& adaptation, const RuleSet& rules) {
     case AdaptationType::kChangeMode:
       return "change " + component + " to mode " + adaptation.subject;
     case AdaptationType::kCall:
-      return "call " + adaptation.subject + " of " + component;
+      return "call " + adaptation.subject + " of " + component +
+             (adaptation.request.empty() ? "" : " with " + adaptation.request);
     case AdaptationType::kRedeploy:
     case AdaptationType::kStart:
     case AdaptationType::kStop:

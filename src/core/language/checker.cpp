@@ -338,6 +338,7 @@ class Checker {
     adaptation.type = written.type;
     adaptation.subject = written.subject.text;
     adaptation.topic = written.topic.text;
+    if (written.request) adaptation.request = written.request->text;
     if (names_parameter(written.type))
       adaptation.parameter = symbols_.parameter(adaptation.component, adaptation.subject);
     if (!written.impact.whole || written.impact.value < 1 || written.impact.value > kMaxImpact) {

@@ -69,6 +69,8 @@ enum class Code : std::uint16_t {
   kCannotLaunch = 66,
   kNoSuchField = 67,
   kSeveralNodes = 68,
+  kNoSuchHost = 69,
+  kBadRequest = 70,
 };
 
 // "R011"

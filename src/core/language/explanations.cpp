@@ -373,6 +373,23 @@ std::vector<Explanation> robot_explanations() {
                     "nothing to either until NODE says which is meant.",
                     "COMPONENT wheel LAUNCH \"wheel_driver\"\n",
                     "COMPONENT wheel NODE /left/wheel LAUNCH \"wheel_driver\"\n"),
+      against_robot(Code::kNoSuchHost, "culprit cannot ask this computer over ssh",
+                    "Who runs the component is on another computer (HOST), and is asked over ssh, "
+                    "which asks nobody for a password: there is no such computer, it does not "
+                    "answer, its key is not known, or it does not take the key of culprit's user "
+                    "(docs/security.md). Nothing would be ended when the rule fires, and nothing "
+                    "started.",
+                    "COMPONENT camera NODE /robot/camera UNIT camera.service HOST robot@rovr2\n",
+                    "COMPONENT camera NODE /robot/camera UNIT camera.service HOST robot@rover2\n"),
+      against_robot(Code::kBadRequest, "the service would not understand this call",
+                    "What a call asks has to fit the type of the service that the robot offers: "
+                    "every field that is written has to be one of the request's, and of its type. "
+                    "A field that is left out is 0, false or empty. Found by asking the robot for "
+                    "the type; one of which no .srv file is found cannot be called either.",
+                    rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
+                              "ADAPTATION camera call ~/light \"on: true\" 5"),
+                    rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
+                              "ADAPTATION camera call ~/light \"data: true\" 5")),
   };
 }
 
@@ -441,10 +458,18 @@ const LiveInventory& example_robot() {
     robot.services = {{"/robot/camera/change_state", "lifecycle_msgs/srv/ChangeState"},
                       {"/robot/camera/get_state", "lifecycle_msgs/srv/GetState"},
                       {"/robot/camera/set_parameters", "rcl_interfaces/srv/SetParameters"},
-                      {"/robot/camera/recalibrate", "std_srvs/srv/Trigger"}};
+                      {"/robot/camera/recalibrate", "std_srvs/srv/Trigger"},
+                      {"/robot/camera/light", "std_srvs/srv/SetBool"}};
+    robot.request_troubles = {
+        {"/robot/camera/light", "on: true",
+         "std_srvs/srv/SetBool: std_srvs/srv/SetBool_Request has no field 'on'; it has data"}};
     robot.diagnostics = {{"camera", "camera_0", 0, {{"entropy", "0.03"}}}};
     robot.unit_troubles = {
         {{"camra.service", false}, "systemd has no camra.service; did you mean camera.service?"}};
+    robot.host_troubles = {
+        {"robot@rovr2",
+         "robot@rovr2: ssh: Could not resolve hostname rovr2: Name or service not known; is "
+         "HOST its name? ssh robot@rovr2 should connect"}};
     robot.launch_troubles = {{"camera", LiveInventory::LaunchTrouble::Clause::kSetup,
                               "/opt/ros/humbel/setup.bash",
                               "SETUP: cannot find /opt/ros/humbel/setup.bash: No such file or "

@@ -63,6 +63,8 @@ bool exists(Code code) {
     case Code::kCannotLaunch:
     case Code::kNoSuchField:
     case Code::kSeveralNodes:
+    case Code::kNoSuchHost:
+    case Code::kBadRequest:
       return true;
   }
   return false;

@@ -1,6 +1,7 @@
 #include "language/live_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <unordered_map>
 
@@ -61,9 +62,14 @@ class LiveChecks {
       owner(component);
       several_nodes(component);
     }
-    for (const syntax::Rule& rule : file_.rules) {
-      for (const syntax::Strategy& strategy : rule.strategies) {
-        for (const syntax::Adaptation& a : strategy.adaptations) services(a);
+    for (std::size_t r = 0; r < file_.rules.size(); ++r) {
+      for (std::size_t i = 0; i < file_.rules[r].strategies.size(); ++i) {
+        const syntax::Strategy& written = file_.rules[r].strategies[i];
+        const Strategy& strategy = rules_[rules_.rules[r].strategies[i]];
+        for (std::size_t a = 0; a < written.adaptations.size(); ++a) {
+          services(written.adaptations[a]);
+          type_of_parameter(written.adaptations[a], strategy.adaptations[a]);
+        }
       }
     }
     return std::move(found_);
@@ -100,6 +106,10 @@ class LiveChecks {
     for (const LiveInventory::ContainerTrouble& each : robot_.container_troubles) {
       if (each.container == c->engine)
         warn(Code::kNoSuchUnit, written.engine_container->span, each.why, "");
+    }
+    for (const LiveInventory::HostTrouble& each : robot_.host_troubles) {
+      if (each.host == c->host() && written.host)
+        warn(Code::kNoSuchHost, written.host->span, each.why, "");
     }
     for (const LiveInventory::LaunchTrouble& each : robot_.launch_troubles) {
       if (each.component != c->name) continue;
@@ -193,11 +203,8 @@ class LiveChecks {
     if (!o.scope.empty() && node.empty()) return;
     const std::string name = service_of(o.name, node);
     if (robot_.services.contains(name) || !is_first(OccurrenceKind::kService, name)) return;
-    constexpr const char* kRoutine = "std_srvs/srv/Trigger";
     Names routines;
-    for (const auto& [service, type] : robot_.services) {
-      if (type == kRoutine) routines.push_back(service);
-    }
+    for (const auto& [service, type] : robot_.services) routines.push_back(service);
     warn(Code::kNoSuchService, o.span, "the robot has no service '" + name + "'",
          "start its server, or correct the name", closest_full_name(name, routines));
   }
@@ -219,8 +226,37 @@ class LiveChecks {
       case kChangeCommunication:
         return offers(a.component.text, "set_parameters", a.span, "has no parameters to set",
                       "only nodes with a set_parameters service can be told new values");
+      case kCall:
+        return request(a);
       default:
         return;
+    }
+  }
+
+  // Parameters have a type of their own, which a node does not change.
+  void type_of_parameter(const syntax::Adaptation& written, const Adaptation& adaptation) {
+    if (!written.value) return;
+    const auto value =
+        robot_.value_of_parameter(node_of(written.component.text), written.subject.text);
+    if (!value) return;
+    const Type type = adaptation.value.type;
+    constexpr std::array kTypes = {Type::kBool, Type::kInt, Type::kDouble, Type::kString};
+    const Type wanted = kTypes[value->index()];
+    const bool fits = type == wanted || type == Type::kDuration ||
+                      (type == Type::kInt && wanted == Type::kDouble);
+    if (fits) return;
+    warn(Code::kTypeMismatch, written.value->span,
+         "parameter '" + written.subject.text + "' of the node is of the type " +
+             std::string(to_string(wanted)) + " (" + to_string(*value) + "), and this is " +
+             std::string(to_string(type)),
+         "the node would refuse it: write a value of the type " + std::string(to_string(wanted)));
+  }
+
+  void request(const syntax::Adaptation& a) {
+    const std::string service = service_of(a.subject.text, node_of(a.component.text));
+    for (const LiveInventory::RequestTrouble& each : robot_.request_troubles) {
+      if (each.service == service && each.request == (a.request ? a.request->text : ""))
+        warn(Code::kBadRequest, a.request ? a.request->span : a.subject.span, each.why, "");
     }
   }
 

@@ -65,6 +65,21 @@ struct LiveInventory {
     bool operator==(const ContainerTrouble&) const = default;
   };
   std::vector<ContainerTrouble> container_troubles{};
+  // Likewise the computers that they are on.
+  struct HostTrouble {
+    std::string host;
+    std::string why;
+    bool operator==(const HostTrouble&) const = default;
+  };
+  std::vector<HostTrouble> host_troubles{};
+  // What of the rules cannot be asked of the services that the robot has.
+  struct RequestTrouble {
+    std::string service;  // by its full name
+    std::string request;
+    std::string why;
+    bool operator==(const RequestTrouble&) const = default;
+  };
+  std::vector<RequestTrouble> request_troubles{};
   // What of the rules could not be started: launch commands, and classes of containers.
   struct LaunchTrouble {
     enum class Clause : std::uint8_t { kLaunch, kSetup, kFolder, kPlugin, kParameters };

@@ -530,7 +530,12 @@ class Parser {
       case kChangeMode:
         return take_name(adaptation.subject, "the mode");
       case kCall:
-        return take_name(adaptation.subject, "the service");
+        if (!take_name(adaptation.subject, "the service")) return false;
+        if (const Token next = s.peek(); next.kind == Token::Kind::kString) {
+          s.next();
+          adaptation.request = Name{std::get<std::string>(next.literal), next.span};
+        }
+        return true;
       case kActivate:
       case kDeactivate:
       case kRestart:

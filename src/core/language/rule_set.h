@@ -162,6 +162,7 @@ struct Adaptation {
   ParameterId parameter;  // the same parameter; where there is one
   Program value;          // set, increase and decrease parameter
   std::string topic;      // change_communication
+  std::string request{};  // call: what the service is asked, "data: true"; empty: nothing
   Cycles impact;          // paper: i_exec,a
 };
 

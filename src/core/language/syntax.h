@@ -157,6 +157,8 @@ struct Adaptation {
   AdaptationType type = AdaptationType::kSetParameter;
   Name subject;  // parameter, mode or service; empty for types without one
   Name topic;    // change_communication
+  std::optional<Name>
+      request{};  // call: what the service is asked, as `ros2 service call` takes it
   std::optional<Expression> value;
   Number impact;
   Span span;

@@ -135,9 +135,10 @@ std::string component_line() {
   const std::string respawned = maybe("RESPAWNED");
   const std::string unit = maybe(words({"UNIT", name(), maybe("USER")}));
   const std::string composed =
-      words({maybe(words({"CONTAINER", name(), name()})), maybe(words({"IN", ros_name()})),
-             maybe(words({"PLUGIN", name()})), maybe(words({"PACKAGE", name()})),
-             maybe(words({"PARAMETERS", name()})), maybe(words({"REMAP", name()}))});
+      words({maybe(words({"CONTAINER", name(), name()})), maybe(words({"HOST", name()})),
+             maybe(words({"IN", ros_name()})), maybe(words({"PLUGIN", name()})),
+             maybe(words({"PACKAGE", name()})), maybe(words({"PARAMETERS", name()})),
+             maybe(words({"REMAP", name()}))});
   const char* driver = coin() ? "self" : coin() ? "managed" : "launcher";
   const std::string lifecycle = maybe(words({"LIFECYCLE", driver}));
   return coin() ? words({"COMPONENT", identifier(), node, launch, around, unit, composed, respawned,
@@ -206,8 +207,10 @@ std::string adaptation_line() {
       arguments = words({name(), name()});
       break;
     case kChangeMode:
-    case kCall:
       arguments = name();
+      break;
+    case kCall:
+      arguments = words({name(), maybe(text())});
       break;
     default:
       break;

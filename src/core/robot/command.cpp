@@ -22,7 +22,9 @@ struct Describe {
     return "set " + c.name + " to " + culprit::to_string(c.value);
   }
   std::string operator()(const ReadParameter& c) const { return "read parameter " + c.name; }
-  std::string operator()(const CallService& c) const { return "call " + c.service; }
+  std::string operator()(const CallService& c) const {
+    return "call " + c.service + (c.request.empty() ? "" : " with " + c.request);
+  }
   std::string operator()(const ChangeMode& c) const { return "change mode to " + c.mode; }
   std::string operator()(const ReadMode&) const { return "read mode"; }
   std::string operator()(const StopProcess&) const { return "stop process"; }

@@ -29,9 +29,11 @@ struct ReadParameter {
   std::string name;
 };
 
-// A Trigger-style routine of the component (std_srvs/srv/Trigger). `service` is absolute.
+// A routine of the component, of any type of service. `service` is absolute; `request` is what it is
+// asked, as YAML ("data: true"); empty: nothing, as of std_srvs/srv/Trigger.
 struct CallService {
   std::string service;
+  std::string request{};
 };
 
 // system_modes_msgs/srv/{ChangeMode,GetMode}.

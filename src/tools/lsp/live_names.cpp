@@ -36,8 +36,13 @@ std::vector<Proposal> live_parameters(const LiveInventory& robot, const Componen
 
 std::vector<Proposal> live_routines(const LiveInventory& robot) {
   std::vector<Proposal> out;
+  // What every node offers has adaptations of its own.
+  const auto is_standard = [](const std::string& type) {
+    return type.starts_with("rcl_interfaces/") || type.starts_with("lifecycle_msgs/") ||
+           type.starts_with("type_description_interfaces/");
+  };
   for (const auto& [name, type] : robot.services) {
-    if (type == "std_srvs/srv/Trigger") out.push_back({Kind::kService, name, type});
+    if (!is_standard(type)) out.push_back({Kind::kService, name, type});
   }
   return out;
 }

@@ -13,7 +13,7 @@ std::vector<Proposal> live_nodes(const LiveInventory& robot);
 std::vector<Proposal> live_topics(const LiveInventory& robot);
 // Of the node that `component` is.
 std::vector<Proposal> live_parameters(const LiveInventory& robot, const Component& component);
-// Routines that can be called (std_srvs/srv/Trigger).
+// Services that can be called, with their types.
 std::vector<Proposal> live_routines(const LiveInventory& robot);
 std::vector<Proposal> live_statuses(const LiveInventory& robot);
 // Of the statuses of this name or hardware id.

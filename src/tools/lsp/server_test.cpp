@@ -266,7 +266,7 @@ TEST(LspServer, ProposesWhatTheRobotHas) {
   EXPECT_THAT(offers(7), testing::ElementsAre("camera"));
   EXPECT_THAT(offers(8), testing::IsSupersetOf({"cam", "/robot/camera"}));
   EXPECT_THAT(offers(9), testing::ElementsAre("exposure"));
-  EXPECT_THAT(offers(10), testing::ElementsAre("/robot/camera/recalibrate"));
+  EXPECT_THAT(offers(10), testing::ElementsAre("/robot/camera/light", "/robot/camera/recalibrate"));
   EXPECT_THAT(offers(11), Contains("/robot/image"));
 }
 

@@ -31,8 +31,14 @@ class StatementReader {
 
   bool fits(const Form& form) const {
     if (text(0) != form.keyword) return false;
-    if (!form.types.empty())
-      return std::find(form.types.begin(), form.types.end(), text(2)) != form.types.end();
+    if (!form.types.empty()) {
+      // Of two forms of one type, one has more parts.
+      const bool is_fixed = std::none_of(form.fixed.begin(), form.fixed.end(), [](const Clause& c) {
+        return c.part == Part::kExpression;
+      });
+      return (!is_fixed || lexemes_.size() == form.fixed.size() + 1) &&
+             std::find(form.types.begin(), form.types.end(), text(2)) != form.types.end();
+    }
     // Of the forms of one keyword, each has a word of its own behind the first part.
     return form.fixed.size() < 2 || form.fixed[1].word.empty() || text(2) == form.fixed[1].word;
   }

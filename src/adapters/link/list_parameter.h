@@ -1,0 +1,21 @@
+// Parameters that are lists, as texts (base/value_list.h): a rule has no other way to hold them.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/value.h"
+#include "ros2/messages.h"
+
+namespace culprit::ros2 {
+
+bool is_list(const msg::ParameterValue& value);
+
+// Of a single value, that; of a list, its text. Nothing: it is not set.
+std::optional<Value> value_or_list(const msg::ParameterValue& value);
+
+// The list that `text` means, for a parameter of this type (ParameterType). Nothing: it is none, or has
+// other elements.
+std::optional<msg::ParameterValue> list_parameter(const std::string& text, std::uint8_t type);
+
+}  // namespace culprit::ros2

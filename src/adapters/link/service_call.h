@@ -1,0 +1,47 @@
+// A call of a service of any type, as a person writes it: what is sent, and what the answer means.
+//
+// The request is YAML, as `ros2 service call` takes it: `data: true`, `{name: arm, target_state: {label:
+// active}}`. What is left out is 0, false or empty. The type is that of the server's process, where
+// that can be looked at (.srv files below its own root directory), or else that of our files; a few
+// that are the same everywhere are built in.
+//
+// An answer refuses if it says so: by `success`, `ok`, `successful` or `result.successful`. Where it
+// has none of them, that it came is all that there is to know.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ros2/field_reader.h"
+
+namespace culprit::ros2 {
+
+class ServiceCall {
+ public:
+  // `type` is "package/srv/Type"; `server` is the server's process on this machine, 0 where it is
+  // not known. Errors: the type is not known, or the request does not fit it.
+  static Expected<ServiceCall> prepare(const std::string& type, const std::string& request,
+                                       const std::vector<std::filesystem::path>& message_path,
+                                       int server);
+
+  // A whole payload.
+  const Bytes& request() const { return request_; }
+
+  struct Verdict {
+    bool is_done = false;
+    std::string text;  // what the server says of it; may be empty
+  };
+  // Nothing: the payload is no answer of that type.
+  std::optional<Verdict> judge(ByteView answer) const;
+
+ private:
+  ServiceCall() = default;
+
+  Bytes request_;
+  std::optional<FieldReader> success_;
+  std::optional<FieldReader> text_;
+};
+
+}  // namespace culprit::ros2
