@@ -139,6 +139,7 @@ bool Executor::next_goal(Run& run, Time now) {
         return false;
       }
       run.goals = std::move(*goals);
+      take_owed(adaptation, run.goals);
       run.goal = 0;
     }
     if (run.goal < run.goals.size()) {
@@ -168,7 +169,13 @@ void Executor::finish_goal(Run& run, Time now) {
   const bool launches = type == AdaptationType::kRedeploy || type == AdaptationType::kStart;
   if (pursuit.is_reached()) {
     // Where it was brought last counts; a restart takes it through another state.
-    if (run.goal + 1 == run.goals.size()) note_lifecycle(pursuit, now);
+    const auto rest = run.goals.begin() + static_cast<std::ptrdiff_t>(run.goal) + 1;
+    const bool is_last = std::none_of(rest, run.goals.end(), [](const execute::Goal& goal) {
+      return std::holds_alternative<execute::LifecycleGoal>(goal);
+    });
+    if (is_last) note_lifecycle(pursuit, now);
+    if (const auto* parameter = std::get_if<execute::ParameterGoal>(&pursuit.goal()))
+      forget_owed(pursuit.component(), parameter->name);
     if (launches) note_coming_up(pursuit, now);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
     note_mode(pursuit, now);
@@ -183,9 +190,10 @@ void Executor::finish_goal(Run& run, Time now) {
 }
 
 bool Executor::next_undo(Run& run, Time now) {
-  // What was set in a process that is gone went with it.
-  std::erase_if(run.undo, [this](const execute::Undo& undo) {
-    return knowledge_.components[undo.component].process == ProcessState::kGone;
+  std::erase_if(run.undo, [&](const execute::Undo& undo) {
+    if (knowledge_.components[undo.component].process != ProcessState::kGone) return false;
+    undo_at_next_start(undo, now);
+    return true;
   });
   if (run.undo.empty()) {
     write_.attempts.undone(run.strategy);
@@ -194,6 +202,35 @@ bool Executor::next_undo(Run& run, Time now) {
   }
   run.pursuit.emplace(run.undo.back().goal, run.undo.back().component, now);
   return true;
+}
+
+// Nobody is there who could be asked. What starts next in its place may be as the last one was left:
+// many nodes keep their parameters.
+void Executor::undo_at_next_start(const execute::Undo& undo, Time now) {
+  if (const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal)) {
+    write_.components.intend_lifecycle(undo.component, lifecycle->target, now, write_.events);
+  } else if (const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal)) {
+    forget_owed(undo.component, parameter->name);
+    owed_.push_back(undo);
+  }
+}
+
+// What has to be undone in a process that `adaptation` starts becomes the last of its goals.
+void Executor::take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals) {
+  if (adaptation.type != AdaptationType::kRedeploy && adaptation.type != AdaptationType::kStart)
+    return;
+  std::erase_if(owed_, [&](execute::Undo& undo) {
+    if (undo.component != adaptation.component) return false;
+    goals.push_back(std::move(undo.goal));
+    return true;
+  });
+}
+
+void Executor::forget_owed(ComponentId component, const std::string& parameter) {
+  std::erase_if(owed_, [&](const execute::Undo& undo) {
+    return undo.component == component &&
+           std::get<execute::ParameterGoal>(undo.goal).name == parameter;
+  });
 }
 
 void Executor::finish_undo(Run& run, Time now) {

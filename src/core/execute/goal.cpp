@@ -193,6 +193,8 @@ std::optional<Look> look_for(const Goal& goal) {
 }
 
 std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& before) {
+  // What is set in a new process was undone before, and only now reaches it.
+  if (type == AdaptationType::kRedeploy || type == AdaptationType::kStart) return std::nullopt;
   if (const auto* parameter = std::get_if<ParameterGoal>(&goal)) {
     const auto* value = std::get_if<Value>(&before.value);
     if (value == nullptr || is_nan(*value)) return std::nullopt;
@@ -204,7 +206,7 @@ std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& 
     const bool is_known = mode != nullptr && !mode->empty() && *mode != kUnknownMode;
     return is_known ? std::optional<Goal>(ModeGoal{*mode}) : std::nullopt;
   }
-  // A restart or a redeploy ends where it began; there is nothing to go back to.
+  // A restart ends where it began; there is nothing to go back to.
   const bool switches = type == AdaptationType::kActivate || type == AdaptationType::kDeactivate;
   const auto* state = std::get_if<Lifecycle>(&before.value);
   const bool was_settled =
