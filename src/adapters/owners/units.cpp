@@ -266,7 +266,8 @@ bool Units::advance(Errand& errand) {
   const auto state = owner.state_of(name);
   if (!state) {
     // A connection that was lost is made anew.
-    if (!is_here() && live_now() < later(errand.since, kReconnect)) return false;
+    if (!is_here() && !owner.was_reached() && live_now() < later(errand.since, kReconnect))
+      return false;
     if (errand.was_asked && live_now() < std::min(errand.until, errand.latest)) return false;
     return answer(errand, errand.was_asked ? Outcome::kTimedOut : Outcome::kRefused, state.error());
   }
