@@ -1,5 +1,5 @@
 # The two commands of this project are `make demo` and `make test`. Each installs what is missing first.
-.PHONY: build install demo test soak bench format clean
+.PHONY: build install demo test soak bench docs format clean
 
 # The programs that the README runs; `make test` builds the tests.
 build:
@@ -23,16 +23,26 @@ test:
 	scripts/test
 
 # What takes longer than a test may, some four hours in all: a robot that is broken and healed for an hour, 500 kills of culprit,
-# 100 random sequences of faults for each kind of owner, 40 changes of the core that its tests should notice, each fuzzer for five minutes.
+# 1,000 robots of a fleet, 100 random sequences of faults for each kind of owner, 40 changes of the core that its tests should notice, the laboratory under the address sanitizer, each fuzzer for five minutes.
 soak:
 	@scripts/install-dependencies --tests
 	cmake --preset release
 	cmake --build --preset release
 	scripts/soak
+	scripts/first-hour
 	scripts/chaos
+	CULPRIT_ROBOTS=1000 build/release/bin/fleet_test --gtest_filter='Fleet.CountsAreTheSum*'
 	CULPRIT_SEQUENCES=100 build/release/bin/owners_test --gtest_filter='AnySequenceOfFaults.*'
 	scripts/mutate
+	cmake --preset asan
+	cmake --build --preset asan-laboratory
+	ctest --preset asan-laboratory
 	scripts/fuzz --seconds 300
+
+# The documents as a site that can be searched: build/docs/index.html. It needs no network.
+docs:
+	@scripts/install-dependencies --docs
+	sphinx-build -q -W --keep-going -c docs/site docs build/docs
 
 bench:
 	@scripts/install-dependencies --tests

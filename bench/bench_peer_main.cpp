@@ -71,6 +71,34 @@ void fleet(int index, int nodes) {
   peer.executor.run();
 }
 
+// A message of this type as far as anybody here reads it.
+struct Imu {
+  static constexpr std::string_view kType = "sensor_msgs/msg/Imu";
+  ros2::msg::Header header;
+  static void visit(auto& self, auto& each) { each(self.header); }
+};
+
+void robot(int index, int of, int nodes) {
+  Peer peer;
+  std::vector<std::unique_ptr<ros2::Node>> members;
+  std::vector<ros2::Publisher<Imu>> publishers;
+  std::vector<std::unique_ptr<ros2::Subscription>> subscriptions;
+  for (int n = 0; n < nodes; ++n) {
+    const int number = index * nodes + n;
+    members.push_back(peer.node("node_" + std::to_string(number)));
+    publishers.push_back(std::move(
+        *members.back()->create_publisher<Imu>("/node_" + std::to_string(number) + "/imu")));
+    subscriptions.push_back(std::move(*members.back()->create_subscription<Imu>(
+        "/node_" + std::to_string((number + 1) % (of * nodes)) + "/imu", ros2::qos::kSensorData,
+        [](const Imu&) {})));
+  }
+  const ros2::Timer timer(peer.executor, 100ms, [&] {
+    const auto now = ros2::msg::to_time(std::chrono::system_clock::now());
+    for (auto& publisher : publishers) publisher.publish({{now, "base"}});
+  });
+  peer.executor.run();
+}
+
 void images() {
   Peer peer;
   const auto node = peer.node("images");
@@ -98,6 +126,8 @@ int main(int argc, char** argv) {
     latencies(arguments[1]);
   } else if (arguments.size() == 3 && arguments[0] == "fleet") {
     fleet(std::stoi(arguments[1]), std::stoi(arguments[2]));
+  } else if (arguments.size() == 4 && arguments[0] == "robot") {
+    robot(std::stoi(arguments[1]), std::stoi(arguments[2]), std::stoi(arguments[3]));
   } else if (arguments == std::vector<std::string>{"images"}) {
     images();
   } else if (arguments == std::vector<std::string>{"bare-reader"}) {

@@ -43,6 +43,33 @@ void fleet(benchmark::State& state) {
 }
 BENCHMARK(fleet)->Iterations(1)->Unit(benchmark::kSecond);
 
+// Ten processes of twenty nodes each, all of them well: each publishes, and reads what another does.
+void doctor(benchmark::State& state) {
+  const World world;
+  std::vector<std::unique_ptr<Child>> robots;
+  for (int i = 0; i < 10; ++i)
+    robots.push_back(
+        std::make_unique<Child>(world, "culprit-bench-peer",
+                                std::vector<std::string>{"robot", std::to_string(i), "10", "20"}));
+  std::this_thread::sleep_for(10s);
+  double elapsed = 0;
+  double used = 0;
+  int exit_code = -1;
+  for (auto _ : state) {
+    const auto begin = std::chrono::steady_clock::now();
+    Child doctor(world, "culprit", {"doctor"});
+    const Child::Ended ended = doctor.wait();
+    elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    used = ended.cpu_seconds;
+    exit_code = ended.exit_code;
+  }
+  state.counters["cpu_percent"] = 100 * used / elapsed;
+  claim("doctor, 200 nodes in ten processes: until it has spoken", elapsed, 10, "s");
+  claim("the same: processor", 100 * used / elapsed, 5, "% of a core");
+  claim("the same, all of them well: exit code", exit_code, 0, "");
+}
+BENCHMARK(doctor)->Iterations(1)->Unit(benchmark::kSecond);
+
 constexpr const char* kImageRules = R"(
 COMPONENT images NODE /images
 RULE Silent

@@ -1,17 +1,23 @@
 // What it costs the manager that people look on: nothing but the telling, however many they are.
 #include <chrono>
+#include <filesystem>
 #include <httplib.h>
 #include <string>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <fmt/core.h>
 
 #include "claims.h"
+#include "journal/session.h"
+#include "journal/writer.h"
 #include "language/checker.h"
 #include "live.h"
 #include "plan/paper_planner.h"
 #include "web/hub_observer.h"
+#include "web/incident_routes.h"
 #include "web/server.h"
 
 namespace culprit::bench {
@@ -137,6 +143,66 @@ void event_to_page(benchmark::State& state) {
   claim("an event, from the decision to a page: p99", quantile(milliseconds, 0.99), 100, "ms");
 }
 BENCHMARK(event_to_page)->Iterations(500);
+
+constexpr const char* kRulesOfADay = R"(
+COMPONENT camera NODE /camera
+RULE CameraSilent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 500ms
+    STRATEGY restart 50 10
+      ADAPTATION camera restart 3
+)";
+
+// A day with an incident a minute, each of ten rows with reasons, among the rows of what was observed.
+void write_day(const std::filesystem::path& path, std::int64_t begin) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  auto writer = *journal::Writer::open(path, {});
+  journal::Session session;
+  session.rules_text = kRulesOfADay;
+  session.planner = journal::Json::object();
+  const std::string reasons(1500, 'x');
+  journal::Batch batch;
+  const auto add = [&](std::string_view kind, std::int64_t at, const std::string& body) {
+    batch.entries.push_back({0, at, std::string(kind), body});
+  };
+  add(journal::kind::kSession, begin, journal::to_text(journal::to_json(session)));
+  for (std::int64_t minute = 0; minute < 1440; ++minute) {
+    const std::int64_t at = begin + minute * 60 * kSecond;
+    for (int i = 0; i < 3; ++i) add(journal::kind::kSteps, at, std::string(20'000, 'x'));
+    const auto event = [&](int after, const char* type) {
+      add(journal::kind::kEvent, at + after * kSecond,
+          fmt::format(R"({{"type":"{}","rule":"CameraSilent","strategy":"restart",)"
+                      R"("criticality":"ERROR","text":"{}","time":{}}})",
+                      type, reasons, at + after * kSecond));
+    };
+    event(0, "failure_detected");
+    event(0, "strategy_chosen");
+    for (int i = 0; i < 7; ++i) event(1, "adaptation_done");
+    event(3, "failure_resolved");
+  }
+  if (const auto written = writer.append(batch, begin, journal::Durability::kProcessEnd); !written)
+    throw std::runtime_error(written.error());
+}
+
+void day_of_journal(benchmark::State& state) {
+  constexpr std::int64_t kBegin = 1'800'000'000'000'000'000;
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("culprit-bench-day-" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  write_day(folder / "day.journal", kBegin);
+  web::Hub hub;
+  const auto routes = web::incident_routes(hub, folder / "day.journal");
+  std::vector<double> milliseconds;
+  for (auto _ : state) {
+    const auto begin = Clock::now();
+    const web::Answer answer = routes[0].answer({{"since", "1800000000"}});
+    milliseconds.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+    if (answer.body["incidents"].size() != 1440) throw std::runtime_error(answer.body.dump());
+  }
+  std::filesystem::remove_all(folder);
+  claim("1,440 incidents of a day, from the journal", quantile(milliseconds, 0.5), 500, "ms");
+}
+BENCHMARK(day_of_journal)->Iterations(5);
 
 }  // namespace
 }  // namespace culprit::bench

@@ -54,7 +54,8 @@ target_compile_options(culprit_test_options INTERFACE -O0)
 
 # The main function of all tests, and what nearly every test includes, parsed once: a third of the time of a build.
 if(CULPRIT_TESTS)
-  add_custom_target(offline_tests) # those that start no processes of a robot
+  add_custom_target(offline_tests) # those of culprit itself that start no processes of a robot
+  add_custom_target(laboratory_tests) # those of the laboratory that start none
   add_custom_target(thread_tests) # those that the thread sanitizer is for
   add_library(culprit_test_main OBJECT ${CMAKE_CURRENT_LIST_DIR}/test_main.cpp)
   if(CULPRIT_SANITIZE STREQUAL "thread")
@@ -78,17 +79,21 @@ endif()
 
 # culprit_library(<floor>/<folder> [USES <folder>...] [PACKAGES <target>...]
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL]
-#                 [TEST_LABELS <label>...])
+#                 [TEST_LABELS <label>...] [TEST_CASES n] [LIVE_PROCESSORS n])
 #
 # Builds the library <folder> of src/<floor>/<folder>/**.cpp, but for its tests and programs (*_main.cpp); the library
 # <folder>_testing of what only tests use (test_*.cpp), for others' tests too; and the test program <folder>_test of
 # *_test.cpp.
 # USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
 # *_live_test.cpp make a program of their own, <folder>_live_test: they start the processes of a robot, so each has a
-# machine of its own (in_own_machine.sh) or runs alone, and carries the label "live". The label "threads" is for tests that the thread sanitizer repeats.
+# machine of its own (in_own_machine.sh) or runs alone, and carries the label "live". The label "threads" is for tests that the thread sanitizer repeats;
+# "laboratory", which all of lab/ has, for those that the address sanitizer repeats only in `make soak`.
 function(culprit_library path)
-  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES" ${ARGN})
+  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES;LIVE_PROCESSORS" ${ARGN})
   get_filename_component(folder ${path} NAME)
+  if(path MATCHES "^lab/")
+    list(APPEND ARG_TEST_LABELS laboratory)
+  endif()
   set(dir ${PROJECT_SOURCE_DIR}/src/${path})
   culprit_check_floors(${path} ${ARG_USES})
   set_property(GLOBAL PROPERTY culprit_path_of_${folder} ${path})
@@ -108,7 +113,7 @@ function(culprit_library path)
 
   if(sources)
     add_library(${folder} STATIC ${sources})
-    culprit_compile_together(${folder} ${dir} ${sources})
+    culprit_compile_together(${folder} 40 ${dir} ${sources})
     set_target_properties(${folder} PROPERTIES UNITY_BUILD_MODE GROUP)
     set(scope PUBLIC)
   else()
@@ -146,13 +151,14 @@ function(culprit_library path)
   endif()
   if(live_tests)
     culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${with} PACKAGES ${ARG_TEST_PACKAGES}
-                 LIVE LABELS live)
+                 LIVE LABELS live PROCESSORS ${ARG_LIVE_PROCESSORS})
   endif()
 endfunction()
 
-# Where CMAKE_UNITY_BUILD is set, the files of one folder are compiled several at a time; those of its subfolders apart,
-# for they are often variants of one thing and call their parts by the same names.
-function(culprit_compile_together target dir)
+# culprit_compile_together(<target> <most> <folder> <file>...): where CMAKE_UNITY_BUILD is set, the files of one folder are compiled so many at a time; 40 in
+# place of 10 take half the time. Those of its subfolders are compiled apart, for they are often variants of one thing and call their parts by the same
+# names; so do tests, ten at a time.
+function(culprit_compile_together target most dir)
   foreach(file ${ARGN})
     get_filename_component(group ${file} DIRECTORY)
     file(RELATIVE_PATH group ${dir} ${group})
@@ -160,7 +166,7 @@ function(culprit_compile_together target dir)
     set_property(GLOBAL APPEND PROPERTY culprit_files_${target}_${group} ${file})
     get_property(files GLOBAL PROPERTY culprit_files_${target}_${group})
     list(LENGTH files count)
-    math(EXPR batch "${count} / 10")
+    math(EXPR batch "${count} / ${most}")
     set_source_files_properties(${file} PROPERTIES UNITY_GROUP ${group}_${batch})
   endforeach()
 endfunction()
@@ -216,14 +222,15 @@ function(culprit_program name source)
   install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
 
-# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LIVE] [LABELS ...] [CASES n]): one CTest test for each
+# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LIVE [PROCESSORS n]] [LABELS ...] [CASES n]): one CTest test for each
 # TEST. SERIAL tests run one after the other, beside those of other programs. LIVE tests have a machine of their own
-# (in_own_machine.sh), or run alone; they wait more than they compute, so two of them may run where one of the others does. Properties are tried on n random cases each instead of 100.
+# (in_own_machine.sh), or run alone; most wait more than they compute, so two of them may run where one of the others does: PROCESSORS says of how many of
+# the four that two cores count for. Properties are tried on n random cases each instead of 100.
 function(culprit_test name)
-  cmake_parse_arguments(ARG "SERIAL;LIVE" "" "SOURCES;USES;PACKAGES;LABELS;CASES" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;LIVE" "" "SOURCES;USES;PACKAGES;LABELS;CASES;PROCESSORS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_precompile_headers(${name} REUSE_FROM culprit_test_main)
-  culprit_compile_together(${name} ${CMAKE_CURRENT_SOURCE_DIR} ${ARG_SOURCES})
+  culprit_compile_together(${name} 10 ${CMAKE_CURRENT_SOURCE_DIR} ${ARG_SOURCES})
   set_target_properties(${name} PROPERTIES UNITY_BUILD_MODE GROUP)
   target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PACKAGES} culprit_test_main GTest::gtest GTest::gmock
                                         rapidcheck culprit_test_options)
@@ -239,9 +246,16 @@ function(culprit_test name)
   endif()
   if(ARG_LIVE)
     set_target_properties(${name} PROPERTIES CROSSCOMPILING_EMULATOR "${culprit_own_machine}")
+    if(ARG_PROCESSORS)
+      list(APPEND properties PROCESSORS ${ARG_PROCESSORS})
+    endif()
   else()
     list(APPEND properties PROCESSORS 2)
-    add_dependencies(offline_tests ${name})
+    set(kind offline)
+    if("laboratory" IN_LIST ARG_LABELS)
+      set(kind laboratory)
+    endif()
+    add_dependencies(${kind}_tests ${name})
   endif()
   if("threads" IN_LIST ARG_LABELS)
     add_dependencies(thread_tests ${name})
@@ -249,9 +263,34 @@ function(culprit_test name)
   if(ARG_LABELS)
     list(APPEND properties LABELS "${ARG_LABELS}")
   endif()
+  set(environment "")
   if(ARG_CASES)
-    list(APPEND properties ENVIRONMENT "RC_PARAMS=max_success=${ARG_CASES}")
+    list(APPEND environment "RC_PARAMS=max_success=${ARG_CASES}")
+  endif()
+  if(CULPRIT_SANITIZE)
+    list(LENGTH ARG_SOURCES files)
+    math(EXPR shards "1 + ${files} / 8")
+    culprit_add_shards(${name} ${shards} PROPERTIES ${properties} ENVIRONMENT ${environment})
+    return()
+  endif()
+  if(environment)
+    list(APPEND properties ENVIRONMENT "${environment}")
   endif()
   gtest_discover_tests(${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
                        PROPERTIES ${properties})
+endfunction()
+
+# culprit_add_shards(<test program> <shards> PROPERTIES ... ENVIRONMENT ...): its tests in so many processes. A process with a sanitizer
+# takes longer to begin than most tests take. Each leaves what came of its tests in test-results/.
+function(culprit_add_shards name shards)
+  cmake_parse_arguments(ARG "" "" "PROPERTIES;ENVIRONMENT" ${ARGN})
+  math(EXPR last "${shards} - 1")
+  foreach(shard RANGE ${last})
+    set(test ${name}.${shard})
+    add_test(NAME ${test} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+    set_tests_properties(${test} PROPERTIES ${ARG_PROPERTIES})
+    set_property(TEST ${test} PROPERTY TIMEOUT 1200) # of many tests
+    set_property(TEST ${test} PROPERTY ENVIRONMENT ${ARG_ENVIRONMENT} GTEST_FILTER=*-${CULPRIT_TESTS_LEFT_OUT}
+      GTEST_TOTAL_SHARDS=${shards} GTEST_SHARD_INDEX=${shard} GTEST_OUTPUT=xml:${PROJECT_BINARY_DIR}/test-results/${test}.xml)
+  endforeach()
 endfunction()

@@ -1,5 +1,6 @@
-// Rule files, alone and against a robot: every diagnostic must render, and every program of an
-// accepted file must run, with inputs unknown and known.
+// Rule files, with what they include and use put in, alone and against a robot: every diagnostic must
+// render, every byte must come from somewhere, and every program of an accepted file must run, with
+// inputs unknown and known.
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -48,19 +49,48 @@ void run_all(const RuleSet& rules) {
 
 void look_at(const Diagnostic& diagnostic, const Source& source) {
   if (render(diagnostic, source).empty()) __builtin_trap();
-  if (!diagnostic.fix) return;
-  const Span span = diagnostic.fix->span;
-  if (span.begin > span.end || span.end > source.text().size()) __builtin_trap();
-  if (title_of(*diagnostic.fix, source).empty()) __builtin_trap();
+  const LocatedDiagnostic here = located(diagnostic, source);
+  if (!here.fix) return;
+  const Source& file = source.file(here.place.file);
+  const Span span = here.fix->span;
+  if (span.begin > span.end || span.end > file.text().size()) __builtin_trap();
+  if (title_of(*here.fix, file).empty()) __builtin_trap();
+}
+
+// "self.rules" is the input, so that files include themselves and one another.
+Expected<Source> load(const std::string& file, const std::string& text) {
+  if (file == "self.rules") return Source("self.rules", text);
+  if (file == "driver.rules")
+    return Source(
+        "driver.rules",
+        "TEMPLATE driver(name, topic, hz = 10)\n  CONST slow = {hz} * 0.5\n  RULE {name}_slow\n"
+        "    POLICIES ERROR\n    TRIGGER rate({topic}) < slow\n      STRATEGY s 50 10\n"
+        "        ADAPTATION {name} restart 5\nEND\n");
+  return Error{"there is no '" + file + "'"};
+}
+
+void look_at_origins(const Source& source) {
+  const auto size = static_cast<std::uint32_t>(source.text().size());
+  for (std::uint32_t at = 0; at < size; at += 1 + at / 64) {
+    const Origin origin = source.origin({at, at + 1});
+    const Source& file = source.file(origin.place.file);
+    if (origin.place.span.end > file.text().size()) __builtin_trap();
+    if (origin.is_exact && file.text(origin.place.span) != source.text({at, at + 1}))
+      __builtin_trap();
+  }
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const Source source("fuzz.rules", std::string(reinterpret_cast<const char*>(data), size));
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  const Expansion rules =
+      expand(Source("fuzz.rules", text),
+             [&](const std::string& file, const std::string&) { return load(file, text); });
+  look_at_origins(rules.source);
   for (const Checked& checked :
-       {check(source, Strictness::kStrict), check_against(example_robot(), source)}) {
-    for (const Diagnostic& diagnostic : checked.diagnostics) look_at(diagnostic, source);
+       {check(rules, Strictness::kStrict), check_against(example_robot(), rules)}) {
+    for (const Diagnostic& diagnostic : checked.diagnostics) look_at(diagnostic, rules.source);
     if (checked.rules) run_all(*checked.rules);
   }
   return 0;

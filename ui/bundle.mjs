@@ -1,10 +1,13 @@
 // The web app as files: what culprit serves, and the tests of the page that need no robot.
-import { readFileSync } from 'node:fs'
+import { readdirSync, readFileSync } from 'node:fs'
 import { createRequire } from 'node:module'
 import { dirname, join } from 'node:path'
 import { fileURLToPath } from 'node:url'
 
 const source = join(dirname(fileURLToPath(import.meta.url)), 'src')
+const rules = join(source, '../../rules')
+const rulesIn = (folder) =>
+  Object.fromEntries(readdirSync(join(rules, folder)).filter((f) => f.endsWith('.rules')).sort().map((f) => [f, readFileSync(join(rules, folder, f), 'utf8')]))
 
 // `modules` is the folder of node_modules.
 export function bundle(modules) {
@@ -22,6 +25,7 @@ export function bundle(modules) {
     jsx: 'automatic',
     jsxImportSource: 'preact',
     legalComments: 'none',
+    define: { kCookbook: JSON.stringify(rulesIn('cookbook')), kPacks: JSON.stringify(rulesIn('packs')) },
   })
   return [
     ['/', 'text/html; charset=utf-8', readFileSync(join(source, 'index.html'))],

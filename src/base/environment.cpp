@@ -13,6 +13,12 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
+std::string host_name() {
+  char name[256] = {};
+  gethostname(name, sizeof name - 1);
+  return name;
+}
+
 std::filesystem::path default_state_folder() {
   const std::string state = environment("XDG_STATE_HOME");
   if (!state.empty()) return std::filesystem::path(state) / "culprit";

@@ -19,6 +19,9 @@ std::filesystem::path own_folder();
 // running program, or in PATH. Errors: it is in neither.
 Expected<std::filesystem::path> find_laboratory();
 
+// What this machine is called.
+std::string host_name();
+
 // A variable of the environment; empty if it is not set.
 std::string environment(const char* name);
 

@@ -95,7 +95,9 @@ Expected<void> write_text(const std::string& path, const std::string& text) {
     return std::cout ? Expected<void>() : failure("write", "the standard output");
   }
   std::error_code error;
-  const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
+  // Whole: of a file that is not there yet a relative name stays as it is, and has no folder.
+  const std::filesystem::path target =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
   if (error) return Error{"cannot find '" + path + "': " + error.message()};
   const auto status = std::filesystem::status(target, error);
   const bool is_new = status.type() == std::filesystem::file_type::not_found;

@@ -55,6 +55,15 @@ TEST_F(TextFile, IsReplacedWithItsPermissions) {
   EXPECT_EQ(files(), 1);
 }
 
+TEST_F(TextFile, ANewOneMayBeCalledByItsNameAlone) {
+  const fs::path before = fs::current_path();
+  fs::current_path(folder);
+  const auto written = write_text("new.rules", "new");
+  fs::current_path(before);
+  EXPECT_TRUE(written) << written.error();
+  EXPECT_EQ(*read_text(folder / "new.rules"), "new");
+}
+
 TEST_F(TextFile, IsAsItWasIfTheDiskIsFull) {
   const auto written = [&] {
     const FullDisk disk(1000);

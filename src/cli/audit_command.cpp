@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/journal_file.h"
+#include "journal/json.h"
 #include "journal/verify.h"
 
 namespace culprit::cli {
@@ -14,7 +15,16 @@ namespace {
 struct VerifyOptions {
   JournalOption journal;
   std::string noted;
+  bool json = false;
 };
+
+journal::Json to_json(const journal::Verification& result) {
+  return {{"whole", result.findings.empty()},
+          {"rows", result.rows},
+          {"first", result.first},
+          {"findings", result.findings},
+          {"newest", fmt::format("{}:{}", result.newest.id, journal::to_hex(result.newest.hash))}};
+}
 
 // "1234:<64 hexadecimal digits>"
 std::optional<journal::Link> link_from(const std::string& text) {
@@ -40,6 +50,10 @@ int verify(const VerifyOptions& options) {
   if (!journal) return fail(journal.error());
   const auto result = journal::verify(*journal, noted);
   if (!result) return fail(result.error());
+  if (options.json) {
+    fmt::print("{}\n", journal::to_text(to_json(*result)));
+    return result->findings.empty() ? kOk : kFailed;
+  }
   constexpr std::size_t kShown = 20;
   for (std::size_t i = 0; i < std::min(kShown, result->findings.size()); ++i)
     fmt::print("{}\n", result->findings[i]);
@@ -65,6 +79,7 @@ void add_audit(CLI::App& app, int& exit_code) {
   options->journal.add_to(*command);
   command->add_option("--noted", options->noted,
                       "<row>:<hash> as it was printed earlier: it must still be in the chain");
+  command->add_flag("--json", options->json, "As one JSON document");
   command->callback([options, &exit_code] { exit_code = verify(*options); });
 }
 

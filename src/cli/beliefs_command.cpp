@@ -20,7 +20,15 @@ struct BeliefsOptions {
   std::string output;
   std::vector<std::string> files;
   bool all = false;
+  bool json = false;
 };
+
+// What export writes and import reads.
+journal::Json document_of(const journal::Learned& learned) {
+  journal::Json document = {{"format", kFormat}, {"format_version", 1}};
+  document.update(journal::to_json(learned));
+  return document;
+}
 
 double learned_of(double now, double prior) { return now - prior; }
 
@@ -29,6 +37,10 @@ int show(const BeliefsOptions& options) {
   if (!journal) return fail(journal.error());
   const auto learned = journal->learned();
   if (!learned) return fail(learned.error());
+  if (options.json) {
+    fmt::print("{}\n", journal::to_text(document_of(*learned)));
+    return kOk;
+  }
   if (learned->beliefs.empty()) {
     fmt::print("nothing was learned yet\n");
     return kOk;
@@ -54,9 +66,7 @@ int write_out(const BeliefsOptions& options) {
   if (!journal) return fail(journal.error());
   const auto learned = journal->learned();
   if (!learned) return fail(learned.error());
-  journal::Json document = {{"format", kFormat}, {"format_version", 1}};
-  document.update(journal::to_json(*learned));
-  const auto written = write_text(options.output, document.dump(2) + "\n");
+  const auto written = write_text(options.output, document_of(*learned).dump(2) + "\n");
   return written ? kOk : fail(written.error());
 }
 
@@ -122,7 +132,9 @@ void add_beliefs(CLI::App& app, int& exit_code) {
     command->callback([options, run, &exit_code] { exit_code = run(*options); });
     return std::pair(command, options);
   };
-  add("show", "Each strategy's success rate: as the rules have it, and now", show);
+  const auto shown =
+      add("show", "Each strategy's success rate: as the rules have it, and now", show);
+  shown.first->add_flag("--json", shown.second->json, "As export writes it");
   const auto out = add("export", "Write what was learned as JSON", write_out);
   out.first->add_option("-o,--output", out.second->output, "Where to (default: stdout)");
   const auto in = add("import", "Add what other robots learned", read_in);

@@ -10,6 +10,9 @@
 #include "language/live_findings.h"
 #include "live/preflight.h"
 #include "live/robot_survey.h"
+#include "live/setups.h"
+#include "ros2/options.h"
+#include "rule_files/rule_files.h"
 #include "terminal/console.h"
 #include "terminal/seconds_option.h"
 
@@ -25,16 +28,18 @@ struct CheckOptions {
 };
 
 // For people: what is wrong goes to stderr, a line for each good file to stdout.
-void print_text(const Source& source, const Checked& checked) {
-  for (const Diagnostic& d : checked.diagnostics)
-    fmt::print(stderr, "{}", render(d, source, colour_of(STDERR_FILENO)));
+void print_text(const Expansion& file, const Checked& checked) {
+  fmt::print(stderr, "{}", render(checked.diagnostics, file.source, colour_of(STDERR_FILENO)));
   if (!checked.rules) {
-    fmt::print(stderr, "culprit: {} has errors\n", source.name());
+    fmt::print(stderr, "culprit: {} has errors\n", file.source.name());
     return;
   }
   const RuleSet& rules = *checked.rules;
-  fmt::print("{}: {} rules, {} strategies, {} components: ok\n", source.name(), rules.rules.size(),
-             rules.strategies.size(), rules.components.size());
+  const auto own = std::count_if(file.templates.begin(), file.templates.end(),
+                                 [](const auto& each) { return each.second.name.file == 0; });
+  const std::string templates = own > 0 ? fmt::format(", {} templates", own) : "";
+  fmt::print("{}: {} rules, {} strategies, {} components{}: ok\n", file.source.name(),
+             rules.rules.size(), rules.strategies.size(), rules.components.size(), templates);
 }
 
 void print_findings(const RuleSet& rules, const LiveInventory& robot) {
@@ -42,9 +47,9 @@ void print_findings(const RuleSet& rules, const LiveInventory& robot) {
 }
 
 // What the robot has, of what the files name.
-Expected<LiveInventory> look(const std::vector<Source>& sources, Duration wait) {
+Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait) {
   std::vector<Checked> checked;
-  for (const Source& source : sources) checked.push_back(check(source));
+  for (const Expansion& file : files) checked.push_back(check(file));
   std::vector<const RuleSet*> named;
   for (const Checked& each : checked) {
     if (each.rules) named.push_back(&*each.rules);
@@ -58,11 +63,38 @@ Expected<LiveInventory> look(const std::vector<Source>& sources, Duration wait) 
   return robot;
 }
 
-int check_sources(std::vector<Source> sources, const CheckOptions& options) {
+// Launch commands that could not run on this computer. Where it has none of their programs, it is
+// most likely not the robot's: then one of them is told.
+void check_launches(const Expansion& file, Checked& checked) {
+  const RuleSet& rules = *checked.rules;
+  std::vector<LiveInventory::LaunchTrouble> troubles;
+  std::ptrdiff_t launches = 0;
+  for (const Component& component : rules.components) {
+    if (component.launch.empty()) continue;
+    ++launches;
+    if (auto trouble = live::launch_trouble(component)) troubles.push_back(std::move(*trouble));
+  }
+  if (troubles.empty()) return;
+  if (std::ssize(troubles) == launches) {
+    fmt::print(
+        stderr,
+        "culprit: {}: if this is the robot's computer, none of its {} components with a LAUNCH "
+        "could be started: {}\n",
+        file.source.name(), launches, troubles.front().why);
+    return;
+  }
+  for (Diagnostic& d : cannot_launch(file.source, rules, troubles))
+    checked.diagnostics.push_back(std::move(d));
+  std::stable_sort(
+      checked.diagnostics.begin(), checked.diagnostics.end(),
+      [](const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; });
+}
+
+int check_all(std::vector<Expansion> all, const CheckOptions& options) {
   const Strictness strictness = options.strict ? Strictness::kStrict : Strictness::kLenient;
   std::optional<LiveInventory> robot;
   if (options.robot) {
-    auto seen = look(sources, from_seconds(options.wait_seconds));
+    auto seen = look(all, from_seconds(options.wait_seconds));
     if (!seen) {
       fmt::print(stderr, "culprit: {}\n", seen.error());
       return kFailed;
@@ -71,14 +103,15 @@ int check_sources(std::vector<Source> sources, const CheckOptions& options) {
   }
   int exit_code = kOk;
   std::vector<CheckedFile> files;
-  for (Source& source : sources) {
-    Checked checked = robot ? check_against(*robot, source, strictness) : check(source, strictness);
+  for (Expansion& file : all) {
+    Checked checked = robot ? check_against(*robot, file, strictness) : check(file, strictness);
     if (!checked.rules) exit_code = kFailed;
+    if (!robot && checked.rules) check_launches(file, checked);
     if (options.format == "text") {
       if (robot && checked.rules) print_findings(*checked.rules, *robot);
-      print_text(source, checked);
+      print_text(file, checked);
     } else {
-      files.push_back({std::move(source), std::move(checked.diagnostics)});
+      files.push_back({std::move(file.source), std::move(checked.diagnostics)});
     }
   }
   if (options.format == "json") fmt::print("{}\n", to_text(json_report(files)));
@@ -87,18 +120,23 @@ int check_sources(std::vector<Source> sources, const CheckOptions& options) {
 }
 
 int check_files(const CheckOptions& options) {
+  const auto robot = ros2::options_from_environment();
+  if (options.robot && !robot) return fail(robot.error(), kUsage);
   int exit_code = kOk;
-  std::vector<Source> sources;
+  std::vector<Expansion> all;
   for (const std::string& path : options.files) {
-    auto source = Source::read(path);
-    if (source) {
-      sources.push_back(std::move(*source));
-    } else {
-      fmt::print(stderr, "culprit: {}\n", source.error());
-      exit_code = kFailed;
+    const auto files = rule_files::files_in(path, ".rules");
+    if (!files) exit_code = fail(files.error());
+    for (const std::string& file : files ? *files : std::vector<std::string>{}) {
+      auto rules = rule_files::read(file);
+      if (rules) {
+        all.push_back(std::move(*rules));
+      } else {
+        exit_code = fail(rules.error());
+      }
     }
   }
-  return std::max(exit_code, check_sources(std::move(sources), options));
+  return std::max(exit_code, check_all(std::move(all), options));
 }
 
 }  // namespace
@@ -107,7 +145,7 @@ void add_check(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand(
       "check", "Check rule files: every mistake with its place, cause and remedy");
-  command->add_option("RULES", options->files, "Rule files")->required();
+  command->add_option("RULES", options->files, "Rule files, and folders of *.rules")->required();
   command->add_flag("--strict", options->strict, "Every component and signal must be declared");
   auto* robot = command->add_flag(
       "--robot", options->robot,
@@ -120,6 +158,8 @@ void add_check(CLI::App& app, int& exit_code) {
                    "text for people; json or sarif (2.1.0) for programs, on stdout")
       ->check(CLI::IsMember({"text", "json", "sarif"}))
       ->capture_default_str();
+  command->add_flag_function(
+      "--json", [options](std::int64_t) { options->format = "json"; }, "The same as --format json");
   command->callback([options, &exit_code] { exit_code = check_files(*options); });
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
@@ -10,7 +11,17 @@
 
 namespace culprit::cli {
 
+// All of them, in the order of --help, and the manual.
+void add_all(CLI::App& app, const std::string& version, int& exit_code);
+// Whether culprit-lab does it in culprit's name.
+bool is_of_laboratory(std::string_view command);
+
 void add_run(CLI::App& app, const std::string& version, int& exit_code);
+void add_status(CLI::App& app, int& exit_code);
+void add_top(CLI::App& app, int& exit_code);
+// pause, resume, silence, approve, refuse, run-strategy
+void add_orders(CLI::App& app, int& exit_code);
+void add_alerts(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 void add_init(CLI::App& app, int& exit_code);
@@ -29,5 +40,6 @@ void add_replay(CLI::App& app, int& exit_code);
 void add_modes(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_policy(CLI::App& app, int& exit_code);
+void add_fleet(CLI::App& app, int& exit_code);  // only where it was built with fleets
 
 }  // namespace culprit::cli

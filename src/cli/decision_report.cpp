@@ -78,9 +78,9 @@ bool is_over(const std::string& type) {
 
 // What followed for the same rule, up to the end of the strategy; the other rows in between are of
 // other failures.
-Expected<std::string> sequel_of(const journal::Reader& journal, const Entry& decision,
-                                const std::string& rule) {
-  std::string out;
+Expected<std::vector<Entry>> sequel_of(const journal::Reader& journal, const Entry& decision,
+                                       const std::string& rule) {
+  std::vector<Entry> sequel;
   auto rows = journal.entries(journal::Which::kReadable, decision.id + 1);
   if (!rows) return Error{rows.error()};
   std::vector<std::int64_t> commands;
@@ -97,17 +97,20 @@ Expected<std::string> sequel_of(const journal::Reader& journal, const Entry& dec
     if (!is_ours) continue;
     if (is_decision(entry, body)) break;
     if (entry.kind == journal::kind::kIntent) commands.push_back(number);
-    out += log_line(entry) + "\n";
-    const std::string type = text_of(body, "type");
-    if (is_over(type)) break;
+    sequel.push_back(entry);
+    if (is_over(text_of(body, "type"))) break;
   }
   if (!more) return Error{more.error()};
-  return out.empty() ? out : "\nWhat came of it\n" + out;
+  return sequel;
 }
 
-}  // namespace
+struct ExplainedDecision {
+  Entry entry;
+  Json body;
+  std::vector<Entry> sequel{};
+};
 
-Expected<std::string> explain_decision(const journal::Reader& journal, std::int64_t id) {
+Expected<ExplainedDecision> read_decision(const journal::Reader& journal, std::int64_t id) {
   const auto decision = decision_at(journal, id);
   if (!decision) return Error{decision.error()};
   if (!*decision)
@@ -115,15 +118,35 @@ Expected<std::string> explain_decision(const journal::Reader& journal, std::int6
                          : fmt::format("there is no row {}, or nothing was decided about it; "
                                        "culprit log shows the rows",
                                        id)};
-  const Entry& entry = **decision;
-  const Json body = journal::from_text(entry.body);
+  ExplainedDecision explained{**decision, journal::from_text((*decision)->body)};
+  if (!is_decision(explained.entry, explained.body)) return explained;
+  auto sequel = sequel_of(journal, explained.entry, text_of(explained.body, "rule"));
+  if (!sequel) return Error{sequel.error()};
+  explained.sequel = std::move(*sequel);
+  return explained;
+}
+
+}  // namespace
+
+Expected<std::string> explain_decision(const journal::Reader& journal, std::int64_t id) {
+  const auto decision = read_decision(journal, id);
+  if (!decision) return Error{decision.error()};
+  const auto& [entry, body, sequel] = *decision;
   std::string out =
-      fmt::format("Row {}, {} UTC\n{}\n", entry.id, timestamp(entry.at), text_of(body, "text"));
+      fmt::format("Row {}, {}\n{}\n", entry.id, local_time(entry.at), text_of(body, "text"));
   if (!is_decision(entry, body)) return out + body.dump(2) + "\n";
   out += suspects_of(body) + candidates_of(body);
-  const auto sequel = sequel_of(journal, entry, text_of(body, "rule"));
-  if (!sequel) return Error{sequel.error()};
-  return out + *sequel;
+  if (!sequel.empty()) out += "\nWhat came of it\n";
+  for (const Entry& each : sequel) out += log_line(each) + "\n";
+  return out;
+}
+
+Expected<std::string> decision_as_json(const journal::Reader& journal, std::int64_t id) {
+  const auto decision = read_decision(journal, id);
+  if (!decision) return Error{decision.error()};
+  Json document{{"decision", log_document(decision->entry)}, {"sequel", Json::array()}};
+  for (const Entry& each : decision->sequel) document["sequel"].push_back(log_document(each));
+  return journal::to_text(document);
 }
 
 }  // namespace culprit::cli

@@ -9,5 +9,7 @@ namespace culprit::cli {
 // Row `id`, or the decision that it belongs to; the latest decision if `id` is 0. Errors: there is
 // no such row, or the file cannot be read.
 Expected<std::string> explain_decision(const journal::Reader& journal, std::int64_t id);
+// The same as JSON: {"decision": row, "sequel": [rows]}, each as culprit log --json has it.
+Expected<std::string> decision_as_json(const journal::Reader& journal, std::int64_t id);
 
 }  // namespace culprit::cli

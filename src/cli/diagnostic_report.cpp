@@ -57,25 +57,35 @@ Json sarif_region(const Source& source, Span span) {
           {"endColumn", end.column}};
 }
 
-Json sarif_fix(const Source& source, const Diagnostic& d) {
-  Json replacement{{"deletedRegion", sarif_region(source, d.fix->span)},
-                   {"insertedContent", {{"text", d.fix->text}}}};
-  Json change{{"artifactLocation", {{"uri", uri_of(source.name())}}},
+Json sarif_place(const Source& file, Span span) {
+  return {{"physicalLocation",
+           {{"artifactLocation", {{"uri", uri_of(file.name())}}},
+            {"region", sarif_region(file, span)}}}};
+}
+
+Json sarif_fix(const Source& file, const Edit& fix) {
+  Json replacement{{"deletedRegion", sarif_region(file, fix.span)},
+                   {"insertedContent", {{"text", fix.text}}}};
+  Json change{{"artifactLocation", {{"uri", uri_of(file.name())}}},
               {"replacements", Json::array({std::move(replacement)})}};
-  return {{"description", {{"text", title_of(*d.fix, source)}}},
+  return {{"description", {{"text", title_of(fix, file)}}},
           {"artifactChanges", Json::array({std::move(change)})}};
 }
 
 Json sarif_result(const Source& source, const Diagnostic& d) {
   const std::string message = d.remedy.empty() ? d.cause : d.cause + "\n" + d.remedy;
-  Json location{{"physicalLocation",
-                 {{"artifactLocation", {{"uri", uri_of(source.name())}}},
-                  {"region", sarif_region(source, d.span)}}}};
+  const LocatedDiagnostic here = located(d, source);
+  const Source& file = source.file(here.place.file);
   Json result{{"ruleId", to_string(d.code)},
               {"level", severity_of(d)},
               {"message", {{"text", message}}},
-              {"locations", Json::array({std::move(location)})}};
-  if (d.fix) result["fixes"] = Json::array({sarif_fix(source, d)});
+              {"locations", Json::array({sarif_place(file, here.place.span)})}};
+  for (const auto& note : here.notes) {
+    Json place = sarif_place(source.file(note.place.file), note.place.span);
+    place["message"] = {{"text", note.text}};
+    result["relatedLocations"].push_back(std::move(place));
+  }
+  if (here.fix) result["fixes"] = Json::array({sarif_fix(file, *here.fix)});
   return result;
 }
 
@@ -91,12 +101,18 @@ Json json_report(const std::vector<CheckedFile>& files) {
   Json report = Json::array();
   for (const auto& [source, diagnostics] : files) {
     for (const Diagnostic& d : diagnostics) {
-      Json entry{
-          {"file", source.name()}, {"code", to_string(d.code)}, {"severity", severity_of(d)}};
-      entry.update(json_place(source, d.span));
+      const LocatedDiagnostic here = located(d, source);
+      const Source& file = source.file(here.place.file);
+      Json entry{{"file", file.name()}, {"code", to_string(d.code)}, {"severity", severity_of(d)}};
+      entry.update(json_place(file, here.place.span));
       entry["cause"] = d.cause;
       entry["remedy"] = d.remedy;
-      if (d.fix) entry["fix"] = json_fix(source, *d.fix);
+      if (here.fix) entry["fix"] = json_fix(file, *here.fix);
+      for (const auto& note : here.notes) {
+        Json place{{"note", note.text}, {"file", source.file(note.place.file).name()}};
+        place.update(json_place(source.file(note.place.file), note.place.span));
+        entry["notes"].push_back(std::move(place));
+      }
       report.push_back(std::move(entry));
     }
   }

@@ -18,7 +18,8 @@ struct CheckedFile {
 };
 
 // An array of {file, code, severity, line, column, end_line, end_column, cause, remedy}, in the
-// order of the files and of their text.
+// order of the files and of their text; with notes, [{note, file, line, ...}], of what is included
+// or used.
 nlohmann::ordered_json json_report(const std::vector<CheckedFile>& files);
 
 // SARIF 2.1.0 (OASIS), one run. Every code is a rule, found or not.

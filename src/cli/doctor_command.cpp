@@ -1,15 +1,18 @@
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <unistd.h>
 
+#include <fmt/chrono.h>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "base/text_file.h"
 #include "base/units.h"
 #include "cli/commands.h"
 #include "cli/diagnostic_report.h"
-#include "doctor/examine.h"
 #include "doctor/look.h"
+#include "doctor/report.h"
 #include "ros2/options.h"
 #include "terminal/console.h"
 #include "terminal/seconds_option.h"
@@ -19,62 +22,139 @@ namespace {
 
 using doctor::Finding;
 using doctor::Gravity;
+using doctor::Report;
 
 struct DoctorOptions {
   double seconds = 8;
   bool json = false;
+  bool sarif = false;
+  bool watch = false;
+  std::string save;
+  std::string against;
 };
 
-std::string_view label(Gravity gravity) { return gravity == Gravity::kError ? "error" : "warning"; }
-
 std::string coloured(Gravity gravity, Colour colour) {
-  const std::string text(label(gravity));
+  const std::string text = label(gravity);
   if (colour == Colour::kOff) return text;
   return (gravity == Gravity::kError ? "\033[31m" : "\033[33m") + text + "\033[0m";
 }
 
 void print_finding(const Finding& finding, Colour colour) {
-  fmt::print("{}[{}]: {}\n", coloured(finding.gravity, colour), finding.code, finding.who);
-  fmt::print("  seen:    {}\n  matters: {}\n  do:      {}\n", finding.seen, finding.matters,
-             finding.remedy);
+  say(stdout, "{}[{}]: {}\n  seen:    {}\n  matters: {}\n  do:      {}\n",
+      coloured(finding.gravity, colour), finding.code, finding.who, finding.seen, finding.matters,
+      finding.remedy);
 }
 
-nlohmann::ordered_json to_json(const Finding& finding) {
-  return {{"code", finding.code}, {"severity", label(finding.gravity)}, {"who", finding.who},
-          {"seen", finding.seen}, {"matters", finding.matters},         {"remedy", finding.remedy}};
+void print_summary(const Report& report) {
+  for (const std::string& each : report.left_out) say(stdout, "{}\n", each);
+  if (report.nodes > 0) say(stdout, "{}\n", summary(report));
 }
 
-std::string count_of(std::ptrdiff_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+void print_text(const Report& report) {
+  for (const Finding& finding : report.findings) print_finding(finding, colour_of(STDOUT_FILENO));
+  print_summary(report);
 }
 
-void print_text(const doctor::Picture& picture, const std::vector<Finding>& findings) {
-  for (const Finding& finding : findings) print_finding(finding, colour_of(STDOUT_FILENO));
-  if (picture.nodes.empty()) return;
-  const auto errors = std::ranges::count(findings, Gravity::kError, &Finding::gravity);
-  const auto warnings = std::ranges::count(findings, Gravity::kWarning, &Finding::gravity);
-  fmt::print("{} on domain {}: {}\n", count_of(std::ssize(picture.nodes), "node"), picture.domain,
-             findings.empty() ? "nothing is wrong that can be seen from outside"
-                              : count_of(errors, "error") + ", " + count_of(warnings, "warning"));
+int exit_code_of(const Report& report) {
+  if (report.findings.empty()) return kOk;
+  return report.findings.front().gravity == Gravity::kError ? kFailed : kWarnings;
+}
+
+void print(const Report& report, const DoctorOptions& options) {
+  if (options.sarif)
+    say(stdout, "{}\n", to_text(to_sarif(report)));
+  else if (options.json)
+    say(stdout, "{}\n", to_text(to_json(report)));
+  else
+    print_text(report);
+}
+
+bool is_same(const Finding& a, const Finding& b) { return a.code == b.code && a.who == b.who; }
+
+// What has come and what has gone since the last look.
+void print_changes(const Report& before, const Report& now) {
+  const auto is_in = [](const Finding& finding, const Report& report) {
+    return std::ranges::any_of(report.findings,
+                               [&](const Finding& each) { return is_same(each, finding); });
+  };
+  const Colour colour = colour_of(STDOUT_FILENO);
+  const auto time = fmt::localtime(std::time(nullptr));
+  for (const Finding& finding : now.findings) {
+    if (is_in(finding, before)) continue;
+    say(stdout, "{:%H:%M:%S} ", time);
+    print_finding(finding, colour);
+  }
+  for (const Finding& finding : before.findings) {
+    if (!is_in(finding, now))
+      say(stdout, "{:%H:%M:%S} gone[{}]: {}\n", time, finding.code, finding.who);
+  }
+}
+
+// One line of JSON for each look.
+void print_again(const Report* before, const Report& now, const DoctorOptions& options) {
+  if (options.json) {
+    say(stdout, "{}\n",
+        to_json(now).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  } else if (before == nullptr) {
+    print_text(now);
+  } else {
+    print_changes(*before, now);
+  }
+}
+
+int watch_robot(const doctor::LookOptions& how, const doctor::Baseline* healthy,
+                const DoctorOptions& options) {
+  StopSignals signals;
+  std::stop_source stop;
+  signals.on_stop([&] { stop.request_stop(); });
+  std::optional<Report> last;
+  const auto watched = doctor::watch(
+      how,
+      [&](const doctor::Picture& picture) {
+        Report now = report_of(picture, healthy);
+        print_again(last ? &*last : nullptr, now, options);
+        last = std::move(now);
+      },
+      stop.get_token());
+  if (!watched) return fail(watched.error());
+  return last ? exit_code_of(*last) : kOk;
+}
+
+// Writes the baseline only of a robot that is healthy.
+int save_robot(const doctor::Picture& picture, const Report& report, const std::string& file) {
+  if (const int found = exit_code_of(report); found == kFailed)
+    return fail("the robot is not healthy, so " + file + " was not written");
+  if (const auto written = write_text(file, to_text(baseline_of(picture))); !written)
+    return fail(written.error());
+  say(stderr,
+      "culprit: {} has {} nodes and {} topics; compare with it: culprit doctor --against {}\n",
+      file, baseline_of(picture).nodes.size(), picture.flows.size(), file);
+  return exit_code_of(report);
 }
 
 int examine_robot(const DoctorOptions& options) {
   const auto participant = ros2::options_from_environment();
-  if (!participant) return fail(participant.error());
-  const auto picture = doctor::look(*participant, from_seconds(options.seconds));
-  if (!picture) return fail(picture.error());
-  const std::vector<Finding> findings = doctor::examine(*picture);
-  if (options.json) {
-    nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const Finding& finding : findings) all.push_back(to_json(finding));
-    const nlohmann::ordered_json report = {{"domain", picture->domain},
-                                           {"nodes", picture->nodes.size()},
-                                           {"findings", std::move(all)}};
-    fmt::print("{}\n", to_text(report));
-  } else {
-    print_text(*picture, findings);
+  if (!participant) return fail(participant.error(), kUsage);
+  std::optional<doctor::Baseline> healthy;
+  if (!options.against.empty()) {
+    const auto text = read_text(options.against);
+    if (!text) return fail(text.error());
+    auto baseline = doctor::parse_baseline(*text);
+    if (!baseline) return fail(options.against + ": " + baseline.error());
+    healthy = std::move(*baseline);
   }
-  return findings.empty() ? kOk : kFailed;
+  const bool needs_all = healthy || !options.save.empty();
+  const doctor::LookOptions how{
+      .participant = *participant,
+      .time = from_seconds(options.seconds),
+      .extent = needs_all ? doctor::Extent::kEverything : doctor::Extent::kFindings};
+  if (options.watch) return watch_robot(how, healthy ? &*healthy : nullptr, options);
+  const auto picture = doctor::look(how);
+  if (!picture) return fail(picture.error());
+  const Report report = report_of(*picture, healthy ? &*healthy : nullptr);
+  print(report, options);
+  if (!options.save.empty()) return save_robot(*picture, report, options.save);
+  return exit_code_of(report);
 }
 
 }  // namespace
@@ -83,10 +163,19 @@ void add_doctor(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
       "doctor",
-      "Say what is wrong with the robot, without a rule: looks for some seconds, changes "
-      "nothing, and exits with 0 if it finds nothing");
-  add_seconds(*command, "--for", options->seconds, "How long to look", 0.1, 600);
-  command->add_flag("--json", options->json, "For programs");
+      "Say what is wrong with the robot, without a rule: looks for some seconds, changes nothing. "
+      "Exits with 0 if it finds nothing, with 3 if it only warns");
+  add_seconds(*command, "--for", options->seconds, "How long to look", 0.1, 3600);
+  auto* json = command->add_flag("--json", options->json, "For programs");
+  command->add_flag("--sarif", options->sarif, "For programs that read SARIF 2.1.0")
+      ->excludes(json);
+  auto* watch = command->add_flag("--watch", options->watch,
+                                  "Look again and again, and say what comes and goes");
+  auto* save = command->add_option("--save", options->save,
+                                   "Write the healthy robot as a file to compare with");
+  command->add_option("--against", options->against, "Compare with a robot that was saved")
+      ->excludes(save);
+  save->excludes(watch);
   command->callback([options, &exit_code] { exit_code = examine_robot(*options); });
 }
 

@@ -6,6 +6,8 @@
 #include "cli/commands.h"
 #include "cli/decision_report.h"
 #include "cli/journal_file.h"
+#include "doctor/explanations.h"
+#include "journal/json.h"
 #include "language/explanations.h"
 
 namespace culprit::cli {
@@ -16,7 +18,24 @@ struct ExplainOptions {
   bool last = false;
   JournalOption journal;
   bool markdown = false;
+  bool json = false;
 };
+
+journal::Json to_json(const Explanation& e) {
+  return {{"code", to_string(e.code)},
+          {"title", e.title},
+          {"why", e.why},
+          {"wrong", e.wrong},
+          {"right", e.right}};
+}
+
+journal::Json to_json(const doctor::Explanation& e) {
+  return {{"code", e.code},
+          {"title", e.title},
+          {"why", e.why},
+          {"found", e.found},
+          {"remedy", e.remedy}};
+}
 
 int explain_row(const ExplainOptions& options) {
   std::int64_t id = 0;
@@ -26,9 +45,10 @@ int explain_row(const ExplainOptions& options) {
     return fail("'" + text + "' is no row of a journal"), kUsage;
   const auto journal = options.journal.open();
   if (!journal) return fail(journal.error());
-  const auto report = explain_decision(*journal, id);
+  const auto report =
+      options.json ? decision_as_json(*journal, id) : explain_decision(*journal, id);
   if (!report) return fail(report.error());
-  fmt::print("{}", *report);
+  fmt::print("{}{}", *report, options.json ? "\n" : "");
   return kOk;
 }
 
@@ -39,21 +59,38 @@ bool is_number(const std::string& text) {
 int explain(const ExplainOptions& options) {
   if (options.last || is_number(options.what)) return explain_row(options);
   if (options.markdown) {
-    fmt::print("{}", diagnostics_as_markdown());
+    const bool of_doctor = options.what == "doctor";
+    fmt::print("{}", of_doctor ? doctor::findings_as_markdown() : diagnostics_as_markdown());
+    return kOk;
+  }
+  if (options.what.empty() && options.json) {
+    journal::Json all = journal::Json::array();
+    for (const Explanation& e : explanations()) all.push_back(to_json(e));
+    for (const doctor::Explanation& e : doctor::explanations()) all.push_back(to_json(e));
+    fmt::print("{}\n", journal::to_text(all));
     return kOk;
   }
   if (options.what.empty()) {
     for (const Explanation& e : explanations()) fmt::print("{}  {}\n", to_string(e.code), e.title);
+    for (const doctor::Explanation& e : doctor::explanations())
+      fmt::print("{}  {}\n", e.code, e.title);
+    return kOk;
+  }
+  if (const auto* finding = doctor::find_explanation(options.what)) {
+    fmt::print("{}", options.json ? journal::to_text(to_json(*finding)) + "\n" : page(*finding));
     return kOk;
   }
   const Explanation* explanation = find_explanation(options.what);
   if (explanation == nullptr) {
-    fmt::print(stderr,
-               "culprit: there is no diagnostic '{}'; culprit explain without a code lists all\n",
+    fmt::print(stderr, "culprit: there is no code '{}'; culprit explain without a code lists all\n",
                options.what);
     return kUsage;
   }
-  fmt::print("{}", page(*explanation));
+  if (options.json) {
+    fmt::print("{}\n", journal::to_text(to_json(*explanation)));
+  } else {
+    fmt::print("{}", page(*explanation));
+  }
   return kOk;
 }
 
@@ -62,14 +99,17 @@ int explain(const ExplainOptions& options) {
 void add_explain(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ExplainOptions>();
   CLI::App* command = app.add_subcommand(
-      "explain", "Explain a decision from the journal, or what culprit check says");
+      "explain",
+      "Explain a decision from the journal, or what culprit check and culprit doctor say");
   auto* code = command->add_option("WHAT", options->what,
                                    "A row of culprit log, as in 123; or the code of a diagnostic, "
-                                   "as in R012; nothing: all codes");
+                                   "as in R012, or of a finding, as in D001; nothing: all codes");
   command->add_flag("--last", options->last, "The latest decision")->excludes(code);
   options->journal.add_to(*command);
-  command->add_flag("--markdown", options->markdown, "All explanations, as docs/diagnostics.md")
-      ->excludes(code);
+  command->add_flag("--json", options->json, "As one JSON document");
+  command->add_flag(
+      "--markdown", options->markdown,
+      "All explanations, as docs/diagnostics.md; with \"doctor\" as docs/findings.md");
   command->callback([options, &exit_code] { exit_code = explain(*options); });
 }
 

@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/layout_diff.h"
 #include "language/formatter.h"
+#include "rule_files/rule_files.h"
 #include "terminal/console.h"
 
 namespace culprit::cli {
@@ -48,8 +49,12 @@ int format_file(const FmtOptions& options, const std::string& file) {
 
 int format_files(const FmtOptions& options) {
   int exit_code = kOk;
-  for (const std::string& file : options.files) {
-    if (format_file(options, file) != kOk) exit_code = kFailed;
+  for (const std::string& path : options.files) {
+    const auto files = rule_files::files_in(path, ".rules");
+    if (!files) exit_code = fail(files.error());
+    for (const std::string& file : files ? *files : std::vector<std::string>{}) {
+      if (format_file(options, file) != kOk) exit_code = kFailed;
+    }
   }
   return exit_code;
 }
@@ -61,8 +66,9 @@ void add_fmt(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "fmt", "Lay rule files out in the one canonical way; what they say stays the same");
   command
-      ->add_option("FILES", options->files,
-                   "Rule files; - formats the standard input to the standard output")
+      ->add_option(
+          "FILES", options->files,
+          "Rule files, and folders of *.rules; - formats the standard input to the standard output")
       ->required();
   command->add_flag("--check", options->check,
                     "Write nothing; list the files that would change, and fail if there are any");

@@ -117,9 +117,9 @@ TEST_F(Fmt, LeavesAFileWithErrorsAndFormatsTheOthers) {
   EXPECT_THAT(err, HasSubstr("none.rules"));
 }
 
-TEST_F(Fmt, SaysWhyAFileCannotBeReplaced) {
+TEST_F(Fmt, SaysThatAFolderHasNoRules) {
   EXPECT_EQ(fmt({folder.string()}), kFailed);
-  EXPECT_THAT(err, HasSubstr("directory"));
+  EXPECT_THAT(err, HasSubstr("there is no *.rules in "));
 }
 
 TEST_F(Fmt, ReadsTheStandardInput) {

@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "knowledge/dependency_graph.h"
 #include "live/live_robot.h"
+#include "ros2/options.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {
@@ -105,6 +106,8 @@ void print_dot(const Picture& picture) {
 }
 
 int show_graph(const GraphOptions& options) {
+  if (const auto robot = ros2::options_from_environment(); !robot)
+    return fail(robot.error(), kUsage);
   const auto picture = look(from_seconds(options.wait_seconds));
   if (!picture) {
     fmt::print(stderr, "culprit: {}\n", picture.error());

@@ -6,13 +6,17 @@
 #include "base/text_file.h"
 #include "base/units.h"
 #include "cli/commands.h"
+#include "cli/load_rules.h"
+#include "cli/unified_diff.h"
 #include "init/draft.h"
 #include "init/look.h"
+#include "init/update.h"
 #include "language/checker.h"
 #include "language/formatter.h"
 #include "live/preflight.h"
 #include "live/robot_survey.h"
 #include "ros2/options.h"
+#include "rule_files/rule_files.h"
 #include "terminal/console.h"
 #include "terminal/seconds_option.h"
 
@@ -22,7 +26,25 @@ namespace {
 struct InitOptions {
   double seconds = 30;
   std::string output;
+  std::string launch_dump;
+  std::string update;  // the rule file that is brought up to the robot; empty: a new draft
+  bool packs = false;
+
+  init::Packs wanted_packs() const { return packs ? init::Packs::kChosen : init::Packs::kNone; }
 };
+
+Expected<init::LaunchDump> dump_of(const InitOptions& options) {
+  if (options.launch_dump.empty()) return init::LaunchDump{};
+  const auto text = read_text(options.launch_dump);
+  if (!text) return Error{text.error()};
+  return init::read_launch_dump(*text, options.launch_dump);
+}
+
+// Beside the draft: "my.rules" has "my.params.yaml".
+std::string parameter_file(const InitOptions& options) {
+  std::filesystem::path beside = std::filesystem::absolute(options.output);
+  return beside.replace_extension("params.yaml").string();
+}
 
 Expected<init::Sighting> look(const InitOptions& options) {
   const auto participant = ros2::options_from_environment();
@@ -52,18 +74,102 @@ int draft_rules(const InitOptions& options) {
   const bool has_file = !options.output.empty();
   if (has_file && std::filesystem::exists(options.output))
     return fail(options.output + " is there already; name another file, or move it away", kUsage);
-  const auto seen = look(options);
+  if (const auto robot = ros2::options_from_environment(); !robot)
+    return fail(robot.error(), kUsage);
+  auto dump = dump_of(options);
+  if (!dump) return fail(dump.error(), kUsage);
+  if (!options.launch_dump.empty() && !has_file)
+    return fail("--launch writes a file of parameters beside the draft: name the draft with -o",
+                kUsage);
+  auto seen = look(options);
   if (!seen) return fail(seen.error());
-  const auto text = format({"the draft", init::draft(*seen)});
+  seen->dump = std::move(*dump);
+  if (has_file) seen->parameter_file = parameter_file(options);
+  const auto text = format({"the draft", init::draft(*seen, options.wanted_packs())});
   if (!text) return fail(text.error());
-  const Checked checked = check({"the draft", *text});
+  const Expansion rules =
+      expand({has_file ? options.output : "the draft", *text}, rule_files::load);
+  if (!rules.mistakes.empty()) return fail(render(rules.mistakes, rules.source));
+  const Checked checked = check(rules);
   if (!checked.rules || checked.rules->components.empty()) {
     say(stderr, "{}", *text);
     return fail("no node of this robot can be started again by what could be found out");
   }
+  const std::string parameters = init::parameters_text(*seen);
+  if (!parameters.empty() && std::filesystem::exists(seen->parameter_file))
+    return fail(seen->parameter_file + " is there already; name another draft, or move it away",
+                kUsage);
+  if (!parameters.empty()) {
+    if (const auto written = write_text(seen->parameter_file, parameters); !written)
+      return fail(written.error());
+  }
   if (const auto written = write_text(options.output, *text); !written)
     return fail(written.error());
   if (has_file) advise(options.output, *checked.rules);
+  return kOk;
+}
+
+// A file and what it becomes, line by line.
+struct ChangedText {
+  std::string after;
+  std::string diff;
+};
+
+ChangedText changed(const std::string& name, const std::string& before,
+                    const init::Update& update) {
+  if (update.changes.empty()) return {before, ""};
+  const auto lines = lines_of(before);
+  const std::string last = lines.empty() ? "" : std::string(lines.back()) + "\n";
+  std::vector<LineEdit> edits;
+  std::size_t at = 0;
+  const auto keep_until = [&](std::size_t end) {
+    for (; at < end; ++at) {
+      if (lines[at].ends_with('\n')) {
+        edits.push_back({' ', lines[at]});
+      } else {  // something comes behind the last line
+        edits.push_back({'-', lines[at]});
+        edits.push_back({'+', last});
+      }
+    }
+  };
+  for (const init::Update::Change& change : update.changes) {
+    keep_until(change.at);
+    for (; at < change.at + change.removed; ++at) edits.push_back({'-', lines[at]});
+    for (const std::string& line : change.added) edits.push_back({'+', line});
+  }
+  keep_until(lines.size());
+  ChangedText result{"", unified_diff(name, edits)};
+  for (const LineEdit& edit : edits) {
+    if (edit.sign != '-') result.after += edit.line;
+  }
+  return result;
+}
+
+int update_rules(const InitOptions& options) {
+  const bool is_in_place = options.output == options.update;
+  if (!options.output.empty() && !is_in_place && std::filesystem::exists(options.output))
+    return fail(options.output + " is there already; name another file, or " + options.update,
+                kUsage);
+  const auto text = read_text(options.update);
+  if (!text) return fail(text.error(), kUsage);
+  const auto rules = load_rules(options.update);
+  if (!rules) return fail(options.update + " has errors, and stays as it is", kUsage);
+  const auto seen = look(options);
+  if (!seen) return fail(seen.error());
+
+  const init::Update update = init::update(*text, *rules, *seen, options.wanted_packs());
+  const ChangedText now = changed(options.update, *text, update);
+  const Expansion after = expand({options.update, now.after}, rule_files::load);
+  if (!after.mistakes.empty()) return fail(render(after.mistakes, after.source));
+  if (const Checked checked = check(after); !checked.rules)
+    return fail(render(checked.diagnostics, after.source));
+  say(stdout, "{}", now.diff);
+  for (const std::string& note : update.notes) say(stderr, "culprit: {}\n", note);
+  if (update.changes.empty())
+    say(stderr, "culprit: {} needs no change for this robot\n", options.update);
+  if (options.output.empty() || (is_in_place && update.changes.empty())) return kOk;
+  if (const auto written = write_text(options.output, now.after); !written)
+    return fail(written.error());
   return kOk;
 }
 
@@ -76,9 +182,26 @@ void add_init(CLI::App& app, int& exit_code) {
       "Draft a rule file from a live robot that is well: its components, how they are started, and "
       "how long their topics pause. Changes nothing on the robot");
   add_seconds(*command, "--for", options->seconds, "How long to watch it", 5, 3600);
-  command->add_option("-o,--output", options->output,
-                      "Where to write the draft (default: stdout). No file is overwritten");
-  command->callback([options, &exit_code] { exit_code = draft_rules(*options); });
+  command->add_option(
+      "-o,--output", options->output,
+      "Where to write the draft (default: stdout). No file is overwritten but the one of --update");
+  CLI::Option* launch = command->add_option(
+      "--launch", options->launch_dump,
+      "How composed nodes are loaded, and what is started again: what play_launch dumps of "
+      "the robot's launch file (system_model.yaml, or record.json)");
+  command->add_flag("--pack", options->packs,
+                    "Include the packs of rules that fit what is found (docs/packs.md), with the "
+                    "rates that were measured");
+  command
+      ->add_option(
+          "--update", options->update,
+          "Bring this rule file up to the robot, and show how as a unified diff: what is new is "
+          "added, what a draft wrote and no longer fits is replaced, and what a person wrote "
+          "stays. Writes nothing without -o, which may name the same file")
+      ->excludes(launch);
+  command->callback([options, &exit_code] {
+    exit_code = options->update.empty() ? draft_rules(*options) : update_rules(*options);
+  });
 }
 
 }  // namespace culprit::cli

@@ -44,14 +44,29 @@ Expected<journal::Reader> JournalOption::open() const {
   return journal::Reader::open(*name);
 }
 
-std::string timestamp(std::int64_t at) {
+namespace {
+
+// `split`: gmtime_r or localtime_r. `middle`, `end`: what stands between date and time, and behind.
+std::string written(std::int64_t at, std::tm* (*split)(const std::time_t*, std::tm*), char middle,
+                    const char* end) {
   const std::int64_t milliseconds = at / 1'000'000;
   const auto seconds = static_cast<std::time_t>(milliseconds / 1000);
   std::tm parts{};
-  if (at < 0 || gmtime_r(&seconds, &parts) == nullptr) return "?";
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:03}", parts.tm_year + 1900,
-                     parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
-                     milliseconds % 1000);
+  if (at < 0 || split(&seconds, &parts) == nullptr) return "?";
+  return fmt::format("{:04}-{:02}-{:02}{}{:02}:{:02}:{:02}.{:03}{}", parts.tm_year + 1900,
+                     parts.tm_mon + 1, parts.tm_mday, middle, parts.tm_hour, parts.tm_min,
+                     parts.tm_sec, milliseconds % 1000, end);
+}
+
+}  // namespace
+
+std::string local_time(std::int64_t at) { return written(at, localtime_r, ' ', ""); }
+
+journal::Json log_document(const journal::Entry& entry) {
+  return {{"id", entry.id},
+          {"at", written(entry.at, gmtime_r, 'T', "Z")},
+          {"kind", entry.kind},
+          {"body", journal::from_text(entry.body)}};
 }
 
 std::string log_line(const journal::Entry& entry) {
@@ -73,7 +88,7 @@ std::string log_line(const journal::Entry& entry) {
   if (text.empty() && body.contains("lifecycle"))
     text = fmt::format("{} is to be {}", journal::text_of(body, "component"),
                        journal::text_of(body, "lifecycle"));
-  return fmt::format("{:>7}  {}  {:<18}  {}", entry.id, timestamp(entry.at), what, text);
+  return fmt::format("{:>7}  {}  {:<18}  {}", entry.id, local_time(entry.at), what, text);
 }
 
 }  // namespace culprit::cli

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "journal/reader.h"
 
@@ -20,10 +21,12 @@ struct JournalOption {
   Expected<journal::Reader> open() const;
 };
 
-// "2026-11-21 18:36:01.123", UTC. `at`: nanoseconds since 1970.
-std::string timestamp(std::int64_t at);
+// "2026-11-21 18:36:01.123", by the clock of this machine. `at`: nanoseconds since 1970.
+std::string local_time(std::int64_t at);
 
 // "   123  2026-11-21 18:36:01.123  strategy chosen    camera is held responsible …"
 std::string log_line(const journal::Entry& entry);
+// {"id", "at": "2026-11-21T17:36:01.123Z", "kind", "body"}
+nlohmann::ordered_json log_document(const journal::Entry& entry);
 
 }  // namespace culprit::cli

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "base/live_clock.h"
 #include "cli/commands.h"
 #include "cli/journal_file.h"
 #include "journal/json.h"
@@ -16,13 +17,6 @@ struct LogOptions {
   std::string kind;
   bool json = false;
 };
-
-journal::Json document(const journal::Entry& entry) {
-  return {{"id", entry.id},
-          {"at", timestamp(entry.at)},
-          {"kind", entry.kind},
-          {"body", journal::from_text(entry.body)}};
-}
 
 int show(const LogOptions& options) {
   std::int64_t earliest = INT64_MIN;
@@ -43,7 +37,7 @@ int show(const LogOptions& options) {
   for (; more && *more; more = rows->next(entry)) {
     if (entry.at < earliest || (!options.kind.empty() && entry.kind != options.kind)) continue;
     if (options.json) {
-      fmt::print("{}\n", journal::to_text(document(entry)));
+      fmt::print("{}\n", journal::to_text(log_document(entry)));
     } else {
       fmt::print("{}\n", log_line(entry));
     }

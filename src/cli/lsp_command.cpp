@@ -9,6 +9,7 @@
 #include "lsp/message_stream.h"
 #include "lsp/server.h"
 #include "robot/inbox.h"
+#include "rule_files/rule_files.h"
 
 namespace culprit::cli {
 namespace {
@@ -67,8 +68,13 @@ class Watch {
 
 int serve(const std::string& version, const LspOptions& options) {
   std::ios::sync_with_stdio(false);  // so that std::cin tells what it holds already
+  const auto load = [](const std::string& file, const std::string& from) -> Expected<Source> {
+    if (from.empty()) return Error{"save this file first: others are found beside it"};
+    return rule_files::load(file, from);
+  };
   lsp::Server server(version,
-                     [](const nlohmann::json& message) { lsp::write_message(std::cout, message); });
+                     [](const nlohmann::json& message) { lsp::write_message(std::cout, message); },
+                     {load, rule_files::includable});
   std::unique_ptr<ros2::Survey> survey;
   std::optional<Watch> watch;
   if (options.robot) {

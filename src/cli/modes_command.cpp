@@ -53,9 +53,9 @@ int serve(const modes::Model& model, const std::string& file) {
 
 int manage(const ModesOptions& options) {
   const auto text = read_text(options.model);
-  if (!text) return fail(text.error(), kUsage);
+  if (!text) return fail(text.error());
   const auto model = modes::read_model(options.model, *text);
-  if (!model) return fail(model.error(), kUsage);
+  if (!model) return fail(model.error());
   if (!options.only_checks) return serve(*model, options.model);
   print(*model);
   return kOk;

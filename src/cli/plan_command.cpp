@@ -45,15 +45,14 @@ int plan_for_state(const RuleSet& rules, const PlanOptions& options) {
   const auto source = Source::read(options.state);
   if (!source) {
     fmt::print(stderr, "culprit: {}\n", source.error());
-    return kUsage;
+    return kFailed;
   }
   std::vector<Diagnostic> diagnostics;
   const rule_test::State state = rule_test::read_state(*source, rules, diagnostics);
-  for (const Diagnostic& d : diagnostics)
-    fmt::print(stderr, "{}", render(d, *source, colour_of(STDERR_FILENO)));
+  fmt::print(stderr, "{}", render(diagnostics, *source, colour_of(STDERR_FILENO)));
   if (!diagnostics.empty()) {
     fmt::print(stderr, "culprit: {} cannot be used\n", options.state);
-    return kUsage;
+    return kFailed;
   }
   const rule_test::Watched watched = rule_test::watch(state, rules);
   PlanReport report(*options.planner.planner(), watched.failures, *watched.knowledge,
@@ -115,9 +114,8 @@ int plan_for_robot(const live::LoadedRules& loaded, const PlanOptions& options) 
   fmt::print(stderr, "culprit: watching {} for {:g} s or more; nothing is changed on it\n",
              rules.robot.empty() ? "the robot" : rules.robot,
              seconds(manager_options.discovery + longest_detection(rules)));
-  auto preflight = std::async(std::launch::async, [&] {
-    return live::sight(Source(options.rules, loaded.text), options.message_path);
-  });
+  auto preflight = std::async(std::launch::async,
+                              [&] { return live::sight(loaded.source, options.message_path); });
   watch(manager, **robot, rules, manager_options.discovery, signals.stopped());
   const bool is_stopped = signals.stopped();
   signals.on_stop({});
@@ -161,6 +159,8 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->add_option("--format", options->format, "text for people, json for programs")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
+  command->add_flag_function(
+      "--json", [options](std::int64_t) { options->format = "json"; }, "The same as --format json");
   add_seconds(*command, "--settle", options->settle_seconds,
               "With --robot: the time that is given to discovery", 0, 3600);
   command->add_option("--message-path", options->message_path,

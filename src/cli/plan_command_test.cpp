@@ -170,12 +170,12 @@ TEST_F(Plan, HearsTheEvidence) {
 }
 
 TEST_F(Plan, NamesEveryMistakeOfAState) {
-  EXPECT_EQ(plan_for("COMPONENT camra KILLED\nSTRATEGY rgb_restart FAILED\n"), kUsage);
+  EXPECT_EQ(plan_for("COMPONENT camra KILLED\nSTRATEGY rgb_restart FAILED\n"), kFailed);
   EXPECT_EQ(out, "");
   EXPECT_THAT(err, HasSubstr(":1:11: error[R011]"));
   EXPECT_THAT(err, HasSubstr("did you mean camera?"));
   EXPECT_THAT(err, HasSubstr(":2:22: error[R002]"));
-  EXPECT_EQ(plan({kSunset, "--state", "no/such.state"}), kUsage);
+  EXPECT_EQ(plan({kSunset, "--state", "no/such.state"}), kFailed);
   EXPECT_THAT(err, HasSubstr("no/such.state"));
   EXPECT_EQ(plan({"no/such.rules", "--state", kSunsetState}), kFailed);
   EXPECT_THROW(plan({kSunset}), CLI::ParseError) << "a plan is about something";

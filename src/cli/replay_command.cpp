@@ -1,15 +1,20 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include <fmt/core.h>
 
 #include "bag/bag_file.h"
+#include "base/live_clock.h"
+#include "base/units.h"
 #include "cli/commands.h"
 #include "cli/governor_options.h"
 #include "cli/journal_file.h"
 #include "cli/load_rules.h"
 #include "cli/replay_bag.h"
+#include "journal/json.h"
 #include "knowledge/describe.h"
+#include "replay/hindsight.h"
 #include "replay/replay.h"
 #include "terminal/console.h"
 #include "terminal/planner_options.h"
@@ -17,17 +22,34 @@
 namespace culprit::cli {
 namespace {
 
+using journal::Json;
+
 struct ReplayOptions {
   std::string journal;
   std::int64_t session = 0;
   std::string rules;
   bool events = false;
+  std::string since;
+  bool json = false;
   std::vector<std::filesystem::path> message_path;
   PlannerOptions planner;
 };
 
 int complain_about(const ReplayOptions& options, const std::string& what) {
   return fail("cannot replay '" + options.journal + "': " + what);
+}
+
+journal::Json to_json(const replay::Repetition& result, const replay::Recording& recording) {
+  journal::Json json{{"same", !result.difference},    {"session", recording.session_row()},
+                     {"steps", result.steps},         {"observations", result.observations},
+                     {"decisions", result.decisions}, {"digest", result.digest},
+                     {"rows_lost", result.has_gap}};
+  if (const auto& difference = result.difference)
+    json["difference"] = {{"at_s", seconds(difference->at - recording.session().start)},
+                          {"row", difference->row},
+                          {"recorded", difference->recorded},
+                          {"replayed", difference->repeated}};
+  return json;
 }
 
 int repeat(const ReplayOptions& options, const journal::Reader& journal,
@@ -45,6 +67,10 @@ int repeat(const ReplayOptions& options, const journal::Reader& journal,
   }
   const auto result = replay::repeat(recording, journal, planner->planner(), *governor, sink);
   if (!result) return complain_about(options, result.error());
+  if (options.json) {
+    fmt::print("{}\n", journal::to_text(to_json(*result, recording)));
+    return result->difference ? kFailed : kOk;
+  }
   fmt::print("{} steps, {} observations, {} decisions of the run that begins with row {}\n",
              result->steps, result->observations, result->decisions, recording.session_row());
   if (!result->difference) {
@@ -91,17 +117,19 @@ Expected<std::vector<Advice>> advice(replay::Recording& recording, const RuleSet
   return all;
 }
 
-// Prints both, merged by time; what both say at nearly the same time is one line. Gives how many
-// lines differ.
-int print_difference(const std::vector<Advice>& recorded, const std::vector<Advice>& other) {
+// What is on one side only is marked, '-' as recorded or '+' as it would be.
+struct AdviceLine {
+  double at;
+  char mark;
+  const std::string* what;
+};
+
+// Both, merged by time; what both say at nearly the same time is one line. They point into both.
+std::vector<AdviceLine> merged(const std::vector<Advice>& recorded,
+                               const std::vector<Advice>& other) {
   constexpr double kSameTime = 1.0;  // seconds
   std::vector<bool> is_matched(other.size());
-  struct Line {
-    double at;
-    char mark;
-    const std::string* what;
-  };
-  std::vector<Line> lines;
+  std::vector<AdviceLine> lines;
   for (const Advice& ours : recorded) {
     std::size_t match = other.size();
     for (std::size_t i = 0; i < other.size() && match == other.size(); ++i) {
@@ -116,13 +144,29 @@ int print_difference(const std::vector<Advice>& recorded, const std::vector<Advi
     if (!is_matched[i]) lines.push_back({other[i].at, '+', &other[i].what});
   }
   std::stable_sort(lines.begin(), lines.end(),
-                   [](const Line& a, const Line& b) { return a.at < b.at; });
-  int differences = 0;
-  for (const Line& each : lines) {
+                   [](const AdviceLine& a, const AdviceLine& b) { return a.at < b.at; });
+  return lines;
+}
+
+// `what`: what was observed, on which both advise.
+void print(const std::vector<AdviceLine>& lines, const std::string& what) {
+  fmt::print("- as recorded, + as it would be; both only advise on {}\n", what);
+  for (const AdviceLine& each : lines)
     fmt::print("{} {:10.3f}  {}\n", each.mark, each.at, *each.what);
-    differences += each.mark != ' ' ? 1 : 0;
-  }
-  return differences;
+  fmt::print("{} lines differ\n", std::count_if(lines.begin(), lines.end(),
+                                                [](const AdviceLine& l) { return l.mark != ' '; }));
+}
+
+journal::Json to_json(const std::vector<AdviceLine>& lines) {
+  constexpr std::string_view kWhere[] = {"recorded", "other", "both"};
+  journal::Json list = journal::Json::array();
+  for (const AdviceLine& each : lines)
+    list.push_back({{"at_s", each.at},
+                    {"in", kWhere[each.mark == '-'   ? 0
+                                  : each.mark == '+' ? 1
+                                                     : 2]},
+                    {"what", *each.what}});
+  return list;
 }
 
 int compare(const ReplayOptions& options, replay::Recording& recording, bool other_planner) {
@@ -141,19 +185,92 @@ int compare(const ReplayOptions& options, replay::Recording& recording, bool oth
   if (!after) return complain_about(options, after.error());
   for (const std::string& each : missing)
     fmt::print(stderr, "culprit: the recording does not have the {}\n", each);
-  fmt::print("- as recorded, + as it would be; both only advise on what was observed\n");
-  const int differences = print_difference(*before, *after);
-  fmt::print("{} lines differ\n", differences);
+  const std::vector<AdviceLine> lines = merged(*before, *after);
+  if (options.json) {
+    fmt::print("{}\n", journal::to_text(to_json(lines)));
+  } else {
+    print(lines, "what was observed");
+  }
+  return kOk;
+}
+
+Json to_json(const replay::Said& said) {
+  constexpr const char* kWords[] = {"detected", "gone", "chosen"};
+  Json json{{"clock", std::round(said.wall * 1000) / 1000},
+            {"what", kWords[static_cast<std::size_t>(said.what)]},
+            {"rule", said.rule}};
+  if (!said.strategy.empty()) json["strategy"] = said.strategy;
+  return json;
+}
+
+Json to_json(const std::vector<replay::Said>& all) {
+  Json list = Json::array();
+  for (const replay::Said& each : all) list.push_back(to_json(each));
+  return list;
+}
+
+std::vector<Advice> advice(const replay::Hindsight& hindsight) {
+  std::vector<Advice> all;
+  for (const replay::Said& said : hindsight.said) {
+    const char* end = said.what == replay::Said::What::kDetected ? " detected" : " is gone";
+    const bool is_chosen = said.what == replay::Said::What::kChosen;
+    all.push_back({said.wall - hindsight.since,
+                   said.rule + (is_chosen ? ": " + said.strategy : std::string(end))});
+  }
+  return all;
+}
+
+// What the rules would have said of the last while, beside what those said that ran then.
+int look_back(const ReplayOptions& options, const journal::Reader& journal, bool other_planner) {
+  const auto age = parse_duration(options.since);
+  if (!age) return fail("--since: " + age.error()), kUsage;
+  if (options.rules.empty()) return fail("--since is about other rules: add --rules"), kUsage;
+  const std::unique_ptr<const RuleSet> rules = load_rules(options.rules);
+  if (rules == nullptr) return kFailed;
+  const std::int64_t since = wall_now() - age->count();
+  const replay::PlannerOf recorded_planner =
+      [](const journal::Session& session) -> Expected<std::unique_ptr<const Planner>> {
+    const auto recorded = PlannerOptions::from_json(session.planner);
+    if (!recorded) return Error{recorded.error()};
+    return std::unique_ptr<const Planner>(recorded->planner());
+  };
+  replay::PlannerOf planner = recorded_planner;
+  if (other_planner)
+    planner = [&](const journal::Session&) -> Expected<std::unique_ptr<const Planner>> {
+      return std::unique_ptr<const Planner>(options.planner.planner());
+    };
+  const auto before = replay::hindsight(journal, nullptr, recorded_planner, since);
+  if (!before) return complain_about(options, before.error());
+  const auto after = replay::hindsight(journal, rules.get(), planner, since);
+  if (!after) return complain_about(options, after.error());
+  if (options.json) {
+    fmt::print("{}\n", journal::to_text({{"since", after->since},
+                                         {"until", after->until},
+                                         {"missing", after->missing},
+                                         {"recorded", to_json(before->said)},
+                                         {"other", to_json(after->said)}}));
+    return kOk;
+  }
+  for (const std::string& each : after->missing)
+    fmt::print(stderr, "culprit: the recording does not have the {}\n", each);
+  const std::vector<Advice> recorded = advice(*before);
+  const std::vector<Advice> other = advice(*after);
+  print(merged(recorded, other),
+        fmt::format("what was observed in the last {:.0f} s", after->until - after->since));
   return kOk;
 }
 
 int replay_any(const ReplayOptions& options, bool other_planner) {
-  if (bag::is_bag(options.journal)) {
+  const bool is_bag = bag::is_bag(options.journal);
+  if (options.json && (is_bag || options.events))
+    return fail("--json is neither for a bag nor with --events", kUsage);
+  if (is_bag) {
     if (options.rules.empty()) return fail("a bag has no rules: add --rules"), kUsage;
     return replay_bag({options.journal, options.rules, options.message_path, options.planner});
   }
   const auto journal = journal::Reader::open(options.journal);
   if (!journal) return fail(journal.error());
+  if (!options.since.empty()) return look_back(options, *journal, other_planner);
   auto recording = replay::Recording::open(*journal, options.session);
   if (!recording) return complain_about(options, recording.error());
   if (options.rules.empty() && !other_planner) return repeat(options, *journal, *recording);
@@ -173,8 +290,13 @@ void add_replay(CLI::App& app, int& exit_code) {
                       "The run that begins with this row (default: the latest)");
   command->add_option("--rules", options->rules, "Other rules");
   command->add_flag("--events", options->events, "Print what happens");
+  command->add_option(
+      "--since", options->since,
+      "With --rules: what they would have said of so long ago until now, over all runs: 10min, 1h");
   command->add_option("--message-path", options->message_path,
                       "For a bag: folders with .msg files: <folder>/<package>/msg/<Type>.msg");
+  command->add_flag("--json", options->json,
+                    "As one JSON document; not of a bag, nor with --events");
   options->planner.add_to(*command);
   const CLI::Option* planner = command->get_option("--planner");
   const CLI::Option* objective = command->get_option("--objective");

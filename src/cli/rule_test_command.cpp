@@ -5,8 +5,11 @@
 #include <unistd.h>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/diagnostic_report.h"
+#include "rule_files/rule_files.h"
 #include "rule_test/file_run.h"
 #include "terminal/console.h"
 #include "terminal/planner_options.h"
@@ -18,6 +21,7 @@ struct TestOptions {
   std::vector<std::string> files;
   std::string filter;
   std::string junit;
+  bool json = false;
   PlannerOptions planner;
 };
 
@@ -48,24 +52,59 @@ bool write_junit(const std::string& path, const std::vector<rule_test::SuiteRepo
   return false;
 }
 
+// Lengths are those of the robot's clock.
+nlohmann::ordered_json results_as_json(const Totals& totals,
+                                       const std::vector<rule_test::SuiteReport>& suites) {
+  nlohmann::ordered_json all{{"tests", totals.tests},
+                             {"failed", totals.failed},
+                             {"suites", nlohmann::ordered_json::array()}};
+  for (const rule_test::SuiteReport& suite : suites) {
+    nlohmann::ordered_json cases = nlohmann::ordered_json::array();
+    for (const auto& each : suite.cases)
+      cases.push_back({{"name", each.name},
+                       {"ok", each.failure.empty()},
+                       {"length_s", seconds(each.length)},
+                       {"failure", each.failure}});
+    all["suites"].push_back({{"name", suite.name}, {"cases", std::move(cases)}});
+  }
+  return all;
+}
+
+// Folders as the files in them. What cannot be found is said and counted.
+std::vector<std::string> files_of(const std::vector<std::string>& paths, Totals& totals) {
+  std::vector<std::string> all;
+  for (const std::string& path : paths) {
+    const auto files = rule_files::files_in(path, ".test");
+    if (files) {
+      all.insert(all.end(), files->begin(), files->end());
+    } else {
+      ++totals.unusable_files;
+      fail(files.error());
+    }
+  }
+  return all;
+}
+
 int run_tests(const TestOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Totals totals;
   std::vector<rule_test::SuiteReport> suites;
-  for (const std::string& file : options.files) {
+  for (const std::string& file : files_of(options.files, totals)) {
     rule_test::FileRun run = rule_test::run_file(file, options.filter, options.planner.factory(),
                                                  colour_of(STDERR_FILENO));
     fmt::print(stderr, "{}", run.complaints);
-    fmt::print("{}", run.output);
+    if (!options.json) fmt::print("{}", run.output);
     totals.add(run);
     if (!run.is_usable) fmt::print(stderr, "culprit: {} cannot be run\n", file);
     std::move(run.suites.begin(), run.suites.end(), std::back_inserter(suites));
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  fmt::print("{} tests, {} failed; {:g} s of the robot's time in {:.3f} s\n", totals.tests,
-             totals.failed, seconds(totals.robot_time), took.count());
-  if (!options.junit.empty() && !write_junit(options.junit, suites)) return kUsage;
-  if (totals.unusable_files > 0) return kUsage;
+  if (options.json) fmt::print("{}\n", to_text(results_as_json(totals, suites)));
+  if (!options.json)
+    fmt::print("{} tests, {} failed; {:g} s of the robot's time in {:.3f} s\n", totals.tests,
+               totals.failed, seconds(totals.robot_time), took.count());
+  if (!options.junit.empty() && !write_junit(options.junit, suites)) return kFailed;
+  if (totals.unusable_files > 0) return kFailed;
   if (totals.tests == 0) {
     fmt::print(stderr, "culprit: no test is called like '{}'\n", options.filter);
     return kUsage;
@@ -79,9 +118,10 @@ void add_test(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<TestOptions>();
   CLI::App* command = app.add_subcommand(
       "test", "Run unit tests of rule files: what the manager does with a robot that is played");
-  command->add_option("FILES", options->files, "Test files")->required();
+  command->add_option("FILES", options->files, "Test files, and folders of *.test")->required();
   command->add_option("--filter", options->filter, "Only tests whose name contains this");
   command->add_option("--junit", options->junit, "Write the results as JUnit XML to this file");
+  command->add_flag("--json", options->json, "The results as a JSON document");
   options->planner.add_to(*command);
   command->callback([options, &exit_code] { exit_code = run_tests(*options); });
 }

@@ -3,14 +3,22 @@
 #include <fmt/core.h>
 
 #include "cli/commands.h"
+#include "cli/listeners.h"
+#include "cli/run_alerts.h"
 #include "cli/run_options.h"
 #include "live/live_run.h"
 #include "live/node_name.h"
+#include "live/observers.h"
 #include "live/robot_names.h"
 #include "live/rule_trust.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
+#include "terminal/local_service.h"
+#include "web/component_route.h"
+#include "web/doctor_routes.h"
+#include "web/hindsight_route.h"
 #include "web/hub_observer.h"
+#include "web/incident_routes.h"
 #include "web/live_routes.h"
 #include "web/name_routes.h"
 #include "web/order_routes.h"
@@ -38,33 +46,35 @@ std::string name_of(const RuleSet& rules) {
   return rules.robot.empty() ? "the robot" : rules.robot;
 }
 
-// Says everything at the terminal, or wherever the output goes.
-class ConsoleListener : public live::Listener {
- public:
-  void on_event(const Event& event, const RuleSet& rules, Time start) override {
-    const std::string text = line(event, rules, start, colour_of(STDOUT_FILENO));
-    if (!text.empty()) say(stdout, "{}\n", text);
-  }
-  void on_announcement(Duration after, const EventWords& words, const std::string& text) override {
-    say(stdout, "{}\n", line(words, after, text, colour_of(STDOUT_FILENO)));
-  }
-  void on_remark(const std::string& lines) override { say_text(stdout, lines); }
-  void on_trouble(const std::string& text) override { fail(text); }
-};
+void add(std::vector<web::Route>& all, std::vector<web::Route> more) {
+  for (web::Route& route : more) all.push_back(std::move(route));
+}
 
-std::vector<web::Route> web_routes(web::Hub& hub, const web::Metrics& metrics, web::RuleDesk& desk,
-                                   web::OrderDesk& orders, live::LiveRun& live,
-                                   live::RobotNames& names, PlannerFactory planner) {
-  std::vector<web::Route> all;
-  const auto reload = [&live](const std::string& author) { return live.reload(author); };
-  for (auto routes :
-       {web::live_routes(hub), web::order_routes(orders), web::status_routes(hub, metrics),
-        web::rule_routes(desk), web::reload_routes(reload),
-        web::name_routes(
-            [&names](const LiveInterest& interest) { return names.look(interest); })}) {
-    for (web::Route& route : routes) all.push_back(std::move(route));
-  }
-  all.push_back(web::what_if_route(std::move(planner)));
+// What is asked and told from a terminal of this machine, and on the page.
+std::vector<web::Route> local_routes(web::Hub& hub, const web::Metrics& metrics,
+                                     web::OrderDesk& orders, live::LiveRun& live) {
+  std::vector<web::Route> all = web::live_routes(hub);
+  add(all, web::order_routes(orders, hub));
+  add(all, web::status_routes(hub, metrics));
+  add(all, web::reload_routes([&live](const std::string& author) { return live.reload(author); }));
+  return all;
+}
+
+std::vector<web::Route> page_routes(web::Hub& hub, web::RuleDesk& desk, live::RobotNames& names,
+                                    const std::filesystem::path& journal, PlannerFactory planner) {
+  const auto look = [&names](const LiveInterest& interest) { return names.look(interest); };
+  const auto log_of = [&names](const std::string& node) { return names.log_of(node); };
+  const auto journal_of = [journal](const std::string&) -> Expected<std::filesystem::path> {
+    if (journal.empty()) return Error{"no journal is written (--no-journal)"};
+    return journal;
+  };
+  std::vector<web::Route> all = web::rule_routes(desk);
+  add(all, web::name_routes(look, desk.loader()));
+  add(all, web::incident_routes(hub, journal));
+  add(all, web::doctor_routes(web::examine_robot));
+  all.push_back(web::component_route(hub, look, log_of));
+  all.push_back(web::hindsight_route(journal_of));
+  all.push_back(web::what_if_route(std::move(planner), desk.loader()));
   return all;
 }
 
@@ -84,26 +94,43 @@ int run(const RunOptions& options) {
     node_name.emplace(session->robot.link.participant);
     session->robot.link.name.name = node_name->name();
   }
+  std::FILE* const remarks = options.json ? stderr : stdout;
   auto role = claim_robot(rules->rules, options);
   if (!role) return fail(role.error(), kUsage);
-  if (!role->reason().empty()) say(stdout, "culprit: {}\n", role->reason());
+  if (!role->reason().empty()) say(remarks, "culprit: {}\n", role->reason());
+  WhoServes who{options.version,
+                rules->rules.robot,
+                options.rules,
+                session->robot.link.participant.domain,
+                session->robot.link.name.name,
+                ""};
   StopSignals signals(Hangup::kReloads);
   signals.end_within(kEndsWithin);
-  ConsoleListener listener;
+  // Its thread is not to be ended by a signal.
+  const auto fleet = join_fleet(options.fleet, options.journal_path(rules->rules));
+  if (!fleet) return fail(fleet.error(), kUsage);
+  const auto alerts = RunAlerts::open(options.alerts);
+  if (!alerts) return fail(alerts.error());
+  const auto listener = listener_for(options.json ? Audience::kPrograms : Audience::kPeople);
   live::LiveRun* running = nullptr;
   web::Hub hub([&] { running->interrupt(); });
   web::Metrics metrics;
   web::HubObserver observer(hub, metrics);
+  std::vector<live::Observer*> onlookers{&observer};
+  if (*alerts) onlookers.push_back(&(*alerts)->observer());
+  live::Observers observers(std::move(onlookers));
   live::OrderKeeper keeper("the run has not begun");
   web::OrderDesk orders(keeper.keeping());
-  live::LiveRun live({std::move(*session), options.dry_run, options.improvise}, std::move(*role),
-                     keeper, listener, &observer);
+  live::LiveRun live({std::move(*session), options.dry_run, options.improvise, fleet->get()},
+                     std::move(*role), keeper, *listener, &observers);
   running = &live;
   const std::string robot = name_of(rules->rules);
+  const auto journal =
+      options.no_journal ? std::filesystem::path() : options.journal_path(rules->rules);
   const std::size_t count = rules->rules.rules.size();
   if (const auto joined = live.join(std::move(*rules)); !joined) return fail(joined.error());
   signals.on_stop([&] { live.leave(); });
-  say(stdout,
+  say(remarks,
       "culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot "
       "as it is\n",
       robot, count, options.dry_run ? " (dry run)" : "");
@@ -113,11 +140,15 @@ int run(const RunOptions& options) {
   live::RobotNames names(options.message_path);
   Expected<std::unique_ptr<web::Server>> server(nullptr);
   if (options.is_on_web) {
-    server =
-        serve(options.web,
-              web_routes(hub, metrics, desk, orders, live, names, options.planner.factory()), &hub);
-    if (!server) return fail(server.error(), kUsage);
+    std::vector<web::Route> routes = local_routes(hub, metrics, orders, live);
+    add(routes, page_routes(hub, desk, names, journal, options.planner.factory()));
+    server = serve(options.web, std::move(routes), &hub, remarks);
+    if (!server) return fail(server.error());
+    who.page = (*server)->address();
+    if (*alerts) (*alerts)->set_page(who.page);
   }
+  const auto local =
+      serve_this_machine(who, local_routes(hub, metrics, orders, live), hub, remarks);
   signals.on_reload([&] {
     if (const auto reloaded = live.reload("SIGHUP"); !reloaded)
       say(stderr, "culprit: the rules are not reloaded: {}\n", reloaded.error());
@@ -126,7 +157,7 @@ int run(const RunOptions& options) {
   signals.on_stop({});
   signals.on_reload({});
   if (!ended) return fail(ended.error());
-  say(stdout, "culprit: stopped; the robot goes on as it is\n");
+  say(remarks, "culprit: stopped; the robot goes on as it is\n");
   return kOk;
 }
 

@@ -61,8 +61,11 @@ void RunOptions::add_to(CLI::App& command) {
   auto* kept = command.add_option(
       "--journal", journal,
       "Where everything is written down (default: <robot>.journal in the state folder)");
-  command.add_flag("--no-journal", no_journal, "Write nothing down, and know nothing")
-      ->excludes(kept);
+  auto* unkept =
+      command.add_flag("--no-journal", no_journal, "Write nothing down, and know nothing")
+          ->excludes(kept);
+  fleet.add_to(command);
+  command.get_option("--fleet")->excludes(unkept);
   command.add_option("--lease-key", lease_key,
                      "A file that only you can read, with a key that culprits on other machines "
                      "share: they agree who manages the robot (docs/security.md)");
@@ -84,6 +87,12 @@ void RunOptions::add_to(CLI::App& command) {
                   "forgotten")
       ->check(CLI::Range(0.5, 1.0))
       ->capture_default_str();
+  command.add_flag("--json", json,
+                   "Print what happens as JSON, a document each line (docs/web.md); all else "
+                   "goes to the standard error output");
+  command.add_option("--alerts", alerts,
+                     "A file that only you can read, of where alerts go: to a webhook, or to a "
+                     "program (docs/alerts.md)");
   planner.add_to(command);
   command.add_flag("--web", is_on_web, "Show in a browser what is seen, decided and done");
   web.add_to(command);

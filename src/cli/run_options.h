@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/governor_options.h"
+#include "cli/run_fleet.h"
 #include "live/live_session.h"
 #include "terminal/planner_options.h"
 #include "terminal/web_service.h"
@@ -26,9 +27,12 @@ struct RunOptions {
   std::string journal;
   std::string lease_key;  // a file; empty: culprits on other machines are not believed
   bool no_journal = false;
+  FleetOptions fleet;
   std::vector<std::filesystem::path> message_path;
   bool use_sim_time = false;
+  bool json = false;
   std::string node_name;  // empty: the first that no other culprit of this machine has
+  std::string alerts;     // a file; empty: nobody is alerted
   bool is_on_web = false;
   WebOptions web;
 

@@ -5,6 +5,8 @@
 #include "live/robot_names.h"
 #include "terminal/console.h"
 #include "terminal/web_service.h"
+#include "web/doctor_routes.h"
+#include "web/hindsight_route.h"
 #include "web/name_routes.h"
 #include "web/rule_routes.h"
 #include "web/single_run_route.h"
@@ -30,10 +32,14 @@ int edit(const WebCommandOptions& options) {
   std::vector<web::Route> routes = web::rule_routes(desk);
   for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
   routes.push_back(web::single_run_route());
+  routes.push_back(web::hindsight_route(web::usual_journal));
   live::RobotNames names;
   if (options.robot) {
     for (web::Route& route :
-         web::name_routes([&names](const LiveInterest& interest) { return names.look(interest); }))
+         web::name_routes([&names](const LiveInterest& interest) { return names.look(interest); },
+                          desk.loader()))
+      routes.push_back(std::move(route));
+    for (web::Route& route : web::doctor_routes(web::examine_robot))
       routes.push_back(std::move(route));
   }
   const auto server = serve(options.web, std::move(routes), nullptr);

@@ -53,6 +53,9 @@ class LiveRobot : public Robot {
   // Something about culprit itself that a person should know. From any thread.
   void report(std::string trouble) { inbox_.put(LinkTrouble{std::move(trouble)}); }
 
+  // What the fleet learned. From any thread.
+  void tell(PriorsTold priors) { inbox_.put(std::move(priors)); }
+
   ros2::Link& link() { return *link_; }
   owners::Supervisor& supervisor() { return *supervisor_; }
 

@@ -41,6 +41,7 @@ LiveRun::LiveRun(Options options, RoleOfCulprit role, OrderKeeper& keeper, Liste
              .orders = keeper,
              .listener = listener,
              .observer = observer,
+             .fleet = options_.fleet,
              .start = live_now()} {
   take_role();
 }

@@ -20,6 +20,7 @@ class LiveRun {
     LiveSession::Options session;
     bool dry_run = false;
     bool improvises = false;  // the rules are completed (live/rule_file.h), those reloaded too
+    Fleet* fleet = nullptr;   // null: there is none; else it outlives the run
   };
 
   // All that it refers to must outlive it. `observer` may be null.

@@ -67,6 +67,7 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   session.is_paused = beginning.orders.pause.has_value();
   session.is_dry_run = beginning.orders.dry_run.has_value();
   session.orders_kept = frame.orders.is_kept();
+  if (frame.fleet != nullptr && frame.records) session.fleet_context = frame.fleet->context();
   return session;
 }
 
@@ -88,7 +89,7 @@ journal::Learned learned_by(const Knowledge& knowledge) {
     const Strategy& strategy = rules.strategies[s];
     learned.beliefs.push_back({rules[strategy.rule].name, strategy.name,
                                knowledge.beliefs[StrategyId(s)],
-                               initial_belief(strategy.success, strategy.confidence)});
+                               knowledge.beliefs.prior(StrategyId(s))});
   }
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     for (const Couplings::Learned& each : knowledge.couplings.of(RuleId(r)))
@@ -270,10 +271,10 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
                          std::string occasion) {
   if (frame_.options.has_preflight)
     preflight_ = std::make_unique<Preflight>(
-        frame_.options.rules_file, rules_text_, frame_.options.message_path,
+        source_, frame_.options.message_path,
         [&listener = frame_.listener](const std::string& lines) { listener.on_remark(lines); });
   journal::Session session =
-      session_of(frame_, rules_text_, rules_, domain_, robot_->now(), beginning);
+      session_of(frame_, std::string(source_.text()), rules_, domain_, robot_->now(), beginning);
   session.occasion = std::move(occasion);
   const Autonomy autonomy = frame_.advises ? Autonomy::kAdvise : Autonomy::kAct;
   manager_ = replay::manager_for(session, rules_, frame_.options.planner(),
@@ -306,7 +307,21 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   for (Observation& each : seen) {
     if (std::holds_alternative<Order>(each.what)) each.at = session.start;
   }
+  join_fleet();
   runtime_->step(seen);
+}
+
+// Whoever only advises learns nothing, and writes nothing down.
+void LiveSession::join_fleet() {
+  if (frame_.fleet == nullptr || !frame_.records) return;
+  is_in_fleet_ = true;
+  frame_.fleet->begins(
+      rules_, [this](PriorsTold priors) { robot_->tell(std::move(priors)); },
+      [this](const std::string& trouble) { robot_->report(trouble); });
+}
+
+void LiveSession::leave_fleet() {
+  if (std::exchange(is_in_fleet_, false)) frame_.fleet->ends();
 }
 
 // Not what a person, or another culprit, wants to be left alone, nor while a strategy changes it.
@@ -328,6 +343,7 @@ void LiveSession::tell(std::span<const Event> events) {
     if (!text.empty()) robot_->link().log(severity_in_rosout(severity_of(event, rules_)), text);
   }
   robot_->link().publish(health(manager_->knowledge()));
+  if (is_in_fleet_) frame_.fleet->happened();
 }
 
 void LiveSession::announce(const EventWords& words, const std::string& text) {
@@ -394,6 +410,7 @@ LiveSession::Handover LiveSession::hand_over(const RuleSet& next, std::string oc
 }
 
 void LiveSession::end(journal::Ending ending) {
+  leave_fleet();
   if (recorder_ == nullptr) return;
   if (const auto written = recorder_->end(ending); !written)
     frame_.listener.on_trouble(written.error());

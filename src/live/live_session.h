@@ -10,6 +10,7 @@
 #include <string>
 
 #include "journal/session.h"
+#include "live/fleet.h"
 #include "live/listener.h"
 #include "live/live_robot.h"
 #include "live/observer.h"
@@ -49,6 +50,7 @@ class LiveSession {
     OrderKeeper& orders;
     Listener& listener;
     Observer* observer = nullptr;  // null: nobody looks on
+    Fleet* fleet = nullptr;        // null: there is none
     Time start{};                  // of the run: what people read counts from here
     // What people had ordered of the culprit on another machine that managed before; nothing: none
     // did.
@@ -64,6 +66,8 @@ class LiveSession {
     std::vector<Observation> orders;  // of people, that still hold
     std::string occasion;             // why there is a next one
   };
+
+  ~LiveSession() { leave_fleet(); }
 
   // Joins the robot's DDS domain. From then on what it shows is kept until the session begins.
   static Expected<std::unique_ptr<LiveSession>> open(const Frame& frame, LoadedRules rules);
@@ -98,7 +102,7 @@ class LiveSession {
 
   const RuleSet& rules() const { return rules_; }
   // For a session with the same.
-  LoadedRules loaded_rules() const { return {rules_, rules_text_, ""}; }
+  LoadedRules loaded_rules() const { return {rules_, source_, ""}; }
   // Null: this one would never manage.
   const ros2::LeaseLink* lease() const { return robot_->link().lease(); }
   owners::Supervisor& supervisor() { return robot_->supervisor(); }
@@ -114,17 +118,19 @@ class LiveSession {
 
  private:
   LiveSession(const Frame& frame, LoadedRules rules)
-      : frame_(frame), rules_(std::move(rules.rules)), rules_text_(std::move(rules.text)) {}
+      : frame_(frame), rules_(std::move(rules.rules)), source_(std::move(rules.source)) {}
 
   RunBeginning look_back();
   void hold(RunBeginning& beginning);
   void manage(RunBeginning beginning, std::vector<Observation> seen, std::string occasion);
+  void join_fleet();
+  void leave_fleet();
   void withdraw_doubles();
   void tell(std::span<const Event> events);
 
   const Frame frame_;
   const RuleSet rules_;
-  const std::string rules_text_;
+  const Source source_;  // of the rules
   int domain_ = 0;
   std::unique_ptr<LiveRobot> robot_;
   std::unique_ptr<Manager> manager_;
@@ -132,6 +138,7 @@ class LiveSession {
   std::unique_ptr<Runtime> runtime_;
   std::unique_ptr<Preflight> preflight_;
   std::atomic<bool> is_left_ = false;
+  bool is_in_fleet_ = false;
 };
 
 }  // namespace culprit::live

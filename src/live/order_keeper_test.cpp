@@ -225,7 +225,7 @@ TEST_F(KillSwitch, IsOnIfItsFileIsMissingOrDamaged) {
   {
     Run run(path, rules);
     EXPECT_TRUE(run.is_paused());
-    EXPECT_THAT(run.findings(), AllOf(HasSubstr("is missing"), HasSubstr("press Resume")));
+    EXPECT_THAT(run.findings(), AllOf(HasSubstr("is missing"), HasSubstr("culprit resume")));
     ASSERT_TRUE(run.order(Resume{}).is_kept);
   }
   std::ofstream(journal::orders_beside(path)) << "nonsense";

@@ -39,11 +39,14 @@ std::string report(const Source& source, const RuleSet& rules, const LiveInvento
                    std::uint32_t domain) {
   const auto found = findings(rules, robot);
   const auto missing = missing_on(robot, source);
-  std::string text = fmt::format("culprit: of what {} names, domain {} has{}\n", source.name(),
-                                 domain, found.empty() ? " nothing" : "");
+  std::string text =
+      found.empty()
+          ? fmt::format("culprit: domain {} has nothing that {} names\n", domain, source.name())
+          : fmt::format("culprit: {} names, and the robot on domain {} has:\n", source.name(),
+                        domain);
   for (const std::string& line : found) text += "  " + line + "\n";
   if (missing.empty()) return text;
-  text += "culprit: and has not\n";
+  text += fmt::format("culprit: {} names, and the robot has not:\n", source.name());
   for (const Diagnostic& each : missing) text += render(each, source);
   return text;
 }
@@ -133,17 +136,18 @@ void find_owner_troubles(const RuleSet& rules, const std::stop_token& stop, Live
 }
 
 // What could not be asked of the services that are there.
-void find_request_troubles(const RuleSet& rules,
-                           const std::vector<std::filesystem::path>& message_path,
+void find_request_troubles(const RuleSet& rules, ros2::Survey& survey, const std::stop_token& stop,
                            LiveInventory& robot) {
   for (const Strategy& strategy : rules.strategies) {
     for (const Adaptation& each : strategy.adaptations) {
       const std::string node = robot.node_of(rules[each.component]);
+      if (stop.stop_requested()) return;
       if (each.type != AdaptationType::kCall || node.empty()) continue;
       const auto service = robot.services.find(service_of(each.subject, node));
       if (service == robot.services.end()) continue;
-      const auto could = ros2::ServiceCall::prepare(service->second, each.request, message_path,
-                                                    robot.nodes.at(node).pid);
+      auto type = survey.find_service_type(service->first);
+      const auto could = type ? ros2::ServiceCall::prepare(service->second, each.request, *type)
+                              : Error{type.error()};
       if (!could) robot.request_troubles.push_back({service->first, each.request, could.error()});
     }
   }
@@ -188,7 +192,7 @@ LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& s
   for (const RuleSet* each : rules) {
     find_owners(*each, robot);
     find_owner_troubles(*each, stop, robot);
-    find_request_troubles(*each, survey.message_path(), robot);
+    find_request_troubles(*each, survey, stop, robot);
     for (const Component& component : each->components) {
       if (stop.stop_requested()) break;
       if (component.composed) find_composition_troubles(component, robot);
@@ -206,10 +210,9 @@ Expected<Sighting> sight(const Source& source,
   return look->sighting({});
 }
 
-Preflight::Preflight(std::string rules_name, std::string rules_text,
-                     std::vector<std::filesystem::path> message_path,
+Preflight::Preflight(Source rules, std::vector<std::filesystem::path> message_path,
                      std::function<void(const std::string&)> say)
-    : source_(std::move(rules_name), std::move(rules_text)),
+    : source_(std::move(rules)),
       message_path_(std::move(message_path)),
       say_(std::move(say)),
       thread_([this](const std::stop_token& stop) { look(stop); }) {}
@@ -219,7 +222,7 @@ void Preflight::look(const std::stop_token& stop) const {
   if (!look) return say_("culprit: " + look.error() + "\n");
   Sighting seen = look->sighting(stop);
   if (!seen.has_robot && !stop.stop_requested()) {
-    say_(seen.report + "culprit: it is waited for\n");
+    say_(seen.report + "culprit: waiting for the robot\n");
     if (!look->waits_for_robot(stop)) return;
     seen = look->sighting(stop);
   }

@@ -38,10 +38,8 @@ Expected<Sighting> sight(const Source& source,
 // there, or 3 s are over. Where nobody is there it says that, and looks until somebody is.
 class Preflight {
  public:
-  // Of the file `rules_name`, with the text `rules_text`, which has no errors. `say` is called on
-  // the thread, with whole lines.
-  Preflight(std::string rules_name, std::string rules_text,
-            std::vector<std::filesystem::path> message_path,
+  // Of rules without errors. `say` is called on the thread, with whole lines.
+  Preflight(Source rules, std::vector<std::filesystem::path> message_path,
             std::function<void(const std::string&)> say);
 
  private:

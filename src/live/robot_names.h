@@ -14,12 +14,16 @@ class RobotNames {
   // web::Look. The first call finds little, for discovery takes a moment. Errors: the domain cannot
   // be joined. From any thread.
   Expected<LiveInventory> look(const LiveInterest& interest);
+  // The last lines that a node has logged since this was called first, the newest last. Errors: likewise.
+  Expected<std::vector<ros2::msg::Log>> log_of(const std::string& node);
 
  private:
+  Expected<void> open() CULPRIT_REQUIRES(mutex_);
+
   const std::vector<std::filesystem::path> message_path_;
   Mutex mutex_;
   std::unique_ptr<ros2::Survey> survey_ CULPRIT_GUARDED_BY(mutex_);  // null: nobody has asked yet
-  LiveInterest interest_ CULPRIT_GUARDED_BY(mutex_);                 // as it was told last
+  LiveInterest interest_ CULPRIT_GUARDED_BY(mutex_);                 // of all who asked
 };
 
 }  // namespace culprit::live

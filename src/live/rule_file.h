@@ -9,7 +9,7 @@ namespace culprit::live {
 
 struct LoadedRules {
   RuleSet rules;
-  std::string text;     // of the file
+  Source source;        // the file, with all that it includes and uses put in
   std::string remarks;  // warnings, as a person reads them
 };
 
@@ -21,7 +21,7 @@ Expected<LoadedRules> read_rules(const std::string& path,
 // The same with rules for components that nobody wrote one for (language/improvise.h).
 Expected<LoadedRules> improvised(LoadedRules loaded, const std::string& path);
 
-// What culprit manages a robot by: the same of a file that nobody else can change
+// What culprit manages a robot by: the same of files that nobody else can change
 // (live/rule_trust.h), improvised on if that is asked for.
 Expected<LoadedRules> trusted_rules(const std::string& path, bool improvises, Colour colour);
 

@@ -37,7 +37,7 @@ void tell(const Recovery& recovery, const RuleSet& rules, std::vector<std::strin
 void pause(RunBeginning& beginning, const std::string& why) {
   beginning.orders.pause = journal::StandingOrders::Said{"culprit", why};
   beginning.findings.push_back(
-      why + "; so it is paused until a person resumes it: start it with --web and press Resume");
+      why + "; so it is paused until a person resumes it: culprit resume does that");
 }
 
 // What the rows of a culprit say that had no file for it.

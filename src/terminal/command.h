@@ -9,6 +9,7 @@ namespace culprit {
 constexpr int kOk = 0;
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
+constexpr int kWarnings = 3;  // and no error
 
 // Says on stderr why it cannot be done. Gives `exit_code`.
 int fail(const std::string& why, int exit_code = kFailed);

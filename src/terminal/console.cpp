@@ -12,20 +12,20 @@
 namespace culprit {
 namespace {
 
-std::string colour_code(const EventWords& words) {
+std::string colour_code(Tone tone, Weight weight) {
   constexpr std::string_view kDim = "2";
   constexpr std::string_view kRed = "31";
   constexpr std::string_view kGreen = "32";
   constexpr std::string_view kYellow = "33";
   constexpr std::string_view kMagenta = "35";
   constexpr std::string_view kCyan = "36";
-  const std::string_view colour = words.tone == Tone::kAlarm     ? kRed
-                                  : words.tone == Tone::kRelief  ? kGreen
-                                  : words.tone == Tone::kWarning ? kYellow
-                                  : words.tone == Tone::kPerson  ? kMagenta
-                                  : words.tone == Tone::kAction  ? kCyan
-                                                                 : kDim;
-  return fmt::format("\033[{}{}m", words.weight == Weight::kStrong ? "1;" : "", colour);
+  const std::string_view colour = tone == Tone::kAlarm     ? kRed
+                                  : tone == Tone::kRelief  ? kGreen
+                                  : tone == Tone::kWarning ? kYellow
+                                  : tone == Tone::kPerson  ? kMagenta
+                                  : tone == Tone::kAction  ? kCyan
+                                                           : kDim;
+  return fmt::format("\033[{}{}m", weight == Weight::kStrong ? "1;" : "", colour);
 }
 
 sigset_t awaited(Hangup hangup) {
@@ -49,10 +49,28 @@ std::string line(const Event& event, const RuleSet& rules, Time start, Colour co
 }
 
 std::string line(const EventWords& words, Duration after, const std::string& text, Colour colour) {
-  const bool is_coloured = colour == Colour::kOn;
-  return fmt::format("{:8.3f}  {}{:<10}{}  {}", seconds(after),
-                     is_coloured ? colour_code(words) : "", words.label,
-                     is_coloured ? "\033[0m" : "", text);
+  return fmt::format("{:8.3f}  {}  {}", seconds(after), label_of(words, colour), text);
+}
+
+std::string label_of(const EventWords& words, Colour colour) {
+  return in_tone(fmt::format("{:<10}", words.label), words.tone, words.weight, colour);
+}
+
+std::string in_tone(const std::string& text, Tone tone, Weight weight, Colour colour) {
+  return colour == Colour::kOn ? colour_code(tone, weight) + text + "\033[0m" : text;
+}
+
+std::string without_controls(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    // The second half of the controls is two bytes long in UTF-8.
+    constexpr unsigned char kFirstOfTwo = 0xc2;
+    const auto second = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+    const bool is_pair = c == kFirstOfTwo && second >= 0x80 && second < 0xa0;
+    if (c < ' ' || c == 0x7f || is_pair) text[i] = '?';
+    if (is_pair) text[++i] = '?';
+  }
+  return text;
 }
 
 void say_text(std::FILE* stream, const std::string& text) {

@@ -14,6 +14,7 @@
 #include "base/name_grammar.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
+#include "terminal/help.h"
 
 namespace culprit {
 namespace {
@@ -70,6 +71,7 @@ std::optional<std::string> unknown_word(const CLI::App& app, int argc, char** ar
 int parse_and_run(CLI::App& app, const std::function<void(int& exit_code)>& add_commands, int argc,
                   char** argv) {
   app.require_subcommand(1);
+  app.formatter(help_formatter());
   int exit_code = kOk;
   add_commands(exit_code);
   if (argc < 2) {

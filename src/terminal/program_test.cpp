@@ -1,6 +1,7 @@
 #include "terminal/program.h"
 
 #include "terminal/command.h"
+#include "terminal/help.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit {
@@ -53,6 +54,13 @@ TEST(Program, AloneShowsItsCommands) {
   const Ended end = ended({});
   EXPECT_EQ(end.code, kUsage);
   EXPECT_THAT(end.said, HasSubstr("check"));
+}
+
+TEST(Help, HasLinesThatFit) {
+  EXPECT_EQ(wrapped("one two three", 7), "one two\nthree");
+  EXPECT_EQ(wrapped("a line\nand another", 80), "a line\nand another");
+  EXPECT_EQ(wrapped("a-word-that-is-too-long", 5), "a-word-that-is-too-long");
+  EXPECT_EQ(wrapped("", 5), "");
 }
 
 TEST(SecondsOption, TakesUnitsOrSeconds) {

@@ -36,6 +36,7 @@ TestWorld::TestWorld() : domain_(value_of(ros2::DomainLock::reserve())) {
   setenv("ROS_DOMAIN_ID", std::to_string(domain_.domain()).c_str(), 1);
   setenv("ROS_LOCALHOST_ONLY", "1", 1);
   setenv("SUNSET_STATE", folder_.c_str(), 1);
+  setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);  // where its culprits are asked
 }
 
 std::string TestWorld::write(const std::string& name, const std::string& text) const {

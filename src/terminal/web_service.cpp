@@ -56,7 +56,8 @@ Expected<web::Access> access_for(const WebOptions& options) {
 }  // namespace
 
 Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
-                                             std::vector<web::Route> routes, web::Hub* hub) {
+                                             std::vector<web::Route> routes, web::Hub* hub,
+                                             std::FILE* out) {
   auto access = access_for(options);
   if (!access) return Error{access.error()};
   web::Server::Options server{options.address, options.port.value_or(WebOptions::kUsualPort),
@@ -68,9 +69,9 @@ Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
   }
   if (!started) return started;
   if (server.access.is_local) {
-    say(stdout, "See it in a browser: {}\n", (*started)->address());
+    say(out, "See it in a browser: {}\n", (*started)->address());
   } else {
-    say(stdout,
+    say(out,
         "See it in a browser: http://{}:{}/#token=... (the token of {}). Others can reach "
         "this address, and what they send is not encrypted.\n",
         options.address, (*started)->port(), options.token_file);

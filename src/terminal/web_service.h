@@ -1,6 +1,7 @@
 // Serving the web app from a command: its switches, and where it can be seen.
 #pragma once
 
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,9 +24,10 @@ struct WebOptions {
   void add_to(CLI::App& command);
 };
 
-// Serves until the server is destroyed, and says on the standard output where. `hub` may be null.
+// Serves until the server is destroyed, and says on `out` where. `hub` may be null.
 // Errors: the address is not local and there is no token file; or it cannot be listened at.
 Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
-                                             std::vector<web::Route> routes, web::Hub* hub);
+                                             std::vector<web::Route> routes, web::Hub* hub,
+                                             std::FILE* out = stdout);
 
 }  // namespace culprit

@@ -3,10 +3,14 @@
 // httplib itself keeps every header that comes, however many and however long a line is, and waits
 // anew for each byte. Here what a connection sends is counted before it is parsed: so many bytes of
 // headers, so many of a body, and so much time for both. Whoever exceeds them is cut off.
+//
+// Nor does it pack answers: httplib would by brotli at its slowest where a browser takes that, and the incidents of a day came
+// after seconds. takes_gzip() says whether the client can unpack an answer that is packed already.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <httplib.h>
 
 namespace culprit::web {
@@ -20,14 +24,22 @@ struct ConnectionBudget {
   int requests = 1000;
 };
 
+// Who is served. Of a unix socket the kernel says who is at its other end.
+enum class Clients : std::uint8_t { kAny, kOwnUser };
+
+// Of a request to a BudgetedServer.
+bool takes_gzip(const httplib::Request& request);
+
 class BudgetedServer : public httplib::Server {
  public:
-  explicit BudgetedServer(ConnectionBudget budget) : budget_(budget) {}
+  // @pre kOwnUser: it is bound to a unix socket
+  BudgetedServer(ConnectionBudget budget, Clients clients) : budget_(budget), clients_(clients) {}
 
  private:
   bool process_and_close_socket(socket_t socket) override;
 
   const ConnectionBudget budget_;
+  const Clients clients_;  // kOwnUser: and root
 };
 
 // How many connections may be open at a time: not more than `wanted`, and so few that enough

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "live/observer.h"
+#include "live/situation.h"
 #include "web/event_json.h"
 #include "web/hub.h"
 #include "web/metrics.h"
@@ -46,6 +47,7 @@ class HubObserver : public live::Observer {
   const WallClock wall_;
   const Manager* manager_ = nullptr;  // null: none has begun
   std::function<Remarks()> remarks_;
+  live::Situation situation_;
   Time start_{};
   Time told_ = kLongAgo;       // when the state was told last
   Time next_tell_ = kLongAgo;  // when it may be told again

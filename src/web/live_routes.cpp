@@ -35,13 +35,14 @@ Answer events(Hub& hub) {
   }
 }
 
-// As culprit beliefs export writes it (docs/journal.md): what differs from what the rules say.
+// As culprit beliefs export writes it (docs/journal.md): what differs from what it began from.
 Answer beliefs(Hub& hub) {
   const Answer robot = newest(hub, Kind::kRobot);
   const Answer state = newest(hub, Kind::kState);
   if (robot.status != 200 || state.status != 200) return robot.status != 200 ? robot : state;
   const Json& rules = robot.body["rules"];
   const Json& now = state.body["beliefs"];
+  const Json& priors = state.body["priors"];
   Json document{{"format", "culprit-beliefs"},
                 {"format_version", 1},
                 {"beliefs", Json::array()},
@@ -51,12 +52,13 @@ Answer beliefs(Hub& hub) {
     for (const Json& strategy : rule["strategies"]) {
       // A reload may have come between the two.
       if (place >= now.size()) return refuse(503, "the rules are being reloaded; ask again");
-      const Json& belief = now[place++];
-      if (belief == strategy["prior"]) continue;
+      const Json& belief = now[place];
+      const Json& prior = priors[place++];
+      if (belief == prior) continue;
       document["beliefs"].push_back({{"rule", rule["name"]},
                                      {"strategy", strategy["name"]},
                                      {"belief", belief},
-                                     {"prior", strategy["prior"]}});
+                                     {"prior", prior}});
     }
   }
   for (const Json& each : state.body["couplings"]) {

@@ -38,10 +38,11 @@ std::string of_strategy(StrategyId id, const RuleSet& rules, std::string_view ou
 
 // What held an action back (knowledge/event.h).
 std::string_view word_of(Restraint restraint) {
-  constexpr std::string_view kWords[] = {"paused",    "quiet_period", "storm",    "graph_in_doubt",
-                                         "interlock", "overall",      "silenced", "refused",
-                                         "component", "class",        "backoff",  "identity",
-                                         "evidence",  "never_seen",   "restarts"};
+  constexpr std::string_view kWords[] = {
+      "paused",   "quiet_period", "storm",     "graph_in_doubt", "interlock", "overall",
+      "silenced", "refused",      "component", "class",          "backoff",   "identity",
+      "evidence", "never_seen",   "leaving",   "launch_ended",   "restarts"};
+  static_assert(std::size(kWords) == static_cast<std::size_t>(Restraint::kRestarts) + 1);
   return kWords[static_cast<std::size_t>(restraint)];
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "language/live_inventory.h"
+#include "language/reuse/expansion.h"
 #include "web/routes.h"
 
 namespace culprit::web {
@@ -11,6 +12,10 @@ namespace culprit::web {
 // What the robot has by now, looking from now on at what `interest` names. Called from any thread.
 using Look = std::function<Expected<LiveInventory>(const LiveInterest& interest)>;
 
-std::vector<Route> name_routes(Look look);
+// `load` finds what the rules include.
+std::vector<Route> name_routes(Look look, RuleLoader load = nullptr);
+
+// By name; null where a value is a list or not set.
+Json parameters_to_json(const LiveInventory::Node& node);
 
 }  // namespace culprit::web

@@ -1,5 +1,8 @@
 #include "web/order_routes.h"
 
+#include <algorithm>
+
+#include "base/live_clock.h"
 #include "robot/standing.h"
 
 namespace culprit::web {
@@ -8,6 +11,7 @@ namespace {
 using What = decltype(Order::what);
 
 constexpr double kLongestSilence = 7 * 24 * 3600;  // s
+constexpr double kLongestWait = 30;                // s
 constexpr std::size_t kLongestText = 500;
 
 // The number of the first thing of this name.
@@ -93,6 +97,50 @@ Expected<Order> read_order(const Json& body, const RuleSet& rules, std::uint64_t
   return order;
 }
 
+// Its sender was told meanwhile that nothing came of it: culprit was stopped, say, and goes on now.
+bool is_late(const Order& order, const Json& body) {
+  const auto until = body.find("valid_until");
+  return until != body.end() && until->is_number() &&
+         seconds(live_now().time_since_epoch()) > until->get<double>() &&
+         standing_of(order) != Standing::kRestrains;
+}
+
+// What the manager says of the order of this number; nothing: it did not in time.
+std::optional<Json> word_on(std::uint64_t number, Hub& hub, std::uint64_t after, double patience) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
+  while (true) {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    const Hub::Batch batch = hub.wait(after, std::max(left, std::chrono::milliseconds(0)));
+    for (const Message& message : batch.messages) {
+      after = message.number;
+      if (message.kind != Kind::kEvent || message.data->find("\"order_") == std::string::npos)
+        continue;
+      Json event = Json::parse(*message.data);
+      const std::string type = event.value("type", "");
+      const bool is_word = type == "order_accepted" || type == "order_refused";
+      if (is_word && event.value("number", std::uint64_t{0}) == number) return event;
+    }
+    if (hub.is_closed()) return std::nullopt;
+    if (batch.messages.empty() && std::chrono::steady_clock::now() >= end) return std::nullopt;
+  }
+}
+
+Answer take_and_wait(OrderDesk& desk, Hub& hub, const Json& body) {
+  const std::uint64_t before = hub.last();
+  Answer answer = desk.take(body);
+  const auto wait = body.is_object() ? body.find("wait_s") : body.end();
+  if (answer.status != 202 || wait == body.end() || !wait->is_number()) return answer;
+  const double patience = std::clamp(wait->get<double>(), 0.0, kLongestWait);
+  const auto word = word_on(answer.body["number"], hub, before, patience);
+  if (!word) return answer;
+  if (word->value("type", "") == "order_refused")
+    return refuse(409, word->value("refused_because", "it is refused"));
+  answer.status = 200;
+  answer.body["order"] = word->value("text", "");
+  return answer;
+}
+
 const RuleSet& no_rules() {
   static const RuleSet rules;
   return rules;
@@ -126,6 +174,7 @@ Answer OrderDesk::take(const Json& body) {
   const bool is_pause = order && std::holds_alternative<Pause>(order->what);
   if (rules_ == nullptr && !is_pause) return refuse(503, "the rules are being reloaded; ask again");
   if (!order) return refuse(400, order.error());
+  if (is_late(*order, body)) return refuse(408, "the order came too late, and is not followed");
   const std::uint64_t number = ++last_;
   if (standing_of(*order) != Standing::kNot) {
     const live::KeepOrder keep_it = keeping_(*order, rules);
@@ -154,8 +203,9 @@ Answer OrderDesk::keep(const live::KeepOrder& keep, const Json& body, std::uint6
            {"text", kept.is_kept ? "kept" : "in force, not kept: " + kept.why_not}}};
 }
 
-std::vector<Route> order_routes(OrderDesk& desk) {
-  return {{Method::kPost, "/api/orders", [&desk](const Json& body) { return desk.take(body); }}};
+std::vector<Route> order_routes(OrderDesk& desk, Hub& hub) {
+  return {{Method::kPost, "/api/orders",
+           [&desk, &hub](const Json& body) { return take_and_wait(desk, hub, body); }}};
 }
 
 }  // namespace culprit::web

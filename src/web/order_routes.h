@@ -7,6 +7,7 @@
 #include "language/rule_set.h"
 #include "live/order_keeper.h"
 #include "robot/order.h"
+#include "web/hub.h"
 #include "web/routes.h"
 
 namespace culprit::web {
@@ -22,6 +23,8 @@ class OrderDesk : public live::OrderTaker {
   // Only a pause is taken meanwhile, and given to whoever is next.
   void close() override;
 
+  // 202: the manager has it, and an event of its number will say what becomes of it. Who says until
+  // when it is wanted (`valid_until`) is refused later, unless it restrains culprit.
   Answer take(const Json& body);
 
  private:
@@ -36,7 +39,8 @@ class OrderDesk : public live::OrderTaker {
   std::uint64_t last_ CULPRIT_GUARDED_BY(mutex_) = 0;        // number of the last order
 };
 
-// `desk` must outlive the routes.
-std::vector<Route> order_routes(OrderDesk& desk);
+// Both must outlive the routes. Whoever says for how long (`wait_s`) is answered with the manager's own
+// word, as `hub` tells it: 200 or, if it refuses the order, 409.
+std::vector<Route> order_routes(OrderDesk& desk, Hub& hub);
 
 }  // namespace culprit::web

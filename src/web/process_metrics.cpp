@@ -3,43 +3,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <fmt/core.h>
 
+#include "web/process_stat.h"
+
 namespace culprit::web {
 namespace {
-
-// The fields of proc_pid_stat(5) that are needed here, in its units.
-struct Stat {
-  std::uint64_t user_ticks = 0;
-  std::uint64_t system_ticks = 0;
-  std::uint64_t threads = 0;
-  std::uint64_t start_ticks = 0;  // since the machine was started
-  std::uint64_t virtual_bytes = 0;
-  std::uint64_t resident_pages = 0;
-};
-
-bool read(Stat& stat) {
-  std::ifstream file("/proc/self/stat");
-  std::string line;
-  if (!std::getline(file, line)) return false;
-  // The second field is the program's name in brackets, in which anything may stand.
-  std::istringstream rest(line.substr(std::min(line.rfind(')') + 1, line.size())));
-  std::string skipped;
-  const auto skip = [&](int count) {
-    for (int i = 0; i < count; ++i) rest >> skipped;
-  };
-  skip(11);  // fields 3 to 13
-  rest >> stat.user_ticks >> stat.system_ticks;
-  skip(4);  // to field 19
-  rest >> stat.threads;
-  skip(1);
-  rest >> stat.start_ticks >> stat.virtual_bytes >> stat.resident_pages;
-  return !rest.fail();
-}
 
 // Seconds since 1970; 0: not known.
 std::uint64_t boot_time() {
@@ -68,16 +40,15 @@ void add(std::string& out, const char* name, const char* type, const char* help,
 
 std::string process_metrics() {
   std::string out;
-  Stat stat;
-  if (!read(stat)) return out;
-  const auto ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
+  const auto stat = process_stat("self");
+  if (!stat) return out;
   const auto number = [](std::uint64_t value) { return static_cast<double>(value); };
   add(out, "process_cpu_seconds_total", "counter", "User and system CPU time.",
-      number(stat.user_ticks + stat.system_ticks) / ticks);
+      stat->processor_seconds);
   add(out, "process_resident_memory_bytes", "gauge", "Memory that is resident.",
-      number(stat.resident_pages) * static_cast<double>(sysconf(_SC_PAGESIZE)));
-  add(out, "process_virtual_memory_bytes", "gauge", "Virtual memory.", number(stat.virtual_bytes));
-  add(out, "process_threads", "gauge", "Threads.", number(stat.threads));
+      number(stat->resident_bytes));
+  add(out, "process_virtual_memory_bytes", "gauge", "Virtual memory.", number(stat->virtual_bytes));
+  add(out, "process_threads", "gauge", "Threads.", number(stat->threads));
   add(out, "process_open_fds", "gauge", "Open file descriptors.", number(open_files()));
   rlimit most{};
   if (getrlimit(RLIMIT_NOFILE, &most) == 0)
@@ -85,7 +56,7 @@ std::string process_metrics() {
         number(most.rlim_cur));
   if (const std::uint64_t boot = boot_time(); boot != 0)
     add(out, "process_start_time_seconds", "gauge", "When it was started, in seconds since 1970.",
-        number(boot) + number(stat.start_ticks) / ticks);
+        number(boot) + stat->started_after_boot);
   return out;
 }
 

@@ -22,6 +22,35 @@ Json strategy_to_json(const Strategy& strategy, const RuleSet& rules) {
   return json;
 }
 
+// Who starts and ends it, in words; empty: nobody that the rules know.
+std::string owner_of(const Component& component) {
+  using Engine = EngineContainer::Engine;
+  if (component.unit)
+    return component.unit->name +
+           (component.unit->is_of_user ? ", of the user's systemd" : ", of systemd");
+  if (component.engine)
+    return std::string(component.engine->engine == Engine::kDocker ? "docker " : "podman ") +
+           component.engine->name;
+  if (component.composed)
+    return component.composed->container + ", which loads " + component.composed->plugin;
+  if (component.is_respawned) return "its launcher, which starts it again";
+  return component.launch.empty() ? "" : "culprit, by its LAUNCH command";
+}
+
+Json component_to_json(const Component& component) {
+  Json json{{"name", component.name}, {"can_start", component.can_start_again()}};
+  const auto add = [&](const char* member, const std::string& text) {
+    if (!text.empty()) json[member] = text;
+  };
+  add("node", component.node);
+  add("owner", owner_of(component));
+  add("host", component.host());
+  if (component.composed) add("container", component.composed->container);
+  if (component.engine) add("container", component.engine->name);
+  if (component.is_required) json["required"] = true;
+  return json;
+}
+
 Json value_of(const Slot& slot, const Input& input) {
   if (!slot.known) return nullptr;
   switch (input.type) {
@@ -89,6 +118,9 @@ Json components_to_json(const Knowledge& knowledge) {
     const ComponentState& state = knowledge.components[id];
     Json json{{"health", kHealthWords[health[c]]}, {"present", knowledge.graph.is_present(id)}};
     json["alive"] = state.alive ? Json(*state.alive) : Json(nullptr);
+    // Of another computer its number says nothing here.
+    if (state.known_pid() != 0 && knowledge.rules.components[c].host().empty())
+      json["pid"] = state.known_pid();
     if (state.alive) json["process"] = word_of_process(state);
     if (state.lifecycle != Lifecycle::kUnknown) json["lifecycle"] = to_string(state.lifecycle);
     if (!state.process_remark.empty()) json["remark"] = state.process_remark;
@@ -132,8 +164,7 @@ Json rules_to_json(const RuleSet& rules) {
   Json json{{"robot", rules.robot},        {"cycle_s", seconds(rules.cycle)},
             {"components", Json::array()}, {"topics", Json::array()},
             {"inputs", Json::array()},     {"rules", Json::array()}};
-  for (const Component& c : rules.components)
-    json["components"].push_back({{"name", c.name}, {"can_start", c.can_start_again()}});
+  for (const Component& c : rules.components) json["components"].push_back(component_to_json(c));
   for (const Topic& t : rules.topics) json["topics"].push_back(t.name);
   for (const Input& i : rules.inputs) json["inputs"].push_back(describe(i, rules));
   for (const Rule& rule : rules.rules) {
@@ -204,6 +235,25 @@ Json control_to_json(const Manager& manager, Time start) {
   return json;
 }
 
+Json incidents_to_json(const std::vector<live::Incident>& incidents, const RuleSet& rules,
+                       Time start) {
+  Json list = Json::array();
+  for (const live::Incident& each : incidents) {
+    list.push_back(
+        {{"headline", each.headline},
+         {"health", each.is_exhausted ? "EXHAUSTED" : culprit::to_string(each.criticality)},
+         {"since", time_to_json(each.since, start)},
+         {"rule", rules[each.root].name},
+         {"components", names_of(each.components, rules)},
+         {"certain", each.is_certain},
+         {"consequences", names_of(each.consequences, rules)},
+         {"needs_person", each.needs_person()},
+         {"doing", each.doing},
+         {"next", each.next}});
+  }
+  return list;
+}
+
 Json state_to_json(const Knowledge& knowledge, Time start) {
   const RuleSet& rules = knowledge.rules;
   Json json{{"t", time_to_json(knowledge.now, start)},
@@ -211,14 +261,17 @@ Json state_to_json(const Knowledge& knowledge, Time start) {
             {"components", components_to_json(knowledge)},
             {"topics", topics_to_json(knowledge)},
             {"inputs", Json::array()},
-            {"beliefs", Json::array()}};
+            {"beliefs", Json::array()},
+            {"priors", Json::array()}};
   for (std::size_t r = 0; r < rules.rules.size(); ++r)
     json["rules"].push_back(rule_to_json(RuleId(r), knowledge, start));
   for (std::size_t i = 0; i < rules.inputs.size(); ++i)
     json["inputs"].push_back(value_of(knowledge.signals[InputId(i)], rules.inputs[i]));
   for (std::size_t s = 0; s < rules.strategies.size(); ++s) {
     const Belief& belief = knowledge.beliefs[StrategyId(s)];
+    const Belief& prior = knowledge.beliefs.prior(StrategyId(s));
     json["beliefs"].push_back(Json::array({belief.alpha, belief.beta}));
+    json["priors"].push_back(Json::array({prior.alpha, prior.beta}));
   }
   json["couplings"] = couplings_to_json(knowledge);
   return json;

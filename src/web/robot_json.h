@@ -1,6 +1,7 @@
 // What the manager knows, as JSON (docs/web.md): what never changes, the graph, the present state.
 #pragma once
 
+#include "live/situation.h"
 #include "manager/manager.h"
 #include "web/event_json.h"
 
@@ -19,5 +20,9 @@ Json state_to_json(const Knowledge& knowledge, Time start);
 // What people have told the manager, and what it asks them: paused or not, silences, strategies
 // that wait for approval.
 Json control_to_json(const Manager& manager, Time start);
+
+// Who is ill and who is blamed: part of the present state.
+Json incidents_to_json(const std::vector<live::Incident>& incidents, const RuleSet& rules,
+                       Time start);
 
 }  // namespace culprit::web

@@ -32,7 +32,8 @@ std::string_view to_string(Method method);
 struct Route {
   Method method = Method::kGet;
   std::string path;  // "/api/rules"; nothing in it varies
-  // `body` is what was sent; null for kGet and kDelete. Called from many threads at once.
+  // `body` is what was sent; of kGet the texts behind the '?' of the address, by name; null if nothing was sent.
+  // Called from many threads at once.
   std::function<Answer(const Json& body)> answer;
 };
 

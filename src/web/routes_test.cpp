@@ -8,8 +8,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "journal/session.h"
+#include "journal/writer.h"
 #include "language/checker.h"
+#include "web/component_route.h"
+#include "web/doctor_routes.h"
 #include "web/fault_routes.h"
+#include "web/hindsight_route.h"
+#include "web/incident_routes.h"
 #include "web/live_routes.h"
 #include "web/name_routes.h"
 #include "web/order_routes.h"
@@ -64,12 +70,26 @@ struct Routes : testing::Test {
       return 1;
     };
     for (auto routes : {live_routes(hub), rule_routes(desk), fault_routes(std::move(faults)),
-                        order_routes(order_desk), status_routes(hub, metrics),
-                        reload_routes(reload), study_routes(studies), name_routes(look)}) {
+                        order_routes(order_desk, hub), status_routes(hub, metrics),
+                        reload_routes(reload), study_routes(studies), name_routes(look),
+                        incident_routes(hub, journal), doctor_routes([this](Duration time) {
+                          examined_for = time;
+                          return Expected<Json>(Json{{"findings", Json::array()}});
+                        })}) {
       for (Route& route : routes) all.push_back(std::move(route));
     }
+    const auto log_of = [](const std::string& node) -> Expected<std::vector<ros2::msg::Log>> {
+      return std::vector<ros2::msg::Log>{{{7, 500'000'000}, 30, node, "it is dark", "", "", 0}};
+    };
+    all.push_back(component_route(hub, look, log_of));
+    all.push_back(hindsight_route([](const std::string&) -> Expected<std::filesystem::path> {
+      return Error{"nothing is recorded here"};
+    }));
   }
-  ~Routes() override { std::filesystem::remove(path); }
+  ~Routes() override {
+    std::filesystem::remove(path);
+    std::filesystem::remove(journal);
+  }
 
   Answer ask(const std::string& call, const Json& body = nullptr) const {
     for (const Route& route : all) {
@@ -81,6 +101,8 @@ struct Routes : testing::Test {
   }
 
   const std::string path;
+  const std::string journal = path + ".journal";
+  Duration examined_for{};
   Hub hub;
   Metrics metrics;
   RuleDesk desk{path};
@@ -122,8 +144,9 @@ TEST_F(Routes, TakeTheExamplesOfTheOpenApiDocument) {
   for (const auto& [path_told, calls] : document["paths"].items()) {
     for (const auto& [method, call] : calls.items()) {
       // cli/what_if_route_test.cpp, cli/single_run_route_test.cpp
-      const bool is_of_the_commands =
-          path_told == "/api/what-if" || path_told == "/api/studies/run";
+      const bool is_of_the_commands = path_told == "/api/what-if" ||
+                                      path_told == "/api/studies/run" ||
+                                      path_told == "/api/rules/replay";
       if (!call.contains("requestBody") || is_of_the_commands) continue;
       const Json& example = call["requestBody"]["content"]["application/json"]["example"];
       const Answer answer = ask(method + " " + path_told, example);
@@ -173,6 +196,42 @@ TEST_F(Routes, DoNotOverwriteWhatSomebodyElseHasWritten) {
       ask("put /api/rules", {{"text", kRouteRules}, {"version", opened["version"]}});
   EXPECT_EQ(answer.status, 409);
   EXPECT_EQ(ask("get /api/rules").body["text"], "# of somebody else\n");
+}
+
+// A page reads no more of the computer than the rule file does.
+TEST(RuleDesk, IncludesForAPageWhatIsBesideTheFile) {
+  namespace fs = std::filesystem;
+  const fs::path top = fs::path(testing::TempDir()) / ("desk-" + std::to_string(getpid()));
+  const auto write = [&](const std::string& name, const std::string& text) {
+    fs::create_directories((top / name).parent_path());
+    std::ofstream(top / name) << text;
+  };
+  write("robot/robot.rules", "");
+  write("robot/parts/a.rules", "CONST a = 1\n");
+  write("secret.rules", "hidden\n");
+  RuleDesk desk((top / "robot/robot.rules").string());
+  const auto said = [&](const std::string& text) {
+    for (const Route& route : rule_routes(desk)) {
+      if (route.path == "/api/rules/ask")
+        return route.answer({{"text", text}}).body["diagnostics"].dump();
+    }
+    return std::string("no such route");
+  };
+  EXPECT_EQ(said("INCLUDE \"parts/a.rules\"\nCONST b = a\n"), "[]");
+  EXPECT_EQ(said("INCLUDE \"cookbook/battery_low.rules\"\n"), "[]");
+  const std::string up = "INCLUDE \"../secret.rules\"\n";
+  EXPECT_THAT(said(up), HasSubstr("from the page, only files"));
+  EXPECT_THAT(said("INCLUDE \"/etc/passwd.rules\"\n"), HasSubstr("from the page, only files"));
+  write("robot/robot.rules", up);  // whoever may write the file may include what he likes
+  EXPECT_THAT(said(up), HasSubstr("hidden"));
+  fs::remove_all(top);
+}
+
+TEST_F(Routes, KeepWhatIsIncludedAndUsedAsItIsWritten) {
+  const std::string text =
+      "INCLUDE \"packs/nav2.rules\"\n\nTEMPLATE t(a)\n  CONST {a} = 1\nEND\nUSE t(b)\n";
+  const Json json = ask("post /api/rules/json", {{"text", text}}).body;
+  EXPECT_EQ(ask("post /api/rules/text", json).body["text"], text);
 }
 
 TEST_F(Routes, DoNotSaveRulesThatArePartOfTheProgram) {
@@ -236,13 +295,59 @@ TEST_F(Routes, SayWhetherAnOrderIsKept) {
   EXPECT_TRUE(orders.empty());
 }
 
+// As HubObserver tells the manager's word.
+Json word(const char* type, std::uint64_t number) {
+  return {
+      {"type", type}, {"number", number}, {"text", "ada: pause"}, {"refused_because", "so it is"}};
+}
+
+TEST_F(Routes, AnswerWithTheManagersWordWhereItIsWaitedFor) {
+  const auto tell = [this](const char* type) {
+    order_desk.open(rules, [this, type](const Order& order) {
+      hub.publish(Kind::kEvent, to_line(word(type, order.number + 1)));  // of another one
+      hub.publish(Kind::kEvent, to_line(word(type, order.number)));
+    });
+  };
+  const Json pause{{"order", "pause"}, {"author", "ada"}, {"wait_s", 20}};
+  tell("order_accepted");
+  const Answer accepted = ask("post /api/orders", pause);
+  EXPECT_EQ(accepted.status, 200);
+  EXPECT_EQ(accepted.body["order"], "ada: pause");
+  EXPECT_EQ(accepted.body["kept"], false);
+  tell("order_refused");
+  const Answer refused = ask("post /api/orders", pause);
+  EXPECT_EQ(refused.status, 409);
+  EXPECT_EQ(refused.body["error"], "so it is");
+}
+
+TEST_F(Routes, SayWhenTheManagerDoesNotTakeAnOrderInTime) {
+  const Json pause{{"order", "pause"}, {"author", "ada"}, {"wait_s", 0.01}};
+  EXPECT_EQ(ask("post /api/orders", pause).status, 202);
+  EXPECT_EQ(orders.size(), 1u) << "it takes it when it comes round";
+}
+
+// Who was stopped and goes on finds orders that their senders have given up.
+TEST_F(Routes, DoNotFollowAnOrderThatCameTooLateUnlessItRestrains) {
+  Json order{{"order", "resume"}, {"author", "ada"}, {"valid_until", 0.001}};
+  EXPECT_EQ(ask("post /api/orders", order).status, 408);
+  EXPECT_TRUE(orders.empty());
+  order["order"] = "pause";
+  EXPECT_EQ(ask("post /api/orders", order).status, 202);
+  EXPECT_EQ(orders.size(), 1u);
+  order["order"] = "resume";
+  order["valid_until"] = 1e12;
+  EXPECT_EQ(ask("post /api/orders", order).status, 202);
+}
+
 TEST_F(Routes, ExportWhatWasLearned) {
   hub.publish(Kind::kRobot, R"({"rules": [{"name": "R", "strategies": [
       {"name": "s", "prior": [9, 1]}, {"name": "t", "prior": [5, 5]}]}]})");
-  hub.publish(Kind::kState, R"({"beliefs": [[10, 1], [5, 5]], "couplings": [[0, 0, 2, 1]]})");
+  hub.publish(Kind::kState, R"({"beliefs": [[3, 7], [5, 5]], "priors": [[2, 7], [5, 5]],
+      "couplings": [[0, 0, 2, 1]]})");
   const Json learned = ask("get /api/beliefs").body;
   EXPECT_EQ(learned["beliefs"].dump(),
-            R"([{"rule":"R","strategy":"s","belief":[10,1],"prior":[9,1]}])");
+            R"([{"rule":"R","strategy":"s","belief":[3,7],"prior":[2,7]}])")
+      << "from what it began, which a fleet may have told";
   EXPECT_EQ(learned["couplings"].dump(), R"([{"cause":"R","effect":"R","cleared":2,"stayed":1}])");
 }
 
@@ -285,6 +390,123 @@ TEST_F(Routes, InjectOnlyFaultsThatExist) {
   EXPECT_EQ(injected, "");
   ask("post /api/faults", {{"name", "kill:camera"}});
   EXPECT_EQ(injected, "kill:camera");
+}
+
+// ---- incidents
+
+Json incident_event(const char* type, double t, Json more = Json::object()) {
+  Json event{{"t", t}, {"clock", 1'800'000'000 + t}, {"type", type}, {"text", type}};
+  event.update(more);
+  return event;
+}
+
+TEST_F(Routes, TellIncidentsOfTheStreamWhereThereIsNoJournal) {
+  hub.publish(Kind::kRobot, R"({"rules": [{"name": "R", "components": ["camera"], "strategies": [
+      {"name": "s", "components": ["camera"]}]}]})");
+  for (const Json& event :
+       {incident_event("failure_detected", 10, {{"rule", "R"}, {"criticality", "ERROR"}}),
+        incident_event("strategy_chosen", 10.1, {{"rule", "R"}, {"strategy", "s"}}),
+        incident_event("failure_resolved", 12, {{"rule", "R"}, {"strategy", "s"}})})
+    hub.publish(Kind::kEvent, to_line(event));
+  const Answer answer = ask("get /api/incidents", {{"since", "0"}});
+  ASSERT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.body["journal"], nullptr);
+  ASSERT_EQ(answer.body["incidents"].size(), 1u);
+  const Json& incident = answer.body["incidents"][0];
+  EXPECT_EQ(incident["causes"].dump(), R"(["camera"])");
+  EXPECT_EQ(incident["helped"].dump(), R"(["s"])");
+  EXPECT_EQ(incident["seconds"], 2);
+  const Json range{
+      {"first", incident["first"].dump()}, {"last", incident["last"].dump()}, {"from", "stream"}};
+  const Json told = ask("get /api/incidents/events", range).body["events"];
+  ASSERT_EQ(told.size(), 3u);
+  EXPECT_EQ(told[2]["t"], 1'800'000'012);
+}
+
+TEST_F(Routes, TellIncidentsOfTheJournalAsTheStreamWould) {
+  {
+    auto writer = journal::Writer::open(journal, {});
+    ASSERT_TRUE(writer) << writer.error();
+    journal::Session session;
+    session.rules_text = kRouteRules;
+    session.planner = Json::object();
+    const Json detected{{"type", "failure_detected"},
+                        {"rule", "CameraSilent"},
+                        {"criticality", "ERROR"},
+                        {"text", "CameraSilent detected"},
+                        {"time", 5'000'000'000}};
+    const Json chosen{{"type", "strategy_chosen"},
+                      {"rule", "CameraSilent"},
+                      {"strategy", "restart"},
+                      {"candidates",
+                       {{{"strategy", "restart"},
+                         {"cost", 0.5},
+                         {"excluded", "tried"},
+                         {"because", "it was tried"}}}},
+                      {"text", "chosen"},
+                      {"time", 5'100'000'000}};
+    journal::Batch batch;
+    for (const auto& [kind, body] : {std::pair{journal::kind::kSession, journal::to_json(session)},
+                                     {journal::kind::kEvent, detected},
+                                     {journal::kind::kEvent, chosen}})
+      batch.entries.push_back(
+          {0, 1'800'000'000'000'000'000, std::string(kind), journal::to_text(body)});
+    ASSERT_TRUE(writer->append(batch, 1'800'000'000'000'000'000, journal::Durability::kProcessEnd));
+  }
+  const Json list = ask("get /api/incidents", {{"since", "1799999999.5"}}).body;
+  EXPECT_EQ(list["journal"], journal);
+  ASSERT_EQ(list["incidents"].size(), 1u) << list;
+  EXPECT_EQ(list["incidents"][0]["over"], false);
+  const Json& incident = list["incidents"][0];
+  const Json range{{"first", incident["first"].dump()}, {"last", incident["last"].dump()}};
+  const Json told = ask("get /api/incidents/events", range).body["events"];
+  ASSERT_EQ(told.size(), 2u) << told;
+  EXPECT_EQ(told[0]["label"], "detected");
+  EXPECT_EQ(told[0]["severity"], "error");
+  EXPECT_EQ(told[1]["clock"], 1'800'000'000.1);
+  EXPECT_EQ(told[1]["components"].dump(), R"(["camera"])");
+  EXPECT_EQ(told[1]["candidates"][0]["excluded"]["text"], "it was tried");
+}
+
+TEST_F(Routes, TakeOnlyNumbersBehindTheQuestionMark) {
+  for (const Json& wrong : {Json(nullptr), Json{{"since", "yesterday"}}, Json{{"since", "1e999"}},
+                            Json{{"since", "-1"}}, Json{{"since", "nan"}}, Json{{"since", "1 "}}})
+    EXPECT_EQ(ask("get /api/incidents", wrong).status, 400) << wrong;
+  EXPECT_EQ(ask("get /api/incidents/events", {{"first", "1"}}).status, 400);
+  EXPECT_EQ(ask("get /api/incidents/events", {{"first", "1"}, {"last", "2"}}).status, 503)
+      << "there is no journal yet";
+}
+
+// ---- one component, and the doctor
+
+TEST_F(Routes, TellWhatAComponentUsesAndLogged) {
+  hub.publish(Kind::kRobot, R"({"components": [{"name": "lidar"}, {"name": "camera"}]})");
+  hub.publish(Kind::kGraph, R"({"nodes": [{"node": "/camera", "component": "camera"}]})");
+  hub.publish(Kind::kState, to_line({{"components", {Json::object(), {{"pid", getpid()}}}}}));
+  const Json camera = ask("get /api/component", {{"name", "camera"}}).body;
+  EXPECT_EQ(camera["process"]["pid"], getpid());
+  EXPECT_GT(camera["process"]["memory"], 1'000'000);
+  EXPECT_EQ(camera["parameters"]["gain"], 0.5);
+  EXPECT_EQ(camera["log"].dump(), R"([{"clock":7.5,"level":"warning","text":"it is dark"}])");
+  EXPECT_THAT(looked_at.nodes, testing::ElementsAre("/camera"));
+  EXPECT_EQ(ask("get /api/component", {{"name", "lidar"}}).body["process"], nullptr);
+  EXPECT_EQ(ask("get /api/component", {{"name", "nobody"}}).status, 404);
+  EXPECT_EQ(ask("get /api/component").status, 400);
+}
+
+TEST_F(Routes, ExamineTheRobotForAsLongAsOneAsks) {
+  EXPECT_EQ(ask("post /api/doctor", {{"seconds", 2}}).status, 200);
+  EXPECT_EQ(examined_for, std::chrono::seconds(2));
+  for (const Json& wrong : {Json{{"seconds", 0}}, Json{{"seconds", 1e9}}, Json{{"seconds", "2"}}})
+    EXPECT_EQ(ask("post /api/doctor", wrong).status, 400) << wrong;
+}
+
+TEST_F(Routes, LookBackOnlyWithRulesThatAreRight) {
+  EXPECT_EQ(ask("post /api/rules/replay", {{"text", "RUEL X\n"}, {"seconds", 60}}).status, 422);
+  const Answer none = ask("post /api/rules/replay", {{"text", kRouteRules}, {"seconds", 60}});
+  EXPECT_EQ(none.status, 404);
+  EXPECT_EQ(none.body["error"], "nothing is recorded here");
+  EXPECT_EQ(ask("post /api/rules/replay", {{"text", kRouteRules}, {"seconds", 1e9}}).status, 400);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "base/text_file.h"
+#include "rule_files/rule_files.h"
 
 namespace culprit::web {
 namespace {
@@ -14,7 +15,48 @@ std::string version_of(const std::string& text) {
   return std::to_string(hash);
 }
 
+namespace fs = std::filesystem;
+
+bool is_below(const fs::path& file, const fs::path& folder) {
+  const fs::path relative = file.lexically_relative(folder);
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+// Whole, with every link followed.
+fs::path real(const fs::path& path) {
+  std::error_code error;
+  const fs::path found = fs::weakly_canonical(fs::absolute(path), error);
+  return error ? fs::absolute(path).lexically_normal() : found;
+}
+
 }  // namespace
+
+RuleLoader RuleDesk::loader() const {
+  if (fixed_) return nullptr;
+  return [this](const std::string& file, const std::string& from) -> Expected<Source> {
+    const fs::path includer =
+        from.empty() || from == kTextOfPage ? fs::path(path_) : fs::path(from);
+    const fs::path beside = real(includer.parent_path() / file);
+    const fs::path installed = real(rule_files::installed() / file);
+    const bool may_be = is_below(beside, real(path_).parent_path()) ||
+                        is_below(beside, real(rule_files::installed())) ||
+                        (fs::path(file).is_relative() &&
+                         is_below(installed, real(rule_files::installed())) && !fs::exists(beside));
+    if (may_be || includes(beside)) return rule_files::load(file, includer.string());
+    return Error{"from the page, only files in the folder of " + path_ +
+                 " and below, and installed ones, can be included for the first time"};
+  };
+}
+
+// Whether the file as it is includes `file`, itself or by another one.
+bool RuleDesk::includes(const std::filesystem::path& file) const {
+  const auto now = rule_files::read(path_);
+  if (!now) return false;
+  for (std::uint32_t f = 1; f < now->source.file_count(); ++f) {
+    if (real(now->source.file(f).name()) == file) return true;
+  }
+  return false;
+}
 
 Expected<RuleDesk::Content> RuleDesk::read() const {
   if (fixed_) return Content{*fixed_, version_of(*fixed_)};

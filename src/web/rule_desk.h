@@ -2,14 +2,19 @@
 // says which version was changed, so that nobody overwrites what another has written.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
 
 #include "base/expected.h"
 #include "base/mutex.h"
+#include "language/reuse/expansion.h"
 
 namespace culprit::web {
+
+// What messages call a text that a page sends.
+inline constexpr const char* kTextOfPage = "rules";
 
 // All members may be called from any thread.
 class RuleDesk {
@@ -29,6 +34,11 @@ class RuleDesk {
   // Errors: the file cannot be read. One that is not there yet is empty.
   Expected<Content> read() const;
 
+  // Where a text that a page sends finds what it includes: beside the file and below, among the rules
+  // that were installed, and what the file itself includes already. No page reads anything else of
+  // this computer. Of rules without a file: nowhere. The desk must outlive it.
+  RuleLoader loader() const;
+
   enum class Problem : std::uint8_t { kChangedMeanwhile, kNotWritten };
   struct Refusal {
     Problem problem;
@@ -39,6 +49,8 @@ class RuleDesk {
   std::variant<std::string, Refusal> save(const std::string& text, const std::string& version);
 
  private:
+  bool includes(const std::filesystem::path& file) const;
+
   const std::string path_;
   const std::optional<std::string> fixed_;
   Mutex saving_;

@@ -4,6 +4,7 @@
 
 #include "language/checker.h"
 #include "lsp/server.h"
+#include "rule_files/rule_files.h"
 #include "rule_json/from_json.h"
 #include "rule_json/to_json.h"
 
@@ -39,18 +40,24 @@ Answer save(RuleDesk& desk, const Json& body) {
   return {200, {{"version", std::get<std::string>(outcome)}}};
 }
 
-// One question of an editor, answered by a language server that knows nothing but this text.
-Answer ask(const Json& body) {
+// One question of an editor, answered by a language server that knows nothing but this text and what
+// it includes.
+Answer ask(const RuleDesk& desk, const Json& body) {
   const auto text = text_of(body, "text");
   if (!text) return refuse(400, "send the rules as 'text'");
   Json reply{{"diagnostics", Json::array()}, {"result", nullptr}};
-  lsp::Server server("web", [&](const nlohmann::json& message) {
-    if (message.contains("id")) {
-      reply["result"] = message.value("result", nlohmann::json());
-    } else {
-      reply["diagnostics"] = message["params"]["diagnostics"];
-    }
-  });
+  lsp::Server server("web",
+                     [&](const nlohmann::json& message) {
+                       if (message.contains("id")) {
+                         reply["result"] = message.value("result", nlohmann::json());
+                       } else if (message["params"]["uri"] == kUri) {
+                         reply["diagnostics"] = message["params"]["diagnostics"];
+                       }
+                     },
+                     {desk.loader(), [&](const std::string&) {
+                        return desk.can_save() ? rule_files::includable(desk.path())
+                                               : std::vector<std::string>{};
+                      }});
   const nlohmann::json document{{"uri", kUri}};
   server.handle({{"method", "textDocument/didOpen"},
                  {"params", {{"textDocument", {{"uri", kUri}, {"text", *text}}}}}});
@@ -69,13 +76,13 @@ Answer ask(const Json& body) {
 Answer as_json(const Json& body) {
   const auto text = text_of(body, "text");
   if (!text) return refuse(400, "send the rules as 'text'");
-  const auto json = rule_json::to_json(Source("rules", *text));
+  const auto json = rule_json::to_json(Source(kTextOfPage, *text));
   if (!json) return refuse(422, json.error());
   return {200, *json};
 }
 
 Answer as_text(const Json& body) {
-  const auto text = rule_json::to_rules("rules", body.dump());
+  const auto text = rule_json::to_rules(kTextOfPage, body.dump());
   if (!text) return refuse(422, text.error());
   return {200, {{"text", *text}}};
 }
@@ -85,7 +92,7 @@ Answer as_text(const Json& body) {
 std::vector<Route> rule_routes(RuleDesk& desk) {
   return {{Method::kGet, "/api/rules", [&desk](const Json&) { return read(desk); }},
           {Method::kPut, "/api/rules", [&desk](const Json& body) { return save(desk, body); }},
-          {Method::kPost, "/api/rules/ask", ask},
+          {Method::kPost, "/api/rules/ask", [&desk](const Json& body) { return ask(desk, body); }},
           {Method::kPost, "/api/rules/json", as_json},
           {Method::kPost, "/api/rules/text", as_text}};
 }

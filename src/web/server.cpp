@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
+#include <cstring>
 #include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <fmt/core.h>
@@ -32,16 +36,6 @@ const httplib::Headers kHeaders = {{"Content-Security-Policy",
                                    {"Cross-Origin-Resource-Policy", "same-origin"},
                                    {"Cache-Control", "no-store"}};
 
-void give(httplib::Response& response, const Answer& answer) {
-  response.status = answer.status;
-  if (answer.text) {
-    if (!answer.text->policy.empty())
-      response.set_header("Content-Security-Policy", answer.text->policy);
-    return response.set_content(answer.text->content, answer.text->type);
-  }
-  response.set_content(to_line(answer.body), kJson);
-}
-
 bool has_body(const httplib::Request& request) {
   return request.has_header("Content-Length") && request.get_header_value("Content-Length") != "0";
 }
@@ -67,9 +61,10 @@ const char* reason_for(int status) {
   return "the request cannot be served";
 }
 
+constexpr int kGzip = 16 + MAX_WBITS;  // the form, for zlib
+
 // For whoever cannot unpack, which is seldom: nothing is kept of it.
 std::string unpacked(std::string_view gzip) {
-  constexpr int kGzip = 16 + MAX_WBITS;
   z_stream stream{};
   if (inflateInit2(&stream, kGzip) != Z_OK) return {};
   stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(gzip.data()));
@@ -85,6 +80,47 @@ std::string unpacked(std::string_view gzip) {
   }
   inflateEnd(&stream);
   return text;
+}
+
+// At zlib's fastest: the robot's processor is not there for more.
+std::string packed(std::string_view text) {
+  z_stream stream{};
+  constexpr int kUsualMemory = 8;
+  if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, kGzip, kUsualMemory, Z_DEFAULT_STRATEGY) !=
+      Z_OK)
+    return {};
+  stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(text.data()));
+  stream.avail_in = static_cast<uInt>(text.size());
+  std::string gzip(deflateBound(&stream, text.size()), '\0');
+  stream.next_out = reinterpret_cast<Bytef*>(gzip.data());
+  stream.avail_out = static_cast<uInt>(gzip.size());
+  const bool is_done = deflate(&stream, Z_FINISH) == Z_STREAM_END;
+  gzip.resize(is_done ? stream.total_out : 0);
+  deflateEnd(&stream);
+  return gzip;
+}
+
+constexpr std::size_t kWorthPacking = 1 << 12;  // bytes: what is less fits into a few packets
+
+void send(const httplib::Request& request, httplib::Response& response, std::string content,
+          const std::string& type) {
+  response.set_header("Vary", "Accept-Encoding");
+  if (content.size() >= kWorthPacking && takes_gzip(request)) {
+    std::string gzip = packed(content);
+    if (!gzip.empty()) {
+      content = std::move(gzip);
+      response.set_header("Content-Encoding", "gzip");
+    }
+  }
+  response.set_content(content, type);
+}
+
+void give(const httplib::Request& request, httplib::Response& response, const Answer& answer) {
+  response.status = answer.status;
+  if (!answer.text) return send(request, response, to_line(answer.body), kJson);
+  if (!answer.text->policy.empty())
+    response.set_header("Content-Security-Policy", answer.text->policy);
+  send(request, response, answer.text->content, answer.text->type);
 }
 
 // A path as the expression that httplib takes.
@@ -105,33 +141,35 @@ class Server::Http {
         limit_(kRequestsPerSecond, kBurst),
         owner_limit_(kRequestsPerSecond, kBurst),
         most_connections_(affordable_connections(kMostConnections)),
-        server_({.body_bytes = kMostBytes}) {
+        server_({.body_bytes = kMostBytes}, is_on_socket() ? Clients::kOwnUser : Clients::kAny) {
     server_.new_task_queue = [this] { return new ConnectionThreads(most_connections_); };
     server_.set_socket_options(take_port_alone);
-    server_.set_tcp_nodelay(true);
+    server_.set_tcp_nodelay(!is_on_socket());
     server_.set_payload_max_length(kMostBytes);
     server_.set_default_headers(kHeaders);
     server_.set_pre_routing_handler([this](const httplib::Request& q, httplib::Response& r) {
       const auto refusal = refusal_of(q);
       if (!refusal) return httplib::Server::HandlerResponse::Unhandled;
-      give(r, *refusal);
+      give(q, r, *refusal);
       return httplib::Server::HandlerResponse::Handled;
     });
     server_.set_error_handler(
-        httplib::Server::HandlerWithResponse([](const httplib::Request&, httplib::Response& r) {
+        httplib::Server::HandlerWithResponse([](const httplib::Request& q, httplib::Response& r) {
           if (!r.body.empty()) return httplib::Server::HandlerResponse::Unhandled;
-          give(r, refuse(r.status, reason_for(r.status)));
+          give(q, r, refuse(r.status, reason_for(r.status)));
           return httplib::Server::HandlerResponse::Handled;
         }));
-    server_.set_exception_handler([](const httplib::Request&, httplib::Response& r,
-                                     std::exception_ptr) { give(r, refuse(500, "that failed")); });
+    server_.set_exception_handler(
+        [](const httplib::Request& q, httplib::Response& r, std::exception_ptr) {
+          give(q, r, refuse(500, "that failed"));
+        });
     add_app();
     for (const Route& route : routes_) add(route);
-    server_.Get("/api/about", [this](const httplib::Request&, httplib::Response& r) {
-      give(r, {200, about()});
+    server_.Get("/api/about", [this](const httplib::Request& q, httplib::Response& r) {
+      give(q, r, {200, about()});
     });
-    server_.Get("/api/openapi\\.json", [](const httplib::Request&, httplib::Response& r) {
-      r.set_content(kOpenApi, kJson);
+    server_.Get("/api/openapi\\.json", [](const httplib::Request& q, httplib::Response& r) {
+      send(q, r, kOpenApi, kJson);
     });
     if (hub_ != nullptr) {
       server_.Get("/api/stream",
@@ -139,7 +177,12 @@ class Server::Http {
     }
   }
 
+  ~Http() {
+    if (is_bound_ && is_on_socket()) unlink(options_.socket.c_str());
+  }
+
   bool bind() {
+    if (is_on_socket()) return bind_to_socket();
     port_ = options_.port;
     if (port_ != 0) return server_.bind_to_port(options_.address, port_);
     port_ = server_.bind_to_any_port(options_.address);
@@ -153,13 +196,32 @@ class Server::Http {
     if (hub_ != nullptr) hub_->close();
     server_.stop();
   }
+  bool is_on_socket() const { return !options_.socket.empty(); }
   bool has_begun() const { return server_.is_running() || is_over_; }
   int port() const { return port_; }
   const Options& options() const { return options_; }
 
  private:
+  // What a process that had this number has left behind is in the way.
+  bool bind_to_socket() {
+    unlink(options_.socket.c_str());
+    server_.set_address_family(AF_UNIX);
+    constexpr int kAnyPort = 80;  // it has none
+    is_bound_ = server_.bind_to_port(options_.socket, kAnyPort);
+    return is_bound_ && chmod(options_.socket.c_str(), S_IRUSR | S_IWUSR) == 0;
+  }
+
   // Why a request is not served; nothing: it is.
   std::optional<Answer> refusal_of(const httplib::Request& q) {
+    if (auto refusal = is_on_socket() ? std::nullopt : refusal_of_sender(q)) return refusal;
+    if (q.has_header("Transfer-Encoding")) return refuse(411, "say the length of the body");
+    if (q.has_header("Content-Encoding")) return refuse(415, "send the body as it is");
+    if (has_body(q) && q.get_header_value("Content-Type").rfind(kJson, 0) != 0)
+      return refuse(415, "send the body as application/json");
+    return std::nullopt;
+  }
+
+  std::optional<Answer> refusal_of_sender(const httplib::Request& q) {
     const std::string host = q.get_header_value("Host");
     if (!options_.access.allows_host(host))
       return refuse(403, "this server is not called '" + host + "'");
@@ -173,10 +235,6 @@ class Server::Http {
     if (needs_token && !has_token)
       return refuse(401,
                     "this needs the token that culprit printed: Authorization: Bearer <token>");
-    if (q.has_header("Transfer-Encoding")) return refuse(411, "say the length of the body");
-    if (q.has_header("Content-Encoding")) return refuse(415, "send the body as it is");
-    if (has_body(q) && q.get_header_value("Content-Type").rfind(kJson, 0) != 0)
-      return refuse(415, "send the body as application/json");
     return std::nullopt;
   }
 
@@ -194,7 +252,9 @@ class Server::Http {
     if (hub_ != nullptr) calls.push_back("get /api/stream");
     for (const Route& route : routes_)
       calls.push_back(std::string(to_string(route.method)) + " " + route.path);
-    return {{"calls", calls}};
+    Json about = options_.about;
+    about["calls"] = std::move(calls);
+    return about;
   }
 
   void add_app() {
@@ -202,15 +262,10 @@ class Server::Http {
       server_.Get(exactly(std::string(asset.path)),
                   [asset](const httplib::Request& q, httplib::Response& r) {
                     r.set_header("Vary", "Accept-Encoding");
-                    if (q.get_header_value("Accept-Encoding").find("gzip") == std::string::npos)
+                    if (!takes_gzip(q))
                       return r.set_content(unpacked(asset.gzip), std::string(asset.type));
                     r.set_header("Content-Encoding", "gzip");
-                    // By a provider, for httplib would compress a content once more.
-                    r.set_content_provider(
-                        asset.gzip.size(), std::string(asset.type),
-                        [asset](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-                          return sink.write(asset.gzip.data() + offset, length);
-                        });
+                    r.set_content(asset.gzip.data(), asset.gzip.size(), std::string(asset.type));
                   });
     }
   }
@@ -219,11 +274,13 @@ class Server::Http {
     const std::string pattern = exactly(route.path);
     const auto serve = [&route](const httplib::Request& q, httplib::Response& r) {
       Json body = nullptr;
-      if (!q.body.empty()) {
+      if (route.method == Method::kGet) {
+        for (const auto& [name, value] : q.params) body[name] = value;
+      } else if (!q.body.empty()) {
         body = Json::parse(q.body, nullptr, false);
-        if (body.is_discarded()) return give(r, refuse(400, "the body is no JSON"));
+        if (body.is_discarded()) return give(q, r, refuse(400, "the body is no JSON"));
       }
-      give(r, route.answer(body));
+      give(q, r, route.answer(body));
     };
     switch (route.method) {
       case Method::kGet:
@@ -247,7 +304,7 @@ class Server::Http {
     if (++streams_ > static_cast<int>(most)) {
       --streams_;
       r.set_header("Retry-After", "5");
-      return give(r, refuse(503, "too many pages are open; close some"));
+      return give(q, r, refuse(503, "too many pages are open; close some"));
     }
     const auto events = std::make_shared<EventStream>(*hub_, q.get_header_value("Last-Event-ID"));
     r.set_chunked_content_provider(
@@ -270,6 +327,7 @@ class Server::Http {
   const std::size_t most_connections_;
   BudgetedServer server_;
   int port_ = 0;
+  bool is_bound_ = false;  // to the socket
 };
 
 Server::Server(std::unique_ptr<Http> http) : http_(std::move(http)) {
@@ -279,7 +337,11 @@ Server::Server(std::unique_ptr<Http> http) : http_(std::move(http)) {
 Expected<std::unique_ptr<Server>> Server::start(Options options, std::vector<Route> routes,
                                                 Hub* hub) {
   auto http = std::make_unique<Http>(std::move(options), std::move(routes), hub);
-  if (!http->bind())
+  const bool is_bound = http->bind();
+  if (!is_bound && http->is_on_socket())
+    return Error{
+        fmt::format("cannot listen at {}: {}", http->options().socket, std::strerror(errno))};
+  if (!is_bound)
     return Error{
         fmt::format("cannot listen at {} port {}; is the port taken? --port chooses another",
                     http->options().address, http->options().port)};

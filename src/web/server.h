@@ -30,10 +30,14 @@ class Server {
     std::string address = "127.0.0.1";
     int port = 0;  // 0: any that is free
     Access access;
+    // Where to listen instead: a unix socket (live/local_socket.h). Only processes of this user and of root
+    // are served there, and need no token.
+    std::string socket{};
+    Json about = Json::object();  // whose server this is, to be told beside what it offers
   };
 
   // Serves from now on. `hub` may be null: nothing is streamed then. Both have to outlive the
-  // server. Errors: the port is taken, or the address is not ours.
+  // server. Errors: the port is taken, or the address is not ours; the socket cannot be made.
   static Expected<std::unique_ptr<Server>> start(Options options, std::vector<Route> routes,
                                                  Hub* hub);
   // Closes the hub, and with it every stream.

@@ -8,13 +8,17 @@
 #include <httplib.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "web/app.h"
+#include "web/local_client.h"
 
 namespace culprit::web {
 namespace {
@@ -93,6 +97,33 @@ TEST_F(WebServer, AnswersCalls) {
   const auto answer = client().Post("/api/echo", with_token, "{\"a\": 1}", "application/json");
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->body, "{\"sent\":{\"a\":1}}");
+}
+
+// httplib itself would take seconds for a large one (budgeted_server.h).
+TEST_F(WebServer, PacksLargeAnswersFast) {
+  const std::string large = "{\"a\": \"" + std::string(100'000, 'x') + "\"}";
+  const auto ask = [&](const std::string& body, const char* takes) {
+    httplib::Headers headers = with_token;
+    headers.emplace("Accept-Encoding", takes);
+    return client().Post("/api/echo", headers, body, "application/json");
+  };
+  const auto packed = ask(large, "gzip, deflate, br");
+  ASSERT_TRUE(packed);
+  EXPECT_EQ(packed->get_header_value("Content-Encoding"), "gzip");
+  EXPECT_LT(std::stoi(packed->get_header_value("Content-Length")), 10'000);
+  EXPECT_EQ(Json::parse(packed->body)["sent"], Json::parse(large));
+  const auto plain = ask(large, "identity");
+  ASSERT_TRUE(plain);
+  EXPECT_FALSE(plain->has_header("Content-Encoding"));
+  EXPECT_EQ(plain->body, packed->body);
+  EXPECT_FALSE(ask("{}", "gzip, deflate, br")->has_header("Content-Encoding"));
+}
+
+TEST_F(WebServer, GivesCallsWhatStandsBehindTheQuestionMark) {
+  const auto answer = client().Get("/api/echo?name=a%20b&since=7");
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->body, R"({"sent":{"name":"a b","since":"7"}})");
+  EXPECT_EQ(client().Get("/api/echo")->body, R"({"sent":null})");
 }
 
 TEST_F(WebServer, ServesTheAppUnderAStrictPolicy) {
@@ -320,6 +351,130 @@ TEST(WebServerStart, SaysWhenThePortIsTaken) {
   const auto second = Server::start(options, {}, nullptr);
   ASSERT_FALSE(second);
   EXPECT_THAT(second.error(), HasSubstr("--port"));
+}
+
+// A server that is asked from this machine only.
+struct LocalServer : testing::Test {
+  LocalServer() {
+    Server::Options options;
+    options.socket = path;
+    options.access.token = kToken;
+    options.about = {{"robot", "rover"}};
+    auto started = Server::start(options, {echo(Method::kGet), echo(Method::kPost)}, &hub);
+    EXPECT_TRUE(started) << started.error();
+    server = std::move(*started);
+  }
+
+  const test::TestFolder folder;
+  const std::string path = folder / "7-1.sock";
+  Hub hub;
+  std::unique_ptr<Server> server;
+  const LocalClient client{path, std::chrono::seconds(20)};
+};
+
+TEST_F(LocalServer, ServesItsOwnUserWithoutAToken) {
+  const auto answer = client.ask(Method::kPost, "/api/echo", {{"a", 1}});
+  ASSERT_TRUE(answer) << answer.error();
+  EXPECT_EQ(answer->body.dump(), R"({"sent":{"a":1}})");
+  const auto about = client.get("/api/about");
+  ASSERT_TRUE(about) << about.error();
+  EXPECT_EQ((*about)["robot"], "rover");
+  EXPECT_FALSE(client.get("/api/nothing"));
+}
+
+TEST_F(LocalServer, OpensItsSocketForItsUserOnlyAndTakesItAway) {
+  struct stat status {};
+  ASSERT_EQ(stat(path.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0600u);
+  server.reset();
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_THAT(client.get("/api/about").error(), HasSubstr("nobody listens"));
+}
+
+TEST_F(LocalServer, TakesThePlaceOfWhatAKilledOneLeft) {
+  server.reset();
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  const int left = socket(AF_UNIX, SOCK_STREAM, 0);
+  ASSERT_EQ(bind(left, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  close(left);
+  Server::Options options;
+  options.socket = path;
+  EXPECT_TRUE(Server::start(options, {}, nullptr));
+}
+
+// The kernel says who asks: also where the file's permissions were opened by mistake.
+TEST_F(LocalServer, ServesNobodyElse) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  chmod(path.c_str(), 0666);
+  const pid_t stranger = fork();
+  if (stranger == 0) {
+    constexpr uid_t kNobody = 65534;
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    const int socket_of_stranger = socket(AF_UNIX, SOCK_STREAM, 0);
+    if (setresuid(kNobody, kNobody, kNobody) != 0 ||
+        connect(socket_of_stranger, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
+      _exit(2);
+    const std::string request = "GET /api/echo HTTP/1.1\r\nHost: localhost\r\n\r\n";
+    send(socket_of_stranger, request.data(), request.size(), MSG_NOSIGNAL);
+    char byte = 0;
+    _exit(recv(socket_of_stranger, &byte, 1, 0) > 0 ? 1 : 0);
+  }
+  int ended = 0;
+  ASSERT_EQ(waitpid(stranger, &ended, 0), stranger);
+  EXPECT_EQ(WEXITSTATUS(ended), 0) << "1: it was answered";
+  EXPECT_TRUE(client.get("/api/about")) << "and its own user still is";
+}
+
+TEST_F(LocalServer, GoesOnAfterHostileBytes) {
+  for (const std::string& bytes :
+       {std::string(100'000, '\0'),
+        std::string("POST /api/echo HTTP/1.1\r\nContent-Length: 9999999999\r\n\r\n"),
+        std::string("\xff\xfe{}[]"), std::string("GET\r\n\r\n"), std::string()}) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    const int hostile = socket(AF_UNIX, SOCK_STREAM, 0);
+    ASSERT_EQ(connect(hostile, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+    send(hostile, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    close(hostile);
+    EXPECT_TRUE(client.get("/api/about"));
+  }
+}
+
+TEST_F(LocalServer, IsFollowedUntilItEnds) {
+  hub.publish(Kind::kState, R"({"t": 1})");
+  std::vector<std::string> kinds;
+  const auto ended = client.follow([&](std::string_view kind, const Json& document) {
+    kinds.emplace_back(kind);
+    if (kind == "state") {
+      EXPECT_EQ(document["t"], 1);
+      hub.close();
+    }
+    return true;
+  });
+  EXPECT_TRUE(ended) << ended.error();
+  EXPECT_THAT(kinds, testing::IsSupersetOf({"hello", "state"}));
+}
+
+// Whoever is stopped takes connections all the same: its kernel does.
+TEST(LocalClients, DoNotWaitForEverForWhoDoesNotAnswer) {
+  const test::TestFolder folder;
+  const std::string path = folder / "s";
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  const int silent = socket(AF_UNIX, SOCK_STREAM, 0);
+  ASSERT_EQ(bind(silent, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(listen(silent, 1), 0);
+  const LocalClient client(path, std::chrono::milliseconds(50));
+  EXPECT_THAT(client.get("/api/about").error(), HasSubstr("no answer came within 50ms"));
+  EXPECT_FALSE(client.follow([](std::string_view, const Json&) { return true; }));
+  close(silent);
 }
 
 }  // namespace

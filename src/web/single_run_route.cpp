@@ -1,21 +1,16 @@
 #include "web/single_run_route.h"
 
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
-#include <stdlib.h>
-#include <sys/wait.h>
 
 #include "base/environment.h"
 #include "base/mutex.h"
 #include "base/text_file.h"
-#include "owners/spawn.h"
+#include "web/aside.h"
 
 namespace culprit::web {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::optional<std::uint32_t> natural(const Json& body, const char* member) {
   constexpr auto kMost = std::numeric_limits<std::uint32_t>::max();
@@ -24,45 +19,21 @@ std::optional<std::uint32_t> natural(const Json& body, const char* member) {
   return found->get<std::uint32_t>();
 }
 
-// Gone with all that is in it.
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "culprit-run-XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~Folder() {
-    std::error_code error;
-    if (!path_.empty()) fs::remove_all(path_, error);
-  }
-  Folder(const Folder&) = delete;
-
-  std::string file(const char* name) const { return (path_ / name).string(); }
-
- private:
-  fs::path path_;
-};
+constexpr int kMostSecondsOfRun = 600;
 
 Answer play(const Json& request) {
   const auto laboratory = find_laboratory();
   if (!laboratory) return refuse(503, laboratory.error());
-  const Folder folder;
+  const AsideFolder folder;
   const std::string wish = folder.file("request.json");
-  const std::string out = folder.file("answer");
   if (const auto written = write_text(wish, request.dump()); !written)
     return refuse(503, written.error());
-  owners::Program player{{"nice", "-n", "19", laboratory->string(), "play-again", wish}, {}, out};
-  player.lifetime = owners::Lifetime::kStarter;
-  const auto pid = owners::spawn(player);
-  if (!pid) return refuse(503, pid.error());
-  int status = 0;
-  waitpid(*pid, &status, 0);
-  const auto text = read_text(out);
-  if (!text) return refuse(503, text.error());
-  if (!WIFEXITED(status)) return refuse(503, "culprit-lab was killed while it played the run");
-  if (WEXITSTATUS(status) != 0) return refuse(422, *text);
-  Json body = Json::parse(*text, nullptr, false);
-  if (!body.is_object()) return refuse(503, "culprit-lab gave no run: " + *text);
+  const auto played =
+      run_aside({laboratory->string(), "play-again", wish}, folder, kMostSecondsOfRun);
+  if (!played) return refuse(503, "the run could not be played: " + played.error());
+  if (played->status != 0) return refuse(422, played->text);
+  Json body = Json::parse(played->text, nullptr, false);
+  if (!body.is_object()) return refuse(503, "culprit-lab gave no run: " + played->text);
   return {200, std::move(body)};
 }
 

@@ -3,25 +3,23 @@
 #include "language/checker.h"
 #include "rule_test/plan_report.h"
 #include "rule_test/state.h"
+#include "web/rule_desk.h"
 
 namespace culprit::web {
 namespace {
 
-std::string rendered(const std::vector<Diagnostic>& diagnostics, const Source& source) {
-  std::string text;
-  for (const Diagnostic& d : diagnostics) {
-    if (d.severity == Severity::kError) text += render(d, source);
-  }
-  return text;
+std::string rendered(std::vector<Diagnostic> diagnostics, const Source& source) {
+  std::erase_if(diagnostics, [](const Diagnostic& d) { return d.severity != Severity::kError; });
+  return render(diagnostics, source);
 }
 
-Answer what_if(const Json& body, const PlannerFactory& planner) {
+Answer what_if(const Json& body, const PlannerFactory& planner, const RuleLoader& load) {
   const auto rule_text = text_of(body, "rules");
   const auto state_text = text_of(body, "state");
   if (!rule_text || !state_text) return refuse(400, "send the texts 'rules' and 'state'");
-  const Source rule_source("rules", *rule_text);
-  const Checked checked = check(rule_source);
-  if (!checked.rules) return refuse(422, rendered(checked.diagnostics, rule_source));
+  const Expansion rules = expand(Source(kTextOfPage, *rule_text), load);
+  const Checked checked = check(rules);
+  if (!checked.rules) return refuse(422, rendered(checked.diagnostics, rules.source));
   const Source state_source("state", *state_text);
   std::vector<Diagnostic> diagnostics;
   const rule_test::State state = rule_test::read_state(state_source, *checked.rules, diagnostics);
@@ -32,9 +30,11 @@ Answer what_if(const Json& body, const PlannerFactory& planner) {
 
 }  // namespace
 
-Route what_if_route(PlannerFactory planner) {
+Route what_if_route(PlannerFactory planner, RuleLoader load) {
   return {Method::kPost, "/api/what-if",
-          [planner = std::move(planner)](const Json& body) { return what_if(body, planner); }};
+          [planner = std::move(planner), load = std::move(load)](const Json& body) {
+            return what_if(body, planner, load);
+          }};
 }
 
 }  // namespace culprit::web

@@ -45,7 +45,12 @@ export async function call<T>(method: string, path: string, body?: unknown): Pro
     init.headers = headers({ 'Content-Type': 'application/json' })
     init.body = JSON.stringify(body)
   }
-  return (await ask(path, init)).json()
+  const response = await ask(path, init)
+  try {
+    return await response.json()
+  } catch {
+    throw new Refusal(0, 'culprit has ended while it answered; is it still running?')
+  }
 }
 
 export async function textOf(path: string): Promise<string> {

@@ -4,6 +4,7 @@ import { render } from 'preact'
 import { hasToken } from './api'
 import { IncidentsPage, showIncident } from './incidents_page'
 import { BeliefsPage } from './beliefs_page'
+import { DoctorPage } from './doctor_page'
 import { Notices } from './notices'
 import { RobotPage } from './robot_page'
 import { RulesPage } from './rules_page'
@@ -16,7 +17,8 @@ import { WallPage } from './wall_page'
 
 const kPages = [
   { name: 'robot', title: 'Robot', needs: 'get /api/stream', Page: RobotPage },
-  { name: 'incidents', title: 'Incidents', needs: 'get /api/stream', Page: IncidentsPage },
+  { name: 'incidents', title: 'Incidents', needs: 'get /api/incidents', Page: IncidentsPage },
+  { name: 'doctor', title: 'Doctor', needs: 'post /api/doctor', Page: DoctorPage },
   { name: 'rules', title: 'Rules', needs: 'get /api/rules', Page: RulesPage },
   { name: 'beliefs', title: 'Beliefs', needs: 'get /api/stream', Page: BeliefsPage },
   { name: 'simulator', title: 'Simulator', needs: 'post /api/what-if', Page: SimulatorPage },

@@ -15,6 +15,7 @@ interface Entry {
   rule: string
   strategy: Strategy
   belief: [number, number]
+  began: [number, number] // before anything was counted: as the rules say, or a fleet learned
 }
 
 // Beliefs come by strategy in the order of the rule set, which is that of the rules.
@@ -23,7 +24,12 @@ function entries(): Entry[] {
   let place = 0
   for (const rule of robot.value?.rules ?? []) {
     for (const strategy of rule.strategies) {
-      list.push({ rule: rule.name, strategy, belief: state.value?.beliefs[place] ?? strategy.prior })
+      list.push({
+        rule: rule.name,
+        strategy,
+        belief: state.value?.beliefs[place] ?? strategy.prior,
+        began: state.value?.priors[place] ?? strategy.prior,
+      })
       ++place
     }
   }
@@ -181,7 +187,7 @@ export function BeliefsPage() {
               const { prior } = entry.strategy
               const [a, b] = entry.belief
               const [low, high] = beta(a, b).interval
-              const seen = Math.max(0, a + b - prior[0] - prior[1])
+              const seen = Math.max(0, a + b - entry.began[0] - entry.began[1])
               const percent = (p: number) => `${(100 * p).toFixed(0)} %`
               return (
                 <tr class={i === chosen ? 'chosen' : ''}>

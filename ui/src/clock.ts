@@ -20,8 +20,9 @@ const isToday = (clock: number) => new Date(clock * 1000).toDateString() === new
 // With the day where it is another one than today.
 export const when = (clock: number) => (isToday(clock) ? '' : `${byTheCalendar(clock)} `) + byTheClock(clock)
 
-// "0.4 s", "12 s", "3 min 5 s", "2 h 10 min": two figures are enough to act on.
+// "40 ms", "0.4 s", "12 s", "3 min 5 s", "2 h 10 min": two figures are enough to act on.
 export function lasting(seconds: number): string {
+  if (seconds > 0 && seconds < 0.0995) return `${Math.max(1, Math.round(1000 * seconds))} ms`
   if (seconds < 9.95) return `${Math.max(0, seconds).toFixed(1)} s`
   const whole = Math.round(seconds)
   if (whole < 60) return `${whole} s`

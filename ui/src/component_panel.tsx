@@ -1,5 +1,7 @@
 // All that is known of one component: its node and process, its topics, what was done to it and what could be.
+import { useEffect } from 'preact/hooks'
 import { byTheClock, lasting } from './clock'
+import { details, lookAt, trouble } from './component_details'
 import { listed } from './incidents'
 import { clockAt, events, graph, robot, rulesByComponent, state, stateOfComponent, stateOfTopic } from './store'
 import { trendOf } from './trends'
@@ -52,7 +54,7 @@ function Topics({ title, links }: { title: string; links: Link[] }) {
             </th>
             <td class="number">{rateOf(topic)}</td>
             <td>
-              <Sparkline values={trendOf(topic)} />
+              <Sparkline values={trendOf('rate', topic).values} />
             </td>
           </tr>
         ))}
@@ -61,30 +63,118 @@ function Topics({ title, links }: { title: string; links: Link[] }) {
   )
 }
 
+const kMegabyte = 1_000_000
+const megabytes = (bytes: number) => `${(bytes / kMegabyte).toFixed(bytes < 10 * kMegabyte ? 1 : 0)} MB`
+
+// What its process uses, now and since one began to look.
+function Usage() {
+  const { process, usage } = details.value!
+  if (!process) return null
+  const last = usage[usage.length - 1]
+  const rows: [string, string, number[]][] = [
+    ['processor', last ? `${(100 * last.processor).toFixed(1)} % of a core` : 'measured …', usage.map((u) => u.processor)],
+    ['memory', megabytes(process.memory), usage.map((u) => u.memory)],
+  ]
+  return (
+    <table>
+      <caption>process {process.pid}, {process.threads} threads</caption>
+      <tbody>
+        {rows.map(([what, now, values]) => (
+          <tr>
+            <th scope="row">{what}</th>
+            <td class="number">{now}</td>
+            <td>
+              <Sparkline values={values} />
+            </td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  )
+}
+
+function Parameters() {
+  const all = Object.entries(details.value!.parameters ?? {})
+  if (all.length === 0) return null
+  return (
+    <details>
+      <summary>Parameters ({all.length})</summary>
+      <table>
+        <tbody>
+          {all.map(([name, value]) => (
+            <tr>
+              <th scope="row">{name}</th>
+              <td>{value === null ? 'a list, or not set' : String(value)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </details>
+  )
+}
+
+const kTones: Record<string, string> = { fatal: 'ERROR', error: 'ERROR', warning: 'WARNING' }
+
+function Log() {
+  const { log } = details.value!
+  return (
+    <>
+      <h3>What it logged last</h3>
+      {log.length === 0 && <p class="muted">Nothing since somebody began to look at components.</p>}
+      <ol class="lines" tabIndex={0} aria-label="Log lines">
+        {[...log].reverse().map((line) => (
+          <li>
+            <time>{byTheClock(line.clock, 1)}</time> <b class={kTones[line.level]}>{line.level}</b> {line.text}
+          </li>
+        ))}
+      </ol>
+    </>
+  )
+}
+
 const kMostDone = 8
 
 export function ComponentPanel({ name }: { name: string }) {
+  useEffect(() => lookAt(name), [name])
+  const facts = robot.value?.components.find((c) => c.name === name)
   const node = graph.value.nodes.find((n) => n.component === name)?.node
   const now = stateOfComponent(name)
   const rules = rulesByComponent.value.get(name) ?? []
-  const strategies = rules.flatMap((r) => r.strategies.filter((s) => s.components.includes(name)).map((s) => `${r.name}.${s.name}`))
+  const strategies = rules.flatMap((r) => r.strategies.filter((s) => s.components.includes(name)).map((s) => ({ name: `${r.name}.${s.name}`, actions: s.actions })))
   const done = events.value.filter((e) => e.component === name || e.components?.includes(name)).slice(-kMostDone).reverse()
-  const facts: [string, string | undefined][] = [
+  const known: [string, string | undefined][] = [
     ['node', node ?? 'not seen'],
     ['process', state.value ? (now?.process ?? 'not seen yet') : 'unknown'],
+    ['started by', facts?.owner ?? (facts && 'somebody whom the rules do not name')],
+    ['computer', facts?.host],
     ['lifecycle', now?.lifecycle],
     ['being adapted by', now?.adapting],
     ['remark', now?.remark],
     ['rules about it', listed(rules.map((r) => r.name)) || 'none'],
-    ['what could be done', listed(strategies) || 'nothing'],
+    ['what could be done', strategies.length === 0 ? 'nothing' : undefined],
   ]
   return (
     <section class="details" aria-label={`About ${name}`}>
       <dl>
-        {facts.map(([what, value]) => value && [<dt>{what}</dt>, <dd>{value}</dd>])}
+        {known.map(([what, value]) => value && [<dt>{what}</dt>, <dd>{value}</dd>])}
       </dl>
+      {strategies.length > 0 && (
+        <table>
+          <caption>what could be done</caption>
+          <tbody>
+            {strategies.map((strategy) => (
+              <tr>
+                <th scope="row">{strategy.name}</th>
+                <td>{strategy.actions.join(', ')}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      )}
+      {details.value && <Usage />}
       <Topics title="it publishes" links={node ? linksOf(node, true) : []} />
       <Topics title="it hears" links={node ? linksOf(node, false) : []} />
+      {details.value && <Parameters />}
       {done.length > 0 && (
         <>
           <h3>What was about it</h3>
@@ -97,6 +187,8 @@ export function ComponentPanel({ name }: { name: string }) {
           </ol>
         </>
       )}
+      {details.value && <Log />}
+      {trouble.value && <p class="muted">More is not known: {trouble.value}</p>}
     </section>
   )
 }

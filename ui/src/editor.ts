@@ -6,7 +6,7 @@ import { type Diagnostic, lintGutter, linter } from '@codemirror/lint'
 import { EditorState, type Text } from '@codemirror/state'
 import { EditorView, drawSelection, highlightActiveLine, hoverTooltip, keymap, lineNumbers } from '@codemirror/view'
 import { tags } from '@lezer/highlight'
-import { call } from './api'
+import { call, Refusal } from './api'
 
 interface Position {
   line: number
@@ -24,7 +24,7 @@ interface Reply<T> {
 }
 
 const kKeywords =
-  /^(ROBOT|CYCLE|CONST|COMPONENT|NODE|LAUNCH|ENV|SETUP|CWD|UNIT|USER|CONTAINER|HOST|IN|PLUGIN|PACKAGE|PARAMETERS|REMAP|RESPAWNED|REQUIRED|LIFECYCLE|DEPENDENCY|ON|IGNORE|INTERLOCK|LASTRESORT|TOPIC|SIGNAL|DIAGNOSTIC|KEY|FIELD|PARAMETER|STALE|RANGE|RULE|POLICIES|FOR|HOLD|COOLDOWN|ATTEMPTS|ON_CHANGE|TRIGGER|STRATEGY|WHEN|ADAPTATION|ERROR|WARNING|NON_CRITICAL|OK|DEGRADED|FAILURE)\b/
+  /^(ROBOT|CYCLE|CONST|COMPONENT|NODE|LAUNCH|ENV|SETUP|CWD|UNIT|USER|CONTAINER|HOST|IN|PLUGIN|PACKAGE|PARAMETERS|REMAP|RESPAWNED|REQUIRED|LIFECYCLE|DEPENDENCY|ON|IGNORE|INTERLOCK|LASTRESORT|TOPIC|SIGNAL|DIAGNOSTIC|KEY|FIELD|PARAMETER|STALE|RANGE|RULE|POLICIES|FOR|HOLD|COOLDOWN|ATTEMPTS|ON_CHANGE|REPORT|TRIGGER|STRATEGY|WHEN|ADAPTATION|INCLUDE|TEMPLATE|END|USE|ERROR|WARNING|NON_CRITICAL|OK|DEGRADED|FAILURE)\b/
 
 const language = StreamLanguage.define<null>({
   startState: () => null,
@@ -147,7 +147,12 @@ export function makeEditor(
   const check = linter(
     async (view): Promise<Diagnostic[]> => {
       const { doc } = view.state
-      const reply = await call<Reply<null>>('POST', '/api/rules/ask', { text: doc.toString() })
+      // The page says that culprit is gone; when it is back, the next change is checked.
+      const reply = await call<Reply<null>>('POST', '/api/rules/ask', { text: doc.toString() }).catch((error: unknown) => {
+        if (error instanceof Refusal && error.status === 0) return null
+        throw error
+      })
+      if (!reply) return []
       const list = reply.diagnostics.map((d): Diagnostic => {
         const from = offset(doc, d.range.start)
         return {
@@ -190,7 +195,7 @@ export function makeEditor(
         autocompletion({ override: [complete] }),
         hover,
         keymap.of([...defaultKeymap, ...historyKeymap]), // the Tab key leaves, as everywhere
-        EditorView.contentAttributes.of({ 'aria-label': 'Rule file' }),
+        EditorView.contentAttributes.of({ 'aria-label': 'Rule file', tabindex: '0' }),
         EditorView.updateListener.of((update) => {
           if (update.docChanged) onText(update.state.doc.toString())
         }),

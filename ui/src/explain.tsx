@@ -3,8 +3,10 @@
 import { ComponentPanel } from './component_panel'
 import { byTheClock, lasting, lastingSoFar, when } from './clock'
 import { nowByTheClock } from './freshness'
+import { search } from './graph_model'
 import type { Failure, View } from './history'
 import { headlineOf, healthOf, type Incident, incidentsOf, type Known, listed } from './incidents'
+import { usePaced } from './paced'
 import { doingOf, kSigns, type Tone } from './status'
 import { clockAt, culprits, incidents, isLive, known, live, now, robot, rulesByComponent, selected, situation, state } from './store'
 import type { Candidate, Criticality, ManagerEvent } from './types'
@@ -184,30 +186,49 @@ function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
   )
 }
 
+const kMostComponents = 60 // what one can look through; more are found by their names
+
+function ComponentButton({ name, sign }: { name: string; sign: string }) {
+  return (
+    <button type="button" aria-pressed={selected.value === name} onClick={() => (selected.value = selected.value === name ? null : name)}>
+      <span aria-hidden="true">{sign}</span> {name}
+    </button>
+  )
+}
+
+const kPeriod = 150 // ms
+
 // The same as the graph in words, for whoever cannot see or point at it.
 export function Components() {
-  const sick = new Set(situation.value.failures.map((f) => f.rule))
+  const signs = usePaced(() => {
+    const sick = new Set(situation.value.failures.map((f) => f.rule))
+    const blamed = culprits.value
+    const ofRules = rulesByComponent.value
+    const signOf = (name: string) => (blamed.has(name) ? '★' : ofRules.get(name)?.some((r) => sick.has(r.name)) ? '◆' : '✓')
+    return (robot.value?.components ?? []).map(({ name }) => ({ name, sign: signOf(name) }))
+  }, kPeriod)
+  const wanted = search.value.toLowerCase()
+  const found = signs.value.filter(({ name }) => name.toLowerCase().includes(wanted))
+  const rest = found.slice(kMostComponents)
+  const ill = rest.filter(({ sign }) => sign !== '✓').slice(0, kMostComponents)
   return (
     <section class="components" aria-label="Components">
       <h2>Components</h2>
       <ul>
-        {(robot.value?.components ?? []).map((c) => {
-          const rules = rulesByComponent.value.get(c.name) ?? []
-          const failing = rules.filter((r) => sick.has(r.name))
-          const sign = culprits.value.has(c.name) ? '★' : failing.length > 0 ? '◆' : '✓'
-          return (
-            <li>
-              <button
-                type="button"
-                aria-pressed={selected.value === c.name}
-                onClick={() => (selected.value = selected.value === c.name ? null : c.name)}
-              >
-                <span aria-hidden="true">{sign}</span> {c.name}
-              </button>
-            </li>
-          )
-        })}
+        {found.slice(0, kMostComponents).map((each) => (
+          <li key={each.name}>
+            <ComponentButton {...each} />
+          </li>
+        ))}
       </ul>
+      {rest.length > 0 && (
+        <p class="muted others">
+          and {rest.length} more, to be found by their names above the graph.{' '}
+          {ill.map((each) => (
+            <ComponentButton key={each.name} {...each} />
+          ))}
+        </p>
+      )}
       {selected.value && <ComponentPanel key={selected.value} name={selected.value} />}
     </section>
   )

@@ -8,13 +8,11 @@ import type { Candidate, ManagerEvent } from './types'
 export interface Report {
   incident: PastIncident
   robot: string
+  events: ManagerEvent[]
   cause: string
-  consequences: string[]
   outcome: string
   seconds: number
-  end: number
-  clockOf: (t: number) => number
-  at: number // when it is written
+  at: number // when it is written, by the clock on the wall, as all times here
 }
 
 // Names come from the robot: what they say is only text.
@@ -30,12 +28,13 @@ const kWide = 900
 const kNames = 170
 const kRow = 24
 
-function timeline({ incident, end, clockOf }: Report): string {
-  const margin = Math.max(0.1, 0.05 * (end - incident.from))
-  const [begin, last] = [incident.from - margin, end + margin]
+function timeline({ incident, events, seconds }: Report): string {
+  const end = incident.clock + seconds
+  const margin = Math.max(0.1, 0.05 * seconds)
+  const [begin, last] = [incident.clock - margin, end + margin]
   const x = (t: number) => kNames + ((t - begin) / (last - begin)) * (kWide - kNames)
   const rows = incident.rules.map((rule, row) => {
-    const own = incident.events.filter((e) => e.rule === rule)
+    const own = events.filter((e) => e.rule === rule)
     const bars: string[] = []
     let from: ManagerEvent | null = null
     const bar = (to: number) => {
@@ -55,7 +54,7 @@ function timeline({ incident, end, clockOf }: Report): string {
     return `<text x="0" y="${row * kRow + 17}">${safe(rule)}</text>${bars.join('')}${marks.join('')}`
   })
   const height = incident.rules.length * kRow
-  const axis = ticks(begin, last, 6, clockOf).map(({ at, label }) => {
+  const axis = ticks(begin, last, 6, (t) => t).map(({ at, label }) => {
     const line = `<line x1="${x(at)}" x2="${x(at)}" y1="0" y2="${height}"/>`
     return `${line}<text x="${x(at)}" y="${height + 16}" text-anchor="middle">${safe(label)}</text>`
   })
@@ -65,8 +64,8 @@ function timeline({ incident, end, clockOf }: Report): string {
 const row = (cells: string[]) => `<tr>${cells.map((c) => `<td>${c}</td>`).join('')}</tr>`
 const table = (head: string[], rows: string[]) => `<table><thead><tr>${head.map((h) => `<th>${h}</th>`).join('')}</tr></thead><tbody>${rows.join('')}</tbody></table>`
 
-function decision(event: ManagerEvent, clockOf: Report['clockOf']): string {
-  const time = byTheClock(event.clock ?? clockOf(event.t), 2)
+function decision(event: ManagerEvent): string {
+  const time = byTheClock(event.t, 2)
   const isChosen = (name: string) => event.type === 'strategy_chosen' && event.strategy === name
   const why = (c: Candidate) => (isChosen(c.strategy) ? '<b>chosen</b>' : safe(c.excluded?.text ?? ''))
   const candidates = (event.candidates ?? []).map((c) => row([safe(c.strategy), costOf(c), why(c)]))
@@ -75,17 +74,17 @@ function decision(event: ManagerEvent, clockOf: Report['clockOf']): string {
 }
 
 export function incidentAsHtml(report: Report): string {
-  const { incident, robot, cause, consequences, outcome, seconds, clockOf, at } = report
+  const { incident, events, robot, cause, outcome, seconds, at } = report
   const title = `${cause}, ${byTheCalendar(incident.clock)} ${byTheClock(incident.clock)}`
   const facts = [
     row(['robot', safe(robot)]),
     row(['cause', `<b>${safe(cause)}</b>`]),
-    row(['what suffered', safe(consequences.join(', ') || 'nothing else')]),
-    row(['lasted', `${lasting(seconds)}${incident.to === null ? ' so far' : ''}`]),
+    row(['what suffered', safe(incident.consequences.join(', ') || 'nothing else')]),
+    row(['lasted', `${lasting(seconds)}${incident.over ? '' : ' so far'}`]),
     row(['what helped', safe(outcome)]),
   ]
-  const decisions = incident.events.filter((e) => (e.candidates?.length ?? 0) > 0).map((e) => decision(e, clockOf))
-  const log = incident.events.map((e) => row([byTheClock(e.clock ?? clockOf(e.t), 3), safe(e.label), safe(e.text)]))
+  const decisions = events.filter((e) => (e.candidates?.length ?? 0) > 0).map(decision)
+  const log = events.map((e) => row([byTheClock(e.t, 3), safe(e.label), safe(e.text)]))
   return `<!doctype html><html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>${safe(title)}</title><style>${kStyle}</style></head><body>
 <h1>${safe(title)}</h1><table><tbody>${facts.join('')}</tbody></table>
 <h2>When</h2>${timeline(report)}

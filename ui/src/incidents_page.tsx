@@ -1,6 +1,7 @@
-// What went wrong so far: a list, and each with its timeline, its decisions and what was not chosen; to look at, to link
-// to, and to send to somebody.
+// What went wrong so far: a list and a timeline of days, and each with its own timeline, its decisions and what was not
+// chosen; to look at, to link to, and to send to somebody.
 import { computed, signal } from '@preact/signals'
+import { useEffect, useRef } from 'preact/hooks'
 import { byTheClock, lasting, when } from './clock'
 import { download } from './download'
 import { Candidates, Suspects } from './explain'
@@ -8,81 +9,95 @@ import { nowByTheClock } from './freshness'
 import { viewOf } from './history'
 import { listed } from './incidents'
 import { incidentAsHtml } from './incident_export'
-import { type PastIncident, pastIncidents } from './past_incidents'
+import { answer, chosen, chosenId, followIncidents, incidents, kPeriods, type PastIncident, period, told, trouble } from './past_incidents'
 import { kSigns, type Tone } from './status'
-import { clockAt, events, now, robot } from './store'
+import { robot } from './store'
 import { EventLog, Timeline } from './timeline'
+import type { ManagerEvent } from './types'
 
-const all = computed(() => pastIncidents(events.value))
-const chosenId = signal('')
 export const showIncident = (id: string) => void (chosenId.value = id)
-const chosen = computed(() => all.value.find((i) => i.id === chosenId.value) ?? all.value[0])
 
+const itself = (clock: number) => clock // times of incidents are those of the clock on the wall
+const lastingOf = (incident: PastIncident) => (incident.over ? incident.seconds : Math.max(incident.seconds, nowByTheClock() - incident.clock))
 const kMargin = 0.1 // of its duration, before and behind it
-const endOf = (incident: PastIncident) => incident.to ?? now.value
-const marginOf = (incident: PastIncident) => Math.max(0.2, kMargin * (endOf(incident) - incident.from))
+const marginOf = (incident: PastIncident) => Math.max(0.2, kMargin * lastingOf(incident))
 
 const view = viewOf(
-  computed(() => chosen.value?.events ?? []),
-  computed(() => (chosen.value ? endOf(chosen.value) + (chosen.value.to === null ? 0 : marginOf(chosen.value)) : 0)),
-  {
-    isOver: true,
-    clockOf: clockAt,
-    oldest: () => (chosen.value ? Math.max(0, chosen.value.from - marginOf(chosen.value)) : 0),
-  }
+  computed(() => (chosen.value ? told.value.events : [])),
+  computed(() => (chosen.value ? chosen.value.clock + lastingOf(chosen.value) + (chosen.value.over ? marginOf(chosen.value) : 0) : 1)),
+  { isOver: true, clockOf: itself, oldest: () => (chosen.value ? chosen.value.clock - marginOf(chosen.value) : 0) }
 )
 
 export const causeOf = (incident: PastIncident) => listed(incident.causes) || incident.rules[0]
-// Failures at components that were not blamed themselves.
-export function consequencesOf(incident: PastIncident): string[] {
-  const componentsOf = (rule: string) => robot.value?.rules.find((r) => r.name === rule)?.components ?? []
-  return incident.rules.slice(1).filter((rule) => !componentsOf(rule).some((c) => incident.causes.includes(c)))
-}
 export function outcomeOf(incident: PastIncident): string {
-  if (incident.isGivenUp) return 'given up: a person must look'
-  if (incident.to === null) return 'not over'
+  if (incident.given_up) return 'given up: a person must look'
+  if (!incident.over) return 'not over'
+  if (incident.cut) return 'nobody saw: culprit ended before'
   return listed(incident.helped) || 'went away by itself'
 }
-const lastingOf = (incident: PastIncident) => endOf(incident) - incident.from
 
+// All of them as the failures of one timeline, by cause.
+const asEvents = computed((): ManagerEvent[] =>
+  (answer.value?.incidents ?? []).flatMap((incident): ManagerEvent[] => {
+    const both = { number: 0, label: '', tone: '', severity: 'info' as const, rule: causeOf(incident), text: '' }
+    const text = `${when(incident.clock)}, ${lasting(incident.seconds)}: ${outcomeOf(incident)}`
+    const from: ManagerEvent = { ...both, t: incident.clock, type: 'failure_detected', criticality: incident.worst, link: `#incidents/${incident.id}` }
+    return incident.over ? [from, { ...both, t: incident.clock + incident.seconds, type: 'failure_resolved', text }] : [from]
+  })
+)
+// A timeline of a day need not be drawn anew each second.
+const kCoarse = 10 // s
+const coarsely = computed(() => Math.ceil(nowByTheClock() / kCoarse) * kCoarse)
+const overview = viewOf(asEvents, coarsely, { isOver: false, clockOf: itself, oldest: () => coarsely.value - period.value })
+overview.windowLength.value = Infinity
+
+const kMostShown = 100 // of a list that one can read, unless one asks for all
+const showsAll = signal(false)
+
+// In a box of its own: the one that is looked at stands below, and is not to be looked for behind a hundred others.
 function List() {
+  const box = useRef<HTMLDivElement>(null)
+  const id = chosen.value?.id
+  useEffect(() => box.current!.querySelector('.chosen')?.scrollIntoView({ block: 'nearest' }), [id])
   return (
-    <table class="incident-list">
-      <thead>
-        <tr>
-          <th scope="col">when</th>
-          <th scope="col">cause</th>
-          <th scope="col">what suffered</th>
-          <th scope="col">for</th>
-          <th scope="col">what helped</th>
-        </tr>
-      </thead>
-      <tbody>
-        {all.value.map((incident) => (
-          <tr class={incident === chosen.value ? 'chosen' : ''}>
-            <th scope="row">
-              <a href={`#incidents/${incident.id}`} aria-current={incident === chosen.value ? 'true' : undefined}>
-                {when(incident.clock)}
-              </a>
-            </th>
-            <td>
-              <span class={incident.worst} aria-hidden="true">
-                {kSigns[incident.worst as Tone]}
-              </span>{' '}
-              <b>{causeOf(incident)}</b>
-            </td>
-            <td>{consequencesOf(incident).join(', ') || 'nothing else'}</td>
-            <td class="number">{lasting(lastingOf(incident))}</td>
-            <td>{outcomeOf(incident)}</td>
+    <div class="incident-box" ref={box}>
+      <table class="incident-list">
+        <thead>
+          <tr>
+            <th scope="col">when</th>
+            <th scope="col">cause</th>
+            <th scope="col">what suffered</th>
+            <th scope="col" class="number">for</th>
+            <th scope="col">what helped</th>
           </tr>
-        ))}
-      </tbody>
-    </table>
+        </thead>
+        <tbody>
+          {incidents.value.slice(0, showsAll.value ? undefined : kMostShown).map((incident) => (
+            <tr class={incident === chosen.value ? 'chosen' : ''}>
+              <th scope="row">
+                <a href={`#incidents/${incident.id}`} aria-current={incident === chosen.value ? 'true' : undefined}>
+                  {when(incident.clock)}
+                </a>
+              </th>
+              <td>
+                <span class={incident.worst} aria-hidden="true">
+                  {kSigns[incident.worst as Tone]}
+                </span>{' '}
+                <b>{causeOf(incident)}</b>
+              </td>
+              <td>{incident.consequences.join(', ') || 'nothing else'}</td>
+              <td class="number">{lasting(lastingOf(incident))}</td>
+              <td>{outcomeOf(incident)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
   )
 }
 
-function Decisions({ incident }: { incident: PastIncident }) {
-  const decisions = incident.events.filter((e) => (e.candidates?.length ?? 0) > 0)
+function Decisions() {
+  const decisions = told.value.events.filter((e) => (e.candidates?.length ?? 0) > 0)
   return (
     <section aria-label="Decisions">
       <h2>What was decided</h2>
@@ -90,7 +105,7 @@ function Decisions({ incident }: { incident: PastIncident }) {
       {decisions.map((event) => (
         <details key={event.number} class="why">
           <summary>
-            <time>{byTheClock(event.clock ?? clockAt(event.t), 2)}</time> {event.text}
+            <time>{byTheClock(event.clock!, 2)}</time> {event.text}
           </summary>
           <Suspects decision={event} rule={event.rule!} />
           <Candidates list={event.candidates ?? []} chosen={event.type === 'strategy_chosen' ? event.strategy : null} />
@@ -100,10 +115,21 @@ function Decisions({ incident }: { incident: PastIncident }) {
   )
 }
 
+// As it was recorded: what came in, and what was decided, to be played again.
+function Recording() {
+  const journal = answer.value?.journal
+  if (!journal) return null
+  return (
+    <p class="muted">
+      Recorded in <code>{journal}</code>: <code>culprit replay</code> plays it again, also with other rules.
+    </p>
+  )
+}
+
 function Details({ incident }: { incident: PastIncident }) {
   const send = () => {
-    const facts = { cause: causeOf(incident), consequences: consequencesOf(incident), outcome: outcomeOf(incident), seconds: lastingOf(incident) }
-    const html = incidentAsHtml({ incident, ...facts, robot: robot.value?.robot ?? '', end: endOf(incident), clockOf: clockAt, at: nowByTheClock() })
+    const facts = { cause: causeOf(incident), outcome: outcomeOf(incident), seconds: lastingOf(incident) }
+    const html = incidentAsHtml({ incident, ...facts, events: told.value.events, robot: robot.value?.robot ?? '', at: nowByTheClock() })
     download(`incident-${incident.id}.html`, html, 'text/html')
   }
   return (
@@ -117,25 +143,65 @@ function Details({ incident }: { incident: PastIncident }) {
         </button>
       </div>
       <p>
-        {incident.to === null ? 'It has lasted for' : 'It lasted'} {lasting(lastingOf(incident))}.{' '}
-        {consequencesOf(incident).length > 0 && `${listed(consequencesOf(incident))} suffered. `}
-        {incident.to !== null && `What helped: ${outcomeOf(incident)}.`}
+        {incident.over ? 'It lasted' : 'It has lasted for'} {lasting(lastingOf(incident))}.{' '}
+        {incident.consequences.length > 0 && `${listed(incident.consequences)} suffered. `}
+        {incident.over && `What helped: ${outcomeOf(incident)}.`}
       </p>
+      <Recording />
       <Timeline view={view} />
       <div class="columns">
-        <Decisions incident={incident} />
+        <Decisions />
         <EventLog view={view} />
       </div>
     </section>
   )
 }
 
+function Head() {
+  const { remark, oldest } = answer.value ?? {}
+  return (
+    <div class="bar">
+      <h2>What went wrong</h2>
+      <label>
+        in the last{' '}
+        <select value={String(period.value)} onChange={(e) => (period.value = Number(e.currentTarget.value))}>
+          {kPeriods.map(([seconds, name]) => (
+            <option value={String(seconds)}>{name}</option>
+          ))}
+        </select>
+      </label>
+      <span class="muted">
+        {remark && `Only of the last events: ${remark}.`}
+        {oldest ? `The journal begins ${when(oldest)}.` : ''}
+      </span>
+    </div>
+  )
+}
+
 export function IncidentsPage() {
+  useEffect(followIncidents, [])
+  const isMissing = answer.value !== null && chosenId.value !== '' && !chosen.value
   return (
     <main class="incidents">
-      <h2>What went wrong since culprit began to watch</h2>
-      {all.value.length === 0 ? <p class="headline well">Nothing so far.</p> : <List />}
-      {chosen.value && <Details incident={chosen.value} />}
+      <Head />
+      {trouble.value && <p class="sick" role="alert">◆ {trouble.value}</p>}
+      {answer.value === null && !trouble.value && <p>Reading the journal …</p>}
+      {answer.value !== null && incidents.value.length === 0 && <p class="headline well">Nothing.</p>}
+      {isMissing && <p role="alert">There is no incident of this address in what is recorded.</p>}
+      {incidents.value.length > 0 && (
+        <>
+          {incidents.value.length > 1 && <Timeline view={overview} label="All incidents" hasMoment={false} />}
+          <List />
+        </>
+      )}
+      {incidents.value.length > kMostShown && !showsAll.value && (
+        <p>
+          <button type="button" onClick={() => (showsAll.value = true)}>
+            Show all {incidents.value.length}
+          </button>
+        </p>
+      )}
+      {chosen.value && <Details key={chosen.value.id} incident={chosen.value} />}
     </main>
   )
 }

@@ -39,8 +39,13 @@ export function layered(
   return points
 }
 
-// The same, but what has a place keeps it for ever: what is new stands beside what it is connected with.
-export function placed(nodes: string[], edges: [string, string][], held: Map<string, Point>): Map<string, Point> {
+// The same, but what has a place keeps it for ever: what is new stands beside what it belongs to, or is connected with.
+export function placed(
+  nodes: string[],
+  edges: [string, string][],
+  held: Map<string, Point>,
+  companionsOf: (node: string) => string[] = () => []
+): Map<string, Point> {
   if (!nodes.some((n) => held.has(n))) return layered(nodes, edges, held)
   const points = new Map([...held])
   const isTaken = (x: number, y: number) =>
@@ -51,7 +56,8 @@ export function placed(nodes: string[], edges: [string, string][], held: Map<str
       const other = points.get(from === node ? to : to === node ? from : '')
       return other ? [{ x: other.x + (to === node ? kLayer : -kLayer), y: other.y }] : []
     })
-    const wish = wishes[0] ?? { x: 0, y: 0 }
+    const beside = companionsOf(node).map((n) => points.get(n)).find((p) => p)
+    const wish = beside ?? wishes[0] ?? { x: 0, y: 0 }
     // Up and down from there in turn.
     let step = 0
     const y = () => wish.y + kRow * (step % 2 ? (step + 1) / 2 : -step / 2)

@@ -1,71 +1,113 @@
-// What went wrong so far, one entry for each time that the robot was not well.
-import { level } from './history'
-import type { Criticality, Health, ManagerEvent } from './types'
+// What went wrong so far: the incidents of the journal, as the server tells them (docs/web.md), and what happened in the
+// one that is looked at.
+import { batch, computed, effect, signal, untracked } from '@preact/signals'
+import { call } from './api'
+import { nowByTheClock } from './freshness'
+import { can, events } from './store'
+import type { Criticality, ManagerEvent } from './types'
 
 export interface PastIncident {
-  id: string // of its beginning: the same after a reload, and on another machine
-  from: number
-  to: number | null // null: it lasts
-  clock: number // when it began, on the wall
-  causes: string[] // components that were held responsible, the first first
-  rules: string[] // that saw a failure, the first first
+  id: string // of its beginning, for links: the same after a restart
+  first: number // of the rows that tell it
+  last: number
+  clock: number // when it began, seconds since 1970
+  seconds: number // how long; so far, if it lasts
+  over: boolean
+  cut: boolean // culprit ended before it was over
+  given_up: boolean
+  worst: Criticality
+  causes: string[] // components
+  rules: string[]
+  consequences: string[] // rules
   helped: string[] // strategies
-  isGivenUp: boolean
-  worst: Health
-  events: ManagerEvent[]
+}
+interface Answer {
+  journal: string | null
+  remark?: string
+  oldest?: number
+  incidents: PastIncident[]
 }
 
+export const kPeriods: [number, string][] = [
+  [3600, 'hour'],
+  [86_400, 'day'],
+  [7 * 86_400, 'week'],
+  [30 * 86_400, 'month'],
+]
+export const period = signal(86_400) // s, back from now
+export const answer = signal<Answer | null>(null)
+export const trouble = signal('')
+const kBefore = 60 // s
+const since = computed(() => Math.min(untracked(nowByTheClock) - period.value, linked.value - kBefore))
+
+export const chosenId = signal('') // '': the newest
 const kIdBase = 36
-const idOf = (event: ManagerEvent) => Math.round(1000 * (event.clock ?? event.t)).toString(kIdBase)
+// A link may be older than what is shown: its id says when that was.
+const linked = computed(() => (chosenId.value ? parseInt(chosenId.value, kIdBase) / 1000 || Infinity : Infinity))
 
-const addTo = (list: string[], names: string[]) => list.push(...names.filter((n) => !list.includes(n)))
+// Newest first.
+export const incidents = computed(() => [...(answer.value?.incidents ?? [])].reverse())
+export const chosen = computed(() => incidents.value.find((i) => i.id === chosenId.value) ?? (chosenId.value ? undefined : incidents.value[0]))
 
-// What an event says about whose fault it is and what came of it.
-function learn(incident: PastIncident, event: ManagerEvent): void {
-  incident.events.push(event)
-  if (event.criticality && level(event.criticality as Criticality) > level(incident.worst)) incident.worst = event.criticality
-  if (event.type === 'failure_detected') addTo(incident.rules, [event.rule!])
-  if (['strategy_chosen', 'approval_asked', 'action_held_back'].includes(event.type)) addTo(incident.causes, event.components ?? [])
-  if (event.type === 'failure_resolved' && event.strategy) addTo(incident.helped, [event.strategy])
-  if (event.type === 'rule_exhausted') incident.isGivenUp = true
+export const told = signal<{ key: string; events: ManagerEvent[] }>({ key: '', events: [] })
+const keyOf = ({ first, last }: PastIncident) => `${first} ${last}`
+
+const kChanging = /^(failure_|strategy_chosen|approval_asked|action_held_back|rule_exhausted|reloaded)/
+const kSoon = 500 // ms: the journal is written by then
+
+let asked = 0
+async function load(): Promise<void> {
+  const mine = ++asked
+  try {
+    const next = await call<Answer>('GET', `/api/incidents?since=${Math.max(0, since.peek()).toFixed(3)}`)
+    if (mine !== asked) return
+    batch(() => {
+      answer.value = next
+      trouble.value = ''
+    })
+  } catch (error) {
+    if (mine === asked) trouble.value = (error as Error).message
+  }
 }
 
-const begun = (event: ManagerEvent, before: ManagerEvent[]): PastIncident => ({
-  id: idOf(event),
-  from: event.t,
-  to: null,
-  clock: event.clock ?? event.t,
-  causes: [],
-  rules: [],
-  helped: [],
-  isGivenUp: false,
-  worst: 'OK',
-  events: before,
-})
+async function loadEvents(incident: PastIncident): Promise<void> {
+  const key = keyOf(incident)
+  const from = answer.peek()?.journal === null ? '&from=stream' : ''
+  try {
+    const list = await call<{ events: ManagerEvent[] }>('GET', `/api/incidents/events?first=${incident.first}&last=${incident.last}${from}`)
+    if (chosen.peek() && keyOf(chosen.peek()!) === key)
+      told.value = { key, events: list.events.map((event, number) => ({ ...event, number })) }
+  } catch (error) {
+    trouble.value = (error as Error).message
+  }
+}
 
-// Newest first. What came shortly before belongs to it: a component is lost before a rule sees it.
-export function pastIncidents(events: ManagerEvent[]): PastIncident[] {
-  const list: PastIncident[] = []
-  const open = new Set<string>()
-  let now: PastIncident | null = null
-  events.forEach((event, place) => {
-    if (event.type === 'failure_detected') {
-      if (!now) {
-        const isPart = (e: ManagerEvent) => e.type === 'component_lost' && event.t - e.t < kShortly
-        now = begun(event, events.slice(Math.max(0, place - kBefore), place).filter(isPart))
-        list.unshift(now)
-      }
-      open.add(event.rule!)
-    }
-    if (!now) return
-    learn(now, event)
-    if (event.type === 'failure_resolved' || event.type === 'failure_lost') open.delete(event.rule!)
-    if (event.type === 'reloaded') open.clear() // what is still there is detected anew
-    if (open.size > 0) return
-    now.to = event.t
-    now = null
+// Looks as long as the page is open. Gives how to stop.
+export function followIncidents(): () => void {
+  if (!can('get', '/api/incidents')) return () => {}
+  let timer = 0
+  let seen = events.peek().length > 0 ? events.peek()[events.peek().length - 1].number : 0
+  const stopLoading = effect(() => {
+    since.value
+    void load()
   })
-  return list
+  const stopFollowing = effect(() => {
+    const list = events.value
+    const hasChanged = list.some((e) => e.number > seen && kChanging.test(e.type))
+    seen = list.length > 0 ? list[list.length - 1].number : 0
+    if (hasChanged && timer === 0)
+      timer = window.setTimeout(() => {
+        timer = 0
+        void load()
+      }, kSoon)
+  })
+  const stopTelling = effect(() => {
+    if (chosen.value && keyOf(chosen.value) !== told.peek().key) void loadEvents(chosen.value)
+  })
+  return () => {
+    clearTimeout(timer)
+    stopLoading()
+    stopFollowing()
+    stopTelling()
+  }
 }
-const kBefore = 5 // events
-const kShortly = 2 // s

@@ -1,7 +1,7 @@
 // How rules act on one another, drawn: those whose strategies can undo one another for ever, those that
 // another one covers, and those that adapt the same component, one at a time.
 import type { Found } from './editor'
-import type { RuleDocument } from './rule_document'
+import { plainStatements, type RuleDocument } from './rule_document'
 
 type Kind = 'undo' | 'covers' | 'shares'
 export interface Relation {
@@ -21,7 +21,7 @@ const kWords: Record<Kind, string> = {
 function componentsOf(document: RuleDocument): Map<string, Set<string>> {
   const rules = new Map<string, Set<string>>()
   let components = new Set<string>()
-  for (const s of document.statements) {
+  for (const s of plainStatements(document)) {
     if (s.statement === 'RULE') rules.set(String(s.name), (components = new Set()))
     if (s.statement === 'ADAPTATION') components.add(String(s.component))
   }
@@ -91,7 +91,7 @@ export function RuleConflicts({ list }: { list: Relation[] }) {
       </div>
       {kinds.map((kind) => (
         <div class={`kind-${kind}`}>
-          <h3>{kWords[kind]}</h3>
+          <h2>{kWords[kind]}</h2>
           <ul>
             {list
               .filter((r) => r.kind === kind)

@@ -24,6 +24,23 @@ export function endOf(document: RuleDocument, begin: number): number {
   return end
 }
 
+// Whether each statement stands in a template, with its TEMPLATE and END lines: such statements have parameters in
+// them, and are no rules until the template is used.
+export function inTemplates(document: RuleDocument): boolean[] {
+  let isIn = false
+  return document.statements.map((s) => {
+    const isPart = isIn || s.statement === 'TEMPLATE'
+    isIn = isPart && s.statement !== 'END'
+    return isPart
+  })
+}
+
+// Those that no template has.
+export function plainStatements(document: RuleDocument): Statement[] {
+  const isInTemplate = inTemplates(document)
+  return document.statements.filter((_, place) => !isInTemplate[place])
+}
+
 export function replaced(
   document: RuleDocument,
   begin: number,
@@ -61,8 +78,10 @@ export const kAdaptations: Record<string, string[]> = {
   start: [],
   stop: [],
   change_mode: ['mode'],
-  call: ['service'],
+  call: ['service', 'request'],
 }
+// Members that may be missing.
+export const kOptional = ['request']
 
 // In cycles, as the rules of the examples have it: a parameter is light, a new process is not.
 const kImpacts: Record<string, number> = { activate: 5, deactivate: 5, restart: 5, redeploy: 10, start: 10, stop: 10 }
@@ -74,7 +93,10 @@ const kDefaults: Record<string, string> = {
 // Of another type than `before`, as far as it goes. An impact that nobody has changed follows the type.
 export function newAdaptation(type: string, before: Statement): Statement {
   const statement: Statement = { statement: 'ADAPTATION', component: before.component, type }
-  for (const member of kAdaptations[type]) statement[member] = before[member] ?? kDefaults[member]
+  for (const member of kAdaptations[type]) {
+    const value = before[member] ?? kDefaults[member]
+    if (value !== undefined) statement[member] = value
+  }
   const usual = (of: unknown) => kImpacts[String(of)] ?? kLightImpact
   const isUsual = before.impact === undefined || before.impact === usual(before.type)
   statement.impact = isUsual ? usual(type) : before.impact

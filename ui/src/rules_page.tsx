@@ -1,5 +1,5 @@
 // The rule builder: a form and a text editor of the same file. What one changes, the other shows.
-import { signal } from '@preact/signals'
+import { effect, signal } from '@preact/signals'
 import { useEffect, useRef, useState } from 'preact/hooks'
 import { call, hasToken, Refusal } from './api'
 import { diff } from './diff'
@@ -7,6 +7,7 @@ import { type Editor, type Found, makeEditor } from './editor'
 import { byTheClock } from './clock'
 import { draftOf, keepDraft, type Draft } from './drafts'
 import { merged } from './merge'
+import { Hindsight, hindsightFollows } from './hindsight'
 import { act, tell } from './notices'
 import { accept, ask, type Edit, form, isNewest, onUndo, refusedFields, take } from './rule_edits'
 import { follow } from './live_names'
@@ -25,6 +26,7 @@ interface File {
 
 const file = signal<File | null>(null) // as it was opened, or saved last
 const text = signal('')
+effect(() => hindsightFollows(text.value))
 const found = signal<Found[]>([])
 const unreadable = signal('') // why there is no form of the text
 const restored = signal<Draft | null>(null) // brought back after a reload
@@ -299,6 +301,7 @@ export function RulesPage() {
         <section class="form" aria-label="Form" inert={!!unreadable.value}>
           {form.value && <RuleConflicts list={relations(form.value, text.value, found.value)} />}
           {form.value && <RuleForm document={form.value} change={change} />}
+          {form.value && <Hindsight document={form.value} hasErrors={errors > 0} />}
         </section>
         <section class="text" aria-label="Text">
           <div class="editor" ref={place} />

@@ -1,12 +1,21 @@
-// Triggers that can be said as a sentence: simple conditions, all of which have to hold. Whatever is more than that stays
-// text.
+// Triggers as a sentence: simple conditions, all or any of which have to hold. What is more than a simple condition is one
+// that is written as an expression.
 
 export const kKinds = {
   silent: 'a topic is silent for longer than',
   slow: 'a topic comes less often per second than',
+  odd: 'a topic is silent for oddly long, beyond φ',
   dead: 'a component does not work',
   state: 'the lifecycle of a component',
   value: 'a signal',
+  mean: 'the mean of a signal over',
+  least: 'the least of a signal over',
+  most: 'the most of a signal over',
+  spread: 'the spread of a signal over',
+  changed: 'a signal has changed',
+  parameter: 'a parameter of a component',
+  level: 'the level of a diagnostic',
+  text: 'an expression',
 } as const
 export type Kind = keyof typeof kKinds
 
@@ -15,6 +24,11 @@ export interface Clause {
   name: string
   how: string // an operator of the language; '' where the kind says it
   value: string
+  second: string // the time of a window, the name of a parameter
+}
+export interface Sentence {
+  between: '&&' | '||' // all, or any
+  clauses: Clause[]
 }
 
 export const kComparisons: Record<string, string> = {
@@ -25,44 +39,107 @@ export const kComparisons: Record<string, string> = {
   '==': 'is',
   '!=': 'is not',
 }
+export const kCompared: Kind[] = ['state', 'value', 'mean', 'least', 'most', 'spread', 'parameter', 'level']
+export const kWindows: Kind[] = ['mean', 'least', 'most', 'spread']
+const kFunctions: Partial<Record<Kind, string>> = { mean: 'mean', least: 'min', most: 'max', spread: 'stddev' }
 
+const overWindow = ({ kind, name, how, value, second }: Clause) => `${kFunctions[kind]}(${name}, ${second}) ${how} ${value}`
 const kWritten: Record<Kind, (c: Clause) => string> = {
   silent: ({ name, value }) => `age(${name}) > ${value}`,
-  slow: ({ name, value }) => `rate(${name}) < ${value}`,
+  slow: ({ name, value, second }) => `rate(${name}${second ? `, ${second}` : ''}) < ${value}`,
+  odd: ({ name, value }) => `phi(${name}) > ${value}`,
   dead: ({ name }) => `alive(${name}) == false`,
   state: ({ name, how, value }) => `lifecycle(${name}) ${how} "${value}"`,
   value: ({ name, how, value }) => `${name} ${how} ${value}`,
+  mean: overWindow,
+  least: overWindow,
+  most: overWindow,
+  spread: overWindow,
+  changed: ({ name }) => `changed(${name})`,
+  parameter: ({ name, how, value, second }) => `parameter(${name}, ${second}) ${how} ${value}`,
+  level: ({ name, how, value }) => `level(${name}) ${how} ${value}`,
+  text: ({ value }) => value,
 }
 
-const kForms: [Kind, RegExp][] = [
-  ['silent', /^age\((?<name>[^\s(),]+)\) > (?<value>[\w.]+)$/],
-  ['slow', /^rate\((?<name>[^\s(),]+)\) < (?<value>[\w.]+)$/],
-  ['dead', /^alive\((?<name>\w+)\) == false$/],
-  ['state', /^lifecycle\((?<name>\w+)\) (?<how>==|!=) "(?<value>\w+)"$/],
-  ['value', /^(?<name>\w+) (?<how>>=|<=|>|<|==|!=) (?<value>-?[\w.]+|"[^"]*")$/],
-]
+const kName = String.raw`(?<name>[^\s(),]+|"[^"]*")`
+const kWord = String.raw`(?<name>\w+)`
+const kHow = String.raw`(?<how>>=|<=|>|<|==|!=)`
+const kValue = String.raw`(?<value>-?[\w.]+|"[^"]*")`
+const kSecond = String.raw`(?<second>[^\s(),]+|"[^"]*")`
+const kForms = (
+  [
+    ['silent', `age\\(${kName}\\) > (?<value>[\\w.]+)`],
+    ['slow', `rate\\(${kName}(?:, ${kSecond})?\\) < (?<value>[\\w.]+)`],
+    ['odd', `phi\\(${kName}\\) > (?<value>[\\w.]+)`],
+    ['dead', `alive\\(${kWord}\\) == false`],
+    ['state', `lifecycle\\(${kWord}\\) (?<how>==|!=) "(?<value>\\w+)"`],
+    ['mean', `mean\\(${kWord}, ${kSecond}\\) ${kHow} ${kValue}`],
+    ['least', `min\\(${kWord}, (?<second>[\\d.]+[a-z]+)\\) ${kHow} ${kValue}`],
+    ['most', `max\\(${kWord}, (?<second>[\\d.]+[a-z]+)\\) ${kHow} ${kValue}`],
+    ['spread', `stddev\\(${kWord}, ${kSecond}\\) ${kHow} ${kValue}`],
+    ['changed', `changed\\(${kWord}\\)`],
+    ['parameter', `parameter\\(${kName}, ${kSecond}\\) ${kHow} ${kValue}`],
+    ['level', `level\\(${kName}\\) ${kHow} ${kValue}`],
+    ['value', `${kWord} ${kHow} ${kValue}`],
+  ] as [Kind, string][]
+).map(([kind, form]): [Kind, RegExp] => [kind, new RegExp(`^${form}$`)])
 
-function clauseOf(text: string): Clause | null {
+const kEmpty = { name: '', how: '', value: '', second: '' }
+
+function clauseOf(text: string): Clause {
   for (const [kind, form] of kForms) {
     const groups = form.exec(text)?.groups
-    if (groups) return { kind, name: groups.name, how: groups.how ?? '', value: groups.value ?? '' }
+    if (groups) return { kind, name: groups.name, how: groups.how ?? '', value: groups.value ?? '', second: groups.second ?? '' }
   }
-  return null
+  return { ...kEmpty, kind: 'text', value: text }
 }
 
-export const written = (clauses: Clause[]) => clauses.map((c) => kWritten[c.kind](c)).join(' && ')
+// Where `sign` stands outside of brackets and quotes.
+function split(text: string, sign: string): string[] {
+  const parts: string[] = []
+  let [depth, from, isQuoted] = [0, 0, false]
+  for (let i = 0; i < text.length; ++i) {
+    if (text[i] === '\\' && isQuoted) ++i
+    else if (text[i] === '"') isQuoted = !isQuoted
+    else if (isQuoted) continue
+    else if (text[i] === '(') ++depth
+    else if (text[i] === ')') --depth
+    else if (depth === 0 && text.startsWith(sign, i)) {
+      parts.push(text.slice(from, i))
+      from = i + sign.length
+    }
+  }
+  return [...parts, text.slice(from)].map((part) => part.trim())
+}
+const has = (text: string, sign: string) => split(text, sign).length > 1
 
-// Null if it is more than a sentence can say.
-export function sentenceOf(trigger: string): Clause[] | null {
-  const clauses = trigger.trim().replace(/\s+/g, ' ').split(' && ').map(clauseOf)
-  return clauses.every((c): c is Clause => c !== null) ? clauses : null
+// What binds less tightly than the word between the conditions stands in brackets.
+const bracketed = (text: string, between: Sentence['between']) => (has(text, '?') || (between === '&&' && has(text, '||')) ? `(${text})` : text)
+
+export function written({ between, clauses }: Sentence): string {
+  const texts = clauses.map((c) => kWritten[c.kind](c))
+  return texts.length === 1 ? texts[0] : texts.map((t) => bracketed(t, between)).join(` ${between} `)
 }
 
-const kUsual: Record<Kind, Pick<Clause, 'how' | 'value'>> = {
-  silent: { how: '', value: '500ms' },
-  slow: { how: '', value: '5' },
-  dead: { how: '', value: '' },
+export function sentenceOf(trigger: string): Sentence {
+  const text = trigger.trim()
+  if (has(text, '?')) return { between: '&&', clauses: [clauseOf(text)] }
+  const between = has(text, '||') ? '||' : '&&'
+  return { between, clauses: split(text, between).map((part) => clauseOf(part.replace(/ +/g, ' '))) }
+}
+
+const kUsual: Partial<Record<Kind, Partial<Clause>>> = {
+  silent: { value: '500ms' },
+  slow: { value: '5' },
+  odd: { value: '8' },
   state: { how: '!=', value: 'active' },
   value: { how: '>', value: '0' },
+  mean: { how: '>', value: '0', second: '2s' },
+  least: { how: '<', value: '0', second: '2s' },
+  most: { how: '>', value: '0', second: '2s' },
+  spread: { how: '>', value: '1', second: '2s' },
+  parameter: { how: '==', value: '0', second: 'my_parameter' },
+  level: { how: '>=', value: '2' },
+  text: { value: 'true' },
 }
-export const usualClause = (kind: Kind, name: string): Clause => ({ kind, name, ...kUsual[kind] })
+export const usualClause = (kind: Kind, name: string): Clause => ({ ...kEmpty, kind, name, ...kUsual[kind] })

@@ -5,33 +5,41 @@ import { lasting } from './clock'
 import { namesOf } from './declarations'
 import { names, ownName } from './live_names'
 import type { RuleDocument } from './rule_document'
-import { type Clause, kComparisons, kKinds, type Kind, sentenceOf, usualClause, written } from './sentence'
+import { type Clause, kCompared, kComparisons, kKinds, type Kind, kWindows, sentenceOf, type Sentence, usualClause, written } from './sentence'
+import { isSketched, Sketch } from './sketch'
 import { graph, robot, state, stateOfComponent, stateOfTopic } from './store'
 
 const kStates = ['unconfigured', 'inactive', 'active', 'finalized']
-const kLists: Record<Kind, string> = { silent: 'topics', slow: 'topics', dead: 'components', state: 'components', value: 'signals' }
+type About = 'topics' | 'components' | 'signals' | 'diagnostics' | ''
+const kAbout: Record<Kind, About> = {
+  silent: 'topics', slow: 'topics', odd: 'topics', dead: 'components', state: 'components', parameter: 'components', level: 'diagnostics',
+  value: 'signals', mean: 'signals', least: 'signals', most: 'signals', spread: 'signals', changed: 'signals', text: '',
+}
+const kStandIns: Record<About, string> = { topics: '/topic', components: 'my_node', signals: 'my_signal', diagnostics: 'my_status', '': '' }
 
 // The first that there is of what a clause of this kind is about.
 function firstName(kind: Kind, document: RuleDocument): string {
   const components = [...namesOf(document, 'COMPONENT'), ...graph.value.nodes.map((n) => n.component ?? ownName(n.node))]
   const topics = [...(robot.value?.topics ?? []), ...names.value.topics]
-  const all = { topics, components, signals: namesOf(document, 'SIGNAL') }[kLists[kind]] ?? []
-  return all[0] ?? { topics: '/topic', components: 'my_node', signals: 'my_signal' }[kLists[kind]]!
+  const about = kAbout[kind]
+  const all = { topics, components, signals: namesOf(document, 'SIGNAL'), diagnostics: [], '': [] }[about]
+  return all[0] ?? kStandIns[about]
 }
 
 // What it is now, if the robot that runs has it.
-function nowOf({ kind, name }: Clause): string {
-  if (kind === 'silent' || kind === 'slow') {
+function nowOf({ kind, name, second }: Clause): string {
+  if (kAbout[kind] === 'topics') {
     const topic = stateOfTopic(name)
     if (!topic || topic.rate === null) return ''
     return kind === 'slow' ? `${topic.rate.toFixed(1)} Hz` : topic.age === null ? '' : lasting(topic.age)
   }
-  if (kind === 'value') {
-    const value = state.value?.inputs[robot.value?.inputs.indexOf(name) ?? -1]
-    return value === undefined || value === null ? '' : typeof value === 'number' ? String(Number(value.toPrecision(3))) : String(value)
+  if (kAbout[kind] === 'components' && kind !== 'parameter') {
+    const component = stateOfComponent(name)
+    return (kind === 'state' ? component?.lifecycle : component?.process) ?? ''
   }
-  const component = stateOfComponent(name)
-  return (kind === 'state' ? component?.lifecycle : component?.process) ?? ''
+  const input = kind === 'parameter' ? `parameter(${name}, ${second})` : kind === 'level' ? `level(${name})` : name
+  const value = state.value?.inputs[robot.value?.inputs.indexOf(input) ?? -1]
+  return value === undefined || value === null ? '' : typeof value === 'number' ? String(Number(value.toPrecision(3))) : String(value)
 }
 
 interface Props {
@@ -41,7 +49,7 @@ interface Props {
 }
 
 // The robot's state comes in while one types: what is typed stays until the field is left.
-function Typed(props: { label: string; class?: string; value: string; list: string; take: (entered: string) => void }) {
+function Typed(props: { label: string; class?: string; value: string; list?: string; take: (entered: string) => void }) {
   const [draft, setDraft] = useState<string | null>(null)
   return (
     <input
@@ -60,45 +68,63 @@ function Typed(props: { label: string; class?: string; value: string; list: stri
   )
 }
 
-function ClauseForm(props: { document: RuleDocument; clause: Clause; isFirst: boolean; take: (c: Clause) => void; remove?: () => void }) {
-  const { document, clause, take, remove } = props
-  const { kind, name, how, value } = clause
+const constantOf = (name: string, document: RuleDocument) =>
+  document.statements.find((s) => s.statement === 'CONST' && s.name === name)?.value as string | undefined
+
+interface ClauseProps {
+  document: RuleDocument
+  clause: Clause
+  word: string // in front of it
+  take: (c: Clause) => void
+  remove?: () => void
+}
+
+function ClauseForm({ document, clause, word, take, remove }: ClauseProps) {
+  const { kind, name, how, value, second } = clause
   const now = nowOf(clause)
-  const comparisons = kind === 'state' ? ['==', '!='] : Object.keys(kComparisons)
+  const about = kAbout[kind]
   return (
     <div class="clause">
-      <b>{props.isFirst ? 'when' : 'and'}</b>
+      <b>{word}</b>
       <select
         aria-label="what is looked at"
         value={kind}
         onChange={(e) => {
           const next = e.currentTarget.value as Kind
-          const isSameKind = kLists[next] === kLists[kind]
-          take(usualClause(next, isSameKind ? name : firstName(next, document)))
+          take(usualClause(next, kAbout[next] === about && name ? name : firstName(next, document)))
         }}
       >
         {Object.entries(kKinds).map(([each, words]) => (
           <option value={each}>{words}</option>
         ))}
       </select>
-      <Typed label="its name" value={name} list={kLists[kind]} take={(entered) => take({ ...clause, name: entered })} />
-      {(kind === 'value' || kind === 'state') && (
+      {kWindows.includes(kind) && <Typed label="over how long" class="amount" value={second} take={(entered) => take({ ...clause, second: entered })} />}
+      {about !== '' && <Typed label="its name" value={name} list={about} take={(entered) => take({ ...clause, name: entered })} />}
+      {kind === 'parameter' && (
+        <Typed label="which parameter" value={second} list={`parameters of ${name}`} take={(entered) => take({ ...clause, second: entered })} />
+      )}
+      {kCompared.includes(kind) && (
         <select aria-label="how it compares" value={how} onChange={(e) => take({ ...clause, how: e.currentTarget.value })}>
-          {comparisons.map((each) => (
+          {(kind === 'state' ? ['==', '!='] : Object.keys(kComparisons)).map((each) => (
             <option value={each}>{kComparisons[each]}</option>
           ))}
         </select>
       )}
-      {kind === 'state' ? (
+      {kind === 'state' && (
         <select aria-label="which state" value={value} onChange={(e) => take({ ...clause, value: e.currentTarget.value })}>
           {[...new Set([...kStates, value])].map((each) => (
             <option>{each}</option>
           ))}
         </select>
-      ) : (
-        kind !== 'dead' && (
-          <Typed label="how much" class="amount" value={value} list="constants" take={(entered) => take({ ...clause, value: entered })} />
-        )
+      )}
+      {kind !== 'state' && kind !== 'dead' && kind !== 'changed' && (
+        <Typed
+          label={kind === 'text' ? 'the expression' : 'how much'}
+          class={kind === 'text' ? '' : 'amount'}
+          value={value}
+          list={kind === 'text' ? undefined : 'constants'}
+          take={(entered) => take({ ...clause, value: entered })}
+        />
       )}
       {now && <span class="muted">now {now}</span>}
       {remove && (
@@ -106,28 +132,40 @@ function ClauseForm(props: { document: RuleDocument; clause: Clause; isFirst: bo
           ✕
         </button>
       )}
+      {robot.value && isSketched(clause) && !name.startsWith('{') && <Sketch clause={clause} constant={constantOf(value, document)} take={(next) => take({ ...clause, value: next })} />}
     </div>
   )
 }
 
+const kBetween: Record<Sentence['between'], [string, string]> = { '&&': ['all of these hold', 'and'], '||': ['any of these holds', 'or'] }
+
 export function SentenceForm({ document, trigger, take }: Props) {
-  const clauses = sentenceOf(trigger)
-  if (!clauses) return <p class="muted">This trigger is more than a sentence can say; it is edited as text.</p>
-  const put = (place: number, ...by: Clause[]) => take(written([...clauses.slice(0, place), ...by, ...clauses.slice(place + 1)]))
+  const sentence = sentenceOf(trigger)
+  const { between, clauses } = sentence
+  const say = (all: Clause[], by = between) => take(written({ between: by, clauses: all }))
   return (
     <div class="sentence" role="group" aria-label="Sentence">
       {clauses.map((clause, place) => (
         <ClauseForm
           key={place}
           {...{ document, clause }}
-          isFirst={place === 0}
-          take={(next) => put(place, next)}
-          remove={clauses.length > 1 ? () => put(place) : undefined}
+          word={place === 0 ? 'when' : kBetween[between][1]}
+          take={(next) => say(clauses.map((c, i) => (i === place ? next : c)))}
+          remove={clauses.length > 1 ? () => say(clauses.filter((_, i) => i !== place)) : undefined}
         />
       ))}
-      <button type="button" onClick={() => take(written([...clauses, usualClause('dead', firstName('dead', document))]))}>
-        + and …
-      </button>
+      <div class="bar">
+        <button type="button" onClick={() => say([...clauses, usualClause('dead', firstName('dead', document))])}>
+          + condition
+        </button>
+        {clauses.length > 1 && (
+          <select aria-label="how many have to hold" value={between} onChange={(e) => say(clauses, e.currentTarget.value as Sentence['between'])}>
+            {Object.entries(kBetween).map(([each, [words]]) => (
+              <option value={each}>{words}</option>
+            ))}
+          </select>
+        )}
+      </div>
     </div>
   )
 }

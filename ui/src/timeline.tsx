@@ -1,10 +1,13 @@
 // What happened when: a lane for each rule that ever failed, bars for failures, marks for strategies
 // and outcomes; and the moment that the page looks at, which can be moved.
-import { useComputed } from '@preact/signals'
-import { ticks } from './axis'
+import { untracked, useComputed } from '@preact/signals'
+import { useMemo } from 'preact/hooks'
+import type { VNode } from 'preact'
+import { type Tick, ticks } from './axis'
 import { byTheClock, lasting } from './clock'
 import { isOld } from './freshness'
 import type { View } from './history'
+import { usePaced } from './paced'
 import type { Criticality, ManagerEvent } from './types'
 
 const kWindows: [number, string][] = [
@@ -23,6 +26,7 @@ interface Bar {
   to: number | null
   criticality: Criticality
   outcome: string
+  link?: string
 }
 interface Lane {
   name: string // of the rule
@@ -59,7 +63,7 @@ function lanesOf(events: ManagerEvent[]): Lane[] {
     if (!event.rule) continue
     if (event.type === 'failure_detected') {
       const lane = byRule.get(event.rule) ?? { name: event.rule, bars: [], marks: [] }
-      lane.bars.push({ from: event.t, to: null, criticality: event.criticality!, outcome: 'open' })
+      lane.bars.push({ from: event.t, to: null, criticality: event.criticality!, outcome: 'open', link: event.link })
       byRule.set(event.rule, lane)
       continue
     }
@@ -79,6 +83,7 @@ function lanesOf(events: ManagerEvent[]): Lane[] {
 const kRow = 26
 const kAxis = 22 // its height
 const kShortest = 0.02 // s, of what is shown
+const kLeastShare = 0.2 // %, between two bars
 
 const kNames: [string, string][] = [
   ['▼', 'begun'],
@@ -90,22 +95,24 @@ const kNames: [string, string][] = [
 // Each bar can be seen and pointed at, be it ever so short.
 function Bars({ lane, row, begin, end }: { lane: Lane; row: number; begin: number; end: number }) {
   const share = (t: number) => (100 * (Math.max(begin, Math.min(end, t)) - begin)) / (end - begin)
+  const shown = lane.bars.filter((b) => (b.to ?? end) >= begin && b.from <= end)
+  // Of a thousand in a day one sees no more than there are pixels.
+  const apart = shown.filter((b, i) => i === 0 || share(b.to ?? end) - share(shown[i - 1].from) > kLeastShare)
   return (
     <>
-      {lane.bars
-        .filter((b) => (b.to ?? end) >= begin && b.from <= end)
-        .map((b) => (
-          <rect
-            class={`bar-${b.criticality}`}
-            x={`${share(b.from)}%`}
-            y={row * kRow + 5}
-            height={kRow - 10}
-            rx="2"
-            style={{ width: `max(4px, ${share(b.to ?? end) - share(b.from)}%)` }}
-          >
-            <title>{`${lane.name}: ${b.outcome}`}</title>
-          </rect>
-        ))}
+      {apart.map((b) => (
+        <rect
+          class={`bar-${b.criticality}${b.link ? ' leads' : ''}`}
+          x={`${share(b.from)}%`}
+          y={row * kRow + 5}
+          height={kRow - 10}
+          rx="2"
+          style={{ width: `max(4px, ${share(b.to ?? end) - share(b.from)}%)` }}
+          onClick={b.link ? () => (location.hash = b.link!) : undefined /* the list beside it is for the keyboard */}
+        >
+          <title>{`${lane.name}: ${b.outcome}`}</title>
+        </rect>
+      ))}
       {lane.marks
         .filter((m) => m.t >= begin && m.t <= end)
         .map((m) => (
@@ -133,24 +140,31 @@ function windowOf(view: View): { begin: number; end: number } {
   return { begin: end - length, end }
 }
 
+function show(view: View, from: number, to: number): void {
+  const newest = Math.max(view.newest.value, 1)
+  view.windowLength.value = to - from
+  view.windowEnd.value = to >= newest - 1e-9 ? null : to
+}
+// What stands at `centre` stays there.
+function zoomAround(view: View, factor: number, centre: number): void {
+  const { begin, end } = windowOf(view)
+  const to = Math.min(Math.max(view.newest.value, 1), centre + (end - centre) * factor)
+  show(view, Math.max(view.oldest(), to - (end - begin) * factor), to)
+}
+
 function Zoom({ view }: { view: View }) {
   const { begin, end } = windowOf(view)
-  const newest = Math.max(view.newest.value, 1)
-  const show = (from: number, to: number) => {
-    view.windowLength.value = to - from
-    view.windowEnd.value = to >= newest - 1e-9 ? null : to
-  }
+  // What one looks at is brought to the middle.
   const zoom = (factor: number) => {
     const length = (end - begin) * factor
-    // What one looks at stays in sight.
     const centre = view.moment.value ?? (factor < 1 ? end - length / 2 : end)
-    const to = Math.min(newest, centre + length / 2)
-    show(Math.max(view.oldest(), to - length), to)
+    const to = Math.min(Math.max(view.newest.value, 1), centre + length / 2)
+    show(view, Math.max(view.oldest(), to - length), to)
   }
   const pan = (share: number) => {
     const length = end - begin
-    const to = Math.min(newest, Math.max(view.oldest() + length, end + share * length))
-    show(to - length, to)
+    const to = Math.min(Math.max(view.newest.value, 1), Math.max(view.oldest() + length, end + share * length))
+    show(view, to - length, to)
   }
   return (
     <span class="zoom" role="group" aria-label="Time shown">
@@ -170,13 +184,13 @@ function Zoom({ view }: { view: View }) {
   )
 }
 
-function Head({ view }: { view: View }) {
-  const { moment, isNewest, isOver, windowLength, windowEnd } = view
+function Moment({ view }: { view: View }) {
+  const { moment, isNewest, isOver, windowEnd } = view
   const end = Math.max(view.newest.value, 1)
   const at = moment.value ?? end
   const words = view.clockOf ? byTheClock(view.clockOf(at), 1) : `${at.toFixed(1)} s`
   return (
-    <div class="bar">
+    <>
       <button
         type="button"
         class={isNewest.value ? '' : 'primary'}
@@ -189,6 +203,15 @@ function Head({ view }: { view: View }) {
         {isOver ? 'End' : '● Live'}
       </button>
       <output class="moment">{isNewest.value ? `${isOver ? 'the end' : isOld.value ? 'the last told' : 'now'}, ${words}` : `at ${words}`}</output>
+    </>
+  )
+}
+
+function Head({ view, hasMoment }: { view: View; hasMoment: boolean }) {
+  const { windowLength, windowEnd } = view
+  return (
+    <div class="bar">
+      {hasMoment && <Moment view={view} />}
       <label>
         show{' '}
         <select
@@ -207,18 +230,31 @@ function Head({ view }: { view: View }) {
         </select>
       </label>
       <Zoom view={view} />
-      <span class="legend" aria-hidden="true">
+      {hasMoment && <span class="legend" aria-hidden="true">
         {kNames.map(([sign, name]) => (
           <span>
             <b>{sign}</b> {name}
           </span>
         ))}
-      </span>
+      </span>}
     </div>
   )
 }
 
-export function Timeline({ view }: { view: View }) {
+// Bars move by less than a pixel between two states, and there may be hundreds of them.
+const kPeriod = 200 // ms
+
+// The view, as often as it is worth drawing.
+function usePacedView(view: View): View {
+  const told = usePaced(() => ({ events: view.events.value, newest: view.newest.value }), kPeriod)
+  const events = useComputed(() => told.value.events)
+  const newest = useComputed(() => told.value.newest)
+  const { clockOf } = view
+  return useMemo(() => ({ ...view, events, newest, clockOf: clockOf && ((t) => untracked(() => clockOf(t))) }), [view])
+}
+
+export function Timeline({ view: itself, label = 'Timeline', hasMoment = true }: { view: View; label?: string; hasMoment?: boolean }) {
+  const view = usePacedView(itself)
   const { moment } = view
   const lanes = useComputed(() => lanesOf(view.events.value))
   const { begin, end } = windowOf(view)
@@ -231,23 +267,32 @@ export function Timeline({ view }: { view: View }) {
       (l.bars.length === 0 && l.marks.some((m) => m.t >= begin && m.t <= end))
   )
   const height = Math.max(1, visible.length) * kRow
+  // By Ctrl and the wheel, or by two fingers on a touchpad; the wheel alone moves the page.
+  const onWheel = (e: WheelEvent) => {
+    if (!e.ctrlKey) return
+    e.preventDefault()
+    const { left, width } = (e.currentTarget as Element).getBoundingClientRect()
+    zoomAround(view, Math.exp(e.deltaY / kWheel), begin + (span * (e.clientX - left)) / width)
+  }
   return (
-    <section class="timeline" aria-label="Timeline">
-      <Head view={view} />
+    <section class="timeline" aria-label={label}>
+      <Head view={view} hasMoment={hasMoment} />
       <div class="lanes">
         <div class="names">
           {visible.map((lane) => (
             <span title={lane.name}>{lane.name}</span>
           ))}
         </div>
-        <svg class="plot" width="100%" height={height + kAxis} role="img"
+        <svg class="plot" width="100%" height={height + kAxis} role="img" onWheel={onWheel}
           aria-label="Failures over time; the list of what happened says the same in words">
-          {ticks(begin, end, isNarrow.matches ? 3 : 7, view.clockOf).map((tick) => (
+          {apart(ticks(begin, end, isNarrow.matches ? 3 : 7, view.clockOf), (at) => (at - begin) / span).map(({ at, label: words, anchor }) => (
             <g class="tick">
-              <line x1={percent(tick.at)} x2={percent(tick.at)} y1="0" y2={height} />
-              <text x={percent(tick.at)} y={height + 16} text-anchor={anchorOf((tick.at - begin) / span)}>
-                {tick.label}
-              </text>
+              <line x1={percent(at)} x2={percent(at)} y1="0" y2={height} />
+              {anchor && (
+                <text x={percent(at)} y={height + 16} text-anchor={anchor}>
+                  {words}
+                </text>
+              )}
             </g>
           ))}
           {visible.length === 0 && (
@@ -256,10 +301,10 @@ export function Timeline({ view }: { view: View }) {
           {visible.map((lane, row) => (
             <Bars key={lane.name} {...{ lane, row, begin, end }} />
           ))}
-          <line x1={percent(at)} x2={percent(at)} y1="0" y2={height} class="playhead" />
+          {hasMoment && <line x1={percent(at)} x2={percent(at)} y1="0" y2={height} class="playhead" />}
         </svg>
-        <span />
-        <input
+        {hasMoment && <span />}
+        {hasMoment && <input
           class="scrub"
           type="range"
           aria-label="Moment to look at, in seconds"
@@ -272,36 +317,60 @@ export function Timeline({ view }: { view: View }) {
             const wanted = Number(e.currentTarget.value)
             moment.value = wanted >= view.newest.value - 0.05 ? null : wanted
           }}
-        />
+        />}
       </div>
     </section>
   )
 }
 
 const isNarrow = matchMedia('(max-width: 700px)')
-// Labels at the ends stay inside.
-const anchorOf = (share: number) => (share < 0.06 ? 'start' : share > 0.94 ? 'end' : 'middle')
+const kWheel = 300 // of the wheel's way: so much of it zooms by e
+// Labels at the ends stay inside, and one that would stand on the one before is left out.
+const anchorOf = (share: number, wide: number) => (share < wide / 2 ? 'start' : share > 1 - wide / 2 ? 'end' : 'middle')
+function apart(all: Tick[], shareOf: (at: number) => number): (Tick & { anchor?: string })[] {
+  const wide = isNarrow.matches ? 0.22 : 0.09 // of a label, as a share of the axis
+  let taken = -Infinity
+  return all.map((tick) => {
+    const share = shareOf(tick.at)
+    const anchor = anchorOf(share, wide)
+    const from = share - { start: 0, middle: wide / 2, end: wide }[anchor]!
+    if (from < taken) return tick
+    taken = from + wide
+    return { ...tick, anchor }
+  })
+}
+
+const kLogPeriod = 100 // ms
+
+function EventLine({ event, view }: { event: ManagerEvent; view: View }) {
+  return (
+    <li>
+      <button type="button" onClick={() => (view.moment.value = event.t)} title={`Look at this moment, ${event.t.toFixed(2)} s after the beginning`} data-t={event.t}>
+        {view.clockOf ? byTheClock(event.clock ?? untracked(() => view.clockOf!(event.t)), 2) : event.t.toFixed(2)}
+      </button>
+      <span class={`label tone-${event.tone}`}>{event.label}</span>
+      <span>{event.text}</span>
+    </li>
+  )
+}
 
 export function EventLog({ view }: { view: View }) {
-  const { moment } = view
-  const upTo = moment.value ?? Infinity
-  const list = view.events.value.filter((e) => e.t <= upTo).slice(-200)
+  const events = usePaced(() => view.events.value, kLogPeriod)
+  // What was told does not change: only lines that are new are made.
+  const lines = useMemo(() => new WeakMap<ManagerEvent, VNode>(), [view])
+  const lineOf = (event: ManagerEvent) => {
+    const line = lines.get(event) ?? <EventLine key={event.number} {...{ event, view }} />
+    lines.set(event, line)
+    return line
+  }
+  const upTo = view.moment.value ?? Infinity
+  const list = events.value.filter((e) => e.t <= upTo).slice(-200)
   list.reverse()
   return (
     <section class="log" aria-label="What happened">
       <h2>What happened</h2>
       {list.length === 0 && <p class="muted">Nothing yet.</p>}
-      <ol>
-        {list.map((event) => (
-          <li key={event.number}>
-            <button type="button" onClick={() => (moment.value = event.t)} title={`Look at this moment, ${event.t.toFixed(2)} s after the beginning`} data-t={event.t}>
-              {view.clockOf ? byTheClock(event.clock ?? view.clockOf(event.t), 2) : event.t.toFixed(2)}
-            </button>
-            <span class={`label tone-${event.tone}`}>{event.label}</span>
-            <span>{event.text}</span>
-          </li>
-        ))}
-      </ol>
+      <ol>{list.map(lineOf)}</ol>
     </section>
   )
 }

@@ -18,10 +18,19 @@ export interface Rule {
   inputs: number[]
   strategies: Strategy[]
 }
+export interface ComponentFacts {
+  name: string
+  can_start: boolean
+  node?: string
+  owner?: string // who starts and ends it
+  host?: string
+  container?: string
+  required?: boolean
+}
 export interface Robot {
   robot: string
   cycle_s: number
-  components: { name: string; can_start: boolean }[]
+  components: ComponentFacts[]
   topics: string[]
   inputs: string[]
   rules: Rule[]
@@ -46,6 +55,7 @@ export interface ComponentState {
   present: boolean
   alive: boolean | null
   process?: 'running' | 'stopped' | 'hung' | 'gone'
+  pid?: number
   lifecycle?: string
   remark?: string
   adapting?: string
@@ -62,6 +72,7 @@ export interface State {
   topics: TopicState[]
   inputs: (number | string | boolean | null)[]
   beliefs: [number, number][]
+  priors: [number, number][] // that they began from: what the rules say, or a fleet learned
   couplings: [cause: number, effect: number, cleared: number, stayed: number][]
 }
 
@@ -109,4 +120,5 @@ export interface ManagerEvent {
   reaction_s?: number
   reason?: string
   remark?: string
+  link?: string // to what it stands for
 }

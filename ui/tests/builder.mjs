@@ -15,91 +15,95 @@ const kRule = `RULE SegmentationBad
       ADAPTATION fusion change_communication camera_input rgb_raw 2
 `
 
-const path = file('new.rules')
-await session(['web', path], async (page) => {
-  const form = page.getByRole('region', { name: 'Form' })
-  // Enters a value and leaves the field, as a person does; the form follows the file.
-  const fill = async (within, label, value) => {
-    const field = within.getByLabel(label, { exact: true }).last()
-    await field.fill(value)
-    await field.press('Tab')
-    await page.locator('.cm-content').filter({ hasText: value }).waitFor()
-  }
-  await form.getByRole('button', { name: '+ Rule' }).click()
-  await fill(form, 'rule', 'SegmentationBad')
-  await form.getByLabel('criticality').selectOption('WARNING')
-  await fill(form, 'trigger', 'segmentation_entropy > 0.06')
+export async function buildsThePapersRule() {
+  const path = file('new.rules')
+  await session(['web', path], async (page) => {
+    const form = page.getByRole('region', { name: 'Form' })
+    // Enters a value and leaves the field, as a person does; the form follows the file.
+    const fill = async (within, label, value) => {
+      const field = within.getByLabel(label, { exact: true }).last()
+      await field.fill(value)
+      await field.press('Tab')
+      await page.locator('.cm-content').filter({ hasText: value }).waitFor()
+    }
+    await form.getByRole('button', { name: '+ Rule' }).click()
+    await fill(form, 'rule', 'SegmentationBad')
+    await form.getByLabel('criticality').selectOption('WARNING')
+    await fill(form, 'trigger', 'segmentation_entropy > 0.06')
 
-  const named = (name) => form.getByRole('group', { name: `Strategy ${name}`, exact: true })
-  // Into the strategy that was just added.
-  const strategy = async (name, percent, confidence) => {
-    await fill(named('strategy'), 'name', name)
-    await fill(named(name), 'helps in %', percent)
-    await fill(named(name), 'confidence', confidence)
-    return named(name)
-  }
-  // Into the last adaptation.
-  const adaptation = async (within, type, members) => {
-    await within.getByLabel('type').last().selectOption(type)
-    for (const [label, value] of Object.entries(members)) await fill(within, label, value)
-  }
-  const add = (within, what) => within.getByRole('button', { name: `+ ${what}` }).click()
-  const input = (topic) => ({ component: 'fusion', parameter: 'camera_input', topic, impact: '2' })
+    const named = (name) => form.getByRole('group', { name: `Strategy ${name}`, exact: true })
+    // Into the strategy that was just added.
+    const strategy = async (name, percent, confidence) => {
+      await fill(named('strategy'), 'name', name)
+      await fill(named(name), 'helps in %', percent)
+      await fill(named(name), 'confidence', confidence)
+      return named(name)
+    }
+    // Into the last adaptation.
+    const adaptation = async (within, type, members) => {
+      await within.getByLabel('type').last().selectOption(type)
+      for (const [label, value] of Object.entries(members)) await fill(within, label, value)
+    }
+    const add = (within, what) => within.getByRole('button', { name: `+ ${what}` }).click()
+    const input = (topic) => ({ component: 'fusion', parameter: 'camera_input', topic, impact: '2' })
 
-  const recalibration = await strategy('recalibration', '80', '50')
-  const parameter = { component: 'fusion', parameter: 'recalibration', impact: '2' }
-  await adaptation(recalibration, 'set_parameter', parameter)
-  for (const [type, confidence, topic] of [['activate', '50', 'rgb_enhanced'], ['deactivate', '10', 'rgb_raw']]) {
-    await add(form, 'Strategy')
-    const enhancement = await strategy(`enhancement_${type}`, '10', confidence)
-    await adaptation(enhancement, type, { component: 'image_enhancement', impact: '5' })
-    await add(enhancement, 'Adaptation')
-    await adaptation(enhancement, 'change_communication', input(topic))
-  }
-  await page.getByText('no errors').waitFor()
-  await picture(page, 'form')
-  await isAccessible(page)
+    const recalibration = await strategy('recalibration', '80', '50')
+    const parameter = { component: 'fusion', parameter: 'recalibration', impact: '2' }
+    await adaptation(recalibration, 'set_parameter', parameter)
+    for (const [type, confidence, topic] of [['activate', '50', 'rgb_enhanced'], ['deactivate', '10', 'rgb_raw']]) {
+      await add(form, 'Strategy')
+      const enhancement = await strategy(`enhancement_${type}`, '10', confidence)
+      await adaptation(enhancement, type, { component: 'image_enhancement', impact: '5' })
+      await add(enhancement, 'Adaptation')
+      await adaptation(enhancement, 'change_communication', input(topic))
+    }
+    await page.getByText('no errors').waitFor()
+    await picture(page, 'form')
+    await isAccessible(page)
 
-  await page.getByRole('button', { name: 'Save …' }).click()
-  await page.getByRole('dialog').getByText('+ RULE SegmentationBad').waitFor()
-  await picture(page, 'save')
-  await page.getByRole('dialog').getByRole('button', { name: 'Save', exact: true }).click()
-  await page.getByText('as saved').waitFor()
-  const saved = readFileSync(path, 'utf8').trim() + '\n'
-  expect(saved === kRule, `this was saved:\n${saved}`)
-})
+    await page.getByRole('button', { name: 'Save …' }).click()
+    await page.getByRole('dialog').getByText('+ RULE SegmentationBad').waitFor()
+    await picture(page, 'save')
+    await page.getByRole('dialog').getByRole('button', { name: 'Save', exact: true }).click()
+    await page.getByText('as saved').waitFor()
+    const saved = readFileSync(path, 'utf8').trim() + '\n'
+    expect(saved === kRule, `this was saved:\n${saved}`)
+  })
+}
 
 // The server's answers come late and in the wrong order: nothing that was entered is lost.
-const slow = file('slow.rules')
-await session(['web', slow], async (page) => {
-  const form = page.getByRole('region', { name: 'Form' })
-  const text = page.locator('.cm-content')
-  await form.getByRole('button', { name: '+ Rule' }).click()
-  await text.filter({ hasText: 'RULE' }).waitFor()
+export async function losesNothingToASlowServer() {
+  const slow = file('slow.rules')
+  await session(['web', slow], async (page) => {
+    const form = page.getByRole('region', { name: 'Form' })
+    const text = page.locator('.cm-content')
+    await form.getByRole('button', { name: '+ Rule' }).click()
+    await text.filter({ hasText: 'RULE' }).waitFor()
 
-  const held = []
-  const isHeld = (count) => expectSoon(() => held.length === count, `not ${count} requests`)
-  await page.route('**/api/rules/text', (route) => held.push(route))
-  const enter = async (label, value) => {
-    const field = form.getByLabel(label, { exact: true })
-    await field.fill(value)
-    await field.press('Tab')
-  }
-  const answer = async (route) => {
-    const answered = page.waitForResponse((response) => response.request() === route.request())
-    await route.continue()
-    await (await answered).finished()
-  }
-  await enter('rule', 'Slow')
-  await isHeld(1)
-  await enter('trigger', 'segmentation_entropy > 0.06')
-  await isHeld(2)
-  await answer(held[1])
-  await text.filter({ hasText: 'segmentation_entropy > 0.06' }).waitFor()
-  await answer(held[0])
-  await page.unroute('**/api/rules/text')
-  await enter('helps in %', '77')
-  await text.filter({ hasText: '77' }).waitFor()
-  const written = await text.innerText()
-  for (const entered of ['RULE Slow', 'segmentation_entropy > 0.06', '77']) expect(written.includes(entered), `without ${entered}:\n${written}`)
-})
+    const held = []
+    const isHeld = (count) => expectSoon(() => held.length === count, `not ${count} requests`)
+    await page.route('**/api/rules/text', (route) => held.push(route))
+    const enter = async (label, value) => {
+      const field = form.getByLabel(label, { exact: true })
+      await field.fill(value)
+      await field.press('Tab')
+    }
+    const answer = async (route) => {
+      const answered = page.waitForResponse((response) => response.request() === route.request())
+      await route.continue()
+      await (await answered).finished()
+    }
+    await enter('rule', 'Slow')
+    await isHeld(1)
+    await enter('trigger', 'segmentation_entropy > 0.06')
+    await isHeld(2)
+    await answer(held[1])
+    await text.filter({ hasText: 'segmentation_entropy > 0.06' }).waitFor()
+    await answer(held[0])
+    await page.unroute('**/api/rules/text')
+    await enter('helps in %', '77')
+    await text.filter({ hasText: '77' }).waitFor()
+    const written = await text.innerText()
+    for (const entered of ['RULE Slow', 'segmentation_entropy > 0.06', '77']) expect(written.includes(entered), `without ${entered}:\n${written}`)
+  })
+}

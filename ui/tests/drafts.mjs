@@ -1,6 +1,8 @@
 // Nothing that was written is lost: not by a mistake in a field, a reload, a slip of the finger, or somebody else who
 // writes the same file.
-import { readFileSync, writeFileSync } from 'node:fs'
+import { cpSync, readFileSync, writeFileSync } from 'node:fs'
+import { dirname, join } from 'node:path'
+import { fileURLToPath } from 'node:url'
 import { expect, file, isAccessible, picture, session } from './session.mjs'
 
 const kRules = `COMPONENT camera  NODE /camera
@@ -111,7 +113,7 @@ async function aNewRule(page) {
   await clause(0).getByLabel('what is looked at').selectOption('a topic is silent for longer than')
   await enter(clause(0).getByLabel('its name'), '/scan')
   await enter(clause(0).getByLabel('how much'), '2s')
-  await sentence.getByRole('button', { name: '+ and …' }).click()
+  await sentence.getByRole('button', { name: '+ condition' }).click()
   await clause(1).getByLabel('what is looked at').selectOption('the lifecycle of a component')
   await enter(clause(1).getByLabel('its name'), 'lidar')
   await clause(1).getByLabel('how it compares').selectOption('is')
@@ -123,7 +125,7 @@ async function aNewRule(page) {
   await enter(trigger, 'rate(/scan) < 3')
   await page.waitForFunction(() => [...document.querySelectorAll('.clause select')].at(-1).value === 'slow') // it follows the text
   await enter(trigger, 'age(/scan) > 2s || alive(lidar) == false')
-  await formOf(page).getByText('more than a sentence can say').last().waitFor()
+  await page.waitForFunction(() => [...document.querySelectorAll('.sentence')].at(-1).querySelector('[aria-label="how many have to hold"]')?.value === '||')
 }
 
 // Each kind of declaration by clicks alone: written, and read back as it was entered.
@@ -135,7 +137,7 @@ async function declarations(page) {
   const wrote = (line) => text(page).filter({ hasText: line }).waitFor()
   await add('Component')
   await enter(group('Component my_node').getByLabel('node', { exact: true }), '/arm')
-  await group('Component my_node').getByLabel('say more').selectOption('unit')
+  await group('Component my_node').getByLabel('started by').selectOption('systemd')
   await enter(group('Component my_node').getByLabel('unit'), 'arm.service')
   await enter(group('Component my_node').getByLabel('name'), 'arm')
   await wrote(/COMPONENT arm\s+NODE \/arm\s+UNIT arm\.service/)
@@ -164,24 +166,75 @@ async function declarations(page) {
   await picture(page, 'declarations')
 }
 
+// What others have written for what often goes wrong, with one's own names in it.
+async function template(page) {
+  const form = formOf(page)
+  await form.getByLabel('Begin with a template').selectOption({ label: 'A camera stalls: its node lives, its pictures stop' })
+  const fill = form.getByRole('region', { name: 'Template' })
+  await fill.getByLabel('node /front/camera_driver is here').fill('/camera')
+  await fill.getByLabel('topic /front/image_raw is here').fill('/rgb')
+  await fill.getByText('What is in it').click()
+  await isAccessible(page)
+  await picture(page, 'template')
+  await fill.getByRole('button', { name: 'Add it' }).click()
+  await text(page).filter({ hasText: 'TRIGGER age(/rgb) > silence' }).waitFor()
+  await text(page).filter({ hasText: 'CONST silence' }).waitFor()
+  await page.getByText('no errors').waitFor()
+  expect(!(await text(page).innerText()).includes('/front/'), 'a name of the template is left')
+}
+
+// A template of a pack: included, its component declared, used; and all of it taken back by one Undo.
+async function pack(page) {
+  const form = formOf(page)
+  const before = await text(page).innerText()
+  await form.getByLabel('Begin with a template').selectOption('sick_scan_xd')
+  const fill = form.getByRole('region', { name: 'Template' })
+  await fill.getByText('sick_scan_xd reconnects').waitFor() // what its author says of it
+  await fill.getByLabel('name').fill('sick')
+  await fill.getByLabel('topic').fill('/sick/scan')
+  await fill.getByLabel('hz').fill('15')
+  await isAccessible(page)
+  await picture(page, 'pack')
+  await fill.getByRole('button', { name: 'Add it' }).click()
+  for (const line of [/INCLUDE "packs\/lidars.rules"/, /COMPONENT sick\s+NODE \/sick/, /USE sick_scan_xd\(sick, \/sick\/scan, 15\)/]) await text(page).filter({ hasText: line }).waitFor()
+  await page.getByText('no errors').waitFor()
+  await form.getByText('From other files and templates: packs/lidars.rules, sick_scan_xd').waitFor()
+  await page.getByRole('status', { name: 'Notice' }).getByRole('button', { name: 'Undo' }).click()
+  await text(page).filter({ hasNotText: 'USE sick_scan_xd' }).waitFor()
+  expect((await text(page).innerText()) === before, 'not all of it was taken back')
+}
+
+// The server goes while one writes, and comes back: what was written is there, and is saved.
 async function noServer(page, server) {
   await enter(formOf(page).getByLabel('helps in %').first(), '55')
   await text(page).filter({ hasText: 'wake 55' }).waitFor()
   await server.end()
-  await page.getByRole('region', { name: 'Status' }).getByText('Disconnected').waitFor()
+  const bar = page.getByRole('region', { name: 'Status' })
+  await bar.getByText('Disconnected').waitFor()
   await page.getByRole('button', { name: 'Save …' }).click()
   const dialog = page.getByRole('dialog')
   await dialog.getByRole('button', { name: 'Save', exact: true }).click()
   await dialog.getByText('is kept in this browser').waitFor()
+  await server.again()
+  await bar.getByText('Disconnected').waitFor({ state: 'detached' })
+  await dialog.getByRole('button', { name: 'Save', exact: true }).click()
+  await page.getByText('as saved').waitFor()
+  expect(readFileSync(path, 'utf8').includes('wake 55'), 'it was not saved')
 }
 
-await session(['web', path], async (page, server) => {
-  await mistake(page)
-  await reload(page)
-  await slip(page)
-  await conflict(page)
-  await choice(page)
-  await aNewRule(page)
-  await declarations(page)
-  await noServer(page, server)
-})
+export async function losesNothingThatWasWritten() {
+  cpSync(join(dirname(fileURLToPath(import.meta.url)), '../../rules/packs'), file('packs'), { recursive: true })
+  writeFileSync(file('token'), 'a-token-that-lasts\n', { mode: 0o600 })
+  await session(['web', path, '--token-file', file('token')], async (page, server) => {
+    await mistake(page)
+    await reload(page)
+    await slip(page)
+    await conflict(page)
+    await choice(page)
+    await aNewRule(page)
+    await declarations(page)
+    await template(page)
+    await pack(page)
+    await noServer(page, server)
+  })
+}

@@ -3,7 +3,7 @@
 //
 //     node operator.mjs <culprit> <node_modules> <folder>, with SUNSET's camera running in the DDS domain
 import { readFileSync, writeFileSync } from 'node:fs'
-import { expect, file, isAccessible, picture, session } from './session.mjs'
+import { expect, file, isAccessible, picture, session, suite } from './session.mjs'
 
 const kRules = `ROBOT one_camera
 COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
@@ -15,7 +15,8 @@ RULE CameraGone
 `
 const path = file('operator.rules')
 writeFileSync(path, kRules)
-const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--healthy', '0', '--state-dir', file('state')]
+writeFileSync(file('token'), 'a-token-that-lasts\n', { mode: 0o600 })
+const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--healthy', '0', '--state-dir', file('state'), '--token-file', file('token')]
 
 // The process that culprit says the camera to be, newest last.
 const cameras = (said) => [...said.matchAll(/camera is there \(process (\d+)/g)].map((m) => Number(m[1]))
@@ -69,11 +70,60 @@ async function beliefs(page) {
   await row.getByText('nothing yet').waitFor()
 }
 
+// What went wrong is told from the journal: also by the next culprit, at the same address.
+async function lookBack(page, program) {
+  await page.getByRole('link', { name: 'Incidents' }).click()
+  const row = page.getByRole('row', { name: /camera.*camera_redeploy/ })
+  await row.getByRole('link').click()
+  const address = new URL(page.url()).hash
+  const incident = page.getByRole('region', { name: 'Incident', exact: true })
+  await incident.getByText('camera is lost').waitFor()
+  await program.end('SIGKILL')
+  await page.getByRole('region', { name: 'Status' }).getByText('Disconnected').waitFor()
+  await program.again()
+  await page.getByRole('region', { name: 'Status' }).getByText('All is well').waitFor()
+  await page.reload()
+  expect(new URL(page.url()).hash === address, 'the link is another')
+  await incident.getByText('camera is lost').waitFor()
+  await incident.getByText('What helped: camera_redeploy').waitFor()
+}
+
+// Before a rule is saved: what it would have done when the camera died.
+async function hindsight(page) {
+  await page.getByRole('link', { name: 'Rules' }).click()
+  const form = page.getByRole('region', { name: 'Form' })
+  const rule = form.getByLabel('rule', { exact: true })
+  await rule.fill('CameraDead')
+  await rule.press('Tab')
+  await page.locator('.cm-content').filter({ hasText: 'RULE CameraDead' }).waitFor()
+  await form.getByText('What would these rules have done?').click()
+  await form.getByRole('button', { name: 'Look back' }).click()
+  await form.getByRole('row', { name: /CameraDead one failure.*camera_redeploy 1 × no failure/ }).waitFor()
+  await form.getByRole('row', { name: /CameraGone no failure one failure/ }).waitFor()
+  await form.getByText(/it would have seen one failure/).waitFor()
+  await isAccessible(page)
+  await picture(page, 'hindsight')
+}
+
+// The node is examined, and a component tells what it uses, by what runs.
+async function examine(page) {
+  await page.getByRole('link', { name: 'Doctor' }).click()
+  await page.getByLabel('look for').selectOption('4 s')
+  await page.getByRole('button', { name: 'Examine' }).click()
+  await page.getByText(/nodes? on domain/).waitFor()
+  await page.getByRole('link', { name: 'Robot' }).click()
+  await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'camera' }).click()
+  const panel = page.getByRole('region', { name: 'About camera' })
+  await panel.getByText('% of a core').waitFor()
+  await panel.getByText(/Parameters \(\d+\)/).waitFor()
+  await page.getByRole('button', { name: 'Show all', exact: true }).click()
+}
+
 const kEvil = '<img src=x onerror="window.wasHarmed = true">'
 const kEvilStream = {
   robot: { robot: kEvil, cycle_s: 0.2, components: [{ name: kEvil, can_start: false }], topics: [kEvil], inputs: [], rules: [] },
   graph: { nodes: [{ node: kEvil, present: true, component: kEvil }], edges: [[kEvil, `${kEvil}2`, kEvil]] },
-  state: { t: 1, clock: 1, rules: [], components: [{ health: 'OK', present: true, alive: true, remark: kEvil }], topics: [{ rate: 1, age: 0 }], inputs: [], beliefs: [], couplings: [] },
+  state: { t: 1, clock: 1, rules: [], components: [{ health: 'OK', present: true, alive: true, remark: kEvil }], topics: [{ rate: 1, age: 0 }], inputs: [], beliefs: [], priors: [], couplings: [] },
   event: { t: 1, type: 'trouble', label: kEvil, severity: 'warning', tone: kEvil, text: kEvil },
 }
 
@@ -90,19 +140,24 @@ async function isHarmless(page) {
   expect(!(await page.evaluate('window.wasHarmed')), 'a name was run')
 }
 
-await session(kArguments, async (page, program) => {
-  try {
-    await approve(page, program)
-    await reload(page)
-    await beliefs(page)
-    await isHarmless(page)
-  } finally {
-    for (const pid of cameras(program.said())) {
-      try {
-        process.kill(pid, 'SIGKILL') // culprit leaves the robot running
-      } catch {
-        // It ended before.
+await suite(() =>
+  session(kArguments, async (page, program) => {
+    try {
+      await approve(page, program)
+      await reload(page)
+      await beliefs(page)
+      await examine(page)
+      await lookBack(page, program)
+      await hindsight(page)
+      await isHarmless(page)
+    } finally {
+      for (const pid of cameras(program.said())) {
+        try {
+          process.kill(pid, 'SIGKILL') // culprit leaves the robot running
+        } catch {
+          // It ended before.
+        }
       }
     }
-  }
-})
+  })
+)

@@ -11,32 +11,34 @@ RULE CameraSilent
     STRATEGY restart 150 10
       ADAPTATION camera restrat 3
 `
-const path = file('broken.rules')
-writeFileSync(path, kRules)
+export async function mendsABrokenFile() {
+  const path = file('broken.rules')
+  writeFileSync(path, kRules)
 
-await session(['web', path], async (page) => {
-  const found = page.getByRole('list', { name: 'What the check says' })
-  await found.getByText('line 7').waitFor()
-  await found.getByText('line 8').waitFor()
-  await picture(page, 'broken')
-  await isAccessible(page)
+  await session(['web', path], async (page) => {
+    const found = page.getByRole('list', { name: 'What the check says' })
+    await found.getByText('line 7').waitFor()
+    await found.getByText('line 8').waitFor()
+    await picture(page, 'broken')
+    await isAccessible(page)
 
-  const replace = async (line, wrong, right) => {
-    await found.getByRole('button', { name: new RegExp(`line ${line}`) }).first().click()
-    const text = await page.locator('.cm-line').nth(line - 1).innerText()
-    await page.keyboard.press('End')
-    await page.keyboard.press('Shift+Home')
-    await page.keyboard.insertText(text.trim().replace(wrong, right))
-  }
-  await replace(7, '150', '50')
-  await replace(8, 'restrat', 'restart')
-  await page.getByText('no errors').waitFor()
-  await page.getByRole('button', { name: 'Lay out' }).click()
-  await page.getByText('Laying out: done').waitFor()
-  await page.getByRole('button', { name: 'Save …' }).click()
-  await page.getByRole('dialog').getByRole('button', { name: 'Save', exact: true }).click()
-  await page.getByText('as saved').waitFor()
-  const saved = readFileSync(path, 'utf8')
-  const wanted = kRules.replace('150', '50').replace('restrat', 'restart')
-  expect(saved.replace(/ +/g, ' ') === wanted.replace(/ +/g, ' '), `this was saved:\n${saved}`)
-})
+    const replace = async (line, wrong, right) => {
+      await found.getByRole('button', { name: new RegExp(`line ${line}`) }).first().click()
+      const text = await page.locator('.cm-line').nth(line - 1).innerText()
+      await page.keyboard.press('End')
+      await page.keyboard.press('Shift+Home')
+      await page.keyboard.insertText(text.trim().replace(wrong, right))
+    }
+    await replace(7, '150', '50')
+    await replace(8, 'restrat', 'restart')
+    await page.getByText('no errors').waitFor()
+    await page.getByRole('button', { name: 'Lay out' }).click()
+    await page.getByText('Laying out: done').waitFor()
+    await page.getByRole('button', { name: 'Save …' }).click()
+    await page.getByRole('dialog').getByRole('button', { name: 'Save', exact: true }).click()
+    await page.getByText('as saved').waitFor()
+    const saved = readFileSync(path, 'utf8')
+    const wanted = kRules.replace('150', '50').replace('restrat', 'restart')
+    expect(saved.replace(/ +/g, ' ') === wanted.replace(/ +/g, ' '), `this was saved:\n${saved}`)
+  })
+}

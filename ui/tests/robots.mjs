@@ -14,7 +14,7 @@ const kRules = [
 
 export const kRobot = {
   robot: 'rover', cycle_s: 0.2,
-  components: kComponents.map((name) => ({ name, can_start: true })),
+  components: kComponents.map((name) => ({ name, can_start: true, node: `/${name}`, owner: 'culprit, by its LAUNCH command' })),
   topics: kTopics, inputs: ['alive(camera)', 'age(/fused)', 'segmentation_entropy'], rules: kRules,
 }
 export const kGraph = {
@@ -30,14 +30,10 @@ export const kGraph = {
 }
 export const kControl = { paused: false, dry_run: false, hears: true, silences: [], asked: [] }
 
-// At 14:03:22 by the clock of this machine something broke.
-const broken = () => {
-  const date = new Date()
-  date.setHours(14, 3, 22, 0)
-  return date.getTime() / 1000
-}
-export const kBegan = broken() - 770 // when culprit began to watch
+// At 14:03:22 something broke; 12 s later one looks. Clocks of the tests show UTC (session.mjs).
+export const kToday = new Date('2026-11-21T14:03:34Z')
 const kBroken = 770
+export const kBegan = kToday.getTime() / 1000 - 12 - kBroken // when culprit began to watch
 
 export const state = (t, { dead = null, ...rules } = {}) => ({
   t, clock: kBegan + t,
@@ -45,7 +41,7 @@ export const state = (t, { dead = null, ...rules } = {}) => ({
   components: kComponents.map((name) => ({
     health: 'OK', present: name !== dead, alive: name !== dead, process: name === dead ? 'gone' : 'running', lifecycle: 'active' })),
   topics: kTopics.map((_, i) => ({ rate: 10 + i, age: dead && i !== 1 ? t - kBroken : 0.05 })),
-  inputs: [!dead, 0.1, 0.04], beliefs: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), couplings: [],
+  inputs: [!dead, 0.1, 0.04], beliefs: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), priors: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), couplings: [],
 })
 
 const event = (t, type, label, severity, tone, text, more) => ({ t, clock: kBegan + t, type, label, severity, tone, text, ...more })
@@ -96,10 +92,20 @@ export const kStates = {
   deaf: { events: [], control: { hears: false }, state: {}, cause: 'The robot cannot be heard', level: 'Unknown', mode: 'Deaf' },
 }
 // It is over: 3 s later all of it was well. Names are only text.
-export const kHealed = {
-  events: [...kCameraDead, chosen(false), ...kRules.map(({ name }) => event(kBroken + 3.01, 'failure_resolved', 'resolved', 'info', 'relief', `${name} resolved <b>rover</b>`, { rule: name, strategy: name === 'RGBDead' ? 'rgb_redeploy' : null, reaction_s: 3 }))],
-  control: {}, state: {},
-}
+const kHealing = [...kCameraDead, chosen(false), ...kRules.map(({ name }) => event(kBroken + 3.01, 'failure_resolved', 'resolved', 'info', 'relief', `${name} resolved <b>rover</b>`, { rule: name, strategy: name === 'RGBDead' ? 'rgb_redeploy' : null, reaction_s: 3 }))]
+export const kHealed = { events: kHealing, control: {}, state: {} }
+
+// What the journal tells of it, and of a day before.
+const idOf = (clock) => Math.round(clock * 1000).toString(36)
+const incident = (clock, more) => ({ id: idOf(clock), first: 10, last: 20, clock, seconds: 3, over: true, cut: false, given_up: false, worst: 'ERROR',
+  causes: ['camera'], rules: ['RGBDead', 'FusionSilent', 'SegmentationBad'], consequences: ['FusionSilent', 'SegmentationBad'], helped: ['rgb_redeploy'], ...more })
+const kBrokenAt = kBegan + kBroken
+export const kIncidents = [
+  incident(kBrokenAt - 86_000, { first: 1, last: 3, seconds: 7200, causes: ['fusion'], rules: ['FusionSilent'], consequences: [], helped: [], given_up: true }),
+  ...Array.from({ length: 9 }, (_, i) => incident(kBrokenAt - 80_000 + i * 8000, { first: 4, last: 4, seconds: 2 + i, worst: i % 2 ? 'WARNING' : 'ERROR', causes: [i % 3 ? 'segmentation' : 'camera'], rules: ['SegmentationBad'], consequences: [], helped: ['recalibration'] })),
+  incident(kBrokenAt + 0.01, {}),
+]
+export const kIncidentEvents = kHealing.filter((e) => e.t >= kBroken).sort((a, b) => a.t - b.t).map((e) => ({ ...e, t: e.clock }))
 export const kNow = kBroken + 12
 
 // Events forgotten long ago: the failure itself is not.

@@ -2,12 +2,15 @@
 //
 //     node <test>.mjs <culprit> <folder of node_modules> <folder for files>
 //
-// CULPRIT_SCREENSHOTS=<folder> also takes pictures.
+// One browser for all sessions of a test. CULPRIT_SCREENSHOTS=<folder> also takes pictures; CULPRIT_FRESH_PAGE=1 serves the page
+// as it is in ui/src, in place of the one that is part of the program.
 import { execFile, spawn } from 'node:child_process'
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs'
+import { readFileSync } from 'node:fs'
 import { createRequire } from 'node:module'
-import { join } from 'node:path'
+import { dirname, join } from 'node:path'
+import { fileURLToPath } from 'node:url'
 import { promisify } from 'node:util'
+import { bundle } from '../bundle.mjs'
 import { stub } from './stub.mjs'
 
 const [program, modules, folder] = process.argv.slice(2)
@@ -22,25 +25,31 @@ export const file = (name) => join(folder, name)
 // Runs culprit to its end.
 export const culprit = (args) => promisify(execFile)(program, args)
 
-// Starts culprit and waits for the address that it prints.
+// Starts culprit and waits for the address that it prints. again(): once more at that address.
 function serve(args) {
-  const server = spawn(program, args, { stdio: ['ignore', 'pipe', 'inherit'] })
   let said = ''
-  const address = new Promise((resolve, reject) => {
-    server.stdout.on('data', (data) => {
-      said += data
-      const match = /(http:\/\/\S+#token=\S+)/.exec(said)
-      if (match) resolve(match[1])
+  let server
+  const begin = (port) => {
+    server = spawn(program, [...args, '--port', port], { stdio: ['ignore', 'pipe', 'inherit'] })
+    const from = said.length
+    return new Promise((resolve, reject) => {
+      server.stdout.on('data', (data) => {
+        said += data
+        const match = /(http:\/\/\S+#token=\S+)/.exec(said.slice(from))
+        if (match) resolve(match[1])
+      })
+      server.on('exit', () => reject(new Error(`culprit ended: ${said}`)))
     })
-    server.on('exit', () => reject(new Error(`culprit ended: ${said}`)))
-  })
-  const end = () =>
+  }
+  const address = begin('0')
+  const end = (signal = 'SIGINT') =>
     new Promise((resolve) => {
-      if (server.exitCode !== null) return resolve()
+      if (server.exitCode !== null || server.signalCode !== null) return resolve()
       server.on('exit', resolve)
-      server.kill('SIGINT')
+      server.kill(signal)
     })
-  return { address, end, said: () => said }
+  const again = async () => begin(new URL(await address).port)
+  return { address, end, again, said: () => said }
 }
 
 export function expect(condition, message) {
@@ -55,30 +64,51 @@ export async function expectSoon(holds, message) {
 }
 
 // Runs `steps` with a page of `culprit <args>`, and what it prints.
-export const session = (args, steps) => browse(serve([...args, '--port', '0']), steps)
+export const session = (args, steps) => browse(serve(args), steps)
 
-// Runs `steps` with a page of a stub that answers these calls (stub.mjs).
-export async function stubbed(calls, steps) {
+// Runs `steps` with a page of a stub that answers these calls (stub.mjs). `now`: what all clocks show, also as time passes.
+export async function stubbed(calls, steps, now = null) {
   const server = await stub(modules, calls)
-  await browse({ ...server, address: Promise.resolve(server.address) }, steps)
+  await browse({ ...server, address: Promise.resolve(server.address) }, steps, now)
 }
 
-// Whatever the page complains of is a failure.
-async function browse(server, steps) {
-  const profile = mkdtempSync(join(folder, 'browser-'))
+let browser = null
+async function newPage() {
+  browser ??= await chromium.launch({
+    executablePath: '/usr/bin/chromium-headless-shell',
+    args: [
+      '--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
+      '--disable-background-networking', '--disable-component-update', '--disable-sync',
+    ],
+    env: { ...process.env, TMPDIR: folder, TZ: 'UTC', FONTCONFIG_FILE: join(dirname(fileURLToPath(import.meta.url)), 'fonts.conf') },
+  })
+  const context = await browser.newContext({ viewport: { width: 1440, height: 900 } })
+  if (process.env.CULPRIT_FRESH_PAGE) {
+    for (const { path, type, contents } of bundle(modules))
+      await context.route((url) => url.pathname === path, (route) => route.fulfill({ contentType: type, body: Buffer.from(contents) }))
+  }
+  return context.newPage()
+}
+
+// All sessions of a test. Whatever a page complains of is a failure.
+export async function suite(sessions) {
+  try {
+    await sessions()
+    console.log('the session passed')
+  } catch (error) {
+    console.error(error)
+    process.exitCode = 1
+  } finally {
+    await browser?.close()
+  }
+}
+
+async function browse(server, steps, now = null) {
   const complaints = []
-  let browser
+  let page
   try {
     const address = await server.address
-    browser = await chromium.launchPersistentContext(profile, {
-      executablePath: '/usr/bin/chromium',
-      args: [
-        '--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-        '--disable-background-networking', '--disable-component-update', '--disable-sync',
-      ],
-      viewport: { width: 1440, height: 900 },
-    })
-    const page = browser.pages()[0] ?? (await browser.newPage())
+    page = await newPage()
     page.setDefaultTimeout(kPatience)
     page.on('pageerror', (error) => complaints.push(String(error)))
     page.on('console', (message) => {
@@ -86,55 +116,57 @@ async function browse(server, steps) {
       const isRefusal = /responded with a status of 4|ERR_INCOMPLETE_CHUNKED|ERR_CONNECTION_(REFUSED|RESET)|ERR_EMPTY_RESPONSE/.test(message.text())
       if (message.type() === 'error' && !isRefusal) complaints.push(message.text())
     })
+    if (now) await page.clock.setFixedTime(now)
     await page.goto(address)
     await steps(page, server)
     expect(complaints.length === 0, `the page complains: ${complaints.join('\n')}`)
-    console.log('the session passed')
+    await page.context().close()
   } catch (error) {
-    console.error(error, complaints)
-    process.exitCode = 1
+    if (complaints.length > 0) console.error(complaints)
+    await page?.screenshot({ path: join(folder, 'failed.png') }).catch(() => {})
+    throw error
   } finally {
-    await browser?.close()
     await server.end()
-    rmSync(profile, { recursive: true, force: true })
   }
 }
 
-// No serious issue of accessibility, in either colour scheme.
+// Nothing that axe knows of stands in anybody's way, in either colour scheme.
 export async function isAccessible(page) {
   for (const colorScheme of ['light', 'dark']) {
     await page.emulateMedia({ colorScheme })
-    await page.evaluate(axe)
-    const { violations } = await page.evaluate('axe.run()')
-    const serious = violations.filter((v) => v.impact === 'serious' || v.impact === 'critical')
-    const words = serious.map((v) => `${v.id}: ${v.nodes.map((n) => `${n.html} ${n.failureSummary}`).join('; ')}`)
-    expect(serious.length === 0, `not accessible (${colorScheme}):\n${words.join('\n')}`)
+    if (!(await page.evaluate('!!window.axe'))) await page.evaluate(axe)
+    // What the second scheme changes are the colours.
+    const options = colorScheme === 'light' ? {} : { runOnly: ['color-contrast'] }
+    const { violations } = await page.evaluate((o) => window.axe.run(document, o), options)
+    const words = violations.map((v) => `${v.id}: ${v.nodes.map((n) => `${n.html} ${n.failureSummary}`).join('; ')}`)
+    expect(violations.length === 0, `not accessible (${colorScheme}):\n${words.join('\n')}`)
   }
   await page.emulateMedia({ colorScheme: null })
 }
 
 // All that can be used can be reached by the Tab key alone, and one sees where one is.
 export async function isUsableByKeyboard(page) {
-  const kControls = 'a[href], button:enabled, select:enabled, input:enabled, summary, [tabindex="0"]'
-  await page.evaluate((controls) => {
+  const count = await page.evaluate(() => {
     document.activeElement.blur()
-    const isShown = (e) => e.checkVisibility({ visibilityProperty: true }) && !e.closest('[aria-hidden="true"]')
+    const controls = 'a[href], button:enabled, select:enabled, input:enabled, summary, [tabindex="0"]'
+    const isShown = (e) => e.checkVisibility({ visibilityProperty: true }) && !e.closest('[aria-hidden="true"]') && e.tabIndex >= 0
     window.unreached = new Set([...document.querySelectorAll(controls)].filter(isShown))
     window.unseen = []
-  }, kControls)
-  const most = 3 * (await page.evaluate('window.unreached.size'))
-  for (let i = 0; i < most && (await page.evaluate('window.unreached.size')) > 0; ++i) {
-    await page.keyboard.press('Tab')
-    await page.evaluate(() => {
+    window.arrive = () => {
       let here = document.activeElement
       while (here.shadowRoot?.activeElement) here = here.shadowRoot.activeElement
       window.unreached.delete(here)
       const framed = here.closest('.cm-editor') ?? here // the editor shows its focus around itself
       if (here !== document.body && getComputedStyle(framed).outlineStyle === 'none') window.unseen.push(here.outerHTML)
-    })
-  }
+    }
+    addEventListener('focusin', window.arrive)
+    return window.unreached.size
+  })
+  // Keys are taken in their order; nobody waits for each.
+  for (let i = 0; i < 3 && (await page.evaluate('window.unreached.size')) > 0; ++i)
+    await Promise.all(Array.from({ length: count + 2 }, () => page.keyboard.press('Tab')))
   // What is told of an order leaves by itself.
-  const left = await page.evaluate('[...window.unreached].filter((e) => e.isConnected).map((e) => e.outerHTML)')
+  const left = await page.evaluate('removeEventListener("focusin", window.arrive), [...window.unreached].filter((e) => e.isConnected).map((e) => e.outerHTML)')
   expect(left.length === 0, `cannot be reached by keyboard:\n${left.join('\n')}`)
   const unseen = await page.evaluate('window.unseen')
   expect(unseen.length === 0, `one does not see the focus:\n${unseen.join('\n')}`)

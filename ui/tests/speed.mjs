@@ -1,20 +1,32 @@
-// How fast the page is: no test, for it depends on the machine. Prints figures; what is asked for stands behind them.
+// How fast the page is: no test, for it depends on the machine. Prints what was measured beside what is asked for, and fails
+// if that is missed, as make bench does.
 //
-//     node speed.mjs <culprit> <node_modules> <folder>, with SUNSET's camera running in the DDS domain
-import { writeFileSync } from 'node:fs'
-import { file, session } from './session.mjs'
+//     node speed.mjs <culprit> <node_modules> <folder> [<journal of a day>]
+//
+// with SUNSET's camera running in the DDS domain and sunset-node in PATH. culprit-bench-day (bench/day_main.cpp) writes the journal.
+import { cpSync, writeFileSync } from 'node:fs'
+import { dirname, join } from 'node:path'
+import { fileURLToPath } from 'node:url'
+import { kLargeRobot, largeState } from './large_robot.mjs'
+import { expect, file, session, stubbed, suite } from './session.mjs'
 
+const kSunset = join(dirname(fileURLToPath(import.meta.url)), '../../rules/sunset.rules')
 const kRules = `ROBOT one_camera
-COMPONENT camera NODE /managed_subsystem/camera
+COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
 RULE CameraGone
   POLICIES ERROR
   TRIGGER alive(camera) == false
-    STRATEGY camera_restart 90 10
-      ADAPTATION camera restart 5
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera redeploy 5
 `
 writeFileSync(file('speed.rules'), kRules)
 const quantile = (values, q) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(q * values.length))]
-const tell = (what, value, asked) => console.log(`${what}: ${value.toFixed(1)} ms (asked for: ${asked})`)
+let missed = 0
+function tell(what, value, most = Infinity) {
+  if (value > most) ++missed
+  const asked = most === Infinity ? '' : value > most ? `MISSED, at most ${most} ms` : `at most ${most} ms`
+  console.log(`${what}: ${value.toFixed(1)} ms  ${asked}`)
+}
 
 // Also of a browser that has nothing in its cache: the server allows none.
 async function firstPaint(page) {
@@ -24,7 +36,7 @@ async function firstPaint(page) {
     await page.locator('.freshness.well').waitFor()
     paints.push(await page.evaluate(() => performance.getEntriesByName('first-contentful-paint')[0].startTime))
   }
-  tell('first contentful paint, median of 5', quantile(paints, 0.5), '< 1000')
+  tell('first contentful paint, median of 5', quantile(paints, 0.5), 1000)
 }
 
 // From the click to the sentence on the page: the call, the manager's step, the stream and the drawing.
@@ -35,6 +47,7 @@ async function event(page) {
     const times = []
     for (let i = 0; i < 40; ++i) {
       const before = list.querySelectorAll('li').length
+      const said = button().title
       const begin = performance.now()
       await new Promise((resolve) => {
         const watch = new MutationObserver(() => {
@@ -46,65 +59,104 @@ async function event(page) {
         button().click()
       })
       times.push(performance.now() - begin)
-      await new Promise((resolve) => setTimeout(resolve, 300)) // until the button says the other word
+      // Until the button says the other word, and can be pressed.
+      while (button().title === said || button().disabled) await new Promise((resolve) => setTimeout(resolve, 20))
     }
     return times
   })
-  tell('an order, from the click to its event on the page, median of 40', quantile(times, 0.5), '< 100')
-  tell('the same, p95', quantile(times, 0.95), '< 100')
+  tell('an order, from the click to its event on the page, median of 40', quantile(times, 0.5), 100)
+  tell('the same, p95', quantile(times, 0.95), 100)
 }
 
-// A robot of 500 nodes that tells its state 30 times a second, in place of the one of the server.
-function largeRobot() {
-  const kNodes = 500
-  const names = Array.from({ length: kNodes }, (_, i) => `node_${i}`)
-  const rules = names.map((name, i) => ({
-    name: `Rule${i}`, criticality: 'ERROR', attempts: 3, components: [name], inputs: [],
-    strategies: [{ name: 's', impact: 5, components: [name], prior: [5, 5], actions: [`restart ${name}`] }],
-  }))
-  const documents = {
-    robot: { robot: 'large', cycle_s: 0.2, components: names.map((name) => ({ name, can_start: true })), topics: names.map((n) => `/${n}`), inputs: [], rules },
-    graph: {
-      nodes: names.map((name) => ({ node: `/${name}`, present: true, component: name })),
-      edges: names.slice(1).map((name, i) => [`/${name}`, `/${names[Math.floor(i / 3)]}`, `/${names[Math.floor(i / 3)]}`]),
-    },
-    control: { paused: false, dry_run: false, hears: true, silences: [], asked: [] },
+// From the kill to the cause's name on the page, and how much of it is beyond the detection: the event says when that was,
+// by the same clock, to 10 ms.
+async function cause(page, program) {
+  const beyond = []
+  const whole = []
+  const bar = page.getByRole('region', { name: 'Status' })
+  for (let i = 0; i < 10; ++i) {
+    await bar.getByText('All is well').waitFor()
+    const pid = Number([...program.said().matchAll(/camera is there \(process (\d+)/g)].at(-1)[1])
+    const read = page.evaluate(
+      () =>
+        new Promise((resolve) => {
+          const cause = document.querySelector('.status-bar .cause')
+          const watch = new MutationObserver(() => {
+            if (!cause.textContent.includes('camera')) return
+            watch.disconnect()
+            // Drawn is what is on the screen after the next frame.
+            requestAnimationFrame(() => requestAnimationFrame(() => resolve(Date.now())))
+          })
+          watch.observe(cause, { childList: true, subtree: true, characterData: true })
+        })
+    )
+    const killed = Date.now()
+    process.kill(pid, 'SIGKILL')
+    const seen = await read
+    const line = page.locator('section.log li', { hasText: 'CameraGone detected' }).first()
+    const [h, m, s] = (await line.getByRole('button').innerText()).split(':').map(Number)
+    const day = new Date(seen).setUTCHours(0, 0, 0, 0)
+    beyond.push(seen - (day + 1000 * (3600 * h + 60 * m + s)))
+    whole.push(seen - killed)
   }
-  const state = (t) => ({
-    t,
-    clock: Date.now() / 1000,
-    rules: names.map(() => ({ phase: 'quiet', trigger: false })),
-    components: names.map((_, i) => ({ health: i === Math.floor(t * 30) % kNodes ? 'ERROR' : 'OK', present: true, alive: true })),
-    topics: names.map((_, i) => ({ rate: 10 + ((t * 30 + i) % 7), age: 0.1 })),
-    inputs: [], beliefs: names.map(() => [5, 5]), couplings: [],
-  })
-  const ofServer = window.fetch
-  window.fetch = (path, ...rest) => {
-    if (path !== '/api/stream') return ofServer(path, ...rest)
-    const encoder = new TextEncoder()
-    const body = new ReadableStream({
-      start(stream) {
-        const send = (kind, data) => stream.enqueue(encoder.encode(`event: ${kind}\ndata: ${JSON.stringify(data)}\n\n`))
-        for (const [kind, data] of Object.entries(documents)) send(kind, data)
-        let step = 0
-        setInterval(() => {
-          const t = ++step / 30
-          send('state', state(t))
-          const rule = `Rule${step % kNodes}`
-          send('event', step % 2 ? { t, type: 'failure_detected', label: 'detected', severity: 'warning', tone: 'alarm', text: `${rule} detected`, rule, criticality: 'ERROR' } : { t, type: 'failure_resolved', label: 'resolved', severity: 'info', tone: 'relief', text: `${rule} resolved`, rule: `Rule${(step - 1) % kNodes}` })
-        }, 1000 / 30)
-      },
+  tell('from the detection to the cause’s name on the page, median of 10', quantile(beyond, 0.5), 300)
+  tell('the same, the slowest', Math.max(...beyond), 300)
+  tell('from the kill to the cause’s name on the page, median of 10', quantile(whole, 0.5))
+}
+
+// A journal of a day (bench/day_main.cpp), served by the program: from the address in a new window, and from a click, to all
+// that one sees first: the timeline of the day, the list, and the newest incident with its own timeline and its decisions.
+async function aDayOfJournal(page) {
+  const isThere = () => {
+    const rows = document.querySelectorAll('.incident-list tbody tr').length
+    const bars = document.querySelectorAll('[aria-label="All incidents"] rect').length
+    const own = document.querySelectorAll('.incident-details .timeline rect').length
+    const told = document.querySelectorAll('.incident-details .log li').length
+    return rows >= 100 && bars > 0 && own > 0 && told > 0 && document.querySelector('[aria-label="Decisions"]') !== null
+  }
+  // Drawn is what is on the screen after the next frame.
+  const drawn = async () => {
+    await page.waitForFunction(isThere, undefined, { polling: 'raf' })
+    return page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve(Date.now())))))
+  }
+  const clicked = []
+  const opened = []
+  for (let i = 0; i < 5; ++i) {
+    await page.evaluate(() => (location.hash = 'robot'))
+    await page.locator('main.robot').waitFor()
+    const click = await page.evaluate(() => {
+      const now = Date.now()
+      document.querySelector('nav a[href="#incidents"]').click()
+      return now
     })
-    return Promise.resolve(new Response(body, { headers: { 'Content-Type': 'text/event-stream' } }))
+    clicked.push((await drawn()) - click)
+    const load = Date.now()
+    await page.reload({ waitUntil: 'commit' })
+    opened.push((await drawn()) - load)
   }
+  const count = Number(/\d+/.exec(await page.getByRole('button', { name: /^Show all/ }).innerText()))
+  console.log(`a journal of a day, with ${count} incidents:`)
+  tell('  opened by its address in a new window, median of 5', quantile(opened, 0.5), 1000)
+  tell('  the same, the slowest', Math.max(...opened), 1000)
+  tell('  from the click to all of it, median of 5', quantile(clicked, 0.5), 1000)
 }
 
-async function frames(page) {
-  await page.addInitScript(largeRobot)
-  const begin = Date.now()
-  await page.reload()
-  await page.getByRole('button', { name: 'node_499' }).waitFor()
-  tell('500 nodes: until the page shows them', Date.now() - begin, 'no figure')
+// A robot of 500 nodes that tells its state and an event 30 times a second.
+async function frames(page, server) {
+  for (const [kind, document] of Object.entries(kLargeRobot)) server.tell(kind, document)
+  let step = 0
+  const telling = setInterval(() => {
+    const t = ++step / 30
+    const clock = Date.now() / 1000
+    server.tell('state', largeState(t, clock))
+    const rule = `Rule${(step - (step % 2)) % 500}`
+    const both = { t, clock, rule, severity: 'info' }
+    server.tell('event', step % 2
+      ? { ...both, type: 'failure_resolved', label: 'resolved', tone: 'relief', text: `${rule} resolved` }
+      : { ...both, type: 'failure_detected', label: 'detected', tone: 'alarm', text: `${rule} detected`, criticality: 'ERROR' })
+    server.keepEvents(0)
+  }, 1000 / 30)
+  await page.getByText('and 440 more').waitFor()
   await page.waitForTimeout(3000) // the layout
   const times = await page.evaluate(
     () =>
@@ -121,14 +173,23 @@ async function frames(page) {
         requestAnimationFrame(frame)
       })
   )
+  clearInterval(telling)
   console.log(`500 nodes, 30 updates a second: ${times.length / 10} frames a second in 10 s`)
-  tell('  a frame, median', quantile(times, 0.5), 'fluid: < 33')
-  tell('  a frame, p95', quantile(times, 0.95), 'fluid: < 50')
-  tell('  a frame, longest', Math.max(...times), 'no figure')
+  tell('  a frame, median', quantile(times, 0.5), 1000 / 30)
+  tell('  a frame, p95', quantile(times, 0.95), 1000 / 30)
+  tell('  a frame, longest', Math.max(...times))
 }
 
-await session(['run', file('speed.rules'), '--web', '--no-journal', '--settle', '1'], async (page) => {
-  await firstPaint(page)
-  await event(page)
-  await frames(page)
+await suite(async () => {
+  await session(['run', file('speed.rules'), '--web', '--no-journal', '--settle', '1', '--healthy', '0', '--intensity', 'none', '--intensity-kind', 'none', '--intensity-component', 'none', '--restarts', 'none'], async (page, program) => {
+    await firstPaint(page)
+    await event(page)
+    await cause(page, program)
+  })
+  const day = process.argv[5]
+  const copy = file('day.journal') // for culprit writes on
+  if (day) cpSync(day, copy)
+  if (day) await session(['run', kSunset, '--web', '--journal', copy, '--dry-run'], aDayOfJournal)
+  await stubbed({ 'get /api/stream': () => [200, {}] }, frames)
+  expect(missed === 0, `${missed} of what is asked for is missed`)
 })

@@ -28,12 +28,13 @@ export async function stub(modules, calls = {}) {
       response.writeHead(200, { 'Content-Type': asset.type })
       return response.end(asset.contents)
     }
-    const name = `${request.method.toLowerCase()} ${request.url}`
+    const [path, query = ''] = request.url.split('?')
+    const name = `${request.method.toLowerCase()} ${path}`
     if (name === 'get /api/stream') return stream(response)
     if (name === 'get /api/about') return json(response, 200, { calls: Object.keys(calls) })
     let body = ''
     for await (const part of request) body += part
-    const sent = body ? JSON.parse(body) : null
+    const sent = body ? JSON.parse(body) : query ? Object.fromEntries(new URLSearchParams(query)) : null
     received.push([name, sent])
     if (!calls[name]) return json(response, 404, { error: 'there is no such page or call' })
     const [status, reply] = calls[name](sent)
@@ -52,6 +53,18 @@ export async function stub(modules, calls = {}) {
       if (kind !== 'event') said.splice(0, said.length, ...said.filter((each) => each.kind !== kind))
       said.push({ kind, data })
       write(block({ kind, data }))
+    },
+    // Whoever comes later is told no more than the last `count` events.
+    keepEvents(count) {
+      const events = said.filter((each) => each.kind === 'event')
+      const old = new Set(events.slice(0, events.length - count))
+      said.splice(0, said.length, ...said.filter((each) => !old.has(each)))
+    },
+    // Whoever reads is told that what was before counts no more, as by a culprit that has just begun.
+    anew() {
+      isSilent = false
+      said.length = 0
+      write(block({ kind: 'hello', data: { resumed: false } }))
     },
     // Connections end, and nothing is known any more; whoever comes again is told what is told from now on.
     forget() {

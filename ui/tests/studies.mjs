@@ -1,6 +1,6 @@
 // A campaign that is started, watched and read; a result that is opened; and rules in one another's way, drawn.
 import { writeFileSync } from 'node:fs'
-import { culprit, expect, file, isAccessible, isUsableByKeyboard, picture, session } from './session.mjs'
+import { culprit, expect, file, isAccessible, isUsableByKeyboard, picture, session, suite } from './session.mjs'
 
 const kRules = `COMPONENT lamp NODE /lamp
 SIGNAL brightness TOPIC /light FIELD data
@@ -105,10 +105,12 @@ async function opened(page) {
 }
 
 process.env.XDG_STATE_HOME = file('studies') // where campaigns leave their results
-await session(['web', path], async (page) => {
-  await conflicts(page)
-  await campaign(page)
-  await run(page)
-  await result(page)
-  await opened(page)
-})
+await suite(() =>
+  session(['web', path], async (page) => {
+    await conflicts(page)
+    await campaign(page)
+    await run(page)
+    await result(page)
+    await opened(page)
+  })
+)

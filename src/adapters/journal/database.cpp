@@ -176,6 +176,19 @@ bool Database::is_damaged(const std::filesystem::path& path, std::span<const cha
   return code != SQLITE_OK && is_of_the_file(code);
 }
 
+Expected<std::filesystem::path> Database::set_aside(const std::filesystem::path& path) {
+  namespace fs = std::filesystem;
+  fs::path aside;
+  for (int n = 1; aside.empty() || fs::exists(aside); ++n)
+    aside = path.string() + ".damaged-" + std::to_string(n);
+  std::error_code error;
+  for (const char* part : {"-wal", "-shm"})
+    fs::rename(path.string() + part, aside.string() + part, error);
+  fs::rename(path, aside, error);
+  if (error) return Error{error.message()};
+  return aside;
+}
+
 Error Database::error() const {
   const int code = sqlite3_extended_errcode(connection_.get());
   *blames_file_ = is_of_the_file(code);

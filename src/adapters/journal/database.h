@@ -73,6 +73,8 @@ class Database {
 
   // Likewise of a file that cannot be opened, or in which one of `looks` fails.
   static bool is_damaged(const std::filesystem::path& path, std::span<const char* const> looks);
+  // Moves a file and what SQLite keeps beside it to the first free name, "<path>.damaged-<n>".
+  static Expected<std::filesystem::path> set_aside(const std::filesystem::path& path);
 
  private:
   struct Close {

@@ -44,6 +44,7 @@ class EventWriter {
   void operator()(const FailureDetected& e) const {
     about(e.rule);
     json_["criticality"] = culprit::to_string(rules_[e.rule].policies.criticality);
+    if (e.known_dead) json_["known_dead"] = name(*e.known_dead);
   }
   void operator()(const FailureResolved& e) const {
     about(e.rule);
@@ -154,6 +155,15 @@ class EventWriter {
   void operator()(const JudgementSuspended& e) const { json_["reason"] = e.reason; }
   void operator()(const JudgementResumed&) const {}
   void operator()(const SleepNoticed& e) const { json_["time_ns"] = e.time.count(); }
+  void operator()(const PriorsAdopted& e) const {
+    json_["source"] = e.source;
+    Json& priors = json_["priors"] = Json::array();
+    for (const PriorsTold::Prior& each : e.priors)
+      priors.push_back({{"rule", name(rules_[each.strategy].rule)},
+                        {"strategy", name(each.strategy)},
+                        {"alpha", each.alpha},
+                        {"beta", each.beta}});
+  }
 
  private:
   void about(RuleId id) const { json_["rule"] = name(id); }
@@ -333,6 +343,7 @@ class EventReader {
   bool complete(ActionHeldBack&) const { return false; }  // by which restraint?
   bool complete(SilenceEnded&) const { return false; }    // of what?
   bool complete(NeverSeen&) const { return false; }       // each run finds out anew
+  bool complete(PriorsAdopted&) const { return false; }   // likewise
 
   bool complete(Order& order) const {
     order.author = text_of(json_, "author");

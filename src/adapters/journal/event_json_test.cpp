@@ -78,7 +78,8 @@ std::vector<decltype(Event::what)> samples() {
           StormEnded{},
           JudgementSuspended{"deaf"},
           JudgementResumed{},
-          SleepNoticed{3s}};
+          SleepNoticed{3s},
+          PriorsAdopted{{{s, 4.5, 1.5}}, "3 robots"}};
 }
 
 std::vector<std::string> golden_rows() {

@@ -5,14 +5,7 @@
 namespace culprit::journal {
 
 Belief grown_from(const Belief& prior, const LearnedBelief& learned) {
-  if (prior == learned.prior) return learned.belief;
-  // Forgetting may have gone below the old prior: none comes to less than in Beliefs.
-  const auto grown = [](double from, double count, double old) {
-    constexpr double kLeast = 0.05;
-    return std::max(std::min(kLeast, from), from + count - old);
-  };
-  return {grown(prior.alpha, learned.belief.alpha, learned.prior.alpha),
-          grown(prior.beta, learned.belief.beta, learned.prior.beta)};
+  return regrown(learned.belief, learned.prior, prior);
 }
 
 void merge(Learned& learned, const Learned& other) {

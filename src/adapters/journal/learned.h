@@ -14,7 +14,7 @@ struct LearnedBelief {
   std::string rule;
   std::string strategy;
   Belief belief;
-  Belief prior;  // the designer's, that `belief` grew from
+  Belief prior;  // the designer's or the fleet's, that `belief` grew from
   bool operator==(const LearnedBelief&) const = default;
 };
 

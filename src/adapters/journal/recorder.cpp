@@ -203,7 +203,7 @@ Learned Recorder::changes() {
     beliefs_[s] = belief;
     const Strategy& strategy = rules_.strategies[s];
     learned.beliefs.push_back({rules_[strategy.rule].name, strategy.name, belief,
-                               initial_belief(strategy.success, strategy.confidence)});
+                               knowledge_.beliefs.prior(StrategyId(s))});
   }
   for (std::size_t r = 0; r < couplings_.size(); ++r) {
     const auto all = knowledge_.couplings.of(RuleId(r));

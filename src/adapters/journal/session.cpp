@@ -84,6 +84,7 @@ Json to_json(const Session& session) {
           {"paused", session.is_paused},
           {"dry_run", session.is_dry_run},
           {"orders_kept", session.orders_kept},
+          {"fleet", session.fleet_context ? Json{{"context", *session.fleet_context}} : Json()},
           {"rules_path", session.rules_path},
           {"rules_text", session.rules_text},
           {"occasion", session.occasion},
@@ -119,6 +120,8 @@ Expected<Session> session_from_json(const Json& json) {
   session.is_paused = flag_of(json, "paused");
   session.is_dry_run = flag_of(json, "dry_run");
   session.orders_kept = flag_of(json, "orders_kept");
+  const Json fleet = json.value("fleet", Json());
+  if (fleet.is_object()) session.fleet_context = text_of(fleet, "context");
   if (!(session.forgetting > 0 && session.forgetting <= 1) ||
       session.discovery < Duration::zero() || session.rules_text.size() > (64u << 20))
     return Error{"the beginning of a run cannot be read"};

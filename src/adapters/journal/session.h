@@ -1,6 +1,9 @@
 // One run of culprit: all that the manager was made with, so that a replay can make it anew.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "base/time.h"
 #include "journal/json.h"
 #include "journal/learned.h"
@@ -34,6 +37,9 @@ struct Session {
   // What stands of people's orders is in a file of its own (standing_orders.h); older culprits have
   // it in the rows only.
   bool orders_kept = false;
+  // The context in which what is learned is shared with a fleet; nothing: it is not. Beliefs begin
+  // from the fleet's priors then, which are told in the steps; those of `learned` hold until that.
+  std::optional<std::string> fleet_context;
 };
 
 // Also the form of what `culprit beliefs export` writes.

@@ -27,7 +27,10 @@ enum class Tag : std::uint8_t {
   kParametersListed = 20,
   kProcessWorked = 21,
   kHostReached = 22,
-  kEndsWith = 23
+  kEndsWith = 23,
+  kProcessSeenWithCause = 24,
+  kLauncherSeen = 25,
+  kPriorsTold = 26
 };
 
 enum class OrderTag : std::uint8_t {
@@ -122,11 +125,19 @@ class Encoder {
     word(o.state);
   }
   void write(const ProcessSeen& o, Duration age) {
-    head(Tag::kProcessSeen, age);
+    const bool has_cause = o.cause != Cause::kUnknown;
+    head(has_cause ? Tag::kProcessSeenWithCause : Tag::kProcessSeen, age);
     out_.natural(o.component.index);
     word(o.state);
     out_.integer(o.pid);
     out_.text(o.remark);
+    if (has_cause) word(o.cause);
+  }
+  void write(const LauncherSeen& o, Duration age) {
+    head(Tag::kLauncherSeen, age);
+    out_.natural(o.component.index);
+    out_.integer(o.pid);
+    out_.byte(o.has_ended ? 1 : 0);
   }
   void write(const ProcessWorked& o, Duration age) {
     head(Tag::kProcessWorked, age);
@@ -192,6 +203,16 @@ class Encoder {
     head(Tag::kParametersListed, age);
     out_.natural(o.component.index);
     texts(o.names);
+  }
+  void write(const PriorsTold& o, Duration age) {
+    head(Tag::kPriorsTold, age);
+    out_.natural(o.priors.size());
+    for (const PriorsTold::Prior& each : o.priors) {
+      out_.natural(each.strategy.index);
+      out_.real(each.alpha);
+      out_.real(each.beta);
+    }
+    out_.text(o.source);
   }
   void texts(const std::vector<std::string>& all) {
     out_.natural(all.size());
@@ -319,13 +340,20 @@ class Decoder {
         const auto component = id<ComponentId>(rules_.components.size());
         return LifecycleRead{component, word(Lifecycle::kTransition)};
       }
-      case Tag::kProcessSeen: {
+      case Tag::kProcessSeen:
+      case Tag::kProcessSeenWithCause: {
         ProcessSeen seen;
         seen.component = id<ComponentId>(rules_.components.size());
         seen.state = word(ProcessState::kGone);
         seen.pid = pid();
         seen.remark = in_.text();
+        if (tag == Tag::kProcessSeenWithCause) seen.cause = word(Cause::kWish);
         return seen;
+      }
+      case Tag::kLauncherSeen: {
+        const auto component = id<ComponentId>(rules_.components.size());
+        const int launcher = pid();
+        return LauncherSeen{component, launcher, in_.byte() != 0};
       }
       case Tag::kProcessWorked: {
         const auto component = id<ComponentId>(rules_.components.size());
@@ -362,6 +390,16 @@ class Decoder {
         return HearingRegained{};
       case Tag::kOverslept:
         return Overslept{Duration(in_.integer())};
+      case Tag::kPriorsTold: {
+        PriorsTold told;
+        for (std::uint64_t left = in_.natural(); left > 0 && in_.is_good(); --left) {
+          const auto strategy = id<StrategyId>(rules_.strategies.size());
+          const double alpha = in_.real();
+          told.priors.push_back({strategy, alpha, in_.real()});
+        }
+        told.source = in_.text();
+        return told;
+      }
       case Tag::kStatusHeard: {
         StatusHeard heard;
         heard.name = in_.text();

@@ -69,7 +69,7 @@ decltype(Order::what) any_order() {
 decltype(Observation::what) anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 22)) {
+  switch (*rc::gen::inRange(0, 24)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -89,7 +89,8 @@ decltype(Observation::what) anything() {
     case 8:
       return LifecycleRead{component, Lifecycle::kTransition};
     case 9:
-      return ProcessSeen{component, ProcessState::kStopped, 7, text};
+      return ProcessSeen{component, ProcessState::kStopped, 7, text,
+                         static_cast<Cause>(*rc::gen::inRange(0, 3))};
     case 10:
       return Probed{component, *rc::gen::arbitrary<bool>()};
     case 11: {
@@ -117,6 +118,10 @@ decltype(Observation::what) anything() {
     case 20:
       return EndsWith{component, std::vector<ComponentId>(*rc::gen::inRange<std::size_t>(0, 3),
                                                           ComponentId(1))};
+    case 21:
+      return LauncherSeen{component, *rc::gen::inRange(0, 100000), *rc::gen::arbitrary<bool>()};
+    case 22:
+      return PriorsTold{{{StrategyId(0), *rc::gen::arbitrary<double>(), 2.5}}, text};
     default:
       return LinkTrouble{text};
   }

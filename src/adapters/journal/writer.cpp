@@ -23,19 +23,6 @@ std::uint64_t inode_of(const fs::path& path) {
   return stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
-// Moves a file and what SQLite keeps beside it to the first free name.
-Expected<fs::path> set_aside(const fs::path& path) {
-  fs::path aside;
-  for (int n = 1; aside.empty() || fs::exists(aside); ++n)
-    aside = path.string() + ".damaged-" + std::to_string(n);
-  std::error_code error;
-  for (const char* part : {"-wal", "-shm"})
-    fs::rename(path.string() + part, aside.string() + part, error);
-  fs::rename(path, aside, error);
-  if (error) return Error{error.message()};
-  return aside;
-}
-
 Expected<Database> open_database(const fs::path& path) {
   auto database = Database::open(path, Database::Mode::kWrite);
   if (!database) return database;
@@ -116,7 +103,7 @@ Expected<Writer> Writer::open(const fs::path& path, Options options) {
   const bool looks_damaged = path.extension() == ".journal" && journal::is_damaged(path);
   if (fs::exists(path) && (options.is_damaged || looks_damaged)) {
     saved = saved_from(path, copy);
-    const auto moved = set_aside(path);
+    const auto moved = Database::set_aside(path);
     if (!moved) return failure(path, "it is damaged, and cannot be moved: " + moved.error());
     aside = *moved;
     remark = "the journal was damaged; it is kept as '" + aside.string() +

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/ros_names.h"
 #include "base/tracer.h"
 #include "link/list_parameter.h"
 #include "link/service_call.h"
@@ -57,21 +58,27 @@ msg::Transition to_message(Transition transition) {
 }  // namespace
 
 ComponentLink::ComponentLink(NodeEntry& self, ComponentId component, std::string node,
-                             const RuleSet& rules, Inbox& inbox,
-                             std::vector<std::filesystem::path> message_path)
+                             const RuleSet& rules, Inbox& inbox, TypeFinder& types)
     : self_(self),
       component_(component),
       node_(std::move(node)),
       rules_(rules),
       needs_(needs_of(component, rules)),
       inbox_(inbox),
-      message_path_(std::move(message_path)) {}
+      types_(types),
+      tasks_(self.context().executor()) {}
 
-void ComponentLink::service_seen(const std::string& service, const std::string& type) {
+void ComponentLink::service_seen(const GraphEndpoint& seen) {
+  const std::string& service = seen.name;
+  const TypeFinder::Offer offer{node_, seen.type, seen.service_hash, pid_, seen.type_hash};
   {
     const MutexLock lock(mutex_);
-    services_[service] = type;
+    services_[service] = offer;
   }
+  const bool is_called =
+      std::any_of(needs_.routines.begin(), needs_.routines.end(),
+                  [&](const std::string& name) { return service_of(name, node_) == service; });
+  if (is_called && !offer.hash.empty()) types_.find(offer, [](const Expected<MessageLibrary*>&) {});
   if (service == node_ + "/change_state") {
     watch_transitions();
     read_lifecycle(kJoining, Told::kAlways);
@@ -366,23 +373,34 @@ void ComponentLink::run(const Command& command, const ReadParameter& what) {
 }
 
 void ComponentLink::run(const Command& command, const CallService& what) {
-  std::string type;
+  TypeFinder::Offer offer;
   {
     const MutexLock lock(mutex_);
     const auto known = services_.find(what.service);
-    if (known != services_.end()) type = known->second;
+    if (known != services_.end()) offer = known->second;
   }
-  if (type.empty())
+  if (offer.type.empty())
     return reply(command,
                  {Outcome::kUnreachable, {}, node_ + " offers no service " + what.service});
-  const auto call = ServiceCall::prepare(type, what.request, message_path_, pid_);
-  if (!call) return reply(command, {Outcome::kRefused, {}, call.error()});
-  ServiceClient* client = routine(what.service, type);
+  offer.pid = pid_;
+  tasks_.post([this, command, what, offer] {
+    types_.find(offer, [this, command, what, offer](const Expected<MessageLibrary*>& library) {
+      if (!library) return reply(command, {Outcome::kRefused, {}, library.error()});
+      const auto prepared = ServiceCall::prepare(offer.type, what.request, **library);
+      if (!prepared) return reply(command, {Outcome::kRefused, {}, prepared.error()});
+      call(command, offer.type, what.service, *prepared);
+    });
+  });
+}
+
+void ComponentLink::call(const Command& command, const std::string& type,
+                         const std::string& service, const ServiceCall& call) {
+  ServiceClient* client = routine(service, type);
   if (client == nullptr)
     return reply(command, {Outcome::kUnreachable, {}, "no client could be made"});
   client->call(
-      call->request(), Repeat::kNever, command.timeout,
-      [this, command, type, asked = *call](const CallResult& result) {
+      call.request(), Repeat::kNever, command.timeout,
+      [this, command, type, asked = call](const CallResult& result) {
         if (const auto none = why_unanswered(result, command, type)) return reply(command, *none);
         const auto verdict = asked.judge(result.reply);
         if (!verdict)

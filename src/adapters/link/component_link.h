@@ -9,7 +9,6 @@
 #pragma once
 
 #include <atomic>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -18,28 +17,34 @@
 #include "base/mutex.h"
 #include "language/rule_set.h"
 #include "link/component_needs.h"
+#include "link/type_finder.h"
 #include "robot/command.h"
 #include "robot/inbox.h"
+#include "ros2/executor.h"
+#include "ros2/graph.h"
 #include "ros2/messages.h"
 #include "ros2/service_client.h"
 #include "ros2/subscription.h"
 
 namespace culprit::ros2 {
 
+class ServiceCall;
+
 // All members may be called from any thread. What comes of them is put into the inbox: a Reply for
 // each command, and LifecycleRead, ParameterRead, ParametersListed and Probed as they become known.
 class ComponentLink {
  public:
   // `self` is our own node, `node` the component's full name. All references must outlive the link.
-  // `message_path`: where .srv files are.
+  // `types` is asked on the executor's thread, and not after the link is gone.
   ComponentLink(NodeEntry& self, ComponentId component, std::string node, const RuleSet& rules,
-                Inbox& inbox, std::vector<std::filesystem::path> message_path = {});
+                Inbox& inbox, TypeFinder& types);
 
   // The process of the node, on this machine; 0: it is not known.
   void lives_in(int pid) { pid_ = pid; }
 
-  // The node was seen to offer a service: readies the client, reads the present state.
-  void service_seen(const std::string& service, const std::string& type);
+  // The node was seen to offer a service: readies the client, reads the present state, and finds
+  // out what a routine takes while the node is well enough to be asked. On the executor's thread.
+  void service_seen(const GraphEndpoint& service);
 
   // A cheap read that proves that the node answers: of its lifecycle, which is told as by
   // check_lifecycle(), or of no parameter. `pid` is its process; 0: it is not known. That a traced
@@ -68,6 +73,8 @@ class ComponentLink {
   void run(const Command& command, const SetParameter& what);
   void run(const Command& command, const ReadParameter& what);
   void run(const Command& command, const CallService& what);
+  void call(const Command& command, const std::string& type, const std::string& service,
+            const ServiceCall& call);
   void run(const Command& command, const ChangeMode& what);
   void run(const Command& command, const ReadMode& what);
   // Processes are not this link's.
@@ -108,7 +115,7 @@ class ComponentLink {
   const RuleSet& rules_;
   const ComponentNeeds needs_;
   Inbox& inbox_;
-  const std::vector<std::filesystem::path> message_path_;
+  TypeFinder& types_;
   // Not under the mutex: a receive thread that waited for it would stop whoever makes a client.
   std::atomic<int> pid_ = 0;
   std::atomic<Lifecycle> told_ = Lifecycle::kUnknown;
@@ -123,12 +130,13 @@ class ComponentLink {
   std::unique_ptr<ServiceClient> parameter_names_;   // if one was missing
   std::unique_ptr<ServiceClient> modes_;
   std::map<std::string, std::unique_ptr<ServiceClient>> routines_ CULPRIT_GUARDED_BY(mutex_);
-  std::map<std::string, std::string> services_
-      CULPRIT_GUARDED_BY(mutex_);  // that the node offers: name -> type
+  std::map<std::string, TypeFinder::Offer> services_
+      CULPRIT_GUARDED_BY(mutex_);  // that the node offers, by name
   Mutex lists_mutex_;              // another one: receive threads take it
   std::map<std::string, std::uint8_t> lists_
       CULPRIT_GUARDED_BY(lists_mutex_);  // parameters that were read to be lists -> type
   std::unique_ptr<RawSubscription> transitions_;
+  TaskGroup tasks_;  // goes first
 };
 
 }  // namespace culprit::ros2

@@ -331,13 +331,13 @@ void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
     systems_[manager].push_back(system);
     inbox_.put(NodeAppeared{system, pids_[manager]});
   }
-  make_link(*component, system)->service_seen(service.name, service.type);
+  make_link(*component, system)->service_seen(service);
 }
 
 void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
   if (endpoint.kind == EndpointKind::kServer) {
     const auto component = binding_.bind(node);
-    if (component) make_link(*component, node)->service_seen(endpoint.name, endpoint.type);
+    if (component) make_link(*component, node)->service_seen(endpoint);
     if (endpoint.type == srv::ChangeMode::kType) on_system(node, endpoint);
   }
   if (endpoint.kind == EndpointKind::kPublisher) {
@@ -409,8 +409,8 @@ ComponentLink* Link::make_link(ComponentId component, const std::string& node) {
   const MutexLock lock(mutex_);
   auto& link = links_[component.index];
   if (!link)
-    link = std::make_unique<ComponentLink>(node_->entry(), component, node, rules_, inbox_,
-                                           options_.types.message_path);
+    link =
+        std::make_unique<ComponentLink>(node_->entry(), component, node, rules_, inbox_, *types_);
   return link.get();
 }
 

@@ -6,7 +6,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include "base/closest.h"
-#include "link/type_finder.h"
 #include "ros2/names.h"
 
 namespace culprit::ros2 {
@@ -182,15 +181,10 @@ std::optional<FieldReader> first_of(MessageLibrary& library, const std::string& 
 }  // namespace
 
 Expected<ServiceCall> ServiceCall::prepare(const std::string& type, const std::string& request,
-                                           const std::vector<std::filesystem::path>& message_path,
-                                           int server) {
+                                           MessageLibrary& library) {
   if (!is_valid_type_name(type)) return Error{"'" + printable(type) + "' is no type of a service"};
   const std::string asked = type + "_Request";
   const std::string answered = type + "_Response";
-  MessageLibrary of_server = files_of_process(server);
-  MessageLibrary ours(message_path);
-  const bool is_servers = of_server.find(asked) && of_server.find(answered);
-  MessageLibrary& library = is_servers ? of_server : ours;
   if (const auto known = library.find(asked); !known) return Error{known.error()};
   auto payload = payload_of(library, asked, request);
   if (!payload) return Error{type + ": " + payload.error()};

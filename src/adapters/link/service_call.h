@@ -1,30 +1,26 @@
 // A call of a service of any type, as a person writes it: what is sent, and what the answer means.
 //
 // The request is YAML, as `ros2 service call` takes it: `data: true`, `{name: arm, target_state: {label:
-// active}}`. What is left out is 0, false or empty. The type is that of the server's process, where
-// that can be looked at (.srv files below its own root directory), or else that of our files; a few
-// that are the same everywhere are built in.
+// active}}`. What is left out is 0, false or empty.
 //
 // An answer refuses if it says so: by `success`, `ok`, `successful` or `result.successful`. Where it
 // has none of them, that it came is all that there is to know.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "ros2/field_reader.h"
+#include "ros2/message_library.h"
 
 namespace culprit::ros2 {
 
 class ServiceCall {
  public:
-  // `type` is "package/srv/Type"; `server` is the server's process on this machine, 0 where it is
-  // not known. Errors: the type is not known, or the request does not fit it.
+  // `type` is "package/srv/Type", `library` what knows both its messages as the server means them
+  // (type_finder.h). Errors: it does not know them, or the request does not fit.
   static Expected<ServiceCall> prepare(const std::string& type, const std::string& request,
-                                       const std::vector<std::filesystem::path>& message_path,
-                                       int server);
+                                       MessageLibrary& library);
 
   // A whole payload.
   const Bytes& request() const { return request_; }

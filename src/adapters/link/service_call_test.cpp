@@ -16,7 +16,8 @@ using testing::HasSubstr;
 
 Expected<ServiceCall> call(const std::string& type, const std::string& request,
                            const std::vector<std::filesystem::path>& message_path = {}) {
-  return ServiceCall::prepare(type, request, message_path, 0);
+  MessageLibrary library(message_path);
+  return ServiceCall::prepare(type, request, library);
 }
 
 // As the robot's own controller_manager defines it; the fields are others in each distribution.

@@ -1,11 +1,17 @@
 #include "link/survey.h"
 
+#include <algorithm>
+#include <future>
+
 #include "ros2/process_finder.h"
 
 namespace culprit::ros2 {
 namespace {
 
 constexpr std::size_t kMaxStatuses = 10'000;  // the network decides how many there are
+constexpr std::size_t kMaxLoggers = 2'000;    // likewise
+constexpr std::size_t kMaxLines = 30;         // of each
+constexpr std::size_t kMaxText = 2'000;       // bytes of a line
 
 }  // namespace
 
@@ -25,6 +31,7 @@ Survey::~Survey() {
   tasks_.reset();
   topics_read_.clear();
   nodes_read_.clear();
+  log_.reset();
   diagnostics_.reset();
   parameter_events_.reset();
   types_.reset();
@@ -70,12 +77,45 @@ void Survey::ask_for(LiveInterest interest) {
   tasks_->post([this, interest = std::move(interest)] { on_interest(interest); });
 }
 
+void Survey::listen_to_log() {
+  tasks_->post([this] {
+    if (log_) return;
+    // Best effort: a reader that dawdles must not hold a node back that logs.
+    constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 100};
+    auto log = node_->create_subscription<msg::Log>("/rosout", kQos,
+                                                    [this](const msg::Log& line) { on_log(line); });
+    if (log) log_ = std::move(*log);
+  });
+}
+
+void Survey::on_log(const msg::Log& line) {
+  const MutexLock lock(mutex_);
+  if (log_lines_.size() >= kMaxLoggers && !log_lines_.contains(line.name)) return;
+  std::deque<msg::Log>& lines = log_lines_[line.name];
+  lines.push_back(line);
+  if (lines.back().msg.size() > kMaxText) lines.back().msg.resize(kMaxText);
+  if (lines.size() > kMaxLines) lines.pop_front();
+}
+
+std::vector<msg::Log> Survey::log_of(const std::string& logger) const {
+  std::vector<msg::Log> all;
+  const MutexLock lock(mutex_);
+  for (const auto& [name, lines] : log_lines_) {
+    if (name == logger || name.starts_with(logger + "."))
+      all.insert(all.end(), lines.begin(), lines.end());
+  }
+  std::ranges::stable_sort(
+      all, {}, [](const msg::Log& line) { return std::pair(line.stamp.sec, line.stamp.nanosec); });
+  if (all.size() > kMaxLines) all.erase(all.begin(), all.end() - kMaxLines);
+  return all;
+}
+
 LiveInventory Survey::inventory() const {
   LiveInventory all;
   const MutexLock lock(mutex_);
   for (const auto& [node, services] : services_) {
     all.nodes[node];
-    all.services.insert(services.begin(), services.end());
+    for (const auto& [service, endpoint] : services) all.services.emplace(service, endpoint.type);
   }
   for (const auto& [node, reading] : nodes_read_) all.nodes[node] = reading->told();
   for (const auto& [node, pid] : pids_) {
@@ -97,6 +137,43 @@ std::map<std::string, Rhythm> Survey::rhythms() const {
   const MutexLock lock(mutex_);
   for (const auto& [topic, reading] : topics_read_) all[topic] = reading->rhythm();
   return all;
+}
+
+std::map<std::string, std::map<std::string, ValueCourse>> Survey::fields() const {
+  std::map<std::string, std::map<std::string, ValueCourse>> all;
+  const MutexLock lock(mutex_);
+  for (const auto& [topic, reading] : topics_read_) all[topic] = reading->courses();
+  return all;
+}
+
+std::map<Survey::StatusKey, StatusCourse> Survey::statuses() const {
+  const MutexLock lock(mutex_);
+  return courses_;
+}
+
+Expected<MessageLibrary> Survey::find_service_type(const std::string& service) {
+  auto found = std::make_shared<std::promise<Expected<MessageLibrary>>>();
+  tasks_->post([this, service, found] {
+    for (const auto& [node, services] : services_) {
+      const auto offered = services.find(service);
+      if (offered == services.end()) continue;
+      const GraphEndpoint& endpoint = offered->second;
+      return types_->find(
+          {node, endpoint.type, endpoint.service_hash, pid_of(node), endpoint.type_hash},
+          [found](const Expected<MessageLibrary*>& library) {
+            found->set_value(library ? Expected<MessageLibrary>(**library)
+                                     : Expected<MessageLibrary>(Error{library.error()}));
+          });
+    }
+    found->set_value(Error{"nobody offers " + service + " any more"});
+  });
+  return found->get_future().get();
+}
+
+int Survey::pid_of(const std::string& node) const {
+  const MutexLock lock(mutex_);
+  const auto known = pids_.find(node);
+  return known == pids_.end() ? 0 : known->second;
 }
 
 // ---- the graph
@@ -127,7 +204,7 @@ void Survey::on_endpoint(const std::string& node, const GraphEndpoint& endpoint)
   if (endpoint.kind == EndpointKind::kServer) {
     {
       const MutexLock lock(mutex_);
-      services_[node][endpoint.name] = endpoint.type;
+      services_[node][endpoint.name] = endpoint;
     }
     const auto reading = nodes_read_.find(node);
     if (reading != nodes_read_.end()) reading->second->service_seen(endpoint.name);
@@ -190,7 +267,7 @@ void Survey::on_interest(LiveInterest interest) {
 void Survey::read_node(const std::string& node) {
   if (!interest_.includes_node(node) || nodes_read_.contains(node)) return;
   auto reading = std::make_unique<NodeReading>(*node_, node);
-  for (const auto& [service, type] : services_[node]) reading->service_seen(service);
+  for (const auto& [service, endpoint] : services_[node]) reading->service_seen(service);
   const MutexLock lock(mutex_);
   nodes_read_.emplace(node, std::move(reading));
 }
@@ -205,12 +282,7 @@ void Survey::read_topic(const std::string& topic) {
     return reading->second->publisher_offers(read.offered);
   if (wanted->second.empty()) return read_topic_with(topic, read.type, nullptr);
   const std::string& publisher = *read.publishers.begin();
-  int pid = 0;
-  {
-    const MutexLock lock(mutex_);
-    if (const auto known = pids_.find(publisher); known != pids_.end()) pid = known->second;
-  }
-  types_->find({publisher, read.type, read.type_hash, pid},
+  types_->find({publisher, read.type, read.type_hash, pid_of(publisher)},
                [this, topic, type = read.type](const Expected<MessageLibrary*>& library) {
                  read_topic_with(topic, type, library);
                });
@@ -241,7 +313,14 @@ void Survey::on_diagnostics(const msg::DiagnosticArray& message) {
     if (statuses_.size() >= kMaxStatuses && !statuses_.contains(key)) continue;
     LiveInventory::Status& status = statuses_[key];
     status = {heard.name, heard.hardware_id, heard.level, {}};
-    for (const msg::KeyValue& pair : heard.values) status.values[pair.key] = pair.value;
+    StatusCourse& course = courses_[key];
+    ++course.messages;
+    course.worst = std::max(course.worst, heard.level);
+    for (const msg::KeyValue& pair : heard.values) {
+      status.values[pair.key] = pair.value;
+      if (course.keys.size() < StatusCourse::kMostKeys || course.keys.contains(pair.key))
+        course.keys[pair.key].note(value_from_text(pair.value));
+    }
   }
 }
 

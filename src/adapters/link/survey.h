@@ -5,7 +5,7 @@
 // asked for is not read.
 #pragma once
 
-#include <filesystem>
+#include <deque>
 #include <map>
 #include <memory>
 #include <set>
@@ -15,6 +15,7 @@
 
 #include "base/mutex.h"
 #include "language/live_inventory.h"
+#include "link/course.h"
 #include "link/node_reading.h"
 #include "link/rhythm.h"
 #include "link/topic_reading.h"
@@ -41,12 +42,22 @@ class Survey {
 
   // What is known by now.
   LiveInventory inventory() const;
+  // Hears /rosout from now on.
+  void listen_to_log();
+  // The last lines that loggers of this name, and of names below it, wrote since then; the newest last.
+  std::vector<msg::Log> log_of(const std::string& logger) const;
   // How the messages came of the topics that were asked for, since they are.
   std::map<std::string, Rhythm> rhythms() const;
 
-  const std::vector<std::filesystem::path>& message_path() const {
-    return options_.types.message_path;
-  }
+  // How the fields went that were asked for of a topic, since they are; by topic and field.
+  std::map<std::string, std::map<std::string, ValueCourse>> fields() const;
+  // How each diagnostic status went; by name and hardware id.
+  using StatusKey = std::pair<std::string, std::string>;
+  std::map<StatusKey, StatusCourse> statuses() const;
+
+  // What has both messages of a service that is there; it may be that its node is asked for them.
+  // Waits for that, TypeFinder::kPatience at most. Not on the executor's thread.
+  Expected<MessageLibrary> find_service_type(const std::string& service);
 
  private:
   struct TopicUse {
@@ -56,7 +67,6 @@ class Survey {
     std::string type_hash;
     Qos offered;  // of a publisher; of one that latches, if there is one
   };
-  using StatusKey = std::pair<std::string, std::string>;  // name and hardware id
 
   explicit Survey(Options options);
   Expected<void> start();
@@ -68,11 +78,13 @@ class Survey {
   void on_endpoint_left(const EndpointLeft& gone);
   void on_parameter_event(const msg::ParameterEvent& event);
   void on_diagnostics(const msg::DiagnosticArray& message);
+  void on_log(const msg::Log& line);
   void on_interest(LiveInterest interest);
   void read_node(const std::string& node);
   void read_topic(const std::string& topic);
   void read_topic_with(const std::string& topic, const std::string& type,
                        const Expected<MessageLibrary*>& library);
+  int pid_of(const std::string& node) const;
 
   const Options options_;
   LiveInterest interest_;  // of the executor's thread
@@ -82,15 +94,18 @@ class Survey {
   std::unique_ptr<Node> node_;
   std::unique_ptr<Subscription> parameter_events_;
   std::unique_ptr<Subscription> diagnostics_;
+  std::unique_ptr<Subscription> log_;
   std::unique_ptr<TypeFinder> types_;
 
   // Guards what follows, which only the executor's thread changes: it may read without it.
   // Its thread changes these four with the mutex, and reads them without; others read with it.
   mutable Mutex mutex_;
-  std::map<std::string, std::map<std::string, std::string>> services_;  // of each node, with types
+  std::map<std::string, std::map<std::string, GraphEndpoint>> services_;  // of each node
   std::map<std::string, TopicUse> topics_;
   std::map<StatusKey, LiveInventory::Status> statuses_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<StatusKey, StatusCourse> courses_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, int> pids_ CULPRIT_GUARDED_BY(mutex_);  // of the nodes that are there
+  std::map<std::string, std::deque<msg::Log>> log_lines_ CULPRIT_GUARDED_BY(mutex_);  // by logger
   std::map<std::string, std::unique_ptr<NodeReading>> nodes_read_;
   std::map<std::string, std::unique_ptr<TopicReading>> topics_read_;
 

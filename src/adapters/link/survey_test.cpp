@@ -77,6 +77,10 @@ TEST(Survey, SeesTheGraphAndTheDiagnosticsButNotItself) {
   EXPECT_FALSE(seen.nodes.at("/robot").parameters) << "nobody asked for them";
   EXPECT_TRUE(seen.topics.at("/visibility").fields.empty());
   EXPECT_EQ(seen.diagnostics[0].values.at("temperature"), "60.5");
+  const StatusCourse course = survey->statuses().at({"motor", "m1"});
+  EXPECT_EQ(course.worst, 1);
+  EXPECT_EQ(course.keys.at("temperature").numbers, course.messages);
+  EXPECT_EQ(course.keys.at("temperature").most, 60.5);
 }
 
 TEST(Survey, ReadsWhatIsAskedForAndFollowsIt) {
@@ -95,6 +99,7 @@ TEST(Survey, ReadsWhatIsAskedForAndFollowsIt) {
     return topic != seen.topics.end() && topic->second.rate && *topic->second.rate > 0 &&
            topic->second.fields == std::map<std::string, Value>{{"data", Value(2.5)}};
   }));
+  EXPECT_EQ(survey->fields().at("/visibility").at("data").least, 2.5);
 
   robot.context.run([&] {
     const msg::Parameter gain{"gain", to_parameter_value(Value(2.5))};

@@ -54,8 +54,9 @@ void TopicReading::on_message(const Sample& sample) {
   const MutexLock lock(mutex_);
   for (const Field& field : readers_) {
     Value value;
-    if (field.reader.read(sample.payload, value) == FieldStatus::kRead)
-      values_[field.path] = std::move(value);
+    if (field.reader.read(sample.payload, value) != FieldStatus::kRead) continue;
+    courses_[field.path].note(value);
+    values_[field.path] = std::move(value);
   }
 }
 
@@ -73,6 +74,11 @@ void TopicReading::tell(LiveInventory::Topic& topic) const {
 Rhythm TopicReading::rhythm() const {
   const MutexLock lock(mutex_);
   return rhythm_;
+}
+
+std::map<std::string, ValueCourse> TopicReading::courses() const {
+  const MutexLock lock(mutex_);
+  return courses_;
 }
 
 }  // namespace culprit::ros2

@@ -12,6 +12,7 @@
 #include "base/mutex.h"
 #include "base/time.h"
 #include "language/live_inventory.h"
+#include "link/course.h"
 #include "link/rhythm.h"
 #include "link/topic_listener.h"
 #include "ros2/field_reader.h"
@@ -38,6 +39,8 @@ class TopicReading {
 
   // Of all messages since it was opened. From any thread.
   Rhythm rhythm() const;
+  // Likewise of its fields.
+  std::map<std::string, ValueCourse> courses() const;
 
  private:
   struct Field {
@@ -57,6 +60,7 @@ class TopicReading {
   Time last_ CULPRIT_GUARDED_BY(mutex_){};
   Rhythm rhythm_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, Value> values_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<std::string, ValueCourse> courses_ CULPRIT_GUARDED_BY(mutex_);
   std::unique_ptr<TopicListener> listener_;
 };
 

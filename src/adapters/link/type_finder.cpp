@@ -17,9 +17,15 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostKept = 1000;  // files: the network decides how many types there are
 constexpr std::size_t kMostTold = 1000;
 
-bool is_what_it_says(MessageLibrary& library, const TypeFinder::Publication& publication) {
-  const auto hash = library.hash_of(publication.type);
-  return hash && *hash == publication.hash;
+bool is_what_it_says(MessageLibrary& library, const TypeFinder::Offer& offer) {
+  const bool is_known_by_request = offer.hash.empty() && !offer.request_hash.empty();
+  const auto hash = library.hash_of(is_known_by_request ? offer.type + "_Request" : offer.type);
+  return hash && *hash == (is_known_by_request ? offer.request_hash : offer.hash);
+}
+
+bool has(MessageLibrary& library, const TypeFinder::Offer& offer) {
+  if (!offer.is_service()) return library.find(offer.type).has_value();
+  return library.find(offer.type + "_Request") && library.find(offer.type + "_Response");
 }
 
 bool is_hash(const std::string& text) {
@@ -28,38 +34,38 @@ bool is_hash(const std::string& text) {
          text.find_first_not_of("0123456789abcdef", kBegin.size()) == std::string::npos;
 }
 
-std::optional<MessageLibrary> kept(const fs::path& folder,
-                                   const TypeFinder::Publication& publication) {
+std::optional<MessageLibrary> kept(const fs::path& folder, const TypeFinder::Offer& offer) {
   std::error_code error;
-  const fs::path file = folder / publication.hash;
+  const fs::path file = folder / offer.hash;
   if (folder.empty() || !fs::is_regular_file(file, error)) return std::nullopt;
   const auto text = read_text(file);
   if (!text) return std::nullopt;
   MessageLibrary library;
-  library.learn(publication.type, *text);
-  if (!is_what_it_says(library, publication)) return std::nullopt;
+  library.learn(offer.type, *text);
+  if (!is_what_it_says(library, offer)) return std::nullopt;
   return library;
 }
 
 // Where that fails the node is asked again the next time.
-void keep(const fs::path& folder, const TypeFinder::Publication& publication,
+void keep(const fs::path& folder, const TypeFinder::Offer& offer,
           const MessageDefinitions& definitions) {
   std::error_code error;
   if (folder.empty()) return;
   fs::create_directories(folder, error);
   fs::directory_iterator files(folder, error);
   if (error || static_cast<std::size_t>(std::distance(files, {})) >= kMostKept) return;
-  (void)write_text(folder / publication.hash, to_text(publication.type, definitions));
+  (void)write_text(folder / offer.hash, to_text(offer.type, definitions));
 }
 
-Error unknown(const TypeFinder::Publication& publication, const std::string& why) {
-  return Error{"the message type " + printable(publication.type) + " is not known" + why +
-               "; give the directory that holds " + printable(publication.type) +
-               ".msg with --message-path"};
+Error unknown(const TypeFinder::Offer& offer, const std::string& why) {
+  const bool is_service = offer.is_service();
+  return Error{(is_service ? "the service type " : "the message type ") + printable(offer.type) +
+               " is not known" + why + "; give the directory that holds " + printable(offer.type) +
+               (is_service ? ".srv" : ".msg") + " with --message-path"};
 }
 
-}  // namespace
-
+// The files that the process was started with, below its own root directory. None of one that is
+// elsewhere, or may not be looked at; 0: it is not known.
 MessageLibrary files_of_process(int pid) {
   const auto prefixes = pid == 0 ? std::nullopt : environment_of(pid, "AMENT_PREFIX_PATH");
   if (!prefixes) return MessageLibrary();
@@ -67,68 +73,67 @@ MessageLibrary files_of_process(int pid) {
                         "/proc/" + std::to_string(pid) + "/root");
 }
 
+}  // namespace
+
 TypeFinder::TypeFinder(Node& self, Options options)
     : self_(self), options_(std::move(options)), library_(options_.message_path) {}
 
-void TypeFinder::find(const Publication& publication, Callback found) {
-  if (!is_valid_type_name(publication.type))
-    return found(Error{"'" + printable(publication.type) + "' is not the name of a type"});
-  MessageLibrary files = files_of_process(publication.pid);
-  if (MessageLibrary* library = among_files(publication, files)) return found(library);
-  if (publication.hash.empty()) return found(unknown(publication, ""));
-  if (!is_hash(publication.hash))
-    return found(unknown(publication, ", and its hash is none that can be checked"));
-  if (const auto told = told_.find(publication.hash);
-      told != told_.end() && is_what_it_says(told->second, publication))
+void TypeFinder::find(const Offer& offer, Callback found) {
+  if (!is_valid_type_name(offer.type))
+    return found(Error{"'" + printable(offer.type) + "' is not the name of a type"});
+  MessageLibrary files = files_of_process(offer.pid);
+  if (MessageLibrary* library = among_files(offer, files)) return found(library);
+  if (offer.hash.empty())
+    return found(unknown(offer, offer.request_hash.empty() ? "" : " as its server means it"));
+  if (!is_hash(offer.hash))
+    return found(unknown(offer, ", and its hash is none that can be checked"));
+  if (const auto told = told_.find(offer.hash);
+      told != told_.end() && is_what_it_says(told->second, offer))
     return found(&told->second);
-  if (auto library = kept(options_.kept_types, publication)) return found(&*library);
-  ask(publication, std::move(found));
+  if (auto library = kept(options_.kept_types, offer)) return found(&*library);
+  ask(offer, std::move(found));
 }
 
-MessageLibrary* TypeFinder::among_files(const Publication& publication, MessageLibrary& files) {
-  if (publication.hash.empty()) {
-    if (files.find(publication.type)) return &files;
-    return library_.find(publication.type) ? &library_ : nullptr;
+MessageLibrary* TypeFinder::among_files(const Offer& offer, MessageLibrary& files) {
+  if (offer.hash.empty() && offer.request_hash.empty()) {
+    if (has(files, offer)) return &files;
+    return has(library_, offer) ? &library_ : nullptr;
   }
-  if (is_what_it_says(library_, publication)) return &library_;
-  return is_what_it_says(files, publication) ? &files : nullptr;
+  if (is_what_it_says(library_, offer)) return &library_;
+  return is_what_it_says(files, offer) ? &files : nullptr;
 }
 
-void TypeFinder::ask(const Publication& publication, Callback found) {
+void TypeFinder::ask(const Offer& offer, Callback found) {
   std::erase_if(questions_, [](const auto& question) { return question.second.waiting.empty(); });
-  const auto [place, is_new] =
-      questions_.try_emplace(publication.node + ' ' + publication.hash, Question{});
+  const auto [place, is_new] = questions_.try_emplace(offer.node + ' ' + offer.hash, Question{});
   Question& question = place->second;
   question.waiting.push_back(std::move(found));
   if (!is_new) return;
-  auto client =
-      self_.create_client<srv::GetTypeDescription>(publication.node + "/get_type_description");
-  if (!client) return answered(publication, {CallOutcome::kUnreachable, {}});
+  auto client = self_.create_client<srv::GetTypeDescription>(offer.node + "/get_type_description");
+  if (!client) return answered(offer, {CallOutcome::kUnreachable, {}});
   question.client = std::move(*client);
-  question.client->call({publication.type, publication.hash, false}, Repeat::kUntilAnswered,
-                        kPatience, [this, publication](const GetTypeDescription::Answer& answer) {
-                          answered(publication, answer);
-                        });
+  question.client->call(
+      {offer.type, offer.hash, false}, Repeat::kUntilAnswered, kPatience,
+      [this, offer](const GetTypeDescription::Answer& answer) { answered(offer, answer); });
 }
 
 // The hash says whether an answer is true, not who gave it.
-void TypeFinder::answered(const Publication& publication,
-                          const GetTypeDescription::Answer& answer) {
-  Question& question = questions_.at(publication.node + ' ' + publication.hash);
+void TypeFinder::answered(const Offer& offer, const GetTypeDescription::Answer& answer) {
+  Question& question = questions_.at(offer.node + ' ' + offer.hash);
   const std::vector<Callback> waiting = std::exchange(question.waiting, {});
   const auto tell = [&](const Expected<MessageLibrary*>& library) {
     for (const Callback& found : waiting) found(library);
   };
   if (!answer.response || !answer.response->successful)
-    return tell(unknown(publication, ", and its node does not tell it"));
+    return tell(unknown(offer, ", and its node does not tell it"));
   const auto definitions = to_definitions(answer.response->type_description);
   MessageLibrary library;
   if (definitions) library.define(*definitions);
-  if (!definitions || !is_what_it_says(library, publication))
-    return tell(unknown(publication, ", and what its node tells of it is not what is published"));
-  keep(options_.kept_types, publication, *definitions);
+  if (!definitions || !is_what_it_says(library, offer))
+    return tell(unknown(offer, ", and what its node tells of it is not what is published"));
+  keep(options_.kept_types, offer, *definitions);
   if (told_.size() >= kMostTold) told_.clear();
-  tell(&told_.insert_or_assign(publication.hash, std::move(library)).first->second);
+  tell(&told_.insert_or_assign(offer.hash, std::move(library)).first->second);
 }
 
 }  // namespace culprit::ros2

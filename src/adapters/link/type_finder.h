@@ -1,10 +1,14 @@
-// Finds out what a topic's messages look like, for types of which no file was given.
+// Finds out what a topic's messages, or a service's, look like, for types of which no file was given.
 //
 // From Iron on every endpoint announces the hash of its type (type_description.h), and only a
 // definition with that hash is used: what our files say, what was kept from an earlier run, what
-// the files of the publisher's process say, and what the publisher's node tells when asked
-// (~/get_type_description, Jazzy). Before Iron there is no hash: the files that the publisher's process
+// the files of the node's process say, and what the node tells when asked
+// (~/get_type_description, Jazzy). Before Iron there is no hash: the files that the node's process
 // was started with (AMENT_PREFIX_PATH, below its own root directory) go before ours.
+//
+// A node tells of a service by the hash of the service itself, which only Lyrical and newer announce
+// ("sertypehash"). From Iron to Kilted the hashes of its two messages are all that is announced: files are compared
+// with that of the request, and nobody can be asked.
 #pragma once
 
 #include <filesystem>
@@ -20,28 +24,27 @@
 
 namespace culprit::ros2 {
 
-// The files that the process was started with (AMENT_PREFIX_PATH), below its own root directory. None
-// of a process that is elsewhere, or may not be looked at; 0: it is not known.
-MessageLibrary files_of_process(int pid);
-
 // On the executor's thread.
 class TypeFinder {
  public:
   struct Options {
-    std::vector<std::filesystem::path> message_path;  // where to find .msg files
+    std::vector<std::filesystem::path> message_path;  // where to find .msg and .srv files
     // Where types that nodes told of are kept, by hash; what is there proves itself by it. Empty:
     // nowhere.
     std::filesystem::path kept_types;
   };
-  // A publisher of a topic, as it announces itself.
-  struct Publication {
+  // A topic that a node publishes, or a service, as it announces that.
+  struct Offer {
     std::string node;
-    std::string type;  // "package/msg/Type"
-    std::string hash;  // empty before Iron
-    int pid = 0;       // on this machine; 0 where it is not known
+    std::string type;            // "package/msg/Type", "package/srv/Type"
+    std::string hash;            // of the type; empty before Iron, of a service before Lyrical
+    int pid = 0;                 // on this machine; 0 where it is not known
+    std::string request_hash{};  // of a service: of "package/srv/Type_Request"; empty before Iron
+
+    bool is_service() const { return type.find("/srv/") != std::string::npos; }
   };
-  // What has the type as this publisher means it, while the callback runs. Errors: why there is
-  // nothing, and what to do.
+  // What has the type as this node means it (of a service both its messages), while the callback runs.
+  // Errors: why there is nothing, and what to do.
   using Callback = std::function<void(Expected<MessageLibrary*>)>;
 
   // Others may be asked for so long.
@@ -51,7 +54,7 @@ class TypeFinder {
   TypeFinder(Node& self, Options options);
 
   // At once, or when the node has answered; not after the finder is gone.
-  void find(const Publication& publication, Callback found);
+  void find(const Offer& offer, Callback found);
 
  private:
   using GetTypeDescription = Client<srv::GetTypeDescription>;
@@ -60,10 +63,10 @@ class TypeFinder {
     std::vector<Callback> waiting;  // none once it is answered
   };
 
-  // Nothing: neither what we have nor what the process has is what is published.
-  MessageLibrary* among_files(const Publication& publication, MessageLibrary& files);
-  void ask(const Publication& publication, Callback found);
-  void answered(const Publication& publication, const GetTypeDescription::Answer& answer);
+  // Nothing: neither what we have nor what the process has is what is offered.
+  MessageLibrary* among_files(const Offer& offer, MessageLibrary& files);
+  void ask(const Offer& offer, Callback found);
+  void answered(const Offer& offer, const GetTypeDescription::Answer& answer);
 
   Node& self_;
   const Options options_;

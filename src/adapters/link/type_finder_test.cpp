@@ -33,8 +33,25 @@ MessageDefinitions battery() {
        {"my_msgs/msg/Cell", {{.name = "volts", .element = Primitive::kFloat32}}}}};
 }
 
-fs::path with_file(const fs::path& prefix, const std::string& text) {
-  const fs::path file = prefix / "share" / (std::string(kType) + ".msg");
+constexpr const char* kService = "my_msgs/srv/Swap";
+
+// What "my_msgs/srv/Swap" is: it asks for a slot, and is answered by a truth.
+MessageDefinitions swap() {
+  MessageLibrary library;
+  library.learn(std::string(kService) + "_Request", "int32 slot\n");
+  library.learn(std::string(kService) + "_Response", "bool ok\n");
+  return *library.with_parts(kService);
+}
+
+std::string request_hash(const std::string& text) {
+  MessageLibrary library;
+  library.learn(std::string(kService) + "_Request", text);
+  return *library.hash_of(std::string(kService) + "_Request");
+}
+
+fs::path with_file(const fs::path& prefix, const std::string& text,
+                   const std::string& name = std::string(kType) + ".msg") {
+  const fs::path file = prefix / "share" / name;
   fs::create_directories(file.parent_path());
   std::ofstream(file) << text;
   return prefix;
@@ -91,21 +108,22 @@ class Finding {
     });
   }
 
-  // The names of the type's fields, or why it is not known.
-  std::string find(TypeFinder::Publication publication) {
+  // The names of the type's fields, of a service those of its request; or why it is not known.
+  std::string find(TypeFinder::Offer offer) {
     std::promise<std::string> found;
     context_.run([&] {
-      finder_->find(publication, [&](const Expected<MessageLibrary*>& library) {
-        found.set_value(library ? fields_of(**library) : library.error());
+      finder_->find(offer, [&](const Expected<MessageLibrary*>& library) {
+        const std::string message = offer.is_service() ? offer.type + "_Request" : offer.type;
+        found.set_value(library ? fields_of(**library, message) : library.error());
       });
     });
     return found.get_future().get();
   }
 
  private:
-  static std::string fields_of(MessageLibrary& library) {
+  static std::string fields_of(MessageLibrary& library, const std::string& type) {
     std::string names;
-    for (const FieldDefinition& field : (*library.find(kType))->fields) names += field.name + ' ';
+    for (const FieldDefinition& field : (*library.find(type))->fields) names += field.name + ' ';
     return names;
   }
 
@@ -117,15 +135,15 @@ class Finding {
 // A node as Jazzy's, which tells what `told` looks like whatever it is asked.
 class TellingNode {
  public:
-  TellingNode(const TestDomain& domain, const MessageDefinitions& told)
+  TellingNode(const TestDomain& domain, const MessageDefinitions& told, const char* type = kType)
       : context_(domain.options()) {
     context_.run([&] {
       node_ = std::move(*Node::create(*context_, {"/", "driver"}));
       server_ = std::move(*node_->create_service<DescribeType>(
-          "~/get_type_description", [told](const DescribeType::Request&) {
+          "~/get_type_description", [told, type](const DescribeType::Request&) {
             DescribeType::Response response;
             response.successful = true;
-            response.type_description = describe(kType, told);
+            response.type_description = describe(type, told);
             return response;
           }));
     });
@@ -204,6 +222,51 @@ TEST(TypeFinder, BelievesNobodyWhoseWordsDoNotFitTheHash) {
               HasSubstr("what its node tells of it is not what is published"));
   EXPECT_THAT(finding.find({"/driver", kType, "RIHS01_../../etc/passwd", 0}),
               HasSubstr("none that can be checked"));
+}
+
+TEST(TypeFinder, TakesTheFilesOfTheServersProcessForAService) {
+  const TestDomain domain;
+  const test::TestFolder ours;
+  const test::TestFolder its;
+  const std::string file = std::string(kService) + ".srv";
+  with_file(ours.path(), "int32 old\n---\n", file);
+  const StartedWith process(with_file(its.path(), "int32 slot\n---\nbool ok\n", file));
+  Finding finding(domain, {{ours.path()}, {}});
+  EXPECT_EQ(finding.find({"/driver", kService, "", process.pid()}), "slot ");
+  EXPECT_EQ(finding.find({"/elsewhere", kService, "", 0}), "old ");
+  EXPECT_EQ(finding.find({"/elsewhere", "my_msgs/srv/Other", "", 0}),
+            "the service type my_msgs/srv/Other is not known; give the directory that holds "
+            "my_msgs/srv/Other.srv with --message-path");
+}
+
+// From Iron to Kilted: nobody can be asked, but a request that the server would misread is not sent.
+TEST(TypeFinder, TakesNoFileOfAnotherServiceThanTheOneOffered) {
+  const TestDomain domain;
+  const test::TestFolder ours;
+  const std::string file = std::string(kService) + ".srv";
+  with_file(ours.path(), "int32 slot\n---\nbool ok\n", file);
+  Finding finding(domain, {{ours.path()}, {}});
+  EXPECT_EQ(finding.find({"/driver", kService, "", 0, request_hash("int32 slot\n")}), "slot ");
+  EXPECT_THAT(finding.find({"/driver", kService, "", 0, request_hash("int64 slot\n")}),
+              HasSubstr("is not known as its server means it; give"));
+}
+
+// From Lyrical on.
+TEST(TypeFinder, AsksTheNodeWhatItsServiceLooksLike) {
+  const TestDomain domain;
+  const test::TestFolder kept;
+  const test::TestFolder ours;
+  with_file(ours.path(), "int32 old\n---\n", std::string(kService) + ".srv");
+  const TypeFinder::Offer offer{"/driver", kService, type_hash(kService, swap()), 0,
+                                request_hash("int32 slot\n")};
+  {
+    const TellingNode driver(domain, swap(), kService);
+    Finding finding(domain, {{ours.path()}, kept.path() / "types"});
+    EXPECT_EQ(finding.find(offer), "slot ");
+  }
+  // Nobody is there to be asked.
+  Finding later(domain, {{ours.path()}, kept.path() / "types"});
+  EXPECT_EQ(later.find(offer), "slot ");
 }
 
 TEST(TypeFinder, WaitsForNobodyForEver) {

@@ -7,7 +7,6 @@
 namespace culprit::owners {
 
 std::optional<FoundOwner> found_owner(int pid, const std::string& loader) {
-  constexpr int kInit = 1;
   if (pid == 0) return std::nullopt;
   if (!loader.empty())
     return FoundOwner{"the component container " + loader,
@@ -20,8 +19,9 @@ std::optional<FoundOwner> found_owner(int pid, const std::string& loader) {
   if (const auto unit = unit_started_as(pid))
     return FoundOwner{"systemd as " + unit->name,
                       "UNIT " + unit->name + (unit->is_of_user ? " USER" : "")};
-  const int parent = parent_of(pid).value_or(0);
-  if (parent <= kInit) return std::nullopt;
+  const Origin origin = origin_of(pid);
+  if (origin.what != Origin::What::kKnown) return std::nullopt;
+  const int parent = origin.pid;
   std::string command;
   std::getline(std::ifstream("/proc/" + std::to_string(parent) + "/comm") >> std::ws, command);
   for (char& c : command) {

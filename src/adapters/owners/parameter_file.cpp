@@ -1,5 +1,6 @@
 #include "owners/parameter_file.h"
 
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
@@ -180,7 +181,62 @@ void take_nodes(const YAML::Node& node, const std::string& pattern,
   }
 }
 
+std::string number_text(double value) {
+  std::array<char, 32> digits{};
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  return {digits.data(), end};
+}
+
+template <class Values, class Text>
+std::string list_text(const Values& values, Text text) {
+  std::string all = "[";
+  for (const auto& each : values) all += (all.size() == 1 ? "" : ", ") + text(each);
+  return all + "]";
+}
+
 }  // namespace
+
+std::string to_yaml(const ParameterValue& value) {
+  const auto as_number = [](auto number) { return std::to_string(number); };
+  const auto as_bool = [](bool is) { return std::string(is ? "true" : "false"); };
+  const auto as_text = [](const std::string& text) { return text; };
+  switch (static_cast<ParameterType>(value.type)) {
+    case ParameterType::kBool:
+      return as_bool(value.bool_value);
+    case ParameterType::kInteger:
+      return as_number(value.integer_value);
+    case ParameterType::kDouble:
+      return number_text(value.double_value);
+    case ParameterType::kString:
+      return value.string_value;
+    case ParameterType::kByteArray:
+      return list_text(value.byte_array_value, as_number);
+    case ParameterType::kBoolArray:
+      return list_text(value.bool_array_value, as_bool);
+    case ParameterType::kIntegerArray:
+      return list_text(value.integer_array_value, as_number);
+    case ParameterType::kDoubleArray:
+      return list_text(value.double_array_value, number_text);
+    case ParameterType::kStringArray:
+      return list_text(value.string_array_value, as_text);
+    case ParameterType::kNotSet:
+      break;
+  }
+  return "";
+}
+
+Expected<ParameterValue> parse_parameter_value(const std::string& text) {
+  try {
+    const YAML::Node node = YAML::Load(text);
+    if (node.IsSequence()) return list_value(node);
+    if (node.IsScalar()) return scalar(node);
+  } catch (const WrongFile& wrong) {
+    return Error{wrong.what()};
+  } catch (const YAML::Exception& wrong) {
+    return Error{wrong.msg};
+  }
+  return Error{"a parameter is a value, or a list of values"};
+}
 
 Expected<std::vector<ros2::msg::Parameter>> read_parameter_file(const std::string& path,
                                                                 const std::string& node) {

@@ -97,5 +97,18 @@ TEST(ParameterFile, EndsWhereAliasesDoNot) {
   EXPECT_FALSE(parameters_in(inside, "/n"));
 }
 
+TEST(ParameterFile, ReadsAndWritesTheValuesOfACommandLine) {
+  for (const char* text :
+       {"true", "3", "0.5", "[1, 2]", "[0.5, 2]", "[true, false]", "[a, b]", "fast"}) {
+    const auto value = parse_parameter_value(text);
+    ASSERT_TRUE(value) << text;
+    EXPECT_EQ(to_yaml(*value), text);
+  }
+  EXPECT_EQ(to_yaml(*parse_parameter_value("1.0")), "1") << "one number, however it is written";
+  EXPECT_EQ(to_yaml(*parse_parameter_value("'1.0'")), "1.0") << "a text";
+  for (const char* wrong : {"", "[1", "{a: 1}", "[1, a]"})
+    EXPECT_FALSE(parse_parameter_value(wrong)) << wrong;
+}
+
 }  // namespace
 }  // namespace culprit::owners

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -87,6 +88,42 @@ std::string script_of(int pid) {
   return "";
 }
 
+constexpr int kInit = 1;
+
+std::string command_name(int pid) {
+  std::string name;
+  std::getline(std::ifstream("/proc/" + std::to_string(pid) + "/comm") >> std::ws, name);
+  return name;
+}
+
+// The service of systemd whose control group it is in; empty: in none.
+std::string service_around(int pid) {
+  std::ifstream groups("/proc/" + std::to_string(pid) + "/cgroup");
+  for (std::string line; std::getline(groups, line);) {
+    // cgroups(7): of version 2, or of the hierarchy that systemd has beside version 1.
+    if (!line.starts_with("0::") && line.find(":name=systemd:") == std::string::npos) continue;
+    std::string unit = line.substr(line.rfind('/') + 1);
+    if (unit.ends_with(".service")) return unit;
+  }
+  return "";
+}
+
+// A child is born in its parent's session, and leaves it only to make one of its own.
+bool has_lost_its_parent(int pid) {
+  const Family it = family_of(pid);
+  const Family heir = family_of(it.parent);
+  const bool is_heir =
+      it.parent == kInit || (command_name(it.parent) == "systemd" && heir.session == it.parent);
+  return is_heir && it.session != 0 && it.session != pid && it.session != heir.session &&
+         service_around(pid).empty();
+}
+
+bool is_ros2_run(int pid) {
+  const std::vector<std::string> arguments = arguments_of(pid);
+  return arguments.size() > 2 && is_interpreter(arguments[0]) &&
+         fs::path(arguments[1]).filename() == "ros2" && arguments[2] == "run";
+}
+
 Duration now_on(clockid_t clock) {
   timespec now{};
   clock_gettime(clock, &now);
@@ -100,6 +137,19 @@ std::optional<char> state_letter(int pid) {
   return rest.empty() ? std::nullopt : std::optional(rest.front());
 }
 
+std::optional<int> status_of_zombie(int pid) {
+  // Of other users' processes it is 0 (proc(5)).
+  struct stat owner {};
+  const std::string folder = "/proc/" + std::to_string(pid);
+  const bool may_be_told =
+      geteuid() == 0 || (stat(folder.c_str(), &owner) == 0 && owner.st_uid == geteuid());
+  std::istringstream rest(stat_after_command(pid));
+  const std::vector<std::string> fields{std::istream_iterator<std::string>(rest), {}};
+  constexpr std::size_t kExitCode = 52 - 3;  // the state is the third
+  if (!may_be_told || fields.size() <= kExitCode || fields.front() != "Z") return std::nullopt;
+  return std::atoi(fields[kExitCode].c_str());
+}
+
 std::optional<int> parent_of(int pid) {
   std::istringstream rest(stat_after_command(pid));
   char state = 0;
@@ -107,20 +157,23 @@ std::optional<int> parent_of(int pid) {
   return rest >> state >> parent ? std::optional(parent) : std::nullopt;
 }
 
-std::optional<SystemdUnit> unit_started_as(int pid) {
-  constexpr int kInit = 1;
-  const int parent = parent_of(pid).value_or(0);
-  std::string command;
-  std::getline(std::ifstream("/proc/" + std::to_string(parent) + "/comm") >> std::ws, command);
-  if (command != "systemd") return std::nullopt;
-  std::ifstream groups("/proc/" + std::to_string(pid) + "/cgroup");
-  for (std::string line; std::getline(groups, line);) {
-    // cgroups(7): of version 2, or of the hierarchy that systemd has beside version 1.
-    if (!line.starts_with("0::") && line.find(":name=systemd:") == std::string::npos) continue;
-    std::string unit = line.substr(line.rfind('/') + 1);
-    if (unit.ends_with(".service")) return SystemdUnit{std::move(unit), parent != kInit};
+Origin origin_of(int pid) {
+  for (int looked = 0; looked < 3; ++looked) {
+    if (has_lost_its_parent(pid)) return {Origin::What::kEnded, 0};
+    const int parent = parent_of(pid).value_or(0);
+    if (parent <= kInit) break;
+    if (!is_ros2_run(parent)) return {Origin::What::kKnown, parent};
+    pid = parent;
   }
-  return std::nullopt;
+  return {};
+}
+
+std::optional<SystemdUnit> unit_started_as(int pid) {
+  const int parent = parent_of(pid).value_or(0);
+  if (command_name(parent) != "systemd") return std::nullopt;
+  std::string unit = service_around(pid);
+  if (unit.empty()) return std::nullopt;
+  return SystemdUnit{std::move(unit), parent != kInit};
 }
 
 std::string container_of(int pid) {

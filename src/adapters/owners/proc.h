@@ -13,8 +13,25 @@ namespace culprit::owners {
 // 'R', 'S', 'T' (stopped), 'Z' (ended, not reaped) ...; nothing if there is no such process.
 std::optional<char> state_letter(int pid);
 
+// What its parent will be told of its end, as of wait(2). Nothing: it has not ended, its parent was told,
+// or it is another user's.
+std::optional<int> status_of_zombie(int pid);
+
 // Who started it, or who got it when that one had ended; nothing if there is no such process.
 std::optional<int> parent_of(int pid);
+
+// Who started a process that culprit did not start, past `ros2 run`, which only waits for it.
+struct Origin {
+  enum class What : std::uint8_t {
+    kKnown,
+    // It has ended, for sure: the process belongs to init, or to a user's systemd, and is of a session that
+    // neither of them made. Not so in a service of systemd, which may start it again.
+    kEnded,
+    kUnknown
+  } what = What::kUnknown;
+  int pid = 0;  // kKnown
+};
+Origin origin_of(int pid);
 
 // On live_now()'s clock, to a hundredth of a second.
 std::optional<Time> started_at(int pid);

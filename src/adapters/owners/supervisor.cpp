@@ -8,6 +8,7 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/file.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -114,7 +115,8 @@ Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const 
 void Supervisor::start(CommandId command, ComponentId component) {
   const Component& what = rules_[component];
   const MutexLock lock(mutex_);
-  if (is_left_to_launcher(component))
+  // Whoever started what started it may be the one that does: without a LAUNCH there is nobody else.
+  if (is_left_to_launcher(component) || (what.is_respawned && what.launch.empty()))
     return answer(command, Outcome::kDone, "its launcher starts it again");
   if (what.launch.empty())
     return answer(command, Outcome::kUnreachable, what.name + " has no LAUNCH command");
@@ -221,6 +223,9 @@ void Supervisor::watch(ComponentId component, int pid, Relation relation) {
   if (relation != Relation::kAdopted && carries_mark(pid, marked_as(component)))
     member.awaited = live_now();
   inbox_.put(ProcessSeen{component, ProcessState::kRunning, pid, ""});
+  const auto launcher = launchers_.find(component);
+  if (launcher != launchers_.end() && launcher->second.held)
+    inbox_.put(LauncherSeen{component, launcher->second.pid, false});
   wake();
 }
 
@@ -255,13 +260,21 @@ std::optional<std::string> Supervisor::doubt(const Member& member) const {
 }
 
 void Supervisor::note_launcher(ComponentId component, int pid, bool is_others) {
-  constexpr int kInit = 1;  // it gets those whose parent has ended
-  if (!is_others) launchers_[component] = Launcher{};
-  const auto parent = parent_of(pid);
-  if (!is_others || !parent || *parent <= kInit) return;
-  const auto identity = identity_of(*parent);
-  launchers_[component] =
-      Launcher{*parent, started_at(*parent), identity ? to_string(*identity) : ""};
+  const Origin origin = is_others ? origin_of(pid) : Origin{Origin::What::kEnded, 0};
+  switch (origin.what) {
+    case Origin::What::kEnded:
+      launchers_[component] = Launcher{};
+      return;
+    case Origin::What::kUnknown:
+      launchers_.erase(component);
+      return;
+    case Origin::What::kKnown: {
+      const auto identity = identity_of(origin.pid);
+      Launcher& launcher = launchers_[component] =
+          Launcher{origin.pid, started_at(origin.pid), identity ? to_string(*identity) : ""};
+      launcher.held = FileDescriptor(static_cast<int>(syscall(SYS_pidfd_open, origin.pid, 0)));
+    }
+  }
 }
 
 bool Supervisor::goes_on(const Launcher& launcher) {
@@ -269,6 +282,14 @@ bool Supervisor::goes_on(const Launcher& launcher) {
   constexpr Duration kSame = 100ms;  // two readings of one start differ by the clocks' rounding
   const auto begins = started_at(launcher.pid);
   return begins && launcher.began && std::chrono::abs(*begins - *launcher.began) < kSame;
+}
+
+void Supervisor::tell_ended_launchers() {
+  for (auto& [component, launcher] : launchers_) {
+    if (!launcher.held || !is_readable(launcher.held.get())) continue;
+    launcher.held = FileDescriptor();
+    inbox_.put(LauncherSeen{component, launcher.pid, true});
+  }
 }
 
 void Supervisor::look_at_launchers(Time now) {
@@ -437,13 +458,24 @@ void Supervisor::end_member(Member& member) {
   // What the process had started must not live on beside its successor. While it is not reaped, no
   // other group can have its number.
   member.process.kill_group();
-  const std::string remark = member.process.reap();
-  inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), remark});
+  const ProcessEnd end = member.process.reap();
+  const bool is_ours =
+      std::ranges::any_of(shutdowns_, [&](const Shutdown& s) { return is_meant(s, member); });
+  inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), end.remark,
+                         is_ours ? Cause::kWish : end.cause});
   tell_what_stays(member);
   const auto launcher = launchers_.find(member.component);
   const bool was_its = member.process.relation() == Relation::kAdopted;
   if (was_its && launcher != launchers_.end() && launcher->second.pid != 0)
     launcher->second.child_ended = live_now();
+}
+
+// Ctrl-Z stops what was started together, and who started it.
+Cause Supervisor::cause_of_stop(const Member& member) const {
+  const auto launcher = launchers_.find(member.component);
+  const bool is_wish = launcher != launchers_.end() && launcher->second.held &&
+                       state_letter(launcher->second.pid) == 'T';
+  return is_wish ? Cause::kWish : Cause::kFault;
 }
 
 // What somebody else's process had started is not ours to end.
@@ -465,6 +497,9 @@ Time Supervisor::next_deadline() const {
   Time next = kNever;
   for (const Shutdown& shutdown : shutdowns_) next = std::min(next, shutdown.escalate);
   for (const Trial& trial : trials_) next = std::min(next, trial.until);
+  for (const Member& member : members_) {
+    if (member.stands_since) next = std::min(next, later(*member.stands_since, kStopSettles));
+  }
   return next;
 }
 
@@ -484,6 +519,9 @@ void Supervisor::run() {
       if (member.launch) watched.push_back({member.launch->descriptor(), POLLIN, 0});
     }
     for (const Trial& trial : trials_) watched.push_back({trial.launch.descriptor(), POLLIN, 0});
+    for (const auto& [component, launcher] : launchers_) {
+      if (launcher.held) watched.push_back({launcher.held.get(), POLLIN, 0});
+    }
     const bool is_awaited = std::ranges::any_of(
         launchers_, [](const auto& each) { return each.second.child_ended != kLongAgo; });
     const Time until =
@@ -516,10 +554,12 @@ void Supervisor::look(Time now) {
   for (Member& member : members_) {
     if (member.launch) continue;
     const ProcessState state = member.process.state();
-    if (state == ProcessState::kGone) {
-      end_member(member);
-    } else if (state != member.state) {
-      inbox_.put(ProcessSeen{member.component, state, member.process.pid(), ""});
+    if (state == ProcessState::kGone) end_member(member);
+    if (!is_settled(member, state, now)) continue;
+    if (state != member.state && state != ProcessState::kGone) {
+      inbox_.put(
+          ProcessSeen{member.component, state, member.process.pid(), "",
+                      state == ProcessState::kStopped ? cause_of_stop(member) : Cause::kUnknown});
     }
     member.state = state;
     look_for_work(member, now);
@@ -527,8 +567,19 @@ void Supervisor::look(Time now) {
   std::erase_if(members_, [](const Member& m) { return m.state == ProcessState::kGone; });
   finish_trials(now);
   finish_shutdowns(now);
+  tell_ended_launchers();
   look_at_launchers(now);
   something_ended_.notify_all();
+}
+
+// Ctrl-Z reaches one process after the other, and may reach the launcher last.
+bool Supervisor::is_settled(Member& member, ProcessState state, Time now) {
+  if (state != ProcessState::kStopped || member.state == ProcessState::kStopped) {
+    member.stands_since.reset();
+    return true;
+  }
+  if (!member.stands_since) member.stands_since = now;
+  return now >= later(*member.stands_since, kStopSettles);
 }
 
 // Of all that it started: the node may be a child of the tool that runs it.

@@ -20,6 +20,9 @@
 // A component that is RESPAWNED is its launcher's to start: it is ended, and its launcher starts it
 // again. It is started here only once that launcher is known and has ended.
 //
+// That a process ended is told at once, with how, and whether somebody wanted that (process_end.h); what culprit itself
+// ended was wanted. Who started what culprit did not start is told, and when that one has ended.
+//
 // Who starts a process that culprit did not start is told of when it ends with it, as ros2 launch does
 // where that says on_exit=Shutdown(): it ends all that it had started then.
 //
@@ -62,6 +65,8 @@ class Supervisor {
   static constexpr Duration kComingUp = std::chrono::minutes(5);
   // How often it is looked whether a process was stopped; its end is known at once.
   static constexpr Duration kStatePeriod = std::chrono::milliseconds(200);
+  // What stands for less may be part of a stop that is on its way through a launch.
+  static constexpr Duration kStopSettles = std::chrono::milliseconds(50);
   // A launcher that ends within this time after what it started ended because of that.
   static constexpr Duration kEndsWith = std::chrono::seconds(10);
   // How long the trial of a start may take.
@@ -132,6 +137,7 @@ class Supervisor {
     std::optional<Work> work{};
     std::vector<Relative> left{};  // what somebody else's had started when its end was ordered
     Time left_at{};
+    std::optional<Time> stands_since{};  // while it is not told yet that it was stopped
   };
   // A start that is tried before an end.
   struct Trial {
@@ -153,10 +159,11 @@ class Supervisor {
 
   // Who started a component that culprit did not start.
   struct Launcher {
-    int pid = 0;  // 0: a supervisor, since the launcher had ended
+    int pid = 0;  // 0: it has ended, or it was a supervisor, since that had ended
     std::optional<Time> began{};
     std::string what{};           // it runs
     Time child_ended = kLongAgo;  // and it was not looked since whether it did, too
+    FileDescriptor held{};        // until it ended, which is told
   };
 
   std::string marked_as(ComponentId component) const;
@@ -194,6 +201,9 @@ class Supervisor {
   void begin_shutdown(CommandId command, ComponentId component, Hangs hangs)
       CULPRIT_REQUIRES(mutex_);
   void end_member(Member& member) CULPRIT_REQUIRES(mutex_);
+  Cause cause_of_stop(const Member& member) const CULPRIT_REQUIRES(mutex_);
+  static bool is_settled(Member& member, ProcessState state, Time now);
+  void tell_ended_launchers() CULPRIT_REQUIRES(mutex_);
   Time next_deadline() const CULPRIT_REQUIRES(mutex_);
   void wake();
 

@@ -86,6 +86,9 @@ class Supervised {
   ProcessSeen state(ProcessState state) {
     return wait<ProcessSeen>([&](const ProcessSeen& s) { return s.state == state; });
   }
+  LauncherSeen launcher() {
+    return wait<LauncherSeen>([](const LauncherSeen&) { return true; });
+  }
   int worked() {
     return wait<ProcessWorked>([](const ProcessWorked&) { return true; }).pid;
   }
@@ -142,7 +145,8 @@ bool exists(int pid) { return kill(pid, 0) == 0; }
 // Somebody else's launcher, which starts a process again whenever it ends.
 class Respawning {
  public:
-  Respawning() : pid_(*spawn({{"sh", "-c", "while :; do sleep 1000; done"}, {}, "/dev/null"})) {}
+  explicit Respawning(const std::string& command = "sleep 1000")
+      : pid_(*spawn({{"sh", "-c", "while :; do " + command + "; done"}, {}, "/dev/null"})) {}
   ~Respawning() {
     const int left = child();
     end();
@@ -197,19 +201,145 @@ TEST(Supervisor, TakesOverFromALauncherThatHasEnded) {
   EXPECT_NE(c.start(), 0) << "there is no launcher any more to wait for";
 }
 
+TEST(Supervisor, TakesOverFromALauncherThatEndedBeforeItCame) {
+  Respawning launcher;
+  Supervised c(Supervised::Declared{"LAUNCH \"sleep 2000\" RESPAWNED"});
+  const int orphan = launcher.child();
+  launcher.end();
+  while (parent_of(orphan) == getpid()) std::this_thread::sleep_for(1ms);
+  if (parent_of(orphan) != 1) {
+    kill(orphan, SIGKILL);
+    GTEST_SKIP() << "orphans of this machine do not go to init";
+  }
+  c.supervisor->adopt(ComponentId(0), orphan, live_now());
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
+  EXPECT_NE(c.start(), 0) << "there is no launcher any more to wait for";
+}
+
+// Nobody knows who started it, and so whether that one will start it again.
+TEST(Supervisor, WaitsForWhomeverInitStartedItFor) {
+  int pid = 0;
+  int pipe_of[2];
+  ASSERT_EQ(pipe2(pipe_of, O_CLOEXEC), 0);
+  const pid_t parent = fork();
+  if (parent == 0) {
+    if (fork() == 0) {
+      const int self = setsid();  // as what init starts is
+      (void)!write(pipe_of[1], &self, sizeof self);
+      execl("/bin/sleep", "sleep", "1000", nullptr);
+    }
+    _exit(0);
+  }
+  ASSERT_EQ(read(pipe_of[0], &pid, sizeof pid), static_cast<ssize_t>(sizeof pid));
+  waitpid(parent, nullptr, 0);
+  close(pipe_of[0]);
+  close(pipe_of[1]);
+  Supervised c(Supervised::Declared{"LAUNCH \"sleep 2000\" RESPAWNED"});
+  c.supervisor->adopt(ComponentId(0), pid, live_now());
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
+  EXPECT_EQ(c.start(), 0);
+}
+
+// It ends with what it runs, and whoever started it starts it again.
+TEST(Supervisor, TakesRos2RunForNoLauncher) {
+  const test::TestFolder folder;
+  const std::string tool = folder.path() / "ros2";
+  std::ofstream(tool) << "sleep 1000; true\n";
+  const Respawning launcher("sh " + tool + " run package program");
+  Supervised c(Supervised::Declared{"LAUNCH \"sleep 2000\" RESPAWNED"});
+  const int first = launcher.child();
+  c.supervisor->adopt(ComponentId(0), first, live_now());
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
+  EXPECT_EQ(c.start(), 0) << "a second one was started";
+  EXPECT_NE(launcher.child(first), 0);
+}
+
+int a_child_of(int launcher) {
+  int child = 0;
+  while (child == 0) {
+    for (const Relative& each : descendants_of(launcher)) child = each.pid;
+  }
+  return child;
+}
+
 // As ros2 launch does where the launch file says on_exit=Shutdown().
 TEST(Supervisor, TellsThatALauncherEndedWithWhatItStarted) {
   Supervised c("sleep 1000");
   const auto launcher = spawn({{"sh", "-c", "sleep 1000; sleep 0.1"}, {}, "/dev/null"});
   ASSERT_TRUE(launcher);
-  int child = 0;
-  while (child == 0) {
-    for (const Relative& each : descendants_of(*launcher)) child = each.pid;
-  }
+  const int child = a_child_of(*launcher);
   c.supervisor->adopt(ComponentId(0), child, live_now());
   kill(child, SIGKILL);
   EXPECT_NE(c.trouble().find("had started c, and ended with it"), std::string::npos);
   waitpid(*launcher, nullptr, 0);
+}
+
+// Whether somebody wanted the end of a process, whoever started it.
+TEST(Supervisor, TellsWhetherAnEndWasWanted) {
+  Supervised own("sleep 1000");
+  kill(own.start(), SIGKILL);
+  EXPECT_EQ(own.state(ProcessState::kGone).cause, Cause::kFault);
+  kill(own.start(), SIGTERM);
+  EXPECT_EQ(own.state(ProcessState::kGone).cause, Cause::kWish);
+  kill(own.start(), SIGSTOP);
+  EXPECT_EQ(own.state(ProcessState::kStopped).cause, Cause::kFault);
+  own.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  const ProcessSeen by_culprit = own.state(ProcessState::kGone);
+  EXPECT_EQ(by_culprit.remark, "killed by signal 9") << "it was stopped";
+  EXPECT_EQ(by_culprit.cause, Cause::kWish);
+}
+
+TEST(Supervisor, TellsWhoStartedAProcessAndThatThisOneEnded) {
+  Supervised c("sleep 1000");
+  const auto launcher = spawn({{"sh", "-c", "sleep 1000 & wait"}, {}, "/dev/null"});
+  ASSERT_TRUE(launcher);
+  const int child = a_child_of(*launcher);
+  c.supervisor->adopt(ComponentId(0), child, live_now());
+  EXPECT_EQ(c.launcher().pid, *launcher);
+  // Ctrl-Z stops both.
+  kill(*launcher, SIGSTOP);
+  kill(child, SIGSTOP);
+  EXPECT_EQ(c.state(ProcessState::kStopped).cause, Cause::kWish);
+  kill(child, SIGCONT);
+  kill(*launcher, SIGKILL);
+  waitpid(*launcher, nullptr, 0);
+  const LauncherSeen seen = c.launcher();
+  EXPECT_EQ(seen.pid, *launcher);
+  EXPECT_TRUE(seen.has_ended);
+  kill(child, SIGKILL);
+  EXPECT_NE(c.state(ProcessState::kGone).cause, Cause::kWish);
+}
+
+// Before its parent heard of it, and, where the kernel keeps it, after that.
+TEST(ProcessEnd, OfSomebodyElsesProcessIsToldByTheKernel) {
+  const int pid = fork();
+  if (pid == 0) {
+    while (true) pause();
+  }
+  const FileDescriptor held(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
+  kill(pid, SIGABRT);
+  siginfo_t info{};
+  waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOWAIT);
+  const ProcessEnd unheard = end_of(pid, held.get());
+  EXPECT_EQ(unheard.remark, "killed by signal 6");
+  EXPECT_EQ(unheard.cause, Cause::kFault);
+  waitpid(pid, nullptr, 0);
+  const ProcessEnd heard = end_of(pid, held.get());
+  EXPECT_TRUE(heard.remark == "killed by signal 6" || heard.cause == Cause::kUnknown)
+      << heard.remark;
+}
+
+TEST(ProcessEnd, IsAWishIfAPersonOrALauncherAsksSo) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+    EXPECT_EQ(killed(signal).cause, Cause::kWish) << signal;
+    EXPECT_EQ(exited(128 + signal).cause, Cause::kWish) << signal;
+    EXPECT_EQ(exited(256 - signal).cause, Cause::kWish) << signal;
+  }
+  EXPECT_EQ(exited(0).cause, Cause::kWish);
+  for (const int signal : {SIGKILL, SIGSEGV, SIGABRT, SIGBUS})
+    EXPECT_EQ(killed(signal).cause, Cause::kFault) << signal;
+  for (const int code : {1, 2, 134, 137, 139, 247})
+    EXPECT_EQ(exited(code).cause, Cause::kFault) << code;
 }
 
 TEST(Supervisor, EndsNoOrphanThatNobodyWouldStartAgain) {

@@ -246,6 +246,8 @@ void Units::note(const Found& found) {
 
 bool Units::answer(const Errand& errand, Outcome outcome, std::string text, int pid) {
   Reply reply{errand.command, outcome, {}, std::move(text)};
+  // It may end before anybody looks.
+  if (pid != 0) before_.insert_or_assign(errand.component, Activity::kActive);
   if (!is_here()) {
     // What it runs now is what was asked for.
     elsewhere_.erase(errand.component);

@@ -60,15 +60,14 @@ void WatchedProcess::signal_group(int number) const {
   }
 }
 
-std::string WatchedProcess::reap() {
+ProcessEnd WatchedProcess::reap() {
   assert(state() == ProcessState::kGone);
-  if (relation_ != Relation::kChild) return "ended";
+  if (relation_ != Relation::kChild) return end_of(pid_, pidfd_.get());
   is_reaped_ = true;
   siginfo_t info{};
   if (waitid(static_cast<idtype_t>(P_PIDFD), static_cast<id_t>(pidfd_.get()), &info, WEXITED) != 0)
-    return "ended";
-  if (info.si_code == CLD_EXITED) return "exit code " + std::to_string(info.si_status);
-  return "killed by signal " + std::to_string(info.si_status);
+    return end_of(pid_, pidfd_.get());
+  return info.si_code == CLD_EXITED ? exited(info.si_status) : killed(info.si_status);
 }
 
 void WatchedProcess::kill_group() const {

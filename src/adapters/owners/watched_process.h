@@ -6,6 +6,7 @@
 
 #include "base/expected.h"
 #include "owners/file_descriptor.h"
+#include "owners/process_end.h"
 #include "robot/observation.h"
 
 namespace culprit::owners {
@@ -32,9 +33,8 @@ class WatchedProcess {
   // else's process is somebody else's.
   void signal(int number) const;
 
-  // @pre the process has ended. Reaps a child. In words: "exit code 1", "killed by signal 9",
-  // "ended".
-  std::string reap();
+  // @pre the process has ended. Reaps a child.
+  ProcessEnd reap();
 
   // Ends what is left of the process group that it got from us: it may have started others.
   // @pre it is not reaped

@@ -145,7 +145,7 @@ void Context::on_info(const Bytes& payload, const GuidPrefix& sender) {
   if (!info || info->participant.prefix() != sender)
     return;  // nobody speaks for another participant
   if (!gid_size_) decide(gid_size_of(payload));
-  graph_.apply(*info);
+  graph_.apply(*info, gid_size_of(payload));
 }
 
 void Context::decide(GidSize size) {

@@ -122,8 +122,9 @@ class RawType final : public dds::TopicDataType {
   bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
     auto& incoming = *static_cast<Incoming*>(data);
     incoming.size = payload->length;
-    if (incoming.use == PayloadUse::kWhole)
-      incoming.bytes.assign(payload->data, payload->data + payload->length);
+    if (incoming.use == PayloadUse::kHeader) return true;
+    const std::size_t most = incoming.use == PayloadUse::kWhole ? incoming.size : kBeginningSize;
+    incoming.bytes.assign(payload->data, payload->data + std::min(incoming.size, most));
     return true;
   }
 
@@ -197,6 +198,12 @@ void apply(EntityQos& entity, const Qos& qos, const std::string& user_data) {
   entity.resource_limits().allocated_samples = std::min(10, depth);
   entity.deadline().period = to_duration(qos.deadline);
   entity.lifespan().duration = to_duration(qos.lifespan);
+  entity.liveliness().kind = qos.liveliness == Liveliness::kManualByTopic
+                                 ? dds::MANUAL_BY_TOPIC_LIVELINESS_QOS
+                                 : dds::AUTOMATIC_LIVELINESS_QOS;
+  entity.liveliness().lease_duration = to_duration(qos.liveliness_lease);
+  entity.ownership().kind = qos.ownership == Ownership::kExclusive ? dds::EXCLUSIVE_OWNERSHIP_QOS
+                                                                   : dds::SHARED_OWNERSHIP_QOS;
   entity.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   entity.data_sharing().off();
   entity.user_data().setValue({user_data.begin(), user_data.end()});
@@ -217,6 +224,8 @@ inline dds::DataWriterQos writer_qos(const Qos& qos, const std::string& user_dat
   // 3 s by default; a late joiner that missed the first heartbeat waits that long for transient
   // local samples.
   out.reliable_writer_qos().times.heartbeatPeriod = {0, 20'000'000};
+  if (qos.liveliness_lease != kInfinite)
+    out.liveliness().announcement_period = to_duration(qos.liveliness_lease * 2 / 3);
   return out;
 }
 
@@ -237,7 +246,19 @@ inline void speak_through_sockets() {
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
 }
 
-// `peers` are IPv4 addresses. What is received goes through `reception` (careful_transport.h).
+// All that the servers know is told to a super client; a mere client hears of what it uses only.
+inline void find_through(const std::vector<DiscoveryServer>& servers,
+                         rtps::BuiltinAttributes& builtin) {
+  builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol::SUPER_CLIENT;
+  for (const DiscoveryServer& server : servers) {
+    rtps::RemoteServerAttributes remote;
+    rtps::get_server_client_default_guidPrefix(server.id, remote.guidPrefix);
+    remote.metatrafficUnicastLocatorList.push_back(locator(server.host, server.port));
+    builtin.discovery_config.m_DiscoveryServers.push_back(std::move(remote));
+  }
+}
+
+// `peers`, and the hosts of servers, are IPv4 addresses. What is received goes through `reception` (careful_transport.h).
 inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& options,
                                                  const std::vector<std::string>& peers,
                                                  const Reception& reception) {
@@ -267,6 +288,7 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
   announce_to.push_back(locator("239.255.0.1", 7400 + 250 * options.domain));
   announce_to.push_back(locator("127.0.0.1", 0));
   for (const std::string& peer : peers) announce_to.push_back(locator(peer, 0));
+  if (!options.servers.empty()) find_through(options.servers, builtin);
 
   auto udp = std::make_shared<transport::UDPv4TransportDescriptor>();
   if (options.reach == Reach::kLocalhost) udp->interfaceWhiteList.emplace_back("127.0.0.1");
@@ -301,6 +323,11 @@ inline ParticipantInfo to_info(const rtps::ParticipantProxyData& data) {
       std::from_chars(value.data(), value.data() + value.size(), out.pid);
     }
   }
+  for (const rtps::Locator_t& at : data.default_locators.unicast)
+    out.shares_memory = out.shares_memory || at.kind == LOCATOR_KIND_SHM;
+#if HAVE_SECURITY
+  out.is_secured = !data.identity_token_.class_id().empty();
+#endif
   for (const rtps::Locator_t& at : data.metatraffic_locators.unicast) {
     if (at.kind != LOCATOR_KIND_UDPv4) continue;
     UdpAddress address;
@@ -330,6 +357,17 @@ EndpointInfo to_info(const ProxyData& data) {
   out.qos.deadline = from_duration(qos.m_deadline.period);
   out.qos.lifespan = from_duration(qos.m_lifespan.duration);
   out.qos.keys = out.guid.has_keys() ? Keys::kSome : Keys::kNone;
+  // ROS 2 knows two kinds; by participant is manual, too.
+  out.qos.liveliness = qos.m_liveliness.kind == dds::AUTOMATIC_LIVELINESS_QOS
+                           ? Liveliness::kAutomatic
+                           : Liveliness::kManualByTopic;
+  out.qos.liveliness_lease = from_duration(qos.m_liveliness.lease_duration);
+  out.qos.ownership = qos.m_ownership.kind == dds::EXCLUSIVE_OWNERSHIP_QOS ? Ownership::kExclusive
+                                                                           : Ownership::kShared;
+  constexpr std::size_t kMostPartitions = 32;
+  for (const std::string& partition : qos.m_partition.getNames()) {
+    if (out.partitions.size() < kMostPartitions) out.partitions.push_back(cut(partition));
+  }
   return out;
 }
 
@@ -342,7 +380,8 @@ class DiscoveryListener final : public dds::DomainParticipantListener {
                                 rtps::ParticipantDiscoveryInfo&& found) noexcept override {
     using Found = rtps::ParticipantDiscoveryInfo;
     if (found.status == Found::REMOVED_PARTICIPANT || found.status == Found::DROPPED_PARTICIPANT) {
-      callback_(ParticipantGone{to_guid(found.info.m_guid)});
+      callback_(
+          ParticipantGone{to_guid(found.info.m_guid), found.status == Found::DROPPED_PARTICIPANT});
     } else {
       callback_(to_info(found.info));
     }

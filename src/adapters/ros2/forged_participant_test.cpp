@@ -38,6 +38,14 @@ class Victim {
   std::uint16_t port_ = 0;
 };
 
+// ROS 2 has no word for partitions, nor have our nodes; the middleware's profiles have.
+TEST(Discovery, TellsThePartitionsOfAnEndpoint) {
+  fast_dds::rtps::WriterProxyData writer(4, 1);
+  writer.m_qos.m_partition.push_back("left");
+  writer.m_qos.m_partition.push_back("right*");
+  EXPECT_THAT(fast_dds::to_info(writer).partitions, testing::ElementsAre("left", "right*"));
+}
+
 TEST(ForgedParticipant, DoesNotChooseWhichProcessANodeIs) {
   const Victim victim;
   const TestDomain domain;

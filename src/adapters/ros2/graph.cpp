@@ -20,8 +20,15 @@ std::optional<GraphEndpoint> ros_meaning(const EndpointInfo& info) {
   EndpointKind kind = reads ? EndpointKind::kSubscriber : EndpointKind::kPublisher;
   if (channel->channel == Channel::kRequest)
     kind = reads ? EndpointKind::kServer : EndpointKind::kClient;
-  return GraphEndpoint{kind, std::move(channel->name), std::move(*type), info.qos,
-                       std::string(user_data_value(info.user_data, "typehash"))};
+  return GraphEndpoint{kind,
+                       std::move(channel->name),
+                       std::move(*type),
+                       info.qos,
+                       std::string(user_data_value(info.user_data, "typehash")),
+                       std::string(user_data_value(info.user_data, "sertypehash")),
+                       info.partitions,
+                       !user_data_value(info.user_data, "clientid").empty() ||
+                           !user_data_value(info.user_data, "serviceid").empty()};
 }
 
 // Nothing when a name breaks the grammar.
@@ -45,18 +52,21 @@ void Graph::apply(const DiscoveryEvent& event) {
     void operator()(const ParticipantInfo& info) const { graph.add(info); }
     void operator()(const EndpointInfo& info) const { graph.add(info); }
     void operator()(const ParticipantGone& gone) const {
+      graph.is_losing_ = gone.was_lost;
       graph.remove_participant(gone.guid.prefix());
+      graph.is_losing_ = false;
     }
     void operator()(const EndpointGone& gone) const { graph.remove_endpoint(gone.guid); }
   };
   std::visit(Visitor{*this}, event);
 }
 
-void Graph::apply(const DiscoveryInfo& info) {
+void Graph::apply(const DiscoveryInfo& info, std::optional<GidSize> form) {
   const GuidPrefix prefix = info.participant.prefix();
   const auto found = peers_.find(prefix);
   if (found == peers_.end()) return;  // it has left, or there was no room for it
   Peer& peer = found->second;
+  peer.form = form;
   const Claims before = std::exchange(peer.claims, {});
   for (const auto& [name, guids] : before) claim_count_ -= guids.size();
   Claims after = read_claims(info, peer);
@@ -265,7 +275,7 @@ void Graph::tell_left(const std::string& name, Node& node) {
   for (const auto& [key, edge] : node.edges) tell(EndpointLeft{name, key.first, key.second});
   node.edges.clear();
   node.told.reset();
-  tell(NodeLeft{name});
+  tell(NodeLeft{name, is_losing_});
 }
 
 const Graph::Endpoint* Graph::find(const Guid& guid) const {
@@ -352,9 +362,31 @@ const EndpointInfo* Graph::endpoint(const Guid& guid) const {
 std::vector<Graph::NodeView> Graph::nodes() const {
   std::vector<NodeView> views;
   for (const auto& [name, node] : nodes_) {
-    NodeView& view = views.emplace_back(NodeView{describe(name, peers_.at(*node.told)), {}});
+    NodeView& view =
+        views.emplace_back(NodeView{describe(name, peers_.at(*node.told)), {}, *node.told});
     for (const auto& [key, edge] : node.edges) view.endpoints.push_back(edge.endpoint);
   }
+  return views;
+}
+
+std::vector<Graph::ParticipantView> Graph::participants() const {
+  std::vector<ParticipantView> views;
+  for (const auto& [prefix, each] : peers_) {
+    const Peer& peer = each;  // a lambda takes no part of a pair
+    ParticipantView& view = views.emplace_back(ParticipantView{peer.info, peer.pid, peer.form});
+    for (const auto& [name, guids] : peer.claims) {
+      view.nodes.push_back(name);
+      view.undiscovered += static_cast<std::size_t>(std::ranges::count_if(
+          guids, [&](const Guid& guid) { return !peer.endpoints.contains(guid); }));
+    }
+    for (const auto& [guid, endpoint] : peer.endpoints) {
+      if (!endpoint.ros) continue;
+      const auto owner = owners_.find(guid);
+      view.endpoints.push_back({guid, owner == owners_.end() ? "" : owner->second, *endpoint.ros});
+    }
+    std::ranges::sort(view.endpoints, {}, &OwnedEndpoint::id);
+  }
+  std::ranges::sort(views, {}, [](const ParticipantView& view) { return view.info.guid; });
   return views;
 }
 

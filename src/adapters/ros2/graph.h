@@ -37,10 +37,16 @@ namespace culprit::ros2 {
 
 struct GraphEndpoint {
   EndpointKind kind = EndpointKind::kPublisher;
-  std::string name;         // of the topic or service, absolute
-  std::string type;         // "package/msg/Type" or "package/srv/Type"
-  Qos qos;                  // as announced, without depth
-  std::string type_hash{};  // as announced (type_description.h); empty before Iron
+  std::string name;  // of the topic or service, absolute
+  std::string type;  // "package/msg/Type" or "package/srv/Type"
+  Qos qos;           // as announced, without depth
+  // As announced (type_description.h); empty before Iron. Of a service: of its request.
+  std::string type_hash{};
+  std::string service_hash{};  // likewise of the whole service; empty before Lyrical
+  std::vector<std::string> partitions{};
+  // Of services: it names its other half ("clientid=", "serviceid="), as rmw_cyclonedds and who speaks
+  // its mapping too do (service_mapping.h).
+  bool names_its_pair = false;
 };
 
 struct GraphNode {
@@ -64,6 +70,7 @@ struct NodeJoined {
 };
 struct NodeLeft {
   std::string node;
+  bool was_lost = false;  // it said no good-bye: its lease ran out
 };
 struct EndpointJoined {
   std::string node;
@@ -109,8 +116,8 @@ class Graph {
   explicit Graph(Options options);
 
   void apply(const DiscoveryEvent& event);
-  // What `info.participant` said of its nodes; replaces what it said before.
-  void apply(const DiscoveryInfo& info);
+  // What `info.participant` said of its nodes, in which form; replaces what it said before.
+  void apply(const DiscoveryInfo& info, std::optional<GidSize> form = {});
   // A process of this machine has ended: whoever it was is gone, though leases may still run.
   void forget_process(int pid);
   // Likewise all that claim a name that others claim too, and have ended by now, as far as the
@@ -127,8 +134,26 @@ class Graph {
   struct NodeView {
     GraphNode node;
     std::vector<GraphEndpoint> endpoints;
+    GuidPrefix participant{};  // that holds it
   };
   std::vector<NodeView> nodes() const;
+
+  // Every participant, with all that it has: also nodes that do not count, since another has their
+  // name, and each of several endpoints of one node, kind and name.
+  struct OwnedEndpoint {
+    Guid id;
+    std::string node;  // empty: no node claims it
+    GraphEndpoint endpoint;
+  };
+  struct ParticipantView {
+    ParticipantInfo info;
+    int pid = 0;                    // on this machine, as far as it is known
+    std::optional<GidSize> form{};  // of what it said of its nodes; nothing: it said nothing
+    std::vector<std::string> nodes{};
+    std::vector<OwnedEndpoint> endpoints{};
+    std::size_t undiscovered = 0;  // endpoints that its nodes claim, and that were not discovered
+  };
+  std::vector<ParticipantView> participants() const;
 
  private:
   struct Endpoint {
@@ -144,6 +169,7 @@ class Graph {
     std::string told_missing;  // what was told of last
     bool told_of_invalid_name = false;
     bool told_of_duplicate = false;
+    std::optional<GidSize> form;
     Claims claims;
     std::unordered_map<Guid, Endpoint> endpoints;
   };
@@ -191,6 +217,7 @@ class Graph {
   std::unordered_map<Guid, std::string> owners_;  // endpoint -> the node that claims it
   std::map<std::string, Node> nodes_;
   std::set<const char*> exceeded_;  // limits that trouble was told of
+  bool is_losing_ = false;          // who leaves now said no good-bye
 };
 
 }  // namespace culprit::ros2

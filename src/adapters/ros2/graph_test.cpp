@@ -372,6 +372,46 @@ TEST(Graph, ShowsAllNodesWithTheirEndpoints) {
   EXPECT_EQ(nodes[0].endpoints[0].type, "std_msgs/msg/String");
 }
 
+TEST(Graph, ShowsAllParticipantsWithAllThatTheyHave) {
+  Watched watched;
+  watched.joins(1)
+      .joins(2)
+      .has(publishes(writer(1, 1), "/t"))
+      .has(publishes(writer(1, 2), "/t"))
+      .has(publishes(writer(2, 1), "/u"))
+      .says(1, {node("/", "a", {writer(1, 1), writer(1, 2), reader(1, 3), reader(1, 4)})});
+  const auto participants = watched.graph().participants();
+  ASSERT_EQ(participants.size(), 2u);
+  EXPECT_THAT(participants[0].nodes, ElementsAre("/a"));
+  ASSERT_EQ(participants[0].endpoints.size(), 2u) << "two publishers of one topic, and one node";
+  EXPECT_EQ(participants[0].endpoints[1].node, "/a");
+  EXPECT_EQ(participants[0].endpoints[1].endpoint.name, "/t");
+  EXPECT_EQ(participants[0].undiscovered, 2u);
+  EXPECT_THAT(participants[1].nodes, IsEmpty());
+  ASSERT_EQ(participants[1].endpoints.size(), 1u);
+  EXPECT_EQ(participants[1].endpoints[0].node, "") << "nobody claims it";
+}
+
+TEST(Graph, TellsWhetherWhoLeftSaidGoodBye) {
+  std::vector<bool> lost;
+  Graph graph({.listener =
+                   [&](const GraphChange& change) {
+                     if (const auto* left = std::get_if<NodeLeft>(&change))
+                       lost.push_back(left->was_lost);
+                   },
+               .find_process = {},
+               .is_running = {},
+               .limits = {}});
+  for (const bool was_lost : {true, false}) {
+    ParticipantInfo info;
+    info.guid = guid_of(1, 0, false);
+    graph.apply(info);
+    graph.apply(DiscoveryInfo{info.guid, {node("/", "a")}});
+    graph.apply(ParticipantGone{info.guid, was_lost});
+  }
+  EXPECT_THAT(lost, ElementsAre(true, false));
+}
+
 // Whatever comes in whatever order: what was told, taken together, is what the graph shows.
 RC_GTEST_PROP(Graph, WhatItTellsAddsUpToWhatItShows, ()) {
   std::set<std::string> nodes, edges;

@@ -60,6 +60,23 @@ Place place_of(std::string_view type) {
   return {std::string(type) + ".msg"};
 }
 
+// A service as a type of its own, by whose hash it is known (rosidl, from Iron on): what is asked, what is
+// answered, and what is told of a call where it is watched.
+std::optional<std::string> service_text(std::string_view type) {
+  constexpr std::string_view kEvent = "_Event";
+  if (type.find("/srv/") == std::string_view::npos || type.ends_with("_Request") ||
+      type.ends_with("_Response"))
+    return std::nullopt;
+  if (!type.ends_with(kEvent)) {
+    const std::string service(type);
+    return service + "_Request request_message\n" + service + "_Response response_message\n" +
+           service + "_Event event_message\n";
+  }
+  const std::string service(type.substr(0, type.size() - kEvent.size()));
+  return "service_msgs/ServiceEventInfo info\n" + service + "_Request[<=1] request\n" + service +
+         "_Response[<=1] response\n";
+}
+
 // A line of three hyphens stands between the request and the response.
 std::string part_of(const std::string& text, Place::Part part) {
   if (part == Place::Part::kWhole) return text;
@@ -111,6 +128,7 @@ Expected<const MessageDefinition*> MessageLibrary::find(std::string_view type) {
 Expected<MessageDefinition> MessageLibrary::load(std::string_view type) const {
   if (const auto learned = learned_.find(type); learned != learned_.end())
     return parse_message_definition(learned->second, type, type);
+  if (const auto text = service_text(type)) return parse_message_definition(*text, type, type);
   const auto& [below, part] = place_of(type);
   for (const auto& directory : directories_) {
     for (const auto& path : {directory / below, directory / "share" / below}) {

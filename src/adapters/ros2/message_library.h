@@ -29,7 +29,8 @@ class MessageLibrary {
   // (mcap.dev/spec/registry, ros2msg). Goes before the directories; the first one of a type counts.
   void learn(std::string_view type, std::string_view text);
 
-  // `type` is "package/msg/Type". The definition lives as long as the library.
+  // `type` is "package/msg/Type", "package/srv/Type_Request" or "..._Response". "package/srv/Type" itself is what
+  // its parts make it, whether they are known or not. The definition lives as long as the library.
   Expected<const MessageDefinition*> find(std::string_view type);
 
   // `type` and all types in it. Errors: as find(); more than a thousand of them.

@@ -54,6 +54,40 @@ Expected<Reach> read_reach(const Environment& get) {
   return bad_value(kRange, range, "it is SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT");
 }
 
+// "192.168.1.5:11811;;UDPv4:[robot.local]:11888": the place in the list is the server's number.
+Expected<std::vector<DiscoveryServer>> read_servers(std::string_view all) {
+  constexpr const char* kServers = "ROS_DISCOVERY_SERVER";
+  constexpr std::uint16_t kUsualPort = 11811;
+  constexpr std::string_view kUdp = "UDPv4:";
+  std::vector<DiscoveryServer> servers;
+  std::string_view left = all;
+  for (std::size_t id = 0; !left.empty(); ++id) {
+    const auto end = std::min(left.find(';'), left.size());
+    std::string_view text = left.substr(0, end);
+    left.remove_prefix(std::min(end + 1, left.size()));
+    if (text.empty()) continue;
+    if (id > 255) return bad_value(kServers, all, "it has places for 256 servers");
+    const std::string_view written = text;
+    if (text.starts_with(kUdp)) text.remove_prefix(kUdp.size());
+    DiscoveryServer server{static_cast<std::uint8_t>(id), "", kUsualPort};
+    const auto close = text.starts_with('[') ? text.find(']') : std::string_view::npos;
+    const auto colon = text.find(':', close == std::string_view::npos ? 0 : close);
+    if (colon != std::string_view::npos) {
+      const auto port = text.substr(colon + 1);
+      const auto [rest, error] =
+          std::from_chars(port.data(), port.data() + port.size(), server.port);
+      if (error != std::errc() || rest != port.data() + port.size() || server.port == 0)
+        return bad_value(kServers, written, "write a server as address:port, reached by UDPv4");
+      text = text.substr(0, colon);
+    }
+    server.host = close == std::string_view::npos ? text : text.substr(1, close - 1);
+    if (server.host.empty() || server.host.find(':') != std::string::npos)
+      return bad_value(kServers, written, "write a server as address:port, reached by UDPv4");
+    servers.push_back(std::move(server));
+  }
+  return servers;
+}
+
 }  // namespace
 
 Expected<ParticipantOptions> options_from_environment(const Environment& get) {
@@ -71,6 +105,9 @@ Expected<ParticipantOptions> options_from_environment(const Environment& get) {
     if (end > 0) options.peers.emplace_back(peers.substr(0, end));
     peers.remove_prefix(std::min(end + 1, peers.size()));
   }
+  auto servers = read_servers(value_of(get, "ROS_DISCOVERY_SERVER"));
+  if (!servers) return Error{servers.error()};
+  options.servers = std::move(*servers);
   auto security = security_from_environment(get);
   if (!security) return Error{security.error()};
   options.security = std::move(*security);

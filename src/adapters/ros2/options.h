@@ -17,12 +17,22 @@ namespace culprit::ros2 {
 
 enum class Reach : std::uint8_t { kLocalhost, kSubnet };
 
+// A server that nodes on Fast DDS find one another through, in place of multicast.
+struct DiscoveryServer {
+  std::uint8_t id = 0;  // its place in ROS_DISCOVERY_SERVER; its identity follows from it
+  std::string host;     // an IPv4 address or a name
+  std::uint16_t port = 0;
+  bool operator==(const DiscoveryServer&) const = default;
+};
+
 struct ParticipantOptions {
   std::uint32_t domain = 0;  // 0..232; above 101 the ports collide with those that Linux hands out
   Reach reach = Reach::kSubnet;
   std::string enclave = "/";
   std::vector<std::string>
       peers;  // further IPv4 addresses or host names to announce to, where multicast does not reach
+  // Not empty: all that these know is seen (a super client), and nobody else is found.
+  std::vector<DiscoveryServer> servers{};
   // What ros_discovery_info is written with. Nothing: as the first peer does.
   std::optional<GidSize> gid_size;
   // Of the UDP sockets; the system's default of 208 kB loses large best effort samples.
@@ -34,8 +44,8 @@ struct ParticipantOptions {
 // The value of a variable, or null.
 using Environment = std::function<const char*(const char* name)>;
 
-// ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, and those of
-// security.h. An error names the variable.
+// ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS,
+// ROS_DISCOVERY_SERVER, and those of security.h. An error names the variable.
 Expected<ParticipantOptions> options_from_environment(const Environment& get);
 Expected<ParticipantOptions> options_from_environment();
 

@@ -68,6 +68,21 @@ TEST(Options, ReadStaticPeers) {
               ElementsAre("192.168.0.1", "robot.local"));
 }
 
+TEST(Options, ReadDiscoveryServers) {
+  EXPECT_THAT(
+      options_with({{"ROS_DISCOVERY_SERVER", "192.168.0.1:11888;;robot.local;UDPv4:[10.0.0.1]:7"}})
+          ->servers,
+      ElementsAre(DiscoveryServer{0, "192.168.0.1", 11888},
+                  DiscoveryServer{2, "robot.local", 11811}, DiscoveryServer{3, "10.0.0.1", 7}));
+  EXPECT_TRUE(options_with({{"ROS_DISCOVERY_SERVER", ""}})->servers.empty());
+  for (const char* bad : {"TCPv4:[10.0.0.1]:7", "10.0.0.1:0", "10.0.0.1:x", ":11811", "[::1]:11811",
+                          "10.0.0.1:99999"}) {
+    const auto options = options_with({{"ROS_DISCOVERY_SERVER", bad}});
+    ASSERT_FALSE(options) << bad;
+    EXPECT_THAT(options.error(), StartsWith("ROS_DISCOVERY_SERVER is '" + std::string(bad)));
+  }
+}
+
 TEST(Options, ResolveAddressesAndNames) {
   EXPECT_EQ(*resolve_peer("192.168.0.1"), "192.168.0.1");
   EXPECT_EQ(*resolve_peer("localhost"), "127.0.0.1");

@@ -11,7 +11,6 @@
 namespace culprit::ros2 {
 
 namespace dds = fast_dds::dds;
-namespace rtps = fast_dds::rtps;
 
 namespace {
 
@@ -190,7 +189,8 @@ class Reader::Impl final : public dds::DataReaderListener {
 
   void on_subscription_matched(dds::DataReader*,
                                const dds::SubscriptionMatchedStatus& status) noexcept override {
-    const Guid writer = fast_dds::to_guid(rtps::iHandle2GUID(status.last_publication_handle));
+    const Guid writer =
+        fast_dds::to_guid(fast_dds::rtps::iHandle2GUID(status.last_publication_handle));
     heard_.note(writer, match_of(status));
     if (!options_.on_match) return;
     gate_.pass([&] { options_.on_match(writer, match_of(status)); });
@@ -201,13 +201,13 @@ class Reader::Impl final : public dds::DataReaderListener {
  private:
   void deliver(const dds::SampleInfo& info) {
     heard_.delivered(fast_dds::to_identity(info.sample_identity).writer);
-    on_sample_(
-        {.payload = options_.payload == PayloadUse::kWhole ? ByteView(incoming_.bytes) : ByteView(),
-         .size = incoming_.size,
-         .sent = fast_dds::to_time(info.source_timestamp),
-         .received = fast_dds::to_time(info.reception_timestamp),
-         .identity = fast_dds::to_identity(info.sample_identity),
-         .related = fast_dds::to_identity(info.related_sample_identity)});
+    on_sample_({.payload = options_.payload == PayloadUse::kHeader ? ByteView()
+                                                                   : ByteView(incoming_.bytes),
+                .size = incoming_.size,
+                .sent = fast_dds::to_time(info.source_timestamp),
+                .received = fast_dds::to_time(info.reception_timestamp),
+                .identity = fast_dds::to_identity(info.sample_identity),
+                .related = fast_dds::to_identity(info.related_sample_identity)});
   }
 
   dds::Subscriber& subscriber_;
@@ -257,7 +257,8 @@ class Writer::Impl final : public dds::DataWriterListener {
   void on_publication_matched(dds::DataWriter*,
                               const dds::PublicationMatchedStatus& status) noexcept override {
     if (!options_.on_match) return;
-    const Guid reader = fast_dds::to_guid(rtps::iHandle2GUID(status.last_subscription_handle));
+    const Guid reader =
+        fast_dds::to_guid(fast_dds::rtps::iHandle2GUID(status.last_subscription_handle));
     gate_.pass([&] { options_.on_match(reader, match_of(status)); });
   }
 
@@ -305,12 +306,17 @@ class Participant::Impl {
           gate_.pass([&] { callback(std::move(event)); });
         }) {}
 
-  Expected<void> open(const ParticipantOptions& options) {
+  Expected<void> open(ParticipantOptions options) {
     std::vector<std::string> peers;
     for (const std::string& peer : options.peers) {
       auto address = resolve_peer(peer);
       if (!address) return Error{address.error()};
       peers.push_back(std::move(*address));
+    }
+    for (DiscoveryServer& server : options.servers) {
+      auto address = resolve_peer(server.host);
+      if (!address) return Error{address.error()};
+      server.host = std::move(*address);
     }
     static std::once_flag is_set_up;
     std::call_once(is_set_up, fast_dds::speak_through_sockets);

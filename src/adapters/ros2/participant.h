@@ -40,6 +40,8 @@ struct ParticipantInfo {
   std::string host;  // its machine; empty when it does not say
   int pid = 0;       // its process there, as seen by itself; 0 when it does not say
   std::vector<UdpAddress> metatraffic;  // where it listens for discovery
+  bool shares_memory = false;           // it listens in shared memory, too (Fast DDS)
+  bool is_secured = false;              // it has an identity, signed by somebody
   // Not its word: where its datagrams came from. Filled in when its process is looked for.
   DatagramSources::Origin origin{};
 };
@@ -52,10 +54,14 @@ struct EndpointInfo {
   std::string type;
   std::string user_data;
   Qos qos;
+  // Only who has one in common is heard (DDS 1.4 §2.2.3.13); none is the one that is called "". ROS 2
+  // has no word for it; XML profiles of the middleware have.
+  std::vector<std::string> partitions{};
 };
 
 struct ParticipantGone {
   Guid guid;
+  bool was_lost = false;  // it said no good-bye: its lease ran out
 };
 struct EndpointGone {
   Guid guid;
@@ -69,7 +75,8 @@ using SystemTime = std::chrono::sys_time<std::chrono::nanoseconds>;
 
 // A sample as it came. `payload` is gone when the callback returns.
 struct Sample {
-  ByteView payload;      // with its encapsulation; empty for a reader of headers
+  ByteView
+      payload;  // with its encapsulation; empty for a reader of headers, cut for one of beginnings
   std::size_t size = 0;  // of the payload, in bytes, also where it was not copied
   SystemTime sent;       // by the writer's clock
   SystemTime received;
@@ -82,8 +89,11 @@ using SampleCallback = std::function<void(const Sample&)>;
 enum class Match : std::uint8_t { kMade, kLost };
 using MatchCallback = std::function<void(const Guid& remote, Match)>;
 
-// kHeader: for topics whose rate matters and whose size hurts; no payload is copied.
-enum class PayloadUse : std::uint8_t { kWhole, kHeader };
+// kHeader: for topics whose rate matters and whose size hurts; no payload is copied. kBeginning: of
+// each payload only so much that a std_msgs/Header at its beginning is whole, unless its frame has
+// an absurd name.
+enum class PayloadUse : std::uint8_t { kWhole, kHeader, kBeginning };
+inline constexpr std::size_t kBeginningSize = 512;  // bytes
 
 struct ReaderOptions {
   std::string topic;  // DDS names

@@ -115,6 +115,19 @@ TEST(Participant, AReaderOfHeadersCopiesNoPayload) {
   EXPECT_EQ(pair.received.all().front().size, kSmall.size());
 }
 
+TEST(Participant, AReaderOfBeginningsCopiesOnlyThose) {
+  Pair pair({}, PayloadUse::kBeginning);
+  Bytes large(5000, 7);
+  large[0] = 0;
+  pair.writer->write(large);
+  pair.writer->write(kSmall);
+  ASSERT_TRUE(pair.received.wait_for_count(2));
+  large.resize(kBeginningSize);
+  EXPECT_EQ(pair.received.all()[0].payload, large);
+  EXPECT_EQ(pair.received.all()[0].size, 5000u);
+  EXPECT_EQ(pair.received.all()[1].payload, kSmall);
+}
+
 TEST(Participant, LargePayloadsArriveWhole) {
   Pair pair;
   Bytes large(4'000'000);
@@ -223,7 +236,11 @@ TEST(Participant, DiscoversOthersTheirEndpointsAndTheirEnd) {
   EventLog<DiscoveryEvent> events;
   const auto watcher = join(domain, [&](DiscoveryEvent event) { events.add(std::move(event)); });
   auto other = join(domain);
-  const Qos qos{.durability = Durability::kTransientLocal, .lifespan = std::chrono::seconds(10)};
+  const Qos qos{.durability = Durability::kTransientLocal,
+                .lifespan = std::chrono::seconds(10),
+                .liveliness = Liveliness::kManualByTopic,
+                .liveliness_lease = std::chrono::seconds(3),
+                .ownership = Ownership::kExclusive};
   auto writer = other->create_writer({"t", "T", qos, "key=value;", {}});
   ASSERT_TRUE(writer);
   const Guid guid = (*writer)->guid();
@@ -240,6 +257,9 @@ TEST(Participant, DiscoversOthersTheirEndpointsAndTheirEnd) {
       EXPECT_EQ(info->qos.reliability, Reliability::kReliable);
       EXPECT_EQ(info->qos.lifespan, std::chrono::seconds(10));
       EXPECT_EQ(info->qos.deadline, kInfinite);
+      EXPECT_EQ(info->qos.liveliness, Liveliness::kManualByTopic);
+      EXPECT_EQ(info->qos.liveliness_lease, std::chrono::seconds(3));
+      EXPECT_EQ(info->qos.ownership, Ownership::kExclusive);
     }
     if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
       EXPECT_EQ(info->vendor, Vendor::kFastDds);
@@ -258,7 +278,7 @@ TEST(Participant, DiscoversOthersTheirEndpointsAndTheirEnd) {
   other.reset();
   EXPECT_TRUE(events.wait_for_one([&](const DiscoveryEvent& event) {
     const auto* gone = std::get_if<ParticipantGone>(&event);
-    return gone != nullptr && gone->guid == participant;
+    return gone != nullptr && gone->guid == participant && !gone->was_lost;
   }));
 }
 

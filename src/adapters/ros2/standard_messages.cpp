@@ -138,6 +138,10 @@ constexpr auto kMessages = std::to_array<StandardMessage>({
     {"sensor_msgs/msg/TimeReference",
      "std_msgs/Header header\nbuiltin_interfaces/Time time_ref\nstring source"},
 
+    {"service_msgs/msg/ServiceEventInfo",
+     "uint8 event_type\nbuiltin_interfaces/Time stamp\nchar[16] client_gid\n"
+     "int64 sequence_number"},
+
     {"std_msgs/msg/Bool", "bool data"},
     {"std_msgs/msg/Byte", "byte data"},
     {"std_msgs/msg/Char", "char data"},

@@ -122,18 +122,18 @@ Expected<MessageDefinition> to_definition(const msg::IndividualTypeDescription& 
 }
 
 // Names of types and fields hold letters, digits, '_' and '/' only: nothing has to be escaped.
-std::string quoted(std::string_view text) { return '"' + std::string(text) + '"'; }
+std::string json_text(std::string_view text) { return '"' + std::string(text) + '"'; }
 
 std::string to_json(const msg::IndividualTypeDescription& description) {
   std::string fields;
   for (const msg::Field& field : description.fields) {
-    fields += (fields.empty() ? "" : ", ") + ("{\"name\": " + quoted(field.name)) +
+    fields += (fields.empty() ? "" : ", ") + ("{\"name\": " + json_text(field.name)) +
               ", \"type\": {\"type_id\": " + std::to_string(field.type.type_id) +
               ", \"capacity\": " + std::to_string(field.type.capacity) +
               ", \"string_capacity\": " + std::to_string(field.type.string_capacity) +
-              ", \"nested_type_name\": " + quoted(field.type.nested_type_name) + "}}";
+              ", \"nested_type_name\": " + json_text(field.type.nested_type_name) + "}}";
   }
-  return "{\"type_name\": " + quoted(description.type_name) + ", \"fields\": [" + fields + "]}";
+  return "{\"type_name\": " + json_text(description.type_name) + ", \"fields\": [" + fields + "]}";
 }
 
 }  // namespace

@@ -33,6 +33,28 @@ TEST(TypeHash, IsThatOfIronAndNewer) {
   }
 }
 
+// As rosidl of Jazzy computes them. A service is a type of its own, beside its messages.
+TEST(TypeHash, OfServicesIsThatOfIronAndNewer) {
+  MessageLibrary library;
+  library.learn("p/srv/Find_Request", "string[] names\nbuiltin_interfaces/Time[<=2] when\n");
+  library.learn("p/srv/Find_Response", "bool ok\n");
+  for (const auto& [type, hash] : std::map<std::string, std::string>{
+           {"std_srvs/srv/Trigger_Request",
+            "d010825374ce8918e72bfd826c82603e60f45419e932ea976f807b74a863a199"},
+           {"std_srvs/srv/Trigger",
+            "eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f"},
+           {"std_srvs/srv/SetBool_Event",
+            "3c4c20015afb4303eafd347b1d6a786f171a89c814726961a9593ef10df878cf"},
+           {"std_srvs/srv/SetBool",
+            "abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a"},
+           {"p/srv/Find", "0f681017a78c53880a21a6f1ee49d1a91958af4e84623cdcd970e6fc2f05ae46"}}) {
+    const auto ours = library.hash_of(type);
+    ASSERT_TRUE(ours) << ours.error();
+    EXPECT_EQ(*ours, "RIHS01_" + hash) << type;
+  }
+  EXPECT_FALSE(library.hash_of("p/srv/Nothing"));
+}
+
 // Bounds are part of a type; constants and defaults are not.
 TEST(TypeHash, TellsBoundsApart) {
   const auto hash_of = [](std::string_view text) {
@@ -47,8 +69,9 @@ TEST(TypeHash, TellsBoundsApart) {
 
 TEST(TypeDescription, OfATypeIsThatTypeAgain) {
   MessageLibrary library;
-  for (const std::string type : {"sensor_msgs/msg/Image", "nav_msgs/msg/Odometry",
-                                 "std_msgs/msg/Empty", "diagnostic_msgs/msg/DiagnosticArray"}) {
+  for (const std::string type :
+       {"sensor_msgs/msg/Image", "nav_msgs/msg/Odometry", "std_msgs/msg/Empty",
+        "diagnostic_msgs/msg/DiagnosticArray", "std_srvs/srv/SetBool"}) {
     const auto parts = library.with_parts(type);
     ASSERT_TRUE(parts) << parts.error();
     const auto again = to_definitions(describe(type, *parts));

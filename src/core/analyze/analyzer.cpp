@@ -32,6 +32,7 @@ Analyzer::Analyzer(const Knowledge& knowledge, Writes writes)
     : knowledge_(knowledge),
       write_(writes),
       deadlines_(knowledge.rules.rules.size()),
+      known_silence_(knowledge),
       couplings_(knowledge, {writes.states, writes.couplings}),
       outcomes_(knowledge, {writes.beliefs, writes.outcomes, writes.events}) {}
 
@@ -153,7 +154,7 @@ void Analyzer::look_at(RuleId id, Time now) {
 
 void Analyzer::evaluate_trigger(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
-  const Slot value = evaluate(knowledge_.rules[id].trigger, knowledge_.signals.slots());
+  const Slot value = value_of_trigger(id, now);
   if (!same(value, state.detection.trigger, Type::kBool) ||
       state.detection.trigger_since == kLongAgo) {
     state.detection.trigger = value;
@@ -162,6 +163,19 @@ void Analyzer::evaluate_trigger(RuleId id, Time now) {
   if (!is_true(value)) state.detection.armed = true;
   if (is_false(value) && state.left_off && !state.left_off->gone) forget_left_off(id, now);
   if (!state.detection.history.empty()) sample_history(id, now);
+}
+
+Slot Analyzer::value_of_trigger(RuleId id, Time now) {
+  Detection& detection = write_.states.state(id).detection;
+  const Slot value = evaluate(knowledge_.rules[id].trigger, knowledge_.signals.slots());
+  const auto dead = is_true(value) ? std::nullopt : known_silence_.behind(id);
+  if (!dead) {
+    detection.known_death.reset();
+    return value;
+  }
+  if (!detection.known_death || detection.known_death->component != *dead)
+    detection.known_death = {*dead, now};
+  return Slot::of(true);
 }
 
 // What an earlier process left off at went away while nobody looked on.
@@ -230,7 +244,7 @@ void Analyzer::detect(RuleId id, Time now) {
     write_.states.begin_search(id, now);
   }
   write_.states.enter(id, RulePhase::kFailing);
-  write_.events.tell(now, FailureDetected{id});
+  write_.events.tell(now, known_silence_.detected(id));
   outcomes_.detected(id, now);
   if (state.search.times == kFlaps) write_.events.tell(now, FailureFlaps{id, state.search.times});
   if (is_said_to_be_exhausted) {

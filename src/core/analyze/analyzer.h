@@ -3,7 +3,9 @@
 // Only rules whose trigger can have changed, or whose own time has come, are looked at. What a rule
 // goes through:
 //
-//   detected   its trigger held for its policy's time (FOR, HOLD n/k) and its COOLDOWN is over
+//   detected   its trigger held for its policy's time (FOR, HOLD n/k) and its COOLDOWN is over.
+//              Silence that is certain to come, because who would speak is known dead, counts
+//              at once (known_silence.h)
 //   resolved   its trigger was false for its policy's time; unknown is neither true nor false
 //   proven     it stayed resolved for `healthy`. A failure that is back before that is the same
 //              one: its strategies stay tried, and its attempts and rounds go on counting. One
@@ -31,6 +33,7 @@
 #include <vector>
 
 #include "analyze/coupling_watch.h"
+#include "analyze/known_silence.h"
 #include "analyze/outcome_watch.h"
 #include "knowledge/deadlines.h"
 #include "knowledge/history.h"
@@ -107,6 +110,7 @@ class Analyzer {
  private:
   void look_at(RuleId id, Time now);
   void evaluate_trigger(RuleId id, Time now);
+  Slot value_of_trigger(RuleId id, Time now);
   void forget_left_off(RuleId id, Time now);
   void sample_history(RuleId id, Time now);
   bool detects(RuleId id, Time now) const;
@@ -139,6 +143,7 @@ class Analyzer {
   const Knowledge& knowledge_;
   Writes write_;
   Deadlines deadlines_;  // by RuleId
+  KnownSilence known_silence_;
   CouplingWatch couplings_;
   OutcomeWatch outcomes_;
 };

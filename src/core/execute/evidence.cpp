@@ -72,6 +72,27 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
   return std::nullopt;
 }
 
+std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowledge& knowledge,
+                                           Time now) {
+  // It is asked every 400 ms; that it hangs is told by two questions, or three, that were not answered within 500 ms (Monitor).
+  constexpr Duration kOverdue = std::chrono::milliseconds(450);
+  constexpr Duration kVerdict = std::chrono::milliseconds(1900);
+  if (strategy.is_last_resort) return std::nullopt;
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    const bool disturbs =
+        adaptation.type == AdaptationType::kRestart || adaptation.type == AdaptationType::kRedeploy;
+    const ComponentState& state = knowledge.components[adaptation.component];
+    const bool is_asked =
+        state.answers_probes && is_at_work(state) && state.changes_until == kNever;
+    const Time until = later(state.answered, kVerdict);
+    if (disturbs && is_asked && later(state.answered, kOverdue) < now && now < until)
+      return AnswerToCome{
+          "it is seen whether " + knowledge.rules[adaptation.component].name + " still answers",
+          until};
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> launch_of_the_unseen(const Strategy& strategy,
                                                 const Knowledge& knowledge) {
   for (const Adaptation& adaptation : strategy.adaptations) {

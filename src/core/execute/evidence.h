@@ -22,6 +22,16 @@ namespace culprit {
 std::optional<std::string> contradiction(const Strategy& strategy, const Knowledge& knowledge,
                                          Time now);
 
+// Whether a component that the strategy ends, or takes through its lifecycle, hangs will be known soon: its
+// answer is overdue. What hangs is not asked politely, and for nothing else; what was ended politely
+// can hardly be told from it any more. Nothing: it answers, or is never asked. A last resort does not wait.
+struct AnswerToCome {
+  std::string reason;
+  Time until;
+};
+std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowledge& knowledge,
+                                           Time now);
+
 // Why it would start what was never seen (knowledge/sightings.h); nothing if it does not. Absent is
 // not dead, and only people and `run --launch` start what was not there.
 std::optional<std::string> launch_of_the_unseen(const Strategy& strategy,

@@ -76,6 +76,7 @@ void Executor::answered(const Reply& reply, Time now) {
 }
 
 void Executor::advance(Time now, std::vector<Command>& commands) {
+  if (!owed_.empty()) forget_what_others_started(now);
   // An attempt that succeeded left its rule; nothing of it is left to do.
   std::erase_if(runs_, [&](const Run& run) { return attempt_of(run) == nullptr; });
   for (Run& run : runs_) advance(run, now, commands);
@@ -192,7 +193,7 @@ void Executor::finish_goal(Run& run, Time now) {
 bool Executor::next_undo(Run& run, Time now) {
   std::erase_if(run.undo, [&](const execute::Undo& undo) {
     if (knowledge_.components[undo.component].process != ProcessState::kGone) return false;
-    undo_at_next_start(undo, now);
+    undo_at_next_start(run.strategy, undo, now);
     return true;
   });
   if (run.undo.empty()) {
@@ -206,12 +207,12 @@ bool Executor::next_undo(Run& run, Time now) {
 
 // Nobody is there who could be asked. What starts next in its place may be as the last one was left:
 // many nodes keep their parameters.
-void Executor::undo_at_next_start(const execute::Undo& undo, Time now) {
+void Executor::undo_at_next_start(StrategyId strategy, const execute::Undo& undo, Time now) {
   if (const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal)) {
     write_.components.intend_lifecycle(undo.component, lifecycle->target, now, write_.events);
   } else if (const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal)) {
     forget_owed(undo.component, parameter->name);
-    owed_.push_back(undo);
+    owed_.push_back({strategy, undo});
   }
 }
 
@@ -219,17 +220,31 @@ void Executor::undo_at_next_start(const execute::Undo& undo, Time now) {
 void Executor::take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals) {
   if (adaptation.type != AdaptationType::kRedeploy && adaptation.type != AdaptationType::kStart)
     return;
-  std::erase_if(owed_, [&](execute::Undo& undo) {
-    if (undo.component != adaptation.component) return false;
-    goals.push_back(std::move(undo.goal));
+  std::erase_if(owed_, [&](Owed& owed) {
+    if (owed.undo.component != adaptation.component) return false;
+    goals.push_back(std::move(owed.undo.goal));
+    return true;
+  });
+}
+
+// What somebody else started is as that one wants it, and a person may have changed it since. What
+// waits is told to people, and not set at some redeploy much later.
+void Executor::forget_what_others_started(Time now) {
+  std::erase_if(owed_, [&](const Owed& owed) {
+    const ComponentId component = owed.undo.component;
+    if (knowledge_.components[component].process == ProcessState::kGone) return false;
+    const std::string what =
+        knowledge_.rules[component].name + ": " + execute::describe(owed.undo.goal);
+    write_.events.tell(
+        now, Undone{owed.strategy, what + ": something else had started it again", false});
     return true;
   });
 }
 
 void Executor::forget_owed(ComponentId component, const std::string& parameter) {
-  std::erase_if(owed_, [&](const execute::Undo& undo) {
-    return undo.component == component &&
-           std::get<execute::ParameterGoal>(undo.goal).name == parameter;
+  std::erase_if(owed_, [&](const Owed& owed) {
+    return owed.undo.component == component &&
+           std::get<execute::ParameterGoal>(owed.undo.goal).name == parameter;
   });
 }
 

@@ -76,9 +76,10 @@ class Executor {
   bool next_undo(Run& run, Time now);
   void finish_goal(Run& run, Time now);
   void finish_undo(Run& run, Time now);
-  void undo_at_next_start(const execute::Undo& undo, Time now);
+  void undo_at_next_start(StrategyId strategy, const execute::Undo& undo, Time now);
   void take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals);
   void forget_owed(ComponentId component, const std::string& parameter);
+  void forget_what_others_started(Time now);
   void note_change(Run& run, Time now);
   void note_mode(const execute::Pursuit& pursuit, Time now);
   void note_rival(const Run& run, Time now);
@@ -93,8 +94,13 @@ class Executor {
   const Knowledge& knowledge_;
   Writes write_;
   std::vector<Run> runs_;
-  // Parameters that were to be undone in processes that were gone by then.
-  std::vector<execute::Undo> owed_;
+  // Parameters that were to be undone in processes that were gone by then; until the process is there
+  // again, whoever started it.
+  struct Owed {
+    StrategyId strategy;  // whose change it was
+    execute::Undo undo;
+  };
+  std::vector<Owed> owed_;
   std::uint64_t last_command_ = 0;
 };
 

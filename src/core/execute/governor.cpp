@@ -28,6 +28,26 @@ bool exists(const Silenceable& what, const RuleSet& rules) {
   return std::get<ComponentId>(what).index < rules.components.size();
 }
 
+Governor::Held in_words(const Departures::Departure& departure, const std::string& component) {
+  using What = Departures::What;
+  const std::string launcher = "process " + std::to_string(departure.launcher);
+  switch (departure.what) {
+    case What::kIsEnding:
+      return {Restraint::kLeaving,
+              "what " + launcher + " had started is being ended, " + component + " with it",
+              departure.until};
+    case What::kHasEnded:
+      return {Restraint::kLaunchEnded,
+              "somebody ended " + launcher + " and what it had started, " + component +
+                  " with it; start it again, or order this strategy",
+              departure.until};
+    case What::kIsBack:
+      break;
+  }
+  return {Restraint::kLaunchEnded, component + " was started again a moment ago, by somebody",
+          departure.until};
+}
+
 }  // namespace
 
 Governor::Options Governor::Options::recommended() {
@@ -40,6 +60,8 @@ Governor::Options Governor::Options::recommended() {
   options.limits.restarts = {20, 1h};
   options.limits.backoff = {1s, 60s, 60s};
   options.limits.quiet_after_launch = 1s;
+  // Fast DDS announces a participant every 3 s; who missed the first announcements waits for the next.
+  options.limits.quiet_downstream = 3500ms;
   options.storm.share = 0.6;
   options.needs_evidence = true;
   return options;
@@ -198,7 +220,8 @@ bool Governor::holds_back(StrategyId strategy, Time now) {
 }
 
 std::optional<Governor::Held> Governor::restraint_on_all(Time now) const {
-  if (is_paused_) return Held{Restraint::kPaused, "paused by a person", kNever};
+  if (is_paused_)
+    return Held{Restraint::kPaused, "paused by a person; culprit resume lets it go on", kNever};
   if (storm_.storm())
     return Held{storm_.storm()->restraint, storm_.storm()->reason, storm_.next_deadline()};
   if (auto held = interlock()) return held;
@@ -214,15 +237,29 @@ std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) co
     return Held{Restraint::kIdentity, std::move(*doubt), kNever};
   if (auto reason = launch_of_the_unseen(knowledge_.rules[id], knowledge_))
     return Held{Restraint::kNeverSeen, std::move(*reason), kNever};
+  if (auto held = departure(knowledge_.rules[id], now)) return held;
   if (auto held = lack_of_evidence(knowledge_.rules[id], now)) return held;
   return limits_.on(id, now);
 }
 
+// A last resort that starts nothing is wanted all the same.
+std::optional<Governor::Held> Governor::departure(const Strategy& strategy, Time now) const {
+  if (strategy.is_last_resort && std::ranges::none_of(strategy.adaptations, launches))
+    return std::nullopt;
+  for (const ComponentId component : strategy.components) {
+    const auto departure = knowledge_.departures.of(component, now);
+    if (departure) return in_words(*departure, knowledge_.rules[component].name);
+  }
+  return std::nullopt;
+}
+
 std::optional<Governor::Held> Governor::lack_of_evidence(const Strategy& strategy, Time now) const {
   if (!options_.needs_evidence) return std::nullopt;
-  auto reason = contradiction(strategy, knowledge_, now);
-  if (!reason) return std::nullopt;
-  return Held{Restraint::kEvidence, std::move(*reason), kNever};
+  if (auto reason = contradiction(strategy, knowledge_, now))
+    return Held{Restraint::kEvidence, std::move(*reason), kNever};
+  if (auto answer = answer_to_come(strategy, knowledge_, now))
+    return Held{Restraint::kEvidence, std::move(answer->reason), answer->until};
+  return std::nullopt;
 }
 
 std::optional<Governor::Held> Governor::restraint_by_person(StrategyId id) const {

@@ -109,6 +109,7 @@ class Governor {
   std::optional<std::string> objection_to_run(StrategyId id, Autonomy autonomy) const;
   std::optional<Held> restraint_on(StrategyId strategy, Time now) const;
   std::optional<Held> restraint_by_person(StrategyId strategy) const;
+  std::optional<Held> departure(const Strategy& strategy, Time now) const;
   std::optional<Held> lack_of_evidence(const Strategy& strategy, Time now) const;
   // What no person can order either.
   std::optional<Held> interlock() const;

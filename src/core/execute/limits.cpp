@@ -1,6 +1,7 @@
 #include "execute/limits.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace culprit {
 namespace {
@@ -139,19 +140,28 @@ std::optional<Limits::Limit> Limits::backoff(ComponentId component, RuleId rule,
 }
 
 std::optional<Limits::Limit> Limits::quiet(ComponentId component, Time now) const {
-  const auto limit = [&](ComponentId c, Time since) -> std::optional<Limit> {
-    const Time until = later(since, options_.quiet_after_launch);
-    if (components_[c.index].launched == kLongAgo || until <= now) return std::nullopt;
+  const auto limit = [&](ComponentId c, Time since, Duration quiet) -> std::optional<Limit> {
+    const Time until = later(since, quiet);
+    if (since == kLongAgo || until <= now) return std::nullopt;
     return Limit{Restraint::kQuietPeriod, knowledge_.rules[c].name + " was launched a moment ago",
                  until};
   };
-  if (auto own = limit(component, components_[component.index].launched)) return own;
-  for (const ComponentId upstream : knowledge_.graph.upstream(component)) {
+  const auto producers = knowledge_.graph.upstream(component);
+  // What is known to be dead waits for nobody.
+  const bool is_dead = knowledge_.components[component].alive == false;
+  const bool finds_others = !is_dead && !producers.empty();
+  const Duration own_quiet = finds_others
+                                 ? std::max(options_.quiet_after_launch, options_.quiet_downstream)
+                                 : options_.quiet_after_launch;
+  if (auto own = limit(component, components_[component.index].launched, own_quiet)) return own;
+  if (is_dead) return std::nullopt;
+  for (const ComponentId upstream : producers) {
     // For those that it feeds, it is back when what it publishes is there.
     const ComponentState& state = knowledge_.components[upstream];
-    const Time since =
-        std::max({components_[upstream.index].launched, state.ends_back, state.awaits_ends_until});
-    if (auto of_upstream = limit(upstream, since)) return of_upstream;
+    const Time came = components_[upstream.index].came;
+    if (came == kLongAgo) continue;
+    const Time since = std::max({came, state.ends_back, state.awaits_ends_until});
+    if (auto of_upstream = limit(upstream, since, options_.quiet_downstream)) return of_upstream;
   }
   return std::nullopt;
 }
@@ -208,7 +218,13 @@ void Limits::note(const Event& event) {
     is_well(lost->rule);
   } else if (const auto* done = std::get_if<AdaptationDone>(&event.what)) {
     const Adaptation& adaptation = knowledge_.rules[done->strategy].adaptations[done->adaptation];
-    if (launches(adaptation)) components_[adaptation.component.index].launched = event.at;
+    PerComponent& state = components_[adaptation.component.index];
+    if (launches(adaptation)) state.launched = state.came = event.at;
+  } else if (const auto* gone = std::get_if<ComponentLost>(&event.what)) {
+    components_[gone->component.index].is_lost = true;
+  } else if (const auto* back = std::get_if<ComponentFound>(&event.what)) {
+    PerComponent& state = components_[back->component.index];
+    if (std::exchange(state.is_lost, false)) state.came = event.at;
   }
 }
 

@@ -42,7 +42,10 @@ class Limits {
     Intensity per_component{};
     Intensity restarts{};  // of a component, by whatever strategies; beyond, a person must look
     Backoff backoff{};
-    Duration quiet_after_launch{};  // for a component that was started, and what depends on it
+    Duration quiet_after_launch{};  // for a component that was started
+    // For what depends on a component that was started, or came back by other hands: it has to find the
+    // new process first.
+    Duration quiet_downstream{};
   };
   struct Limit {
     Restraint restraint = Restraint::kOverallIntensity;
@@ -69,6 +72,8 @@ class Limits {
     Time restarted = kLongAgo;
     Time well_since = kLongAgo;
     Time launched = kLongAgo;
+    bool is_lost = false;
+    Time came = kLongAgo;  // launched, or found again after it was lost
   };
 
   std::optional<Limit> backoff(ComponentId component, RuleId rule, Time now) const;

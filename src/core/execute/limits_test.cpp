@@ -46,6 +46,7 @@ TEST(Limits, LetALaunchSettleBeforeTheComponentOrWhatDependsOnItIsTouched) {
   Two two;
   Limits::Options options;
   options.quiet_after_launch = 1s;
+  options.quiet_downstream = 1s;
   Limits limits(two.knowledge, options);
   EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart));
   limits.note({kStart, AdaptationDone{two.strategy("up_again"), 0, ""}});
@@ -61,6 +62,7 @@ TEST(Limits, LeaveWhatDependsOnALaunchAloneUntilItPublishesAgain) {
   Two two;
   Limits::Options options;
   options.quiet_after_launch = 1s;
+  options.quiet_downstream = 1s;
   Limits limits(two.knowledge, options);
   limits.note({kStart, AdaptationDone{two.strategy("up_again"), 0, ""}});
   ComponentState& up = two.knowledge.components[ComponentId(0)];
@@ -74,10 +76,31 @@ TEST(Limits, LeaveWhatDependsOnALaunchAloneUntilItPublishesAgain) {
   EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 5s));
 }
 
+// Whoever started it again: what depends on it has to find the new process first.
+TEST(Limits, LeaveWhatDependsOnWhatCameBackAloneUntilItIsFound) {
+  Two two;
+  Limits::Options options;
+  options.quiet_after_launch = 1s;
+  options.quiet_downstream = 3s;
+  Limits limits(two.knowledge, options);
+  limits.note({kStart, ComponentFound{ComponentId(0), 7}});
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart))
+      << "it was only seen for the first time";
+  limits.note({kStart + 1s, ComponentLost{ComponentId(0), ""}});
+  limits.note({kStart + 2s, ComponentFound{ComponentId(0), 8}});
+  EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kStart + 4999ms)),
+            Restraint::kQuietPeriod);
+  EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart + 2s));
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 5s));
+  two.knowledge.components[ComponentId(1)].alive = false;
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 3s)) << "it is dead of itself";
+}
+
 TEST(Limits, AreQuietOnlyAfterALaunch) {
   Two two;
   Limits::Options options;
   options.quiet_after_launch = 1s;
+  options.quiet_downstream = 1s;
   Limits limits(two.knowledge, options);
   limits.note({kStart, AdaptationDone{two.strategy("down_tuned"), 0, ""}});
   EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart));
@@ -87,6 +110,7 @@ TEST(Limits, RememberTheLaunchOfAnEarlierProcess) {
   Two two;
   Limits::Options options;
   options.quiet_after_launch = 1s;
+  options.quiet_downstream = 1s;
   Limits limits(two.knowledge, options);
   limits.remember({{kStart, AdaptationDone{two.strategy("up_again"), 0, ""}}});
   EXPECT_EQ(restraint(limits.on(two.strategy("down_again"), kStart + 500ms)),

@@ -195,7 +195,12 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
       return give_up(why(*seen_));
     return look_again(now);
   }
-  if (seen_->outcome == Outcome::kRefused) return give_up(why(*seen_));
+  if (seen_->outcome == Outcome::kRefused) {
+    // A process that does not know the parameter has nothing that would have to be undone.
+    const auto* parameter = std::get_if<ParameterGoal>(&goal_);
+    const bool restores = parameter != nullptr && parameter->kind == ParameterGoal::Kind::kRestore;
+    return restores ? reach("nothing to restore: " + why(*seen_)) : give_up(why(*seen_));
+  }
   if (!before_) before_ = seen_;
   if (!has_changed_anything() && would_fight(knowledge)) {
     met_rival_ = true;

@@ -253,6 +253,24 @@ TEST(PursuitOfAParameter, RestoresOnlyWhatIsAnother) {
   EXPECT_TRUE(is<SetParameter>(other.advance(one.knowledge, kStart)));
 }
 
+// A process that came in another's place may be another version, without the parameter.
+TEST(PursuitOfAParameter, HasNothingToRestoreWhereThereIsNone) {
+  One one;
+  const Reply none{{}, Outcome::kRefused, {}, "there is no parameter gain"};
+  Pursuit restored(ParameterGoal{"gain", Value(0.5), ParameterGoal::Kind::kRestore, {}}, one.c,
+                   kStart);
+  ASSERT_TRUE(is<ReadParameter>(restored.advance(one.knowledge, kStart)));
+  restored.answered(none, kStart);
+  EXPECT_FALSE(restored.advance(one.knowledge, kStart));
+  EXPECT_TRUE(restored.is_reached());
+  EXPECT_EQ(restored.remark(), "nothing to restore: there is no parameter gain");
+  Pursuit set(ParameterGoal{"gain", Value(0.5), ParameterGoal::Kind::kSet, {}}, one.c, kStart);
+  ASSERT_TRUE(is<ReadParameter>(set.advance(one.knowledge, kStart)));
+  set.answered(none, kStart);
+  EXPECT_FALSE(set.advance(one.knowledge, kStart));
+  EXPECT_FALSE(set.is_reached());
+}
+
 // ---- a parameter whose value is known
 
 TEST(PursuitOfAParameter, DoesNotLookForWhatIsKnown) {

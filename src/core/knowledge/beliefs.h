@@ -6,6 +6,9 @@
 // With forgetting (gamma < 1), which follows a rate that drifts, both pseudo-counts are first
 // multiplied by gamma: what happened n outcomes ago weighs gamma^n.
 //
+// Where a fleet shares what it learned, its prior takes the place of the designer's
+// (pooled_prior.h).
+//
 // A pseudo-count that would start at 0 starts at 0.5 instead, so that a designer's 100 % can still
 // be unlearned (the paper notes that its own update never converges there). All others are what the
 // designer said. None is forgotten to less than 0.05, or than what it started with.
@@ -28,6 +31,10 @@ struct Belief {
 // The designer's belief: success probability and confidence c_p > 0.
 Belief initial_belief(Probability success, double confidence);
 
+// `belief` as if it had grown from another prior: what was counted stays. None comes to less than
+// forgetting would bring it to.
+Belief regrown(const Belief& belief, const Belief& from, const Belief& onto);
+
 class Beliefs {
  public:
   explicit Beliefs(const RuleSet& rules);
@@ -38,10 +45,22 @@ class Beliefs {
   void set_forgetting(double forgetting) { forgetting_ = forgetting; }
   void set(StrategyId id, Belief belief) { beliefs_[id.index] = belief; }
 
+  // What `id` was believed before anything was counted: the designer's belief, unless said
+  // otherwise.
+  const Belief& prior(StrategyId id) const { return priors_[id.index]; }
+  // For what was learned in an earlier run.
+  void set(StrategyId id, Belief belief, Belief prior);
+  // Begins from another prior; what was counted stays. With forgetting, what outcomes have moved
+  // stays as it is: nobody knows how much of the old prior is left in it. Whether anything changed.
+  bool begin_from(StrategyId id, Belief prior);
+  // Back to the prior.
+  void forget(StrategyId id) { beliefs_[id.index] = priors_[id.index]; }
+
  private:
   void learn(StrategyId id, Belief outcome);
 
   std::vector<Belief> beliefs_;
+  std::vector<Belief> priors_;
   double forgetting_ = 1;
 };
 

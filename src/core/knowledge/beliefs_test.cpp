@@ -58,5 +58,40 @@ TEST(Beliefs, FollowADriftWithForgetting) {
   EXPECT_GT(beliefs[StrategyId(0)].mean().value, 0);
 }
 
+const RuleSet& one_strategy() {
+  static const Checked checked = check(Source(
+      "t", "RULE R\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY s 90 10\nADAPTATION c restart 1\n"));
+  return *checked.rules;
+}
+
+TEST(Beliefs, KeepWhatWasCountedWhenTheyBeginFromAnotherPrior) {
+  const StrategyId s(0);
+  Beliefs beliefs(one_strategy());
+  beliefs.did_not_help(s);
+  EXPECT_TRUE(beliefs.begin_from(s, {2, 4}));
+  EXPECT_EQ(beliefs[s], (Belief{2, 5}));
+  EXPECT_EQ(beliefs.prior(s), (Belief{2, 4}));
+  EXPECT_FALSE(beliefs.begin_from(s, {2, 4}));
+  beliefs.helped(s);
+  beliefs.begin_from(s, {6, 6});
+  EXPECT_EQ(beliefs[s], (Belief{7, 7}));
+  beliefs.forget(s);
+  EXPECT_EQ(beliefs[s], (Belief{6, 6}));
+}
+
+// How much of the old prior is left in it, nobody knows.
+TEST(Beliefs, ThatForgetKeepWhatOutcomesMadeOfThem) {
+  const StrategyId s(0);
+  Beliefs beliefs(one_strategy());
+  beliefs.set_forgetting(0.9);
+  beliefs.begin_from(s, {2, 4});
+  EXPECT_EQ(beliefs[s], (Belief{2, 4})) << "there were none yet";
+  beliefs.helped(s);
+  const Belief learned = beliefs[s];
+  EXPECT_FALSE(beliefs.begin_from(s, {9, 1}));
+  EXPECT_EQ(beliefs[s], learned);
+  EXPECT_EQ(beliefs.prior(s), (Belief{2, 4}));
+}
+
 }  // namespace
 }  // namespace culprit

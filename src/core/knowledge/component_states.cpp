@@ -20,6 +20,12 @@ std::string_view to_string(Lifecycle state) {
   return "";
 }
 
+void ComponentStates::set_known_dead(ComponentId component, std::optional<Time> since) {
+  std::optional<Time>& known = components_[component.index].known_dead;
+  known_dead_ += static_cast<int>(since.has_value()) - static_cast<int>(known.has_value());
+  known = since;
+}
+
 void ComponentStates::intend_lifecycle(ComponentId component, Lifecycle state, Time at,
                                        EventLog& events) {
   Lifecycle& intended = components_[component.index].intended_lifecycle;

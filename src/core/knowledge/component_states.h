@@ -24,10 +24,14 @@ struct ComponentState {
   int node_pid = 0;           // the process that the node runs in; 0 = not known
   int namesakes = 0;          // other nodes of its name
   ProcessState process = ProcessState::kRunning;  // meaningful if pid is set
-  int pid = 0;                  // the process that the operating system was asked about
-  std::string process_remark;   // how it ended
+  int pid = 0;                 // the process that the operating system was asked about
+  std::string process_remark;  // how it ended
+  // Since when nothing can come from it: its process ended by a fault without saying good-bye, or
+  // was stopped, as the operating system says. Set by ComponentStates::set_known_dead().
+  std::optional<Time> known_dead{};
   int missed_probes = 0;        // in a row, since it answered last
   bool answers_probes = false;  // it did, since its process began
+  Time answered = kLongAgo;     // when it did so last
   Lifecycle lifecycle = Lifecycle::kUnknown;
   Time changes_until = kNever;     // when a transition under way hangs; kNever: none is known to be
   Duration transition_patience{};  // that culprit has with each, if more than it needed before
@@ -68,6 +72,9 @@ class ComponentStates {
   // Sets ComponentState::coming_up, and tells if it is another.
   void note_coming_up(ComponentId component, const ComingUp& how, Time at, EventLog& events);
 
+  void set_known_dead(ComponentId component, std::optional<Time> since);
+  bool is_any_known_dead() const { return known_dead_ > 0; }
+
   // The last value that was read of a parameter; nothing while none was, or since its process began
   // anew.
   std::optional<Value>& operator[](ParameterId id) { return parameters_[id.index]; }
@@ -76,6 +83,7 @@ class ComponentStates {
  private:
   std::vector<ComponentState> components_;
   std::vector<std::optional<Value>> parameters_;
+  int known_dead_ = 0;  // how many are
 };
 
 }  // namespace culprit

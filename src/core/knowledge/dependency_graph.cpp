@@ -205,6 +205,11 @@ bool DependencyGraph::publishes(ComponentId component, const std::string& topic)
   return node && std::find(publishers.begin(), publishers.end(), *node) != publishers.end();
 }
 
+std::optional<ComponentId> DependencyGraph::only_publisher(const std::string& topic) const {
+  const std::vector<NodeId> publishers = publishers_of(topic);
+  return publishers.size() == 1 ? nodes_[publishers.front().index].component : std::nullopt;
+}
+
 std::vector<std::string> DependencyGraph::published_topics() const {
   std::vector<std::string> topics;
   for (const Channel& channel : channels_) {

@@ -69,6 +69,8 @@ class DependencyGraph {
   // component is among them.
   std::size_t publisher_count(const std::string& topic) const;
   bool publishes(ComponentId component, const std::string& topic) const;
+  // The component that alone publishes it; nothing if none or several do, or a node that is none.
+  std::optional<ComponentId> only_publisher(const std::string& topic) const;
   // Those that any node publishes now. Sorted.
   std::vector<std::string> published_topics() const;
 

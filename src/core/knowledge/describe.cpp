@@ -24,7 +24,8 @@ class Describer {
 
   std::string operator()(const FailureDetected& e) const {
     const Rule& rule = rules_[e.rule];
-    return rule.name + " detected (" + std::string(to_string(rule.policies.criticality)) + ")";
+    return rule.name + " detected (" + std::string(to_string(rule.policies.criticality)) + ")" +
+           (e.known_dead ? ": " + rules_[*e.known_dead].name + " is known dead, " + e.how : "");
   }
   std::string operator()(const FailureResolved& e) const {
     const std::string after = " after " + two_decimals(seconds(e.reaction)) + " s";
@@ -91,10 +92,14 @@ class Describer {
     return e.succeeded ? e.what + " again" : "cannot be undone: " + e.what;
   }
   std::string operator()(const RoundSpent& e) const {
-    return rules_[e.rule].name + ": nothing left to try; trying anew after a pause";
+    return rules_[e.rule].name +
+           ": all strategies were tried and none helped; they are tried anew after a while";
   }
   std::string operator()(const RuleExhausted& e) const {
-    return rules_[e.rule].name + " is exhausted: nothing helped, a person must look";
+    const Rule& rule = rules_[e.rule];
+    if (rule.strategies.empty())
+      return rule.name + ": nothing is done about it, a person must look";
+    return rule.name + " is exhausted: nothing helped, a person must look";
   }
   std::string operator()(const LastResortReached& e) const {
     return rules_[e.rule].name + ": nothing helped, and only the last resort is left";
@@ -168,6 +173,11 @@ class Describer {
   }
   std::string operator()(const SleepNoticed& e) const {
     return "culprit stood still for " + to_string(e.time) + "; all ages begin anew";
+  }
+  std::string operator()(const PriorsAdopted& e) const {
+    return "what is believed of " + std::to_string(e.priors.size()) +
+           (e.priors.size() == 1 ? " strategy" : " strategies") + " begins from what " +
+           (e.source.empty() ? "the rules say" : e.source + " learned");
   }
 
   std::string operator()(const Pause&) const { return "pause"; }

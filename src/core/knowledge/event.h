@@ -55,6 +55,10 @@ struct Suspect {
 // A failure was detected.
 struct FailureDetected {
   RuleId rule;
+  // What the trigger reads does not show it yet: this component, which alone publishes that, is
+  // known dead. `how` it ended: "killed by signal 9".
+  std::optional<ComponentId> known_dead{};
+  std::string how{};
 };
 
 // A failure is gone.
@@ -197,8 +201,10 @@ enum class Restraint : std::uint8_t {
   kClassIntensity,      // too many strategies of this kind lately
   kBackoff,             // it was restarted a short while ago
   kIdentity,            // nobody knows for sure which process it would hit
-  kEvidence,            // the process that it would end runs and publishes
+  kEvidence,            // the process that it would end runs and publishes, or may hang
   kNeverSeen,           // it would start what was never seen
+  kLeaving,             // what was started together is being ended together
+  kLaunchEnded,         // somebody has ended it, or has just started it again
   kRestarts             // it was restarted too often: a person must look
 };
 
@@ -280,6 +286,13 @@ struct SleepNoticed {
   Duration time{};
 };
 
+// What is believed of strategies begins from what the robots of a fleet learned, or again from what
+// the rules say, where nobody learned anything (empty `source`).
+struct PriorsAdopted {
+  std::vector<PriorsTold::Prior> priors;
+  std::string source;
+};
+
 struct Event {
   Time at;
   std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
@@ -288,7 +301,8 @@ struct Event {
                OrderAccepted, OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed,
                StrategyAbandoned, OrderCarriedOut, SilenceEnded, StormBegan, StormEnded,
                LastResortReached, LifecycleIntended, CameUp, OutcomePending, OutcomeCounted,
-               FailureFlaps, JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen>
+               FailureFlaps, JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen,
+               PriorsAdopted>
       what;
 };
 

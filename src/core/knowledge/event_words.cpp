@@ -35,7 +35,7 @@ constexpr std::array<EventWords, kKinds> kWords = [] {
       row<AdaptationDone>("adaptation_done", "done", kInfo, Tone::kAction),
       row<AdaptationFailed>("adaptation_failed", "failed", kWarning, Tone::kWarning),
       row<Undone>("undone", "undone", kInfo, Tone::kAction),
-      row<RoundSpent>("round_spent", "pause", kInfo, Tone::kWarning),
+      row<RoundSpent>("round_spent", "all tried", kInfo, Tone::kWarning),
       row<LastResortReached>("last_resort_reached", "LAST", kError, Tone::kAlarm, kStrong),
       row<RuleExhausted>("rule_exhausted", "EXHAUSTED", kError, Tone::kAlarm, kStrong),
       row<ComponentLost>("component_lost", "lost", kWarning, Tone::kAlarm),
@@ -59,6 +59,7 @@ constexpr std::array<EventWords, kKinds> kWords = [] {
       row<JudgementSuspended>("judgement_suspended", "DEAF", kError, Tone::kAlarm, kStrong),
       row<JudgementResumed>("judgement_resumed", "hears", kInfo, Tone::kRelief),
       row<SleepNoticed>("sleep_noticed", "slept", kWarning, Tone::kWarning),
+      row<PriorsAdopted>("priors_adopted", "fleet", kInfo, Tone::kAside),
   };
   static_assert(std::size(kRows) == kKinds, "an event without words, or one that is there twice");
   std::array<EventWords, kKinds> words{};

@@ -7,6 +7,7 @@
 #include "knowledge/beliefs.h"
 #include "knowledge/component_states.h"
 #include "knowledge/couplings.h"
+#include "knowledge/departures.h"
 #include "knowledge/dependency_graph.h"
 #include "knowledge/event_log.h"
 #include "knowledge/heard_names.h"
@@ -26,6 +27,7 @@ struct Knowledge {
         signals(rules),
         graph(rules),
         components(rules),
+        departures(rules),
         sightings(rules),
         states(rules),
         beliefs(rules),
@@ -39,6 +41,7 @@ struct Knowledge {
         signals(rules, other.signals),
         graph(other.graph),
         components(other.components),
+        departures(other.departures),
         sightings(other.sightings),
         states(rules, other.states),
         beliefs(other.beliefs),
@@ -53,6 +56,7 @@ struct Knowledge {
   SignalStore signals;
   DependencyGraph graph;
   ComponentStates components;
+  Departures departures;
   Sightings sightings;
   HeardNames heard_names;
   RuleStates states;

@@ -62,6 +62,14 @@ struct Detection {
   std::size_t newest = 0;
   int true_in_history = 0;
   Time sampled = kLongAgo;
+
+  // The trigger is true although what it reads does not say so yet: who published that is known
+  // dead. Nothing: it says so itself, or is not true.
+  struct KnownDeath {
+    ComponentId component;
+    Time since{};
+  };
+  std::optional<KnownDeath> known_death;
 };
 
 struct RuleState {

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
+#include <tuple>
 
 #include "language/compiler.h"
 #include "language/condition_checks.h"
 #include "language/conflict_checks.h"
 #include "language/evaluate.h"
 #include "language/facts.h"
+#include "language/likely_slips.h"
 #include "language/parser.h"
 #include "language/rule_checks.h"
 #include "language/typing.h"
@@ -26,6 +29,10 @@ class Checker {
       : file_(file), diagnostics_(diagnostics), symbols_(rules_, strictness, diagnostics) {}
 
   RuleSet check() {
+    rules_.components.reserve(file_.components.size());
+    rules_.signals.reserve(file_.signals.size());
+    rules_.rules.reserve(file_.rules.size());
+    conditions_.reserve(file_.rules.size());
     header();
     symbols_.declare(file_);
     constants();
@@ -224,7 +231,13 @@ class Checker {
       rule.never_fires = is_never(true, rule.trigger, rules_);
       check_conditions(rule, rules_, diagnostics_);
       check_last_resort(rule, rules_, diagnostics_);
+      check_true_when_well(rule, rules_, diagnostics_);
+      check_windows(rule, rules_, diagnostics_);
     }
+    for (const syntax::Rule& rule : file_.rules) check_short_impacts(rule, rules_, diagnostics_);
+    for (const syntax::Component& component : file_.components)
+      check_shell(component, rules_[symbols_.component(component.name)], diagnostics_);
+    check_unused(file_, rules_, diagnostics_);
     check_covered_rules(conditions_, rules_, diagnostics_);
     check_oscillation(conditions_, rules_, diagnostics_);
   }
@@ -237,14 +250,19 @@ class Checker {
     need(rule.policies.has_value(), "POLICIES");
     need(rule.trigger.has_value(), "TRIGGER");
     // A last resort is nothing to begin with.
-    need(std::any_of(rule.strategies.begin(), rule.strategies.end(),
-                     [](const syntax::Strategy& s) { return !s.is_last_resort; }),
+    const bool is_report = rule.policies && rule.policies->is_report;
+    need(is_report || std::any_of(rule.strategies.begin(), rule.strategies.end(),
+                                  [](const syntax::Strategy& s) { return !s.is_last_resort; }),
          "STRATEGY");
+    if (is_report && !rule.strategies.empty())
+      report(Code::kContradiction, rule.strategies.front().name.span,
+             "rule '" + rule.name.text + "' only reports, so none of its strategies would be used",
+             "remove REPORT from its POLICIES, or its strategies");
     if (missing.empty()) return;
     report(Code::kIncomplete, rule.name.span,
            "rule '" + rule.name.text + "' is incomplete: no " + missing,
            "a rule says how critical the failure is (POLICIES), when it is there (TRIGGER) and "
-           "what may help (STRATEGY)");
+           "what may help (STRATEGY), or that a person is told (POLICIES ... REPORT)");
   }
 
   void policies(const syntax::Policies& written, const syntax::Rule& rule, Policies& policies) {
@@ -424,12 +442,37 @@ class Checker {
   std::vector<RuleConditions> conditions_;  // of each rule that has a trigger
 };
 
+// What is wrong in a template is wrong in each USE of it.
+void say_once(std::vector<Diagnostic>& diagnostics, const Source& source) {
+  std::set<std::tuple<std::uint32_t, std::uint32_t, Code, std::string>> said;
+  std::erase_if(diagnostics, [&](const Diagnostic& d) {
+    const Origin origin = source.origin(d.span);
+    const Place& place = origin.place;
+    // What others may include declares more than each of them needs.
+    if (d.code == Code::kUnused && (place.file != 0 || !origin.steps.empty())) return true;
+    return !said.emplace(place.file, place.span.begin, d.code, d.cause).second;
+  });
+}
+
 }  // namespace
 
 Checked check(const Source& source, Strictness strictness) {
   std::vector<Diagnostic> said;
   const syntax::File file = parse(source, said);
+  if (file.has_reuse()) {
+    const Expansion rules = expand(source);
+    Checked checked = check(rules, strictness);
+    checked.diagnostics = as_written(std::move(checked.diagnostics), rules.source);
+    return checked;
+  }
   return check(file, std::move(said), strictness);
+}
+
+Checked check(const Expansion& rules, Strictness strictness) {
+  if (!rules.mistakes.empty()) return {{}, rules.mistakes};
+  Checked checked = check(rules.source, strictness);
+  say_once(checked.diagnostics, rules.source);
+  return checked;
 }
 
 Checked check(const syntax::File& file, std::vector<Diagnostic> said, Strictness strictness) {

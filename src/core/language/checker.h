@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "language/diagnostic.h"
+#include "language/reuse/expansion.h"
 #include "language/rule_set.h"
 #include "language/source.h"
 #include "language/symbols.h"
@@ -23,6 +24,8 @@ struct Checked {
 };
 
 Checked check(const Source& source, Strictness strictness = Strictness::kLenient);
+// Of rules that were put together (reuse/expansion.h).
+Checked check(const Expansion& rules, Strictness strictness = Strictness::kLenient);
 // The same of a file that is parsed already; `said` are the parser's complaints.
 Checked check(const syntax::File& file, std::vector<Diagnostic> said,
               Strictness strictness = Strictness::kLenient);

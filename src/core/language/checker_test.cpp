@@ -17,6 +17,18 @@ namespace {
 
 using namespace std::chrono_literals;
 
+std::string golden_text(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+// What golden files include.
+Expected<Source> load_golden(const std::string& file, const std::string&) {
+  const auto path = std::filesystem::path("src/core/language/golden") / file;
+  if (!std::filesystem::exists(path)) return Error{"there is no '" + file + "'"};
+  return Source(file, golden_text(path));
+}
+
 std::string all_messages(const Source& source, const Checked& checked) {
   std::string out;
   for (const Diagnostic& d : checked.diagnostics) out += render(d, source);
@@ -257,23 +269,20 @@ TEST(Checker, SaysWhatTheGoldenFilesSay) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".rules") continue;
     if (entry.path().filename().string().starts_with("format_")) continue;  // of formatter_test.cpp
-    const auto read = [](const std::filesystem::path& path) {
-      std::ifstream in(path, std::ios::binary);
-      return std::string(std::istreambuf_iterator<char>(in), {});
-    };
-    const Source source(entry.path().filename().string(), read(entry.path()));
-    const bool is_strict = source.name().starts_with("strict_");
+    const std::string name = entry.path().filename().string();
+    const Expansion rules = expand(Source(name, golden_text(entry.path())), load_golden);
+    const bool is_strict = name.starts_with("strict_");
     const Strictness strictness = is_strict ? Strictness::kStrict : Strictness::kLenient;
-    const bool has_robot = source.name().starts_with("live_");
+    const bool has_robot = name.starts_with("live_");
     const std::string said = all_messages(
-        source, has_robot ? check_against(example_robot(), source) : check(source, strictness));
+        rules.source, has_robot ? check_against(example_robot(), rules) : check(rules, strictness));
     for (const Explanation& e : explanations()) {
       if (said.find("[" + to_string(e.code) + "]") != std::string::npos) unseen.erase(e.code);
     }
     const auto expected = std::filesystem::path(entry.path()).replace_extension(".expected");
     if (std::getenv("CULPRIT_WRITE_GOLDEN") != nullptr)
       std::ofstream(expected, std::ios::binary) << said;
-    EXPECT_EQ(said, read(expected)) << entry.path();
+    EXPECT_EQ(said, golden_text(expected)) << entry.path();
   }
   for (const Code code : unseen) ADD_FAILURE() << to_string(code) << " is in no golden file";
 }

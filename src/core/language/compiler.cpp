@@ -67,6 +67,17 @@ bool reads_inputs(const Typed& expression) {
                      [](const Typed& c) { return reads_inputs(c); });
 }
 
+std::vector<double> thresholds_of(const Typed& comparison) {
+  if (comparison.op == Op::kNot) return thresholds_of(comparison.children[0]);
+  if (!is_comparison(comparison.op)) return {};
+  for (const std::size_t side : {0u, 1u}) {
+    const Typed& there = comparison.children[1 - side];
+    if (is_plain_input(comparison.children[side]) && !reads_inputs(there))
+      return {threshold(there)};
+  }
+  return {};
+}
+
 void collect_thresholds(const Typed& trigger, std::vector<Input>& inputs) {
   if (trigger.op == Op::kInput) inputs[trigger.input.index].only_compared = false;
   if (is_comparison(trigger.op)) {

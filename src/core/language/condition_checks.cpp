@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "language/compiler.h"
 #include "language/facts.h"
@@ -78,16 +79,17 @@ struct Finding {
   bool is_by_range = false;
 };
 
-// The smallest parts of `condition` that are always or never true.
+// The smallest parts of `condition` that are always or never true. `known`: whether the whole is
+// never true, if that is known.
 void find_constant_parts(const Typed& condition, const RuleSet& rules,
-                         std::vector<Finding>& findings) {
+                         std::vector<Finding>& findings, std::optional<bool> known = {}) {
   if (!reads_inputs(condition)) return;  // a constant that switches something on or off
   const std::size_t before = findings.size();
   if (is_connective(condition)) {
     for (const Typed& child : condition.children) find_constant_parts(child, rules, findings);
     if (findings.size() > before) return;
   }
-  const bool never = is_never(true, condition, rules);
+  const bool never = known ? *known : is_never(true, condition, rules);
   if (!never && !is_never(false, condition, rules)) return;
   std::string reason;
   bool is_by_range = false;
@@ -176,12 +178,71 @@ bool silence_speaks_for(const Typed& e, bool truth, const Facts& silent, const R
   return reads_life(e, rules) && !otherwise.assume(e, !truth);
 }
 
+// Messages have just come, and all are there.
+void live(const Typed& e, const RuleSet& rules, Facts& facts) {
+  for (const Typed& child : e.children) live(child, rules, facts);
+  if (e.op != Op::kInput) return;
+  switch (rules[e.input].kind) {
+    case Input::Kind::kAge:
+    case Input::Kind::kPhi:
+      facts.know(e.input, Interval{0, 0});
+      return;
+    case Input::Kind::kAlive:
+      facts.know(e.input, TruthSet{true, false});
+      return;
+    default:
+      return;
+  }
+}
+
+// Comparisons of rates with numbers that the window is too short for.
+void find_short_windows(const Typed& e, const RuleSet& rules, std::vector<Diagnostic>& found) {
+  const Typed* input = e.type == Type::kBool && !is_connective(e) ? compared_input(e) : nullptr;
+  if (input == nullptr || rules[input->input].kind != Input::Kind::kRate) {
+    for (const Typed& child : e.children) find_short_windows(child, rules, found);
+    return;
+  }
+  const Input& rate = rules[input->input];
+  for (const double hertz : thresholds_of(e)) {
+    if (hertz <= 0 || seconds(rate.window) * hertz >= 1) continue;
+    const std::string topic = rules[rate.topic].name;
+    found.push_back({Code::kShortWindow, Severity::kWarning, e.span,
+                     "within " + to_string(rate.window) + ", a topic of " + plain_number(hertz) +
+                         " Hz sends nothing now and then",
+                     "count over at least two of its periods: rate(" + topic + ", " +
+                         to_string(from_seconds(2 / hertz)) + ")"});
+  }
+}
+
 }  // namespace
+
+void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
+                          std::vector<Diagnostic>& diagnostics) {
+  const bool acts_on_edges = rules[rule.rule].policies.on_change;
+  if (acts_on_edges || rule.never_fires || !is_small_enough(rule.trigger) ||
+      !reads_life(rule.trigger, rules))
+    return;
+  if (is_never(false, rule.trigger, rules)) return;  // it is always true, and that is said
+  Facts facts(rules);
+  live(rule.trigger, rules, facts);
+  if (facts.assume(rule.trigger, false)) return;
+  diagnostics.push_back(
+      {Code::kTrueWhenWell, Severity::kWarning, rule.trigger.span,
+       "this is true while all is well: everything is there, and messages come",
+       "a trigger says what is wrong, as in age(/topic) > 1s; a rule that waits for something to "
+       "come has ON_CHANGE among its policies"});
+}
+
+void check_windows(const RuleConditions& rule, const RuleSet& rules,
+                   std::vector<Diagnostic>& diagnostics) {
+  find_short_windows(rule.trigger, rules, diagnostics);
+}
 
 void check_conditions(const RuleConditions& rule, const RuleSet& rules,
                       std::vector<Diagnostic>& diagnostics) {
   std::vector<Finding> findings;
-  if (is_small_enough(rule.trigger)) find_constant_parts(rule.trigger, rules, findings);
+  if (is_small_enough(rule.trigger))
+    find_constant_parts(rule.trigger, rules, findings, rule.never_fires);
   for (const Finding& f : findings) {
     diagnostics.push_back(
         {f.always ? Code::kAlwaysTrueInRange : Code::kNeverTrueInRange, Severity::kWarning, f.span,

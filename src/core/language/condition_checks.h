@@ -30,6 +30,14 @@ struct RuleConditions {
 void check_conditions(const RuleConditions& rule, const RuleSet& rules,
                       std::vector<Diagnostic>& diagnostics);
 
+// A trigger that is true as long as everything lives.
+void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
+                          std::vector<Diagnostic>& diagnostics);
+
+// A rate that is compared with less than one message within its window.
+void check_windows(const RuleConditions& rule, const RuleSet& rules,
+                   std::vector<Diagnostic>& diagnostics);
+
 // A rule that fires when something falls silent, of which no strategy helps against a hung process,
 // though there is a LAUNCH command.
 void check_last_resort(const RuleConditions& rule, const RuleSet& rules,

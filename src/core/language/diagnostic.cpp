@@ -46,32 +46,93 @@ std::string title_of(const Edit& edit, const Source& source) {
   return edit.text.empty() ? "remove " + before : "change " + before + " to " + after;
 }
 
+LocatedDiagnostic located(const Diagnostic& diagnostic, const Source& source) {
+  const Origin origin = source.origin(diagnostic.span);
+  LocatedDiagnostic out{origin.place, {}, {}};
+  if (origin.goes_in) out.notes.push_back({*origin.goes_in, "it goes in here"});
+  for (const Step& step : origin.steps) {
+    const bool is_use = step.kind == Step::Kind::kUse;
+    out.notes.push_back({step.statement, is_use ? "used here" : "included here"});
+  }
+  if (!diagnostic.fix) return out;
+  const Origin edited = source.origin(diagnostic.fix->span);
+  if (edited.is_exact && edited.place.file == origin.place.file)
+    out.fix = Edit{edited.place.span, diagnostic.fix->text};
+  return out;
+}
+
+std::vector<Diagnostic> as_written(std::vector<Diagnostic> diagnostics, const Source& source) {
+  for (Diagnostic& d : diagnostics) {
+    LocatedDiagnostic here = located(d, source);
+    d.span = here.place.span;
+    d.fix = std::move(here.fix);
+  }
+  return diagnostics;
+}
+
+namespace {
+
+// "file:3:5: what", the line with carets under the span, and the remedy, if there is one.
+std::string shown(const Source& source, Span span, const std::string& what, std::string_view mark,
+                  std::string_view remedy, const Paint& paint) {
+  const Position at = source.position(span.begin);
+  const Span line = source.line(at.line);
+  const Span marked{span.begin, std::clamp(span.end, span.begin, std::max(span.begin, line.end))};
+  const std::string number = std::to_string(at.line);
+  const std::string margin(std::max<std::size_t>(number.size(), 4), ' ');
+  std::string out = source.name() + ":" + number + ":" + std::to_string(at.column) + ": " + what;
+  out += "\n" + std::string(paint.place) + margin.substr(number.size()) + number + " | " +
+         std::string(paint.off) + printable(source.text(line)) + "\n";
+  out += std::string(paint.place) + margin + " | " + std::string(paint.off) +
+         blanks_like(source.text({line.begin, marked.begin})) + std::string(mark) +
+         std::string(std::max<std::size_t>(character_count(source.text(marked)), 1), '^') +
+         std::string(paint.off) + "\n";
+  if (remedy.empty()) return out;
+  return out + std::string(paint.place) + margin + " = " + std::string(paint.off) +
+         std::string(paint.remedy) + printable(remedy) + std::string(paint.off) + "\n";
+}
+
+}  // namespace
+
 std::string render(const Diagnostic& diagnostic, const Source& source, Colour colour) {
   const Paint& paint = colour == Colour::kOn ? kColoured : kPlain;
   const bool is_error = diagnostic.severity == Severity::kError;
-  const Position at = source.position(diagnostic.span.begin);
-  const Span line = source.line(at.line);
-  const Span marked{diagnostic.span.begin,
-                    std::clamp(diagnostic.span.end, diagnostic.span.begin, line.end)};
-  const std::string number = std::to_string(at.line);
-  const std::string margin(std::max<std::size_t>(number.size(), 4), ' ');
-
-  std::string out = source.name() + ":" + number + ":" + std::to_string(at.column) + ": ";
-  out += std::string(is_error ? paint.error : paint.warning) + (is_error ? "error" : "warning") +
-         "[" + to_string(diagnostic.code) + "]" + std::string(paint.off) + ": " +
-         printable(diagnostic.cause) + "\n";
-  out += std::string(paint.place) + margin.substr(number.size()) + number + " | " +
-         std::string(paint.off) + printable(source.text(line)) + "\n";
-  out += std::string(paint.place) + margin + " | " + std::string(paint.off) +
-         blanks_like(source.text({line.begin, marked.begin})) +
-         std::string(is_error ? paint.error : paint.warning) +
-         std::string(std::max<std::size_t>(character_count(source.text(marked)), 1), '^') +
-         std::string(paint.off) + "\n";
-  if (!diagnostic.remedy.empty()) {
-    out += std::string(paint.place) + margin + " = " + std::string(paint.off) +
-           std::string(paint.remedy) + printable(diagnostic.remedy) + std::string(paint.off) + "\n";
-  }
+  const std::string_view mark = is_error ? paint.error : paint.warning;
+  const LocatedDiagnostic here = located(diagnostic, source);
+  const std::string what = std::string(mark) + (is_error ? "error" : "warning") + "[" +
+                           to_string(diagnostic.code) + "]" + std::string(paint.off) + ": " +
+                           printable(diagnostic.cause);
+  std::string out =
+      shown(source.file(here.place.file), here.place.span, what, mark, diagnostic.remedy, paint);
+  for (const auto& note : here.notes)
+    out += shown(source.file(note.place.file), note.place.span, "note: " + note.text, paint.place,
+                 "", paint);
   return out;
+}
+
+std::string render(const std::vector<Diagnostic>& diagnostics, const Source& source,
+                   Colour colour) {
+  const auto is_error = [](const Diagnostic& d) { return d.severity == Severity::kError; };
+  const auto errors =
+      static_cast<std::size_t>(std::count_if(diagnostics.begin(), diagnostics.end(), is_error));
+  const std::size_t warnings = diagnostics.size() - errors;
+  std::size_t errors_left = std::min(errors, kMostShown);
+  std::size_t warnings_left = std::min(warnings, kMostShown - errors_left);
+  const auto count = [](std::size_t n, const char* what) {
+    return std::to_string(n) + " more " + what + (n == 1 ? "" : "s");
+  };
+  std::string more;
+  if (errors > errors_left) more = count(errors - errors_left, "error");
+  if (warnings > warnings_left)
+    more += (more.empty() ? "" : " and ") + count(warnings - warnings_left, "warning");
+  std::string out;
+  for (const Diagnostic& d : diagnostics) {
+    std::size_t& left = is_error(d) ? errors_left : warnings_left;
+    if (left == 0) continue;
+    --left;
+    out += render(d, source, colour);
+  }
+  return more.empty() ? out : out + source.name() + ": " + more + " not shown\n";
 }
 
 std::optional<Edit> replacement(Span span, const std::string& near) {

@@ -31,6 +31,7 @@ enum class Code : std::uint16_t {
   kUnknownPolicy = 15,
   kReservedWord = 16,
   kBadRosName = 17,
+  kUnused = 18,
   // Types and values
   kTypeMismatch = 20,
   kUnknownType = 21,
@@ -43,12 +44,16 @@ enum class Code : std::uint16_t {
   kImpactRange = 32,
   kPolicyRange = 33,
   kEmptyRange = 34,
+  kShortImpact = 35,
+  kShortWindow = 36,
   // Rules that cannot work
   kContradiction = 40,
   kNoLaunch = 41,
   kNeverValid = 42,
   kStopsRequired = 43,
   kTwoOwners = 44,
+  kTrueWhenWell = 45,
+  kNoShell = 46,
   kAlwaysTrue = 50,
   kNeverTrue = 51,
   kOscillation = 52,
@@ -71,6 +76,12 @@ enum class Code : std::uint16_t {
   kSeveralNodes = 68,
   kNoSuchHost = 69,
   kBadRequest = 70,
+  // Reuse
+  kCannotInclude = 80,
+  kUnknownTemplate = 81,
+  kTemplateArguments = 82,
+  kUnknownParameter = 83,
+  kEndlessTemplate = 84,
 };
 
 // "R011"
@@ -97,13 +108,34 @@ struct Diagnostic {
   bool operator==(const Diagnostic&) const = default;
 };
 
+// A diagnostic as the file has it that it is about: what that is in, and what else to look at.
+struct LocatedDiagnostic {
+  struct Note {
+    Place place;
+    std::string text;  // "included here"
+  };
+  Place place;
+  std::vector<Note> notes;
+  std::optional<Edit> fix;  // of that file; nothing also where the edit is not of one place
+};
+LocatedDiagnostic located(const Diagnostic& diagnostic, const Source& source);
+// Of a text that was put together from one file: the same, as that file has them.
+std::vector<Diagnostic> as_written(std::vector<Diagnostic> diagnostics, const Source& source);
+
 // What the edit does, for people who choose it: "change 'robot' to 'ROBOT'".
 std::string title_of(const Edit& edit, const Source& source);
 
 enum class Colour : std::uint8_t { kOff, kOn };
 
-// As a compiler shows it: place and cause, the line with carets under the span, the remedy.
+// As a compiler shows it: place and cause, the line with carets under the span, the remedy; then the
+// notes.
 std::string render(const Diagnostic& diagnostic, const Source& source,
+                   Colour colour = Colour::kOff);
+
+// All of them, one behind the other; of very many the first ones, errors before warnings, and how
+// many more there are.
+inline constexpr std::size_t kMostShown = 50;
+std::string render(const std::vector<Diagnostic>& diagnostics, const Source& source,
                    Colour colour = Colour::kOff);
 
 // The edit that puts the name found by closest() in its place; nothing if none was found.

@@ -141,9 +141,9 @@ Slot binary(Op op, const Slot& a, const Slot& b) {
   return a.known && b.known ? comparison(op, a, b) : Slot();
 }
 
-}  // namespace
-
-Slot evaluate(const Program& program, std::span<const Slot> inputs) {
+// `read` gives the value of an input by its number.
+template <class Read>
+Slot run(const Program& program, Read read) {
   // Left uninitialised on purpose: a trigger uses a few of these slots, and clearing all would cost
   // more than running it.
   alignas(Slot) std::byte memory[kStackSize * sizeof(Slot)];
@@ -154,7 +154,7 @@ Slot evaluate(const Program& program, std::span<const Slot> inputs) {
         new (top++) Slot(program.constants[instruction.operand].view());
         continue;
       case Op::kInput:
-        new (top++) Slot(inputs[instruction.operand]);
+        new (top++) Slot(read(instruction.operand));
         continue;
       case Op::kSelect:
         top -= 2;
@@ -171,6 +171,22 @@ Slot evaluate(const Program& program, std::span<const Slot> inputs) {
     }
   }
   return program.code.empty() ? Slot() : top[-1];
+}
+
+}  // namespace
+
+Slot evaluate(const Program& program, std::span<const Slot> inputs) {
+  return run(program, [inputs](std::uint32_t input) -> const Slot& { return inputs[input]; });
+}
+
+Slot evaluate(const Program& program, std::span<const Slot> inputs,
+              std::span<const Assumed> assumed) {
+  return run(program, [&](std::uint32_t input) -> const Slot& {
+    for (const Assumed& each : assumed) {
+      if (each.input.index == input) return each.value;
+    }
+    return inputs[input];
+  });
 }
 
 Value to_value(const Slot& slot, Type type) {

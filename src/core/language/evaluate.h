@@ -12,6 +12,14 @@ namespace culprit {
 // @pre `program` came from the compiler together with the rule set that `inputs` belongs to.
 Slot evaluate(const Program& program, std::span<const Slot> inputs);
 
+// Likewise, as if some inputs were something else.
+struct Assumed {
+  InputId input;
+  Slot value;
+};
+Slot evaluate(const Program& program, std::span<const Slot> inputs,
+              std::span<const Assumed> assumed);
+
 // A known result as a value; for programs whose result is no duration (a duration gives its
 // seconds).
 Value to_value(const Slot& slot, Type type);

@@ -26,8 +26,9 @@ std::vector<Explanation> syntax_explanations() {
   return {
       {Code::kUnknownStatement, "a line begins with a word that is no statement",
        "Every line is one statement, and its first word says which: ROBOT, CYCLE, CONST, "
-       "COMPONENT, DEPENDENCY, IGNORE, INTERLOCK, SIGNAL, RULE, POLICIES, TRIGGER, STRATEGY or "
-       "ADAPTATION, in upper case. The line counts for nothing until the word is right.",
+       "COMPONENT, DEPENDENCY, IGNORE, INTERLOCK, SIGNAL, RULE, POLICIES, TRIGGER, STRATEGY, "
+       "ADAPTATION, INCLUDE, TEMPLATE, END or USE, in upper case. The line counts for nothing "
+       "until the word is right.",
        "robot sunset\n", "ROBOT sunset\n"},
       {Code::kSyntax, "something else is expected at this place",
        "The statement is known, but its line is not built as this statement is. The message says "
@@ -45,14 +46,17 @@ std::vector<Explanation> syntax_explanations() {
        rule_with("entropy > 0.5 and exposure < 3"), rule_with("entropy > 0.5 && exposure < 3")},
       {Code::kOutOfPlace, "this line is not inside what it belongs to",
        "POLICIES, TRIGGER and STRATEGY belong to the RULE line before them, one POLICIES and one "
-       "TRIGGER each; an ADAPTATION belongs to the STRATEGY line before it.",
+       "TRIGGER each; an ADAPTATION belongs to the STRATEGY line before it. INCLUDE, TEMPLATE, END "
+       "and USE end the rule above them; no TEMPLATE and no INCLUDE stands in a TEMPLATE.",
        "RULE CameraFails\n  POLICIES ERROR\n  TRIGGER rate(/robot/image) < 1\n"
        "  TRIGGER age(/robot/image) > 1s\n    STRATEGY restart 50 10\n"
        "      ADAPTATION camera restart 5\n",
        rule_with("rate(/robot/image) < 1 || age(/robot/image) > 1s")},
       {Code::kIncomplete, "a part of the rule or strategy is missing",
        "A rule needs POLICIES (how critical the failure is), a TRIGGER (when it is there) and at "
-       "least one STRATEGY (what may help); a strategy needs at least one ADAPTATION.",
+       "least one STRATEGY (what may help), or REPORT among its policies; a strategy needs at "
+       "least "
+       "one ADAPTATION.",
        "RULE CameraFails\n  POLICIES ERROR\n    STRATEGY restart 50 10\n"
        "      ADAPTATION camera restart 5\n",
        rule_with("rate(/robot/image) < 1")},
@@ -116,6 +120,13 @@ std::vector<Explanation> name_explanations() {
        "and underscores between slashes. There is no namespace that a relative name could be "
        "relative to.",
        rule_with("rate(image) < 1"), rule_with("rate(/robot/image) < 1")},
+      {Code::kUnused, "nothing is about a component",
+       "It is declared, and no trigger, strategy, signal or dependency has it: whatever happens to "
+       "it, nothing is done and nobody is told. In a file that others include that is no mistake, "
+       "and "
+       "nothing is said.",
+       "COMPONENT lidar NODE /lidar\n" + rule_with("rate(/robot/image) < 1"),
+       "COMPONENT lidar NODE /lidar REQUIRED\n" + rule_with("rate(/robot/image) < 1")},
   };
 }
 
@@ -169,6 +180,25 @@ std::vector<Explanation> value_explanations() {
        "RANGE low..high says which values a signal can have; the smaller number comes first.",
        "SIGNAL battery TOPIC /battery FIELD percentage RANGE 1..0\n",
        "SIGNAL battery TOPIC /battery FIELD percentage RANGE 0..1\n"},
+      {Code::kShortImpact, "an impact is shorter than any process takes to start",
+       "The impact is how many cycles pass from when an adaptation took effect (a redeploy: the "
+       "node "
+       "is there) until the failure is gone. A new process needs a while until its topics flow. "
+       "With "
+       "less than two cycles of 200 ms the strategy is judged before it can have helped, counts as "
+       "failed, and is believed in less and less.",
+       "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\"\n" +
+           rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY redeploy 80 10",
+                     "ADAPTATION camera redeploy 1"),
+       "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\"\n" +
+           rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY redeploy 80 10",
+                     "ADAPTATION camera redeploy 10")},
+      {Code::kShortWindow, "a window is shorter than the period that it is to measure",
+       "rate(topic, window) counts the messages within the window. At the rate that it is compared "
+       "with, less than one message falls into this window: the rate is 0 between two messages, "
+       "and "
+       "the failure seems to come and go.",
+       rule_with("rate(/robot/image, 100ms) < 5"), rule_with("rate(/robot/image, 1s) < 5")},
   };
 }
 
@@ -219,6 +249,22 @@ std::vector<Explanation> rule_explanations() {
        "be restarted for one of them.",
        "COMPONENT camera NODE /robot/camera UNIT camera.service LAUNCH \"camera_driver\"\n",
        "COMPONENT camera NODE /robot/camera UNIT camera.service\n"},
+      {Code::kTrueWhenWell, "a trigger is true while all is well",
+       "A trigger says what is wrong. This one is true while every component lives and every topic "
+       "sends: the rule would adapt a robot that is well, and rest when it is ill. Most often a "
+       "comparison is the wrong way round. A rule that waits for something to come, and acts once, "
+       "has "
+       "ON_CHANGE among its policies.",
+       rule_with("age(/robot/image) < 500ms"), rule_with("age(/robot/image) > 500ms")},
+      {Code::kNoShell, "a LAUNCH command is written for a shell",
+       "A launch command is an argument vector: no shell reads it. What shells do has clauses of "
+       "its "
+       "own: SETUP is sourced first, ENV sets variables, CWD is the folder. Where it has to be a "
+       "shell, say so: LAUNCH \"bash -c 'one | another'\".",
+       "COMPONENT camera NODE /robot/camera LAUNCH \"source /opt/ros/humble/setup.bash && ros2 run "
+       "cameras driver\"\n",
+       "COMPONENT camera NODE /robot/camera LAUNCH \"ros2 run cameras driver\" SETUP "
+       "/opt/ros/humble/setup.bash\n"},
       {Code::kAlwaysTrue, "a trigger reads nothing and is always true",
        "A trigger that reads no signal, topic or component says the same whatever the robot does: "
        "this failure would be there from the start and could never be resolved.",
@@ -393,6 +439,43 @@ std::vector<Explanation> robot_explanations() {
   };
 }
 
+// A template of one rule, and a USE of it.
+std::string template_with(std::string_view use, std::string_view trigger = "age({topic}) > 1s",
+                          std::string_view head = "silent(topic)") {
+  return "TEMPLATE " + std::string(head) + "\n" + rule_with(trigger) + "END\n" + std::string(use) +
+         "\n";
+}
+
+std::vector<Explanation> reuse_explanations() {
+  return {
+      {Code::kCannotInclude, "a file cannot be included",
+       "INCLUDE reads the rules of another file: one whose name ends in .rules, in the folder of "
+       "the file that includes it or, as \"packs/nav2.rules\", among those that were installed "
+       "with culprit (share/culprit/rules). Files that include one another in a circle cannot be "
+       "put together either.",
+       "INCLUDE \"packs/nav3.rules\"\n", "INCLUDE \"packs/nav2.rules\"\n"},
+      {Code::kUnknownTemplate, "there is no template of this name",
+       "USE writes down the statements of a TEMPLATE, which stands in this file or in one that it "
+       "includes, above or below.",
+       template_with("USE silence(/robot/image)"), template_with("USE silent(/robot/image)")},
+      {Code::kTemplateArguments, "a template gets too few or too many arguments",
+       "A USE gives one argument for each parameter of its template, in their order. Those that "
+       "have a usual value, as in TEMPLATE driver(name, topic, hz = 10), may be left out at the "
+       "end.",
+       template_with("USE silent(/robot/image, 10)"), template_with("USE silent(/robot/image)")},
+      {Code::kUnknownParameter, "a template has no such parameter",
+       "In a template, {name} stands for what a USE gives for the parameter 'name'. One that the "
+       "first line of the template does not have stands for nothing.",
+       template_with("USE silent(/robot/image)", "age({topik}) > 1s"),
+       template_with("USE silent(/robot/image)")},
+      {Code::kEndlessTemplate, "templates would go on without end",
+       "A template that uses itself, also by way of others, would become endless rules; so would "
+       "very many that use one another.",
+       "TEMPLATE left\n  USE right\nEND\nTEMPLATE right\n  USE left\nEND\nUSE left\n",
+       "TEMPLATE left\n  USE right\nEND\nTEMPLATE right\nEND\nUSE left\n"},
+  };
+}
+
 std::string indented(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -421,8 +504,9 @@ std::string wrapped(std::string_view text, std::size_t width) {
 const std::vector<Explanation>& explanations() {
   static const std::vector<Explanation> kAll = [] {
     std::vector<Explanation> all;
-    for (const auto& part : {syntax_explanations(), name_explanations(), value_explanations(),
-                             rule_explanations(), meaning_explanations(), robot_explanations()}) {
+    for (const auto& part :
+         {syntax_explanations(), name_explanations(), value_explanations(), rule_explanations(),
+          meaning_explanations(), robot_explanations(), reuse_explanations()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     std::sort(all.begin(), all.end(),

@@ -29,6 +29,7 @@ bool exists(Code code) {
     case Code::kUnknownPolicy:
     case Code::kReservedWord:
     case Code::kBadRosName:
+    case Code::kUnused:
     case Code::kTypeMismatch:
     case Code::kUnknownType:
     case Code::kArguments:
@@ -39,11 +40,15 @@ bool exists(Code code) {
     case Code::kImpactRange:
     case Code::kPolicyRange:
     case Code::kEmptyRange:
+    case Code::kShortImpact:
+    case Code::kShortWindow:
     case Code::kContradiction:
     case Code::kNoLaunch:
     case Code::kNeverValid:
     case Code::kStopsRequired:
     case Code::kTwoOwners:
+    case Code::kTrueWhenWell:
+    case Code::kNoShell:
     case Code::kAlwaysTrue:
     case Code::kNeverTrue:
     case Code::kCircularDependency:
@@ -65,6 +70,11 @@ bool exists(Code code) {
     case Code::kSeveralNodes:
     case Code::kNoSuchHost:
     case Code::kBadRequest:
+    case Code::kCannotInclude:
+    case Code::kUnknownTemplate:
+    case Code::kTemplateArguments:
+    case Code::kUnknownParameter:
+    case Code::kEndlessTemplate:
       return true;
   }
   return false;
@@ -72,9 +82,13 @@ bool exists(Code code) {
 
 std::vector<std::string> codes_of(const Explanation& e, const std::string& text) {
   std::vector<std::string> codes;
-  const Source source("example.rules", text);
-  const Checked checked = e.needs_robot ? check_against(example_robot(), source, e.strictness)
-                                        : check(source, e.strictness);
+  const auto load = [](const std::string& file, const std::string&) -> Expected<Source> {
+    if (file == "packs/nav2.rules") return Source(file, "");
+    return Error{"there is no '" + file + "'"};
+  };
+  const Expansion rules = expand(Source("example.rules", text), load);
+  const Checked checked = e.needs_robot ? check_against(example_robot(), rules, e.strictness)
+                                        : check(rules, e.strictness);
   for (const Diagnostic& d : checked.diagnostics) codes.push_back(to_string(d.code));
   return codes;
 }

@@ -86,10 +86,10 @@ class ExpressionParser {
   }
 
   std::optional<Expression> unary(int depth) {
-    const Token token = scanner_.peek();
-    if (!token.is("!") && !token.is("-") && !token.is("+")) return primary(depth);
+    const Token& ahead = scanner_.peek();
+    if (!ahead.is("!") && !ahead.is("-") && !ahead.is("+")) return primary(depth);
     if (depth >= kMaxNesting) return too_deep();
-    scanner_.next();
+    const Token token = scanner_.next();
     auto operand = unary(depth + 1);
     if (!operand) return std::nullopt;
     Expression e;
@@ -106,6 +106,12 @@ class ExpressionParser {
     e.span = token.span;
     switch (token.kind) {
       case Token::Kind::kNumber:
+        if (const auto unit = scanner_.next_letters(); !unit.empty()) {
+          const auto blank = unit_behind_blank(token, unit);
+          if (blank) return fail(blank->code, blank->span, blank->cause, blank->remedy, blank->fix);
+        }
+        e.literal = token.literal;
+        return e;
       case Token::Kind::kDuration:
       case Token::Kind::kString:
         e.literal = token.literal;
@@ -127,12 +133,28 @@ class ExpressionParser {
         if (token.is("(")) return parenthesis(token, depth);
         if (token.is("/")) return topic_for_value(token);
         break;
-      case Token::Kind::kBad:
-        return fail(Code::kBadToken, token.span, token.text, "", token.fix);
+      case Token::Kind::kBad: {
+        const bool is_unclosed = token.fix && token.fix->text == "\"";
+        return fail(Code::kBadToken, token.span, token.text,
+                    is_unclosed ? "write a '\"' where the text ends" : "", token.fix);
+      }
       case Token::Kind::kEnd:
         break;
     }
     return value_is_missing(token);
+  }
+
+  // "500 ms"
+  std::optional<Diagnostic> unit_behind_blank(const Token& number, std::string_view unit) {
+    if (!parse_duration("1" + std::string(unit))) return std::nullopt;
+    const std::uint32_t begin = scanner_.position();
+    const auto end = begin + static_cast<std::uint32_t>(unit.size());
+    return Diagnostic{Code::kSyntax,
+                      Severity::kError,
+                      {number.span.begin, end},
+                      "a duration has no blank in it",
+                      "write the number and '" + std::string(unit) + "' as one word: 500ms",
+                      Edit{{number.span.end, begin}, ""}};
   }
 
   std::nullopt_t value_is_missing(const Token& token) {

@@ -68,14 +68,23 @@ class Spacing {
   bool between(std::string_view keyword, const Lexeme* before, const Lexeme& left,
                const Lexeme& right) const {
     if (is(right, ")") || is(right, ",") || is(left, "(")) return false;
-    if (is(right, "(") && is_function(left)) return false;
+    if (is(right, "(") && (has_list(keyword) || is_function(left))) return false;
     if (is_unary(left, before)) return false;
     if (is(left, "..") || is(right, "..")) return !touches_range(left, right);
     const bool is_hold = keyword == "POLICIES" && (is(left, "/") || is(right, "/"));
     return !is_hold;
   }
 
+  // Whether `rest` begins with the parentheses of no argument, which are left out.
+  bool is_empty_list(std::string_view keyword, std::span<const Lexeme> rest) const {
+    return has_list(keyword) && rest.size() >= 2 && is(rest[0], "(") && is(rest[1], ")");
+  }
+
  private:
+  static bool has_list(std::string_view keyword) {
+    return keyword == "TEMPLATE" || keyword == "USE";
+  }
+
   std::string_view text(const Lexeme& lexeme) const { return source_.text(lexeme.span); }
 
   bool is(const Lexeme& lexeme, std::string_view symbol) const {
@@ -121,6 +130,10 @@ std::vector<std::string> cells_of(const Source& source, std::span<const Lexeme> 
   const Table* table = find_table(keyword);
   std::vector<std::string> cells = {std::string(keyword)};
   for (std::size_t i = 1; i < statement.size(); ++i) {
+    if (spacing.is_empty_list(keyword, statement.subspan(i))) {
+      ++i;
+      continue;
+    }
     const std::string_view text = source.text(statement[i].span);
     std::size_t column = 0;
     // The declared name is never a clause, and a clause is never a name.
@@ -145,6 +158,7 @@ std::vector<std::string> cells_of(const Source& source, std::span<const Lexeme> 
 
 std::vector<Line> lines_of(const Source& source, const std::vector<Lexeme>& lexemes) {
   std::vector<Line> lines;
+  std::uint32_t margin = 0;  // of the statements of a template
   auto next = lexemes.begin();
   for (std::uint32_t number = 1; number <= source.line_count(); ++number) {
     const Span span = source.line(number);
@@ -155,7 +169,9 @@ std::vector<Line> lines_of(const Source& source, const std::vector<Lexeme>& lexe
     if (next != first) {
       line.keyword = source.text(first->span);
       line.cells = cells_of(source, {first, next});
-      line.indentation = indentation_of(line.keyword);
+      if (line.keyword == "END") margin = 0;
+      line.indentation = margin + indentation_of(line.keyword);
+      if (line.keyword == "TEMPLATE") margin = 2;
       end = std::prev(next)->span.end;
     }
     line.comment = trimmed(source.text({end, span.end}));
@@ -261,9 +277,7 @@ Expected<std::string> format(const Source& source, Colour colour) {
   std::vector<Lexeme> lexemes;
   parse(source, diagnostics, &lexemes);
   if (!diagnostics.empty()) {
-    Error error;
-    for (const Diagnostic& d : diagnostics) error.message += render(d, source, colour);
-    return error;
+    return Error{render(diagnostics, source, colour)};
   }
   std::vector<Line> lines = lines_of(source, lexemes);
   lay_out_statements(lines);

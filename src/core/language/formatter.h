@@ -1,8 +1,9 @@
 // Rule text -> the same rules in the one canonical layout, for people to read.
 //
-// Only what stands between the tokens changes: numbers, durations, names, texts and comments stay
+// What is included or used stays as it is written. Only what stands between the tokens changes: numbers, durations, names, texts and comments stay
 // as they are written, and so do parentheses and the order of everything.
-//   - Indentation: RULE and declarations 0, POLICIES and TRIGGER 2, STRATEGY 4, ADAPTATION 6.
+//   - Indentation: RULE and declarations 0, POLICIES and TRIGGER 2, STRATEGY 4, ADAPTATION 6; between
+//     TEMPLATE and END 2 more.
 //   - One space around binary operators, none inside parentheses.
 //   - COMPONENT, SIGNAL and CONST lines that follow each other stand in columns.
 //   - Comments behind statements that follow each other stand in one column; a comment on a line of

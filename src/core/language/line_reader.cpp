@@ -35,13 +35,34 @@ bool is_ros_name(std::string_view name) {
   return true;
 }
 
+// With a letter for each parameter; one in front may be a whole name.
+std::string filled(std::string_view name) {
+  std::string out = hole_length(name) > 0 ? "/" : "";
+  while (!name.empty()) {
+    const std::size_t hole = hole_length(name);
+    out += hole > 0 ? 'x' : name.front();
+    name.remove_prefix(std::max<std::size_t>(hole, 1));
+  }
+  return out;
+}
+
+std::string upper_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
+  return text;
+}
+
 // `word` in lower case, or with a slip of the fingers.
 bool is_nearly(const Token& token, std::string_view word) {
-  std::string upper = token.text;
-  std::transform(upper.begin(), upper.end(), upper.begin(),
-                 [](unsigned char c) { return std::toupper(c); });
+  const std::string upper = upper_case(token.text);
   return token.kind == Token::Kind::kIdentifier &&
          (upper == word || !closest(upper, {word}).empty());
+}
+
+constexpr const char* kCloseIt = "write a '\"' where the text ends";
+
+bool is_unclosed(const Token& token) {
+  return token.kind == Token::Kind::kBad && token.fix && token.fix->text == "\"";
 }
 
 }  // namespace
@@ -66,10 +87,19 @@ std::optional<Name> LineReader::declared_name(Scanner& s, std::string_view what)
 }
 
 std::optional<Name> LineReader::name_or_text(Scanner& s, std::string_view what) {
+  if (const std::uint32_t at = s.position();
+      at < source_.text().size() && source_.text()[at] == '"') {
+    if (const Token token = s.peek(); is_unclosed(token)) {
+      fail_token(token, what, "");
+      return std::nullopt;
+    }
+  }
   Name name = s.next_name();
   if (!name.text.empty() && name.text.size() <= Scanner::kMaxName) return name;
   fail(Code::kSyntax, name.span, "expected " + std::string(what),
-       name.text.empty() ? "" : "it is too long for a name");
+       !name.text.empty() ? "it is too long for a name"
+       : s.at_end()       ? "it is missing at the end of this line"
+                          : "blanks, commas and parentheses stand in a name only in quotes");
   return std::nullopt;
 }
 
@@ -82,14 +112,24 @@ std::optional<Name> LineReader::component_reference(Scanner& s) {
 std::optional<Name> LineReader::ros_name(Scanner& s, std::string_view what) {
   auto name = name_or_text(s, what);
   if (!name || is_ros_name(name->text)) return name;
+  if (s.allows_holes() && is_ros_name(filled(name->text))) return name;
   fail(Code::kBadRosName, name->span, "'" + name->text + "' is no full ROS name",
        "full names look like /namespace/name: letters, digits and '_' between slashes");
+  return std::nullopt;
+}
+
+std::optional<Name> LineReader::text(Scanner& s, std::string_view what, std::string remedy) {
+  Token token = s.next();
+  if (token.kind == Token::Kind::kString)
+    return Name{std::move(std::get<std::string>(token.literal)), token.span};
+  fail_token(token, what, std::move(remedy));
   return std::nullopt;
 }
 
 std::optional<Duration> LineReader::duration(Scanner& s, std::string_view what) {
   const Token token = s.next();
   if (token.kind == Token::Kind::kDuration) return std::get<Duration>(token.literal);
+  if (token.has_hole) return Duration(1);
   std::string remedy = "a duration is a number and its unit, as in 500ms or 2s";
   std::optional<Edit> fix;
   const Token unit = s.peek();
@@ -110,17 +150,19 @@ std::optional<Duration> LineReader::positive_duration(Scanner& s, std::string_vi
   return std::nullopt;
 }
 
-std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view what) {
+std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view what,
+                                                 std::string remedy) {
   const Token token = s.next();
+  if (token.has_hole) return syntax::Number{1, true, token.span};
   if (token.kind == Token::Kind::kNumber) {
     if (const auto* whole = std::get_if<std::int64_t>(&token.literal)) {
       return syntax::Number{static_cast<double>(*whole), true, token.span};
     }
     return syntax::Number{std::get<double>(token.literal), false, token.span};
   }
-  std::string remedy;
   std::optional<Edit> fix;
-  if (token.kind == Token::Kind::kEnd) remedy = "a number is missing at the end of this line";
+  if (token.kind == Token::Kind::kEnd && remedy.empty())
+    remedy = "a number is missing at the end of this line";
   if (token.is("%")) {
     remedy = "the number counts in percent already: write it without the %";
     const bool separates = s.position() == token.span.end;  // the next number follows at once
@@ -133,7 +175,10 @@ std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view wh
 std::optional<std::int64_t> LineReader::whole_number(Scanner& s, std::string_view what) {
   const Token token = s.next();
   if (const auto* whole = std::get_if<std::int64_t>(&token.literal)) return *whole;
-  fail_token(token, what, "");
+  if (token.has_hole) return 1;
+  fail_token(token, what,
+             token.kind == Token::Kind::kEnd ? "it is missing at the end of this line"
+                                             : "write a whole number");
   return std::nullopt;
 }
 
@@ -167,8 +212,10 @@ bool LineReader::fail(Code code, Span span, std::string cause, std::string remed
 
 bool LineReader::fail_token(const Token& token, std::string_view expected, std::string remedy,
                             std::optional<Edit> fix) {
-  if (token.kind == Token::Kind::kBad)
+  if (token.kind == Token::Kind::kBad) {
+    if (is_unclosed(token)) remedy = kCloseIt;
     return fail(Code::kBadToken, token.span, token.text, std::move(remedy), token.fix);
+  }
   const std::string got = token.kind == Token::Kind::kEnd
                               ? ""
                               : ", not '" + std::string(source_.text(token.span)) + "'";
@@ -178,14 +225,15 @@ bool LineReader::fail_token(const Token& token, std::string_view expected, std::
 
 bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_view> known,
                                    std::string remedy, Code code) {
-  if (token.kind == Token::Kind::kBad)
-    return fail(Code::kBadToken, token.span, token.text, "", token.fix);
+  if (token.kind == Token::Kind::kBad) return fail_token(token, "", "");
   if (std::find(known.begin(), known.end(), token.text) != known.end()) {
     return fail(code, token.span, token.text + " is given twice", "keep one of them");
   }
   std::string list;
   for (const std::string_view word : known) list += (list.empty() ? "" : ", ") + std::string(word);
-  const std::string near = closest(token.text, known);
+  std::string near = upper_case(token.text);
+  if (std::find(known.begin(), known.end(), near) == known.end()) near = closest(token.text, known);
+  if (near.empty()) near = closest(upper_case(token.text), known);
   if (!near.empty()) remedy = "did you mean " + near + "?";
   const std::string got = token.kind == Token::Kind::kEnd
                               ? ""
@@ -197,15 +245,17 @@ bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_v
 bool LineReader::line_ends(Scanner& s) {
   const Token token = s.peek();
   if (token.kind == Token::Kind::kEnd) return true;
-  if (token.kind == Token::Kind::kBad)
-    return fail(Code::kBadToken, token.span, token.text, "", token.fix);
+  if (token.kind == Token::Kind::kBad) return fail_token(token, "", "");
   struct Slip {
     std::string_view written, meant, remedy;
   };
-  constexpr std::array<Slip, 4> kSlips = {{{"=", "==", "write == to compare"},
-                                           {":", "", "remove the ':'"},
-                                           {"and", "&&", "write && for 'and'"},
-                                           {"or", "||", "write || for 'or'"}}};
+  constexpr std::array<Slip, 6> kSlips = {
+      {{"when", "WHEN", "write WHEN in upper case"},
+       {"lastresort", "LASTRESORT", "write LASTRESORT in upper case"},
+       {"=", "==", "write == to compare"},
+       {":", "", "remove the ':'"},
+       {"and", "&&", "write && for 'and'"},
+       {"or", "||", "write || for 'or'"}}};
   constexpr std::string_view kCause = "this text does not belong to the line";
   for (const Slip& slip : kSlips) {
     if (token.text == slip.written)

@@ -2,7 +2,9 @@
 //
 // A reader that does not find its piece says what it expected, at the place where it looked, and
 // gives nothing; the statement is then given up, so each line is complained about at most once.
-// `what` names the piece for the message.
+// `what` names the piece for the message. In the lines of a template a parameter may stand for any
+// piece but the words of the language and the quotes of a text; what is given then is no more than
+// some value that is right.
 #pragma once
 
 #include <cstdint>
@@ -35,10 +37,12 @@ class LineReader {
   // A component's name, or a node's full name.
   std::optional<syntax::Name> component_reference(Scanner& s);
   std::optional<syntax::Name> ros_name(Scanner& s, std::string_view what);
+  // A quoted text, unescaped; its span has the quotes.
+  std::optional<syntax::Name> text(Scanner& s, std::string_view what, std::string remedy);
 
   std::optional<Duration> duration(Scanner& s, std::string_view what);
   std::optional<Duration> positive_duration(Scanner& s, std::string_view what);
-  std::optional<syntax::Number> number(Scanner& s, std::string_view what);
+  std::optional<syntax::Number> number(Scanner& s, std::string_view what, std::string remedy = "");
   std::optional<std::int64_t> whole_number(Scanner& s, std::string_view what);
   std::optional<double> signed_number(Scanner& s);
   std::optional<syntax::Expression> expression(Scanner& s);

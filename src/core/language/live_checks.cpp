@@ -44,6 +44,11 @@ class LiveChecks {
     }
   }
 
+  std::vector<Diagnostic> find_owner_troubles() {
+    for (const syntax::Component& component : file_.components) owner(component);
+    return std::move(found_);
+  }
+
   std::vector<Diagnostic> find() {
     const Occurrence* before = nullptr;
     const auto all = occurrences(file_);
@@ -407,7 +412,9 @@ std::vector<Diagnostic> find_missing(const syntax::File& file, const RuleSet& ru
                                      const LiveInventory& robot,
                                      const std::vector<Diagnostic>& said) {
   std::set<std::uint32_t> places;
-  for (const Diagnostic& d : said) places.insert(d.span.begin);
+  for (const Diagnostic& d : said) {
+    if (d.code != Code::kUnused) places.insert(d.span.begin);
+  }
   std::vector<Diagnostic> found = LiveChecks(file, rules, robot).find();
   std::erase_if(found, [&](const Diagnostic& d) { return places.contains(d.span.begin); });
   std::stable_sort(found.begin(), found.end(), comes_before);
@@ -418,25 +425,54 @@ std::vector<Diagnostic> find_missing(const syntax::File& file, const RuleSet& ru
 
 void check_live(const syntax::File& file, const RuleSet& rules, const LiveInventory& robot,
                 std::vector<Diagnostic>& diagnostics) {
-  for (Diagnostic& d : find_missing(file, rules, robot, diagnostics))
-    diagnostics.push_back(std::move(d));
+  for (Diagnostic& missing : find_missing(file, rules, robot, diagnostics)) {
+    std::erase_if(diagnostics, [&](const Diagnostic& d) {
+      return d.code == Code::kUnused && d.span.begin == missing.span.begin;
+    });
+    diagnostics.push_back(std::move(missing));
+  }
   std::stable_sort(diagnostics.begin(), diagnostics.end(), comes_before);
 }
 
 std::vector<Diagnostic> missing_on(const LiveInventory& robot, const Source& source) {
   std::vector<Diagnostic> said;
   const syntax::File file = parse(source, said);
+  if (file.has_reuse()) {
+    const Expansion rules = expand(source);
+    if (!rules.mistakes.empty()) return {};
+    return as_written(missing_on(robot, rules.source), rules.source);
+  }
   const Checked checked = check(file, std::move(said));
   if (!checked.rules) return {};
   return find_missing(file, *checked.rules, robot, checked.diagnostics);
 }
 
+std::vector<Diagnostic> cannot_launch(const Source& source, const RuleSet& rules,
+                                      const std::vector<LiveInventory::LaunchTrouble>& troubles) {
+  std::vector<Diagnostic> ignored;
+  const syntax::File file = parse(source, ignored);
+  LiveInventory nobody;
+  nobody.launch_troubles = troubles;
+  return LiveChecks(file, rules, nobody).find_owner_troubles();
+}
+
 Checked check_against(const LiveInventory& robot, const Source& source, Strictness strictness) {
   std::vector<Diagnostic> said;
   const syntax::File file = parse(source, said);
+  if (file.has_reuse()) {
+    const Expansion rules = expand(source);
+    Checked checked = check_against(robot, rules, strictness);
+    checked.diagnostics = as_written(std::move(checked.diagnostics), rules.source);
+    return checked;
+  }
   Checked checked = check(file, std::move(said), strictness);
   if (checked.rules) check_live(file, *checked.rules, robot, checked.diagnostics);
   return checked;
+}
+
+Checked check_against(const LiveInventory& robot, const Expansion& rules, Strictness strictness) {
+  if (!rules.mistakes.empty()) return {{}, rules.mistakes};
+  return check_against(robot, rules.source, strictness);
 }
 
 }  // namespace culprit

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/ros_names.h"
+#include "base/tool_names.h"
 
 namespace culprit {
 namespace {
@@ -24,22 +25,11 @@ const std::string* looked_up(const Status& status, const std::string& name) {
   return nullptr;
 }
 
-// "culprit", and beside another one "culprit_2".
-bool is_culprits(std::string_view name) {
-  constexpr std::string_view kName = "culprit";
-  if (!name.starts_with(kName)) return false;
-  const std::string_view number = name.substr(kName.size());
-  return number.empty() || (number.size() > 1 && number.front() == '_' &&
-                            std::all_of(number.begin() + 1, number.end(),
-                                        [](char c) { return c >= '0' && c <= '9'; }));
-}
-
 }  // namespace
 
 bool LiveInventory::has_robot() const {
   return std::any_of(nodes.begin(), nodes.end(), [](const auto& entry) {
-    const std::string name = own_name(entry.first);
-    return !name.starts_with('_') && !is_culprits(name);
+    return !own_name(entry.first).starts_with('_') && !is_culprits_node(entry.first);
   });
 }
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "language/functions.h"
+#include "language/parser.h"
 
 namespace culprit {
 namespace {
@@ -12,11 +13,26 @@ using OccurrenceKind = Occurrence::Kind;
 
 class Collector {
  public:
-  explicit Collector(const syntax::File& file) : file_(file) {
+  // `scope`: the template whose body the file is; else empty.
+  explicit Collector(const syntax::File& file, std::string scope = "")
+      : file_(file), scope_(std::move(scope)) {
     for (const syntax::Constant& constant : file.constants) constants_.insert(constant.name.text);
+    if (scope_.empty()) return;
+    own_ = constants_;
+    for (const syntax::Component& component : file.components) own_.insert(component.name.text);
+    for (const syntax::Signal& signal : file.signals) own_.insert(signal.name.text);
   }
 
   std::vector<Occurrence> collect() {
+    find();
+    std::stable_sort(all_.begin(), all_.end(), [](const Occurrence& a, const Occurrence& b) {
+      return a.span.begin < b.span.begin;
+    });
+    return std::move(all_);
+  }
+
+ private:
+  void find() {
     for (const syntax::Constant& c : file_.constants) {
       add(OccurrenceKind::kConstant, c.name, true);
       expression(c.value);
@@ -31,17 +47,28 @@ class Collector {
     for (const syntax::Interlock& i : file_.interlocks) expression(i.condition);
     for (const syntax::Signal& s : file_.signals) signal(s);
     for (const syntax::Rule& r : file_.rules) rule(r);
-    std::stable_sort(all_.begin(), all_.end(), [](const Occurrence& a, const Occurrence& b) {
-      return a.span.begin < b.span.begin;
-    });
-    return std::move(all_);
+    for (const syntax::Include& i : file_.includes) add(OccurrenceKind::kFile, i.file);
+    for (const syntax::Use& u : file_.uses) add(OccurrenceKind::kTemplate, u.pattern);
+    for (const syntax::Template& t : file_.templates) {
+      add(OccurrenceKind::kTemplate, t.name, true);
+      for (const syntax::TemplateParameter& p : t.parameters)
+        add(OccurrenceKind::kHole, p.name, true, t.name.text);
+      auto inside = Collector(t.body, t.name.text).collect();
+      all_.insert(all_.end(), inside.begin(), inside.end());
+    }
   }
 
- private:
   void add(OccurrenceKind kind, const syntax::Name& name, bool declares = false,
            std::string scope = "") {
-    if (!name.text.empty())
-      all_.push_back({kind, name.text, std::move(scope), name.span, declares});
+    if (name.text.empty() || (!scope_.empty() && has_hole(name.text))) return;
+    if (scope.empty() && is_own(kind, name.text)) scope = scope_;
+    all_.push_back({kind, name.text, std::move(scope), name.span, declares});
+  }
+
+  bool is_own(OccurrenceKind kind, const std::string& name) const {
+    using enum Occurrence::Kind;
+    return kind == kRule ||
+           ((kind == kConstant || kind == kComponent || kind == kSignal) && own_.contains(name));
   }
 
   void add_ros_name(OccurrenceKind kind, const syntax::Name& name, const syntax::Name& component) {
@@ -115,13 +142,41 @@ class Collector {
   }
 
   const syntax::File& file_;
+  const std::string scope_;
   std::set<std::string> constants_;
+  std::set<std::string> own_;  // what the template declares
   std::vector<Occurrence> all_;
 };
 
 }  // namespace
 
 std::vector<Occurrence> occurrences(const syntax::File& file) { return Collector(file).collect(); }
+
+std::vector<Occurrence> occurrences(const syntax::File& file, const Source& source) {
+  std::vector<Occurrence> all = occurrences(file);
+  if (file.templates.empty()) return all;
+  std::vector<Diagnostic> said;
+  std::vector<Lexeme> lexemes;
+  parse(source, said, &lexemes);
+  for (const syntax::Template& t : file.templates) {
+    auto lexeme = std::lower_bound(
+        lexemes.begin(), lexemes.end(), t.lines.begin,
+        [](const Lexeme& each, std::uint32_t begin) { return each.span.begin < begin; });
+    for (; lexeme != lexemes.end() && lexeme->span.begin < t.lines.end; ++lexeme) {
+      for (std::uint32_t at = lexeme->span.begin; at < lexeme->span.end; ++at) {
+        const std::string_view rest = source.text({at, lexeme->span.end});
+        const auto length = static_cast<std::uint32_t>(hole_length(rest));
+        if (length == 0) continue;
+        const Span name{at + 1, at + length - 1};
+        all.push_back({OccurrenceKind::kHole, std::string(source.text(name)), t.name.text, name});
+      }
+    }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Occurrence& a, const Occurrence& b) {
+    return a.span.begin < b.span.begin;
+  });
+  return all;
+}
 
 const Occurrence* occurrence_at(const std::vector<Occurrence>& all, std::uint32_t offset) {
   const auto found = std::find_if(all.begin(), all.end(), [offset](const Occurrence& o) {

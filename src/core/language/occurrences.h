@@ -20,7 +20,10 @@ struct Occurrence {
     kStrategy,  // its scope is the rule
     kFunction,
     kDiagnostic,  // a status
-    kService      // its scope as a topic's
+    kService,     // its scope as a topic's
+    kTemplate,
+    kHole,  // "{parameter}" or its declaration; its scope is the template
+    kFile   // that is included
   };
   Kind kind = Kind::kConstant;
   std::string name;
@@ -35,8 +38,11 @@ struct Occurrence {
 };
 
 // In the order of the text. A name in an expression that the file declares as a constant is that
-// constant, any other one is a signal.
+// constant, any other one is a signal. What a template declares has the template for its scope; names
+// with parameters in them are left out.
 std::vector<Occurrence> occurrences(const syntax::File& file);
+// The same, with the parameters of templates. `file` is the tree of `source`.
+std::vector<Occurrence> occurrences(const syntax::File& file, const Source& source);
 
 // The one that holds the byte `offset` or ends there; null if there is none.
 const Occurrence* occurrence_at(const std::vector<Occurrence>& all, std::uint32_t offset);

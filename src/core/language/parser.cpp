@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "language/line_reader.h"
+#include "language/reuse/statements.h"
 #include "language/scanner.h"
 
 namespace culprit {
@@ -19,8 +20,19 @@ class Parser {
 
   syntax::File parse() {
     for (std::uint32_t line = 1; line <= source_.line_count(); ++line) {
-      Scanner scanner(source_.text(), source_.line(line), lexemes_);
+      line_ = source_.line(line);
+      if (template_) {
+        template_line();
+        continue;
+      }
+      Scanner scanner(source_.text(), line_, lexemes_);
       if (!scanner.at_end()) statement(scanner);
+    }
+    if (template_) {
+      read_.fail(Code::kIncomplete, template_keyword_, "this TEMPLATE has no END",
+                 "write END on a line of its own behind its last statement");
+      const auto end = static_cast<std::uint32_t>(source_.text().size());
+      close_template(end, end);
     }
     return std::move(file_);
   }
@@ -45,6 +57,10 @@ class Parser {
         Statement{"TRIGGER", &Parser::trigger},
         Statement{"STRATEGY", &Parser::strategy},
         Statement{"ADAPTATION", &Parser::adaptation},
+        Statement{"INCLUDE", &Parser::include},
+        Statement{"TEMPLATE", &Parser::begin_template},
+        Statement{"END", &Parser::end_template},
+        Statement{"USE", &Parser::use},
     };
     const Token head = s.next();
     if (head.kind == Token::Kind::kBad) {
@@ -74,8 +90,8 @@ class Parser {
     read_.fail(Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
                !near.empty() ? "did you mean " + near + "?"
                              : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY "
-                               "IGNORE INTERLOCK SIGNAL RULE "
-                               "POLICIES TRIGGER STRATEGY ADAPTATION",
+                               "IGNORE INTERLOCK SIGNAL RULE POLICIES TRIGGER STRATEGY ADAPTATION "
+                               "INCLUDE TEMPLATE END USE",
                replacement(head.span, near));
     broken();
     broken_declaration(near, s);
@@ -111,11 +127,11 @@ class Parser {
     const Token name = s.next();
     if (name.kind != Token::Kind::kIdentifier) return;
     if (keyword == "CONST")
-      file_.broken_declarations.push_back({Broken::kConstant, {name.text, name.span}});
+      into_->broken_declarations.push_back({Broken::kConstant, {name.text, name.span}});
     if (keyword == "COMPONENT")
-      file_.broken_declarations.push_back({Broken::kComponent, {name.text, name.span}});
+      into_->broken_declarations.push_back({Broken::kComponent, {name.text, name.span}});
     if (keyword == "SIGNAL")
-      file_.broken_declarations.push_back({Broken::kSignal, {name.text, name.span}});
+      into_->broken_declarations.push_back({Broken::kSignal, {name.text, name.span}});
   }
 
   // The paper's and our own documentation write <name> where a name is to be put in; people copy
@@ -145,10 +161,10 @@ class Parser {
   bool robot(Scanner& s) {
     const auto name = read_.identifier(s, "the robot's name");
     if (!name) return false;
-    if (file_.robot)
+    if (into_->robot)
       return read_.fail(Code::kDuplicateName, name->span, "the robot has a name already",
                         "keep one ROBOT line");
-    file_.robot = *name;
+    into_->robot = *name;
     return true;
   }
 
@@ -156,12 +172,12 @@ class Parser {
     const Span span = s.rest();
     const auto length = read_.duration(s, "the length of a cycle");
     if (!length) return false;
-    if (file_.cycle)
+    if (into_->cycle)
       return read_.fail(Code::kDuplicateName, span, "CYCLE is set already", "keep one CYCLE line");
     if (*length <= Duration::zero())
       return read_.fail(Code::kPolicyRange, span, "a cycle takes some time",
                         "write for example 200ms");
-    file_.cycle = {*length, span};
+    into_->cycle = {*length, span};
     return true;
   }
 
@@ -170,7 +186,7 @@ class Parser {
     if (!name || !read_.expect_symbol(s, "=")) return false;
     auto value = read_.expression(s);
     if (!value || !read_.line_ends(s)) return false;
-    file_.constants.push_back({std::move(*name), std::move(*value)});
+    into_->constants.push_back({std::move(*name), std::move(*value)});
     return true;
   }
 
@@ -186,20 +202,14 @@ class Parser {
         if (!component.node) return false;
       } else if (clause.text == "LAUNCH" && !component.launch) {
         s.next();
-        const Token command = s.next();
-        if (command.kind != Token::Kind::kString) {
-          return read_.fail_token(command, "the launch command",
-                                  "write it in quotes: LAUNCH \"ros2 run package program\"");
-        }
-        component.launch = Name{std::get<std::string>(command.literal), command.span};
+        component.launch = read_.text(s, "the launch command",
+                                      "write it in quotes: LAUNCH \"ros2 run package program\"");
+        if (!component.launch) return false;
       } else if (clause.text == "ENV" && !component.environment) {
         s.next();
-        const Token variables = s.next();
-        if (variables.kind != Token::Kind::kString) {
-          return read_.fail_token(variables, "the variables",
-                                  "write them in quotes: ENV \"ROS_DOMAIN_ID=7 LANG=C\"");
-        }
-        component.environment = Name{std::get<std::string>(variables.literal), variables.span};
+        component.environment =
+            read_.text(s, "the variables", "write them in quotes: ENV \"ROS_DOMAIN_ID=7 LANG=C\"");
+        if (!component.environment) return false;
       } else if (clause.text == "SETUP" && !component.setup) {
         s.next();
         component.setup = read_.name_or_text(s, "the file to source");
@@ -261,7 +271,7 @@ class Parser {
              "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
       }
     }
-    file_.components.push_back(std::move(component));
+    into_->components.push_back(std::move(component));
     return true;
   }
 
@@ -291,7 +301,7 @@ class Parser {
       if (!producer) return false;
       dependency.producers.push_back(std::move(*producer));
     } while (!s.at_end());
-    file_.dependencies.push_back(std::move(dependency));
+    into_->dependencies.push_back(std::move(dependency));
     return true;
   }
 
@@ -300,7 +310,7 @@ class Parser {
     do {
       auto topic = read_.ros_name(s, "a topic");
       if (!topic) return false;
-      file_.ignored_topics.push_back(std::move(*topic));
+      into_->ignored_topics.push_back(std::move(*topic));
     } while (!s.at_end());
     return true;
   }
@@ -309,7 +319,7 @@ class Parser {
     auto condition = read_.expression(s);
     if (!condition || !read_.line_ends(s)) return false;
     std::string text(source_.text(condition->span));
-    file_.interlocks.push_back({std::move(*condition), std::move(text)});
+    into_->interlocks.push_back({std::move(*condition), std::move(text)});
     return true;
   }
 
@@ -331,7 +341,7 @@ class Parser {
         return read_.unexpected_clause(clause, {"STALE", "RANGE"});
       }
     }
-    file_.signals.push_back(std::move(signal));
+    into_->signals.push_back(std::move(signal));
     return true;
   }
 
@@ -371,21 +381,92 @@ class Parser {
     return true;
   }
 
+  // ---- reuse
+
+  bool include(Scanner& s) {
+    is_in_rule_ = false;
+    if (template_)
+      return read_.fail(Code::kOutOfPlace, keyword_, "an INCLUDE stands in no TEMPLATE",
+                        "put it in front of the TEMPLATE");
+    auto include = read_include(read_, s, {keyword_.begin, line_.end});
+    if (!include) return false;
+    into_->includes.push_back(std::move(*include));
+    return true;
+  }
+
+  bool use(Scanner& s) {
+    is_in_rule_ = false;
+    auto use = read_use(read_, s, {keyword_.begin, line_.end});
+    if (!use) return false;
+    into_->uses.push_back(std::move(*use));
+    return true;
+  }
+
+  // Its lines are its own also if its first one is broken.
+  bool begin_template(Scanner& s) {
+    is_in_rule_ = false;
+    if (template_)
+      return read_.fail(Code::kOutOfPlace, keyword_, "a TEMPLATE stands in no other one",
+                        "write END behind the last statement of the one above");
+    auto read = read_template(read_, s);
+    const bool is_good = read.has_value();
+    template_ = is_good ? std::move(*read) : syntax::Template{};
+    template_->span.begin = line_.begin;
+    template_->lines.begin = behind_line();
+    template_keyword_ = keyword_;
+    into_ = &template_->body;
+    return is_good;
+  }
+
+  void template_line() {
+    std::vector<Lexeme> taken;
+    Scanner scanner(source_.text(), line_, &taken, Holes::kAllowed);
+    if (!scanner.at_end()) statement(scanner);
+    // One without a name has a broken first line, and its parameters are not known.
+    const bool are_known = template_ && !template_->name.text.empty();
+    if (are_known && !check_holes(read_, source_.text(), taken, *template_)) broken();
+    if (lexemes_ != nullptr) lexemes_->insert(lexemes_->end(), taken.begin(), taken.end());
+  }
+
+  bool end_template(Scanner&) {
+    is_in_rule_ = false;
+    if (!template_)
+      return read_.fail(Code::kOutOfPlace, keyword_, "this END closes no TEMPLATE",
+                        "remove it, or write TEMPLATE name(parameters) above");
+    close_template(line_.begin, behind_line());
+    return true;
+  }
+
+  void close_template(std::uint32_t lines_end, std::uint32_t end) {
+    template_->lines.end = lines_end;
+    template_->span.end = end;
+    into_ = &file_;
+    into_->templates.push_back(std::move(*template_));
+    template_.reset();
+  }
+
+  std::uint32_t behind_line() const {
+    const auto end = source_.text().find('\n', line_.end);
+    return static_cast<std::uint32_t>(end == std::string_view::npos ? source_.text().size()
+                                                                    : end + 1);
+  }
+
   // ---- rules
 
   bool rule(Scanner& s) {
-    file_.rules.emplace_back();
+    into_->rules.emplace_back();
+    is_in_rule_ = true;
     // A part that stands before the rule may be the one that the rule then lacks.
-    file_.rules.back().has_broken_part = std::exchange(stray_part_, false);
+    into_->rules.back().has_broken_part = std::exchange(stray_part_, false);
     auto name = read_.declared_name(s, "the rule's name");
     if (!name) return false;
-    file_.rules.back().name = std::move(*name);
+    into_->rules.back().name = std::move(*name);
     return true;
   }
 
   bool policies(Scanner& s) {
     if (!inside_rule("POLICIES")) return false;
-    syntax::Rule& rule = file_.rules.back();
+    syntax::Rule& rule = into_->rules.back();
     if (rule.policies) return duplicate_line("POLICIES");
     syntax::Policies policies;
     policies.span = s.rest();
@@ -412,6 +493,8 @@ class Parser {
       policies.criticality = kWarning;
     } else if (level.text == "NON_CRITICAL" || level.text == "OK") {
       policies.criticality = kNonCritical;
+    } else if (level.has_hole) {
+      policies.criticality = kError;
     } else {
       return read_.unexpected_clause(
           level, {"ERROR", "WARNING", "NON_CRITICAL", "FAILURE", "DEGRADED", "OK"},
@@ -448,22 +531,24 @@ class Parser {
       return true;
     }
     if (clause.text == "ON_CHANGE" && !policies.on_change) return policies.on_change = true;
-    return read_.unexpected_clause(clause, {"FOR", "HOLD", "COOLDOWN", "ATTEMPTS", "ON_CHANGE"}, "",
-                                   Code::kUnknownPolicy);
+    if (clause.text == "REPORT" && !policies.is_report) return policies.is_report = true;
+    return read_.unexpected_clause(clause,
+                                   {"FOR", "HOLD", "COOLDOWN", "ATTEMPTS", "ON_CHANGE", "REPORT"},
+                                   "", Code::kUnknownPolicy);
   }
 
   bool trigger(Scanner& s) {
     if (!inside_rule("TRIGGER")) return false;
-    if (file_.rules.back().trigger) return duplicate_line("TRIGGER");
+    if (into_->rules.back().trigger) return duplicate_line("TRIGGER");
     auto expression = read_.expression(s);
     if (!expression || !read_.line_ends(s)) return false;
-    file_.rules.back().trigger = std::move(*expression);
+    into_->rules.back().trigger = std::move(*expression);
     return true;
   }
 
   bool strategy(Scanner& s) {
     if (!inside_rule("STRATEGY")) return false;
-    syntax::Rule& rule = file_.rules.back();
+    syntax::Rule& rule = into_->rules.back();
     rule.strategies.emplace_back();
     rule.strategies.back().has_broken_adaptation = true;  // until the line is understood
     auto name = read_.identifier(s, "the strategy's name");
@@ -487,7 +572,7 @@ class Parser {
 
   bool adaptation(Scanner& s) {
     if (!inside_rule("ADAPTATION")) return false;
-    syntax::Rule& rule = file_.rules.back();
+    syntax::Rule& rule = into_->rules.back();
     if (rule.strategies.empty()) {
       if (rule.has_broken_part) return false;
       return read_.fail(Code::kOutOfPlace, keyword_, "an ADAPTATION belongs to a STRATEGY",
@@ -502,7 +587,7 @@ class Parser {
     adaptation.component = std::move(*component);
     adaptation.type = *type;
     if (!adaptation_arguments(s, adaptation)) return false;
-    const auto impact = read_.number(s, "the impact in cycles");
+    const auto impact = read_.number(s, "the impact in cycles", impact_remedy(adaptation, s));
     if (!impact) return false;
     adaptation.impact = *impact;
     adaptation.span = {keyword_.begin, impact->span.end};
@@ -531,10 +616,8 @@ class Parser {
         return take_name(adaptation.subject, "the mode");
       case kCall:
         if (!take_name(adaptation.subject, "the service")) return false;
-        if (const Token next = s.peek(); next.kind == Token::Kind::kString) {
-          s.next();
-          adaptation.request = Name{std::get<std::string>(next.literal), next.span};
-        }
+        if (s.peek().kind == Token::Kind::kString)
+          adaptation.request = read_.text(s, "the request", "");
         return true;
       case kActivate:
       case kDeactivate:
@@ -547,10 +630,20 @@ class Parser {
     return false;
   }
 
+  // Where one number is there, it was read as the value.
+  static std::string impact_remedy(const syntax::Adaptation& adaptation, Scanner& s) {
+    if (!adaptation.value || !s.at_end()) return "";
+    const std::string word(keyword(adaptation.type));
+    return "the value and the impact stand at the end: " + word + " " + adaptation.subject.text +
+           (adaptation.type == syntax::AdaptationType::kSetParameter ? " true 2" : " 0.5 2");
+  }
+
   bool unknown_adaptation(const Token& word) {
     if (word.kind != Token::Kind::kIdentifier)
       return read_.fail_token(word, "what to do with the component", "");
     std::string plain = word.text;
+    std::transform(plain.begin(), plain.end(), plain.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
     if (plain.starts_with("action_")) plain.erase(0, 7);  // as in the reference's dialect
     const std::string near =
         syntax::adaptation_type(plain) ? plain : closest(plain, syntax::adaptation_keywords());
@@ -564,10 +657,13 @@ class Parser {
   }
 
   bool inside_rule(const std::string& keyword) {
-    if (!file_.rules.empty()) return true;
+    if (is_in_rule_) return true;
     stray_part_ = true;
-    return read_.fail(Code::kOutOfPlace, keyword_, keyword + " belongs to a RULE",
-                      "put a RULE line before it");
+    return read_.fail(
+        Code::kOutOfPlace, keyword_, keyword + " belongs to a RULE",
+        into_->rules.empty()
+            ? "put a RULE line before it"
+            : "put a RULE line before it: INCLUDE, TEMPLATE and USE end the one above");
   }
 
   bool duplicate_line(const std::string& keyword) {
@@ -577,8 +673,8 @@ class Parser {
 
   // The line was not understood: whatever its absence would make look wrong stays unreported.
   void broken() {
-    if (file_.rules.empty()) return;
-    syntax::Rule& rule = file_.rules.back();
+    if (!is_in_rule_) return;
+    syntax::Rule& rule = into_->rules.back();
     rule.has_broken_part = true;
     if (!rule.strategies.empty()) rule.strategies.back().has_broken_adaptation = true;
   }
@@ -587,8 +683,13 @@ class Parser {
   LineReader read_;
   std::vector<Lexeme>* lexemes_;
   syntax::File file_;
-  Span keyword_;             // of the line at hand
-  bool stray_part_ = false;  // a part of a rule stood before any RULE line
+  syntax::File* into_ = &file_;  // what statements become part of: this, or a template's body
+  Span line_;                    // that is at hand
+  Span keyword_;                 // of it
+  bool is_in_rule_ = false;      // a part of a rule would belong to the last one
+  bool stray_part_ = false;      // a part of a rule stood before any RULE line
+  std::optional<syntax::Template> template_;  // that is not closed yet
+  Span template_keyword_;
 };
 
 }  // namespace

@@ -50,6 +50,19 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+std::size_t hole_length(std::string_view text) {
+  if (text.size() < 3 || text[0] != '{' || !is_letter(text[1])) return 0;
+  std::size_t end = 2;
+  while (end < text.size() && is_name_character(text[end])) ++end;
+  return end < text.size() && text[end] == '}' ? end + 1 : 0;
+}
+
+bool has_hole(std::string_view text) {
+  for (auto open = text.find('{'); open != std::string_view::npos; open = text.find('{', open + 1))
+    if (hole_length(text.substr(open)) > 0) return true;
+  return false;
+}
+
 bool Scanner::is_comment(std::uint32_t at) const {
   return text_[at] == '#' || (text_[at] == '/' && at + 1 < end_ && text_[at + 1] == '/');
 }
@@ -64,6 +77,13 @@ std::uint32_t Scanner::skip_blanks() const {
 bool Scanner::at_end() const { return skip_blanks() == end_; }
 std::uint32_t Scanner::position() const { return skip_blanks(); }
 
+std::string_view Scanner::next_letters() const {
+  const std::uint32_t begin = skip_blanks();
+  std::uint32_t end = begin;
+  while (end < end_ && is_letter(text_[end])) ++end;
+  return text_.substr(begin, end - begin);
+}
+
 Span Scanner::rest() const {
   const std::uint32_t begin = skip_blanks();
   std::uint32_t end = begin;
@@ -74,7 +94,8 @@ Span Scanner::rest() const {
 }
 
 Token Scanner::next() {
-  Token token = peek();
+  Token token = peeked_ ? std::move(*peeked_) : scan();
+  peeked_.reset();
   at_ = token.span.end;
   if (token.kind != Token::Kind::kEnd) enter(lexeme_kind(token.kind), token.span);
   return token;
@@ -84,13 +105,19 @@ void Scanner::enter(Lexeme::Kind kind, Span span) {
   if (record_ != nullptr) record_->push_back({kind, span});
 }
 
-Token Scanner::peek() const {
+const Token& Scanner::peek() const {
+  if (!peeked_) peeked_ = scan();
+  return *peeked_;
+}
+
+Token Scanner::scan() const {
   const std::uint32_t at = skip_blanks();
   if (at == end_) return {Token::Kind::kEnd, {at, at}, "", {}};
   const char c = text_[at];
   const bool fraction = c == '.' && at + 1 < end_ && is_digit(text_[at + 1]);
   if (is_digit(c) || fraction) return number(at);
   if (is_letter(c)) return identifier(at);
+  if (c == '{' && allows_holes()) return with_holes(at);
   if (c == '"') return quoted(at);
   return symbol(at);
 }
@@ -98,13 +125,29 @@ Token Scanner::peek() const {
 Token Scanner::identifier(std::uint32_t at) const {
   std::uint32_t end = at;
   while (end < end_ && is_name_character(text_[end])) ++end;
+  if (end < end_ && text_[end] == '{' && allows_holes()) return with_holes(at);
   if (end - at > kMaxName) return bad({at, end}, "this name is longer than 255 characters");
-  std::string text(text_.substr(at, end - at));
-  if (text == "true" || text == "false") {
-    // Keywords of expressions; elsewhere the text serves.
-    return {Token::Kind::kIdentifier, {at, end}, text, syntax::Literal(text == "true")};
+  const std::string_view text = text_.substr(at, end - at);
+  Token token{Token::Kind::kIdentifier, {at, end}, std::string(text), {}};
+  // Keywords of expressions; elsewhere the text serves.
+  if (text == "true" || text == "false") token.literal = text == "true";
+  return token;
+}
+
+// Letters, digits and holes, in any order.
+Token Scanner::with_holes(std::uint32_t at) const {
+  std::uint32_t end = at;
+  while (end < end_) {
+    const std::size_t hole = hole_length(text_.substr(end, end_ - end));
+    if (hole == 0 && !is_name_character(text_[end])) break;
+    end += hole > 0 ? static_cast<std::uint32_t>(hole) : 1;
   }
-  return {Token::Kind::kIdentifier, {at, end}, std::move(text), {}};
+  if (end < end_ && text_[end] == '{')
+    return bad({end, end + 1}, "a parameter stands in braces, as in {name}");
+  if (end - at > kMaxName) return bad({at, end}, "this name is longer than 255 characters");
+  Token token{Token::Kind::kIdentifier, {at, end}, std::string(text_.substr(at, end - at)), {}};
+  token.has_hole = true;
+  return token;
 }
 
 Token Scanner::number(std::uint32_t at) const {
@@ -199,6 +242,8 @@ Token Scanner::meaningless(std::uint32_t at) const {
     if (close != std::string_view::npos && inside.find_first_of("\"\\") == std::string_view::npos)
       fix = {{at, static_cast<std::uint32_t>(close) + 1}, "\"" + std::string(inside) + "\""};
   }
+  if (text_[at] == '{' || text_[at] == '}')
+    advice = "; a parameter in braces stands for something in a TEMPLATE only";
   if (text_[at] == '&') {
     advice = "; write && for 'and'";
     fix = {{at, end}, "&&"};
@@ -214,6 +259,7 @@ Token Scanner::meaningless(std::uint32_t at) const {
 }
 
 syntax::Name Scanner::next_name() {
+  peeked_.reset();
   const std::uint32_t begin = skip_blanks();
   if (begin < end_ && text_[begin] == '"') {
     Token token = quoted(begin);

@@ -33,6 +33,8 @@ struct Token {
   std::string text;  // identifier, symbol, or the message of kBad
   syntax::Literal literal;
   std::optional<Edit> fix = std::nullopt;  // that makes a kBad one good
+  // A kIdentifier with a template's parameter in it: may become any kind of token.
+  bool has_hole = false;
 
   bool is(std::string_view symbol) const { return kind == Kind::kSymbol && text == symbol; }
 };
@@ -49,37 +51,54 @@ struct Lexeme {
   Span span;
 };
 
+// Whether "{parameter}" may stand in the place of characters: in the lines of a template.
+enum class Holes : std::uint8_t { kNone, kAllowed };
+
+// The "{parameter}" that `text` begins with, with its braces; 0: it begins with none.
+std::size_t hole_length(std::string_view text);
+// Whether one is in it.
+bool has_hole(std::string_view text);
+
 class Scanner {
  public:
   // The longest name that is accepted, as in DDS (topic names are string<255>).
   static constexpr std::size_t kMaxName = 255;
 
   // What is taken off the line is also entered into `record`, if there is one.
-  Scanner(std::string_view text, Span line, std::vector<Lexeme>* record = nullptr)
-      : text_(text), at_(line.begin), end_(line.end), record_(record) {}
+  Scanner(std::string_view text, Span line, std::vector<Lexeme>* record = nullptr,
+          Holes holes = Holes::kNone)
+      : text_(text), at_(line.begin), end_(line.end), record_(record), holes_(holes) {}
 
   // The next token of an expression or a clause.
   Token next();
-  Token peek() const;
+  // The same without taking it. Valid until one is taken.
+  const Token& peek() const;
 
   // The next run of non-blank characters up to a comment, a comma or a closing parenthesis: a
   // topic, node, parameter or mode name. A quoted string is taken as a name too. Empty at the end
   // of the line.
   syntax::Name next_name();
 
+  bool allows_holes() const { return holes_ == Holes::kAllowed; }
   bool at_end() const;
+  // The word of letters that begins the rest of the line; empty if none does.
+  std::string_view next_letters() const;
+  // Where what was taken last ends.
+  std::uint32_t taken() const { return at_; }
   // Where the next token begins.
   std::uint32_t position() const;
   // From the next token to the end of the line's text, comment and trailing blanks left out.
   Span rest() const;
 
  private:
+  Token scan() const;
   std::uint32_t skip_blanks() const;
   bool is_comment(std::uint32_t at) const;
   Token number(std::uint32_t at) const;
   Token quoted(std::uint32_t at) const;
   Token unclosed(std::uint32_t at) const;
   Token identifier(std::uint32_t at) const;
+  Token with_holes(std::uint32_t at) const;
   Token symbol(std::uint32_t at) const;
   Token meaningless(std::uint32_t at) const;
   void enter(Lexeme::Kind kind, Span span);
@@ -88,6 +107,8 @@ class Scanner {
   std::uint32_t at_;
   std::uint32_t end_;
   std::vector<Lexeme>* record_;
+  Holes holes_;
+  mutable std::optional<Token> peeked_;
 };
 
 // What stands between the tokens of a line.

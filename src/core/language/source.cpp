@@ -8,13 +8,54 @@
 
 namespace culprit {
 
+struct Source::Parts {
+  std::vector<Source> files;
+  std::vector<Piece> pieces;
+  std::vector<Step> steps;
+};
+
 Source::Source(std::string name, std::string text)
     : name_(std::move(name)), text_(std::move(text)) {
   if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
+  find_lines();
+}
+
+Source::Source(std::string text, std::vector<Source> files, std::vector<Piece> pieces,
+               std::vector<Step> steps)
+    : name_(files.front().name()), text_(std::move(text)) {
+  find_lines();
+  parts_ =
+      std::make_shared<const Parts>(Parts{std::move(files), std::move(pieces), std::move(steps)});
+}
+
+void Source::find_lines() {
   line_starts_.push_back(0);
   for (std::size_t i = 0; i < text_.size(); ++i) {
     if (text_[i] == '\n') line_starts_.push_back(static_cast<std::uint32_t>(i + 1));
   }
+}
+
+std::size_t Source::file_count() const { return parts_ ? parts_->files.size() : 1; }
+
+const Source& Source::file(std::uint32_t index) const {
+  return parts_ ? parts_->files[index] : *this;
+}
+
+Origin Source::origin(Span span) const {
+  if (!parts_) return {{0, span}, true, {}, {}};
+  return origin_of(span, parts_->pieces, parts_->steps, static_cast<std::uint32_t>(text_.size()));
+}
+
+Source Source::followed_by(std::string text) const {
+  if (!parts_) return Source(name_, text_ + text);
+  Parts parts = *parts_;
+  const auto size = static_cast<std::uint32_t>(text.size());
+  parts.pieces.push_back({static_cast<std::uint32_t>(text_.size()),
+                          {static_cast<std::uint32_t>(parts.files.size()), {0, size}}});
+  std::string all = text_ + text;
+  parts.files.emplace_back(name_, std::move(text));
+  return Source(std::move(all), std::move(parts.files), std::move(parts.pieces),
+                std::move(parts.steps));
 }
 
 Expected<Source> Source::read(const std::string& path) {

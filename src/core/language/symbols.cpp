@@ -67,6 +67,13 @@ std::string key_of(const Input& input) {
   return key;
 }
 
+// No argument holds a zero byte.
+std::string key_of(const std::vector<std::string>& command) {
+  std::string key = "launch";
+  for (const std::string& argument : command) (key += '\0') += argument;
+  return key;
+}
+
 }  // namespace
 
 bool Symbols::first_declaration(const syntax::Name& name, const char* what) {
@@ -119,6 +126,13 @@ void Symbols::declare_component(const syntax::Component& written) {
   rules_.components.push_back(std::move(component));
 }
 
+// The first component that has the same owner; null: the one that is being declared.
+const Component* Symbols::other_of_owner(std::string owner) {
+  const auto [first, is_new] =
+      by_owner_.emplace(std::move(owner), ComponentId(rules_.components.size()));
+  return is_new ? nullptr : &rules_[first->second];
+}
+
 // ENV, SETUP and CWD are a launch command's, and of nothing else that starts it.
 void Symbols::declare_launch(const syntax::Component& written, Component& component) {
   const auto report = [&](const syntax::Name& where, std::string cause, std::string remedy) {
@@ -148,12 +162,8 @@ void Symbols::declare_launch(const syntax::Component& written, Component& compon
   };
   if (is_for_launch("SETUP", written.setup)) component.setup = whole_path(*written.setup);
   if (is_for_launch("CWD", written.folder)) component.folder = whole_path(*written.folder);
-  const auto same =
-      std::find_if(rules_.components.begin(), rules_.components.end(), [&](const Component& c) {
-        return written.launch && !component.launch.empty() && c.declared &&
-               c.launch == component.launch;
-      });
-  if (same != rules_.components.end())
+  const auto* same = component.launch.empty() ? nullptr : other_of_owner(key_of(component.launch));
+  if (same != nullptr)
     diagnostics_.push_back({Code::kTwoOwners, Severity::kWarning, written.launch->span,
                             "component '" + same->name +
                                 "' is started by the same command: if it makes both nodes, there "
@@ -231,9 +241,9 @@ void Symbols::declare_engine(const syntax::Component& written, Component& compon
            "component '" + written.name.text + "' has a CONTAINER and " + other +
                ", so it is not clear who starts it",
            std::string("keep CONTAINER if its engine runs it, else ") + other);
-  const auto same = std::find_if(rules_.components.begin(), rules_.components.end(),
-                                 [&](const Component& c) { return c.engine == container; });
-  if (same != rules_.components.end())
+  const auto* same = other_of_owner(std::string(is_podman ? "podman" : "docker") + '\0' +
+                                    container.host + '\0' + container.name);
+  if (same != nullptr)
     report(Code::kTwoOwners, name,
            "this container runs component '" + same->name + "' already, and would end with it",
            "give each component a container of its own, or leave one of them without");
@@ -327,9 +337,9 @@ SystemdUnit Symbols::declared_unit(const syntax::Component& written) {
                ", so it is not clear who starts it",
            "keep UNIT if systemd runs it, else " + other);
   }
-  const auto same = std::find_if(rules_.components.begin(), rules_.components.end(),
-                                 [&](const Component& c) { return c.unit == unit; });
-  if (same != rules_.components.end()) {
+  const auto* same = other_of_owner(std::string(unit.is_of_user ? "user" : "system") + '\0' +
+                                    unit.host + '\0' + unit.name);
+  if (same != nullptr) {
     report(Code::kTwoOwners,
            "this unit runs component '" + same->name + "' already, and would end with it",
            "give each component a unit of its own, or leave one of them without");

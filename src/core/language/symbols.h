@@ -69,6 +69,7 @@ class Symbols {
   void declare_broken(const syntax::BrokenDeclaration& broken);
   bool first_declaration(const syntax::Name& name, const char* what);
   void declare_component(const syntax::Component& component);
+  const Component* other_of_owner(std::string owner);
   void declare_launch(const syntax::Component& written, Component& component);
   std::string declared_host(const syntax::Component& written);
   void declare_engine(const syntax::Component& written, Component& component);
@@ -86,6 +87,7 @@ class Symbols {
   std::unordered_map<std::string, Constant> constants_;
   std::unordered_map<std::string, ComponentId> components_;
   std::unordered_map<std::string, ComponentId> components_by_node_;
+  std::unordered_map<std::string, ComponentId> by_owner_;  // a command, a unit or a container
   std::unordered_map<std::string, SignalId> signals_;
   std::unordered_map<std::string, TopicId> topics_;
   std::unordered_map<std::string, DiagnosticId> level_names_;

@@ -46,6 +46,8 @@ std::vector<std::string_view> adaptation_keywords() {
   return keywords;
 }
 
+bool File::has_reuse() const { return !includes.empty() || !templates.empty() || !uses.empty(); }
+
 std::string_view symbol(Operator op) {
   switch (op) {
     case Operator::kNot:

@@ -192,6 +192,7 @@ struct Policies {
   };
   std::optional<Attempts> attempts;
   bool on_change = false;
+  bool is_report = false;  // REPORT: nothing is done about it, a person is told
   Span span;
 };
 
@@ -216,6 +217,27 @@ struct BrokenDeclaration {
   Name name;
 };
 
+// The rules of another file are there too.
+struct Include {
+  Name file;
+  Span span;  // of the statement
+};
+
+// The statements of a template, once, with these arguments.
+struct Use {
+  Name pattern;                 // which template
+  std::vector<Name> arguments;  // their spans have the quotes that they may be written with
+  std::optional<Name> in{};     // the namespace of every full name in it
+  Span span;                    // of the statement
+};
+
+struct TemplateParameter {
+  Name name;
+  std::optional<Name> usual{};  // what it is where a USE gives nothing for it
+};
+
+struct Template;
+
 struct File {
   std::optional<Name> robot;
   struct Cycle {
@@ -231,6 +253,22 @@ struct File {
   std::vector<Signal> signals;
   std::vector<Rule> rules;
   std::vector<BrokenDeclaration> broken_declarations;
+  // What expand() (reuse/expansion.h) puts other text in place of.
+  std::vector<Include> includes;
+  std::vector<Template> templates;
+  std::vector<Use> uses;
+
+  bool has_reuse() const;
+};
+
+// Statements with parameters: in `body`, "{name}" stands for, or within, names, numbers, durations
+// and texts. What the numbers and durations of such parts are is not known there.
+struct Template {
+  Name name;
+  std::vector<TemplateParameter> parameters;
+  File body;
+  Span span;   // from TEMPLATE to the end of the END line, or of the text
+  Span lines;  // those between TEMPLATE and END, with their line ends
 };
 
 }  // namespace culprit::syntax

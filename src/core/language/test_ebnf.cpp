@@ -385,6 +385,8 @@ class Sentence {
         return std::max(height(*node.children[0]), height(*node.children[1]));
       case Kind::kExcept:
         return height(*node.children[0]);
+      case Kind::kSpecial:
+        return specials_.at(node.text).samples.empty() ? kEndless : 0;
       default:
         return 0;
     }

@@ -19,7 +19,7 @@ class Grammar {
  public:
   // What a special sequence, ? like this ?, stands for.
   struct Special {
-    std::vector<std::string> samples;
+    std::vector<std::string> samples;  // none: it is in no sentence that is made
     // How many bytes at `at` it is; nothing: it is not.
     std::optional<std::size_t> (*match)(const std::string& text, std::size_t at);
   };

@@ -17,22 +17,40 @@ std::string pick(const std::vector<std::string>& from) { return *rc::gen::elemen
 std::string blanks() { return pick({" ", " ", "  ", "\t", "   \t ", "\r ", "\f", "\v"}); }
 std::string maybe_blanks() { return coin() ? "" : blanks(); }
 
+// Whether what is written stands in a template, whose parameters are p and of_q.
+bool inside_template = false;
+
+// One time in a few, in a template.
+bool with_parameter() { return inside_template && below(4) == 0; }
+
 std::string identifier() {
+  if (with_parameter()) return pick({"{p}", "{p}_silent", "of_{of_q}{p}", "x2{of_q}"});
   return pick({"a", "camera", "image_enhancement", "_x", "B2", "rate", "a_name_of_some_length"});
 }
-std::string ros_name() { return pick({"/t", "/robot/camera", "/a/b_2/c", "\"/quoted\""}); }
+std::string ros_name() {
+  if (with_parameter()) return pick({"{p}", "/{p}/scan", "/robot/{of_q}", "\"{p}/b\""});
+  return pick({"/t", "/robot/camera", "/a/b_2/c", "\"/quoted\""});
+}
 std::string component() { return coin() ? identifier() : "/robot/" + identifier(); }
 std::string name() {
+  if (with_parameter()) return pick({"{p}", "{p}.x", "~/{of_q}", "\"{p} {p}\""});
   return pick({"gain", "pose.position.x", "ranges[0]", "~/routine", "2d", "-", "x=1",
                "\"two words\"", "\"# \\\" \"", "kühl", "rate", "WHEN", "STALE", "a:b", "<2"});
 }
 std::string text() {
+  if (with_parameter()) return pick({"\"{p}\"", "\"run {of_q} {p}\"", "\"{a: {p}}\""});
   return pick({"\"\"", "\"active\"", "\"a  b\"", "\"\\\"\\\\\\n\\t\"", "\"# none\"", "\"// none\"",
                "\"größer\""});
 }
-std::string whole() { return pick({"0", "1", "7", "100", "9223372036854775807"}); }
+std::string whole() {
+  if (with_parameter()) return "{p}";
+  return pick({"0", "1", "7", "100", "9223372036854775807"});
+}
 std::string number() { return coin() ? whole() : pick({"0.06", ".5", "3.", "1e3", "2.5E-2"}); }
-std::string duration() { return pick({"500ms", "2s", "1.5min", "10us", ".5h", "7ns", "1e3ms"}); }
+std::string duration() {
+  if (with_parameter()) return pick({"{of_q}", "{p}ms"});
+  return pick({"500ms", "2s", "1.5min", "10us", ".5h", "7ns", "1e3ms"});
+}
 
 // ---- Expressions
 
@@ -185,10 +203,13 @@ std::string declaration() {
 std::string policies_line() {
   const std::string hold =
       words({"HOLD", whole() + maybe_blanks() + "/" + maybe_blanks() + whole()});
-  std::vector<std::string> clauses = {maybe(words({"FOR", duration()})), maybe(hold),
+  std::vector<std::string> clauses = {maybe(words({"FOR", duration()})),
+                                      maybe(hold),
                                       maybe(words({"COOLDOWN", duration()})),
-                                      maybe(words({"ATTEMPTS", whole()})), maybe("ON_CHANGE")};
-  std::rotate(clauses.begin(), clauses.begin() + below(5), clauses.end());
+                                      maybe(words({"ATTEMPTS", whole()})),
+                                      maybe("ON_CHANGE"),
+                                      maybe("REPORT")};
+  std::rotate(clauses.begin(), clauses.begin() + below(6), clauses.end());
   return words({"POLICIES", pick({"NON_CRITICAL", "WARNING", "ERROR", "OK", "DEGRADED", "FAILURE"}),
                 words(clauses)});
 }
@@ -275,6 +296,48 @@ void rule(File& file) {
   }
 }
 
+// ---- Reuse
+
+std::string arguments() {
+  if (below(4) == 0) return coin() ? "" : maybe_blanks() + "(" + maybe_blanks() + ")";
+  std::string out = maybe_blanks() + "(";
+  for (int n = below(3); n >= 0; --n) {
+    out += maybe_blanks() + pick({"lidar", "/scan", "10", "-2.5", "500ms", "\"a text\"", "~/x"}) +
+           maybe_blanks() + (n > 0 ? "," : "");
+  }
+  return out + ")";
+}
+
+std::string use_line() {
+  return words({"USE", identifier() + arguments(), maybe(words({"IN", "/robot1"}))});
+}
+
+void rule_template(File& file) {
+  file.line(words({"TEMPLATE", identifier() + maybe_blanks() + "(" + maybe_blanks() + "p" +
+                                   maybe_blanks() + ", of_q" +
+                                   maybe(" = " + pick({"5", "/t", "\"a b\""})) + ")"}));
+  inside_template = true;
+  for (int declarations = below(3); declarations > 0; --declarations) file.line(declaration());
+  for (int rules = below(2); rules >= 0; --rules) {
+    rule(file);
+    if (below(4) == 0) file.line(use_line());
+  }
+  inside_template = false;
+  file.line("END");
+}
+
+// Ends a rule.
+void reuse(File& file) {
+  switch (below(3)) {
+    case 0:
+      return file.line(words({"INCLUDE", pick({"\"packs/nav2.rules\"", "\"a \\\"b\\\".rules\""})}));
+    case 1:
+      return file.line(use_line());
+    default:
+      return rule_template(file);
+  }
+}
+
 }  // namespace
 
 RuleText random_rule_text() {
@@ -282,7 +345,11 @@ RuleText random_rule_text() {
   if (coin()) file.line(words({"ROBOT", identifier()}));
   if (coin()) file.line(words({"CYCLE", duration()}));
   for (int declarations = below(6); declarations > 0; --declarations) file.line(declaration());
-  for (int rules = below(3); rules > 0; --rules) rule(file);
+  if (below(4) == 0) reuse(file);
+  for (int rules = below(3); rules > 0; --rules) {
+    rule(file);
+    if (below(4) == 0) reuse(file);
+  }
   return file.take();
 }
 

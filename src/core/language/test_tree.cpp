@@ -64,15 +64,19 @@ class Writer {
   void put(const syntax::Policies::Attempts& a) { put(a.count); }
   void put(const syntax::Policies& p) {
     all(static_cast<std::int64_t>(p.criticality), p.hold_for, p.hold, p.cooldown, p.attempts,
-        p.on_change);
+        p.on_change, p.is_report);
   }
   void put(const syntax::Rule& r) {
     all(r.name, r.policies, r.trigger, r.strategies, r.has_broken_part);
   }
   void put(const File::Cycle& c) { put(c.length); }
+  void put(const Include& i) { put(i.file); }
+  void put(const TemplateParameter& p) { all(p.name, p.usual); }
+  void put(const Use& u) { all(u.pattern, u.arguments, u.in); }
+  void put(const Template& t) { all(t.name, t.parameters, t.body); }
   void put(const File& f) {
     all(f.robot, f.cycle, f.constants, f.components, f.dependencies, f.ignored_topics, f.interlocks,
-        f.signals, f.rules);
+        f.signals, f.rules, f.includes, f.templates, f.uses);
   }
 
  private:

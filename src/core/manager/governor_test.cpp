@@ -320,6 +320,34 @@ TopicId rgb_of(TestRobot& robot) {
   return TopicId(static_cast<std::size_t>(rgb - topics.begin()));
 }
 
+// What hangs is not asked politely, which would take seconds.
+TEST(Evidence, IsAwaitedWhereAnAnswerIsOverdue) {
+  for (const bool hangs : {true, false}) {
+    TestRobot robot = one_camera(with_evidence());
+    const auto ask = [&](bool answers) {
+      robot.tell(Probed{ComponentId(0), answers});
+      robot.run_for(400ms);
+    };
+    robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/rgb"});
+    for (int i = 0; i < 4; ++i) ask(true);
+    robot["camera"].fault = "redeploy";
+    robot.run_for(200ms);
+    const Time began = robot.now;
+    robot.run_for(300ms);
+    EXPECT_FALSE(robot.was_asked("camera: ")) << "an answer is overdue" << transcript(robot);
+    if (!hangs) {
+      ask(true);
+      EXPECT_TRUE(robot.was_asked("camera: ")) << transcript(robot);
+      continue;
+    }
+    for (int i = 0; i < 4 && !robot.was_asked("camera: "); ++i) ask(false);
+    EXPECT_TRUE(robot.was_asked("camera: ")) << transcript(robot);
+    EXPECT_LT(robot.now - began, 2s);
+    EXPECT_EQ(robot.count("camera is lost: its process runs, but it does not answer"), 1u)
+        << transcript(robot);
+  }
+}
+
 TEST(Evidence, WhatRunsAndPublishesIsNotEndedBecauseSomethingElseIsSilent) {
   TestRobot robot = camera_and_fusion("age(/fused) > 300ms", with_evidence());
   robot["fusion"].fault = "a person";

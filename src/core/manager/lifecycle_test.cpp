@@ -66,6 +66,17 @@ TEST(Lifecycles, ANodeThatActivatesItselfCrashesOnceAtMost) {
   EXPECT_EQ(robot.count_asked("camera: configure"), 1u) << transcript(robot);
 }
 
+// As a node in Python does: how its process ends is seen after culprit has told it to.
+TEST(Lifecycles, ANodeThatLeavesTheGraphBeforeItsProcessEndsCrashesOnceAtMostToo) {
+  TestRobot robot = robot_of(camera_with(""), 4s);
+  robot["camera"].leaves_before_it_ends = true;
+  robot.kill("camera");
+  robot.run_for(60s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start"), 2u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: configure"), 1u) << transcript(robot);
+}
+
 TEST(Lifecycles, ANodeThatWasSeenToActivateItselfIsWaitedFor) {
   TestRobot robot(camera_with(""));
   auto& added = robot.add("camera", {}, "/rgb");

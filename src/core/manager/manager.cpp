@@ -47,8 +47,8 @@ bool is_news(const Observation& observation) {
 Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Options options)
     : knowledge_(rules),
       monitor_(knowledge_,
-               {knowledge_.signals, knowledge_.graph, knowledge_.components, knowledge_.sightings,
-                knowledge_.heard_names, knowledge_.events},
+               {knowledge_.signals, knowledge_.graph, knowledge_.components, knowledge_.departures,
+                knowledge_.sightings, knowledge_.heard_names, knowledge_.events},
                options.start, later(options.start, options.discovery)),
       analyzer_(knowledge_, {knowledge_.states, knowledge_.signals, knowledge_.beliefs,
                              knowledge_.couplings, knowledge_.outcomes, knowledge_.events}),
@@ -114,6 +114,7 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
     monitor_.observe(observation, now_);
     if (const auto* reply = std::get_if<Reply>(&observation.what)) executor_.answered(*reply, now_);
     if (const auto* order = std::get_if<Order>(&observation.what)) obey(*order, now_);
+    if (const auto* told = std::get_if<PriorsTold>(&observation.what)) adopt(*told, now_);
     news_ |= is_news(observation);
     if (hears_) analyzer_.advance(now_);
   }
@@ -172,9 +173,7 @@ void Manager::obey(const Order& order, Time now) {
 void Manager::forget(std::optional<RuleId> rule) {
   const RuleSet& rules = knowledge_.rules;
   for (std::size_t s = 0; s < rules.strategies.size(); ++s) {
-    const Strategy& strategy = rules.strategies[s];
-    if (!rule || strategy.rule == *rule)
-      knowledge_.beliefs.set(StrategyId(s), initial_belief(strategy.success, strategy.confidence));
+    if (!rule || rules.strategies[s].rule == *rule) knowledge_.beliefs.forget(StrategyId(s));
   }
   std::erase_if(knowledge_.outcomes.open, [&](const PendingOutcome& outcome) {
     return !rule || rules[outcome.strategy].rule == *rule;
@@ -186,6 +185,20 @@ void Manager::forget(std::optional<RuleId> rule) {
         knowledge_.couplings.set(each.cause, effect, {});
     }
   }
+}
+
+// What is no belief is left out: it comes from a network.
+void Manager::adopt(const PriorsTold& told, Time now) {
+  PriorsAdopted adopted{{}, told.source};
+  constexpr double kMost = 1e9;
+  const auto is_count = [](double count) { return count > 0 && count < kMost; };
+  for (const PriorsTold::Prior& each : told.priors) {
+    if (each.strategy.index >= knowledge_.rules.strategies.size()) continue;
+    if (!is_count(each.alpha) || !is_count(each.beta)) continue;
+    if (knowledge_.beliefs.begin_from(each.strategy, {each.alpha, each.beta}))
+      adopted.priors.push_back(each);
+  }
+  if (!adopted.priors.empty()) knowledge_.events.tell(now, std::move(adopted));
 }
 
 void Manager::abandon_all(const std::string& reason, Time now) {

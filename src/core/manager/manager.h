@@ -66,6 +66,9 @@ class Manager : public ManagingSystem {
 
   // For what was learned in an earlier run.
   void set_belief(StrategyId id, Belief belief) { knowledge_.beliefs.set(id, belief); }
+  void set_belief(StrategyId id, Belief belief, Belief prior) {
+    knowledge_.beliefs.set(id, belief, prior);
+  }
   void set_coupling(RuleId cause, RuleId effect, Coupling coupling) {
     knowledge_.couplings.set(cause, effect, coupling);
   }
@@ -83,6 +86,7 @@ class Manager : public ManagingSystem {
   void restart(Time now);
   void react(std::vector<Command>& commands);
   void obey(const Order& order, Time now);
+  void adopt(const PriorsTold& told, Time now);
   void refresh_conditions(StrategyId strategy, Time now);
   void forget(std::optional<RuleId> rule);
   void abandon_all(const std::string& reason, Time now);

@@ -435,6 +435,50 @@ TEST(Manager, UndoesWhatItSetInAProcessThatIsGoneOnceThatIsBack) {
   }
 }
 
+// A person brings it back and changes the parameter: a redeploy much later leaves that alone.
+TEST(Manager, DoesNotUndoWhatItSetInAProcessThatSomebodyElseStartedAgain) {
+  int forgotten = 0;
+  for (Duration killed = 0s; killed < 3s; killed += 50ms) {
+    TestRobot robot(R"(
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+COMPONENT filter NODE /filter LAUNCH "filter"
+RULE Unsure
+  POLICIES WARNING
+  TRIGGER quality < 0.5
+    STRATEGY filtered 90 10
+      ADAPTATION fusion change_communication input /filtered 2
+      ADAPTATION filter activate 2
+RULE Wrong
+  POLICIES ERROR
+  TRIGGER is_wrong
+    STRATEGY again 90 10
+      ADAPTATION fusion redeploy 5
+)");
+    robot.add("fusion").parameters = {{"input", Value(std::string("/raw"))}};
+    robot.add("filter").fails_to_activate = true;
+    robot["filter"].state = robot["filter"].state_at_start = Lifecycle::kInactive;
+    robot.discover();
+    robot.signal("quality", Value(1.0));
+    robot.signal("is_wrong", Value(false));
+    robot.run_for(6s);
+    robot.signal("quality", Value(0.2));
+    robot.run_for(killed);
+    robot.kill("fusion");
+    robot.run_for(3s);
+    robot.signal("quality", Value(1.0));
+    robot.start_by_hand("fusion");
+    robot.run_for(5s);
+    robot["fusion"].parameters["input"] = Value(std::string("/mine"));
+    robot.signal("is_wrong", Value(true));
+    robot.run_for(10s);
+    EXPECT_TRUE(robot.was_asked("fusion: start")) << transcript(robot);
+    EXPECT_EQ(robot["fusion"].parameters["input"], Value(std::string("/mine")))
+        << transcript(robot);
+    forgotten += robot.count("cannot be undone: fusion: input = ") == 1 ? 1 : 0;
+  }
+  EXPECT_GT(forgotten, 0);
+}
+
 TEST(Manager, SettlesALostReplyByReadingBack) {
   TestRobot robot = dark_camera();
   robot["camera"].loses_replies = true;

@@ -96,14 +96,23 @@ void TestRobot::signal(const std::string& name, Value value) {
 void TestRobot::kill(const std::string& name) {
   Component& component = components_.at(name);
   component.process = ProcessState::kGone;
-  observe(ProcessSeen{id(name), ProcessState::kGone, component.pid, "killed by signal 9"});
+  observe(ProcessSeen{id(name), ProcessState::kGone, component.pid, "killed by signal 9",
+                      Cause::kFault});
   step();
 }
 
 void TestRobot::stop(const std::string& name) {
   Component& component = components_.at(name);
   component.process = ProcessState::kStopped;
-  observe(ProcessSeen{id(name), ProcessState::kStopped, component.pid, ""});
+  observe(ProcessSeen{id(name), ProcessState::kStopped, component.pid, "", Cause::kFault});
+  step();
+}
+
+void TestRobot::leave(const std::string& name) {
+  Component& component = components_.at(name);
+  component.end();
+  observe(NodeVanished{"/" + name});
+  observe(ProcessSeen{id(name), ProcessState::kGone, component.pid, "exit code 0", Cause::kWish});
   step();
 }
 
@@ -176,7 +185,8 @@ void TestRobot::reply(const Command& command, Outcome outcome, decltype(Reply::v
 void TestRobot::serve(const Command& command) {
   Component& c = components_.at(rules_->components[command.component.index].name);
   if (std::holds_alternative<StopProcess>(command.what)) {
-    if (c.end()) observe(ProcessSeen{command.component, ProcessState::kGone, c.pid, "stopped"});
+    if (c.end())
+      observe(ProcessSeen{command.component, ProcessState::kGone, c.pid, "stopped", Cause::kWish});
     return reply(command, Outcome::kDone);
   }
   if (std::holds_alternative<StartProcess>(command.what)) return start(c, command);
@@ -223,7 +233,8 @@ void TestRobot::start(Component& c, const Command& command) {
   if (c.dies_at_start) {
     return later(50ms, [this, &c, command] {
       c.end();
-      observe(ProcessSeen{command.component, ProcessState::kGone, c.pid, "exit code 1"});
+      observe(
+          ProcessSeen{command.component, ProcessState::kGone, c.pid, "exit code 1", Cause::kFault});
     });
   }
   later(c.start_time, [this, &c] { come_up(c); });
@@ -243,9 +254,17 @@ void TestRobot::activate_itself(Component& c, int pid) {
   if (c.state == Lifecycle::kUnconfigured) {
     c.state = Lifecycle::kActive;
     observe(LifecycleRead{id(c.name), c.state});
+  } else if (c.leaves_before_it_ends) {
+    c.fault = "redeploy";  // it does nothing more
+    observe(NodeVanished{"/" + c.name});
+    later(300ms, [this, &c, pid] {
+      if (c.pid != pid || c.process == ProcessState::kGone) return;
+      c.process = ProcessState::kGone;
+      observe(ProcessSeen{id(c.name), ProcessState::kGone, pid, "killed by signal 2"});
+    });
   } else {
     c.process = ProcessState::kGone;
-    observe(ProcessSeen{id(c.name), ProcessState::kGone, pid, "exit code 1"});
+    observe(ProcessSeen{id(c.name), ProcessState::kGone, pid, "exit code 1", Cause::kFault});
   }
 }
 

@@ -48,7 +48,8 @@ class TestRobot {
     Lifecycle state_at_start = Lifecycle::kActive;
     // A timer of its own activates it so long after its start. It ends if somebody was there first.
     Duration activates_itself_after{};
-    bool fails_to_activate = false;  // with an error: it falls back to unconfigured
+    bool leaves_before_it_ends = false;  // the graph, as nodes in Python do
+    bool fails_to_activate = false;      // with an error: it falls back to unconfigured
   };
   Component& operator[](const std::string& name) { return components_.at(name); }
   Component& add(const std::string& name, std::vector<std::string> needs = {},
@@ -58,6 +59,7 @@ class TestRobot {
   void kill(
       const std::string& name);  // -9: its process is gone, its node lingers until its lease ends
   void stop(const std::string& name);           // -STOP
+  void leave(const std::string& name);          // it says good-bye and ends, as after Ctrl-C
   void start_by_hand(const std::string& name);  // a person does
   void run_for(Duration time);
   // All stands still, the manager too.
@@ -74,6 +76,7 @@ class TestRobot {
   void discover();
 
   bool works(const std::string& name) const;
+  ComponentId id(const std::string& name) const;
   Manager& manager() { return *manager_; }
   const RuleSet& rules() const { return *rules_; }
 
@@ -107,7 +110,6 @@ class TestRobot {
     Duration period;
     Time next{};
   };
-  ComponentId id(const std::string& name) const;
   template <class What>
   void observe(What what) {
     inbox_.push_back({now, std::move(what)});

@@ -37,12 +37,16 @@ class Monitor {
   static constexpr Duration kEndsAwaited = std::chrono::seconds(10);
   // Participants announce themselves every 3 s.
   static constexpr Duration kGrace = std::chrono::seconds(5);
+  // Who ends in an orderly way says good-bye first. That comes another way than the word of the
+  // operating system, and may come after it.
+  static constexpr Duration kFarewell = std::chrono::milliseconds(10);
 
   // What it writes; all else it only reads.
   struct Writes {
     SignalStore& signals;
     DependencyGraph& graph;
     ComponentStates& components;
+    Departures& departures;
     Sightings& sightings;
     HeardNames& heard_names;
     EventLog& events;
@@ -83,6 +87,7 @@ class Monitor {
     monitor::PhiAccrual phi;
     std::vector<InputId> inputs;
     bool needs_phi = false;
+    bool is_known_silent = false;  // since who publishes it was known dead, nothing came
   };
   struct Signal {
     std::optional<Time> last;
@@ -115,11 +120,13 @@ class Monitor {
   void on(Time at, const ParametersListed& seen);
   void on(Time at, const HostReached& seen);
   void on(Time at, const EndsWith& seen);
+  void on(Time at, const LauncherSeen& seen);
   void on(Time, const Reply&) {}  // the executor's
   void on(Time, const Order&) {}  // the governor's
   void on(Time at, const LinkTrouble& seen);
   void on(Time, const HearingRegained&) {}  // the manager's: restart()
   void on(Time, const Overslept&) {}        // likewise
+  void on(Time, const PriorsTold&) {}       // likewise: adopt()
   void on(Time, const HearingLost&) { is_deaf_ = true; }
 
   void read_signal(SignalId signal, const Value& value, Time at);
@@ -147,6 +154,12 @@ class Monitor {
   void await_ends_no_more(ComponentId component, Time at);
   void keep_ends(ComponentId component);
   void forget_process(ComponentId component, Time at);
+  void note_process(const ProcessSeen& seen, Time at);
+  void note_end(const ProcessSeen& seen, Time at);
+  void note_farewell(ComponentId component, Time at);
+  void note_known_dead(ComponentId component, Time at);
+  void note_no_longer_dead(ComponentId component);
+  void touch_topics_of(ComponentId component);
   void note_rise(ComponentId component, Lifecycle state, Time at);
   void note_end_of_start(ComponentId component, Time at);
   bool hangs_in_transition(ComponentId component, Time now) const;
@@ -174,7 +187,13 @@ class Monitor {
   std::vector<std::vector<InputId>> parameter_inputs_;
   std::vector<std::vector<SignalId>> parameter_signals_;
   std::vector<std::vector<InputId>> diagnostic_inputs_;
-  // By InputId; then `discovered_`, then `graced_`; then ComponentState::awaits_ends_until by component.
+  std::size_t farewell_of(ComponentId component) const {
+    return knowledge_.rules.inputs.size() + 2 + knowledge_.rules.components.size() +
+           component.index;
+  }
+
+  // By InputId; then `discovered_`, then `graced_`; then ComponentState::awaits_ends_until by
+  // component; then, by component, until when its good-bye may still come.
   Deadlines deadlines_;
 };
 

@@ -48,6 +48,7 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
   write_.sightings.note(*component, at);
   ComponentState& state = write_.components[*component];
   const bool same_process = seen.pid != 0 && seen.pid == state.node_pid && state.in_graph;
+  const bool was_another = seen.pid != 0 && state.node_pid != 0 && !same_process && state.in_graph;
   if (!same_process) forget_process(*component, at);
   state.in_graph = true;
   state.is_missed = false;
@@ -55,8 +56,14 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
   state.node_pid = seen.pid;
   state.missed_probes = 0;
   if (seen.pid != state.pid || seen.pid == 0) state.process = ProcessState::kRunning;
+  if (state.process == ProcessState::kRunning) note_no_longer_dead(*component);
   if (!same_process) await_ends(*component, at);
+  const bool was_alive = state.alive == true;
   update_alive(*component, at, "");
+  // A mode manager offers services in the node's name, and may be seen before the node is: then it is the node's
+  // process that counts, and people are told so.
+  if (was_another && was_alive && state.alive == true)
+    write_.events.tell(at, ComponentFound{*component, seen.pid});
 }
 
 // Who reads what it published goes on depending on it until then.
@@ -93,6 +100,10 @@ void Monitor::on(Time at, const NodeVanished& seen) {
   write_.graph.node_vanished(seen.node);
   const auto component = knowledge_.graph.component_of(seen.node);
   if (!component) return;
+  // A process in Python leaves the graph before it ends; how it ends is not known yet, and by then it
+  // may have been told to.
+  if (knowledge_.states.reservation(*component) == nullptr) note_end_of_start(*component, at);
+  note_farewell(*component, at);
   forget_process(*component, at);
   // Of several the graph tells next which it is from now on, perhaps in another step.
   if (knowledge_.components[*component].namesakes > 0) return;
@@ -195,11 +206,14 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
   const bool is_other =
       seen.pid != present && (seen.pid != 0 || knowledge_.rules[seen.component].has_owner());
   if (is_other && state.in_graph && seen.state != ProcessState::kRunning) return;
+  if (seen.state == ProcessState::kRunning && seen.pid != state.pid)
+    write_.departures.arrived(seen.component, at);
   state.process = seen.state;
   state.pid = seen.pid;
   state.process_remark = seen.remark;
   // One of several was too many: the graph says which it is from now on, so none is missed.
   if (seen.state == ProcessState::kGone && state.in_graph && state.namesakes > 0) return;
+  note_process(seen, at);
   if (seen.state == ProcessState::kGone) {
     if (has_crashed(seen.remark)) note_end_of_start(seen.component, at);
     write_.graph.node_vanished(knowledge_.graph.node_name(seen.component));
@@ -214,6 +228,7 @@ void Monitor::on(Time at, const Probed& seen) {
   ComponentState& state = write_.components[seen.component];
   state.missed_probes = seen.answered ? 0 : state.missed_probes + 1;
   state.answers_probes |= seen.answered;
+  if (seen.answered) state.answered = at;
   const bool is_changing = hangs_in_transition(seen.component, at);
   if (is_changing) update_lifecycle_inputs(seen.component, at);
   update_alive(seen.component, at,

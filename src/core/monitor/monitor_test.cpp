@@ -82,7 +82,7 @@ struct Oracle {
 };
 
 Monitor::Writes writes(Knowledge& knowledge) {
-  return {knowledge.signals,   knowledge.graph,       knowledge.components,
+  return {knowledge.signals,   knowledge.graph,       knowledge.components, knowledge.departures,
           knowledge.sightings, knowledge.heard_names, knowledge.events};
 }
 
@@ -257,6 +257,20 @@ TEST(Monitor, KnowsWhetherAComponentIsAlive) {
   EXPECT_EQ(alive(), true);
   watched.observe(7s, ProcessSeen{ComponentId(0), ProcessState::kGone, 7, "late news"});
   EXPECT_EQ(alive(), true) << "the old process's end says nothing about the new one";
+}
+
+// A mode manager offers services in the names of nodes.
+TEST(Monitor, TellsTheProcessOfANodeAlsoIfItWasFirstTakenForThatOfItsManager) {
+  Watched watched(rule("!alive(c)"));
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(2s, NodeAppeared{"/c", 8});
+  watched.observe(3s, NodeAppeared{"/c", 8});
+  std::vector<int> told;
+  for (const Event& event : watched.knowledge.events) {
+    if (const auto* found = std::get_if<ComponentFound>(&event.what)) told.push_back(found->pid);
+  }
+  EXPECT_EQ(told, (std::vector<int>{7, 8}));
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].node_pid, 8);
 }
 
 TEST(Monitor, AComponentWhoseComputerCannotBeAskedIsNeitherAliveNorDead) {

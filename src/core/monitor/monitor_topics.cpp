@@ -38,7 +38,10 @@ void Monitor::on(Time at, const SampleArrived& seen) {
     write_.signals.set_latency(
         id, input.kind == Kind::kRate ? input.window : usual_latency(rhythm.interval));
     update(id, at);
+    // What was known to be silent made triggers true without any change of what they read.
+    if (topic.is_known_silent) write_.signals.touch(id);
   }
+  if (!knowledge_.components.is_any_known_dead()) topic.is_known_silent = false;
 }
 
 bool Monitor::has_begun_since(Time before, TopicId topic) const {

@@ -100,12 +100,30 @@ enum class ProcessState : std::uint8_t {
   kGone      // exited, killed, or never started
 };
 
+// Whether it was somebody's wish that a process ended or was stopped, as far as the operating system
+// tells.
+enum class Cause : std::uint8_t {
+  kUnknown,
+  kFault,  // a signal that nobody ends a process with politely, or another exit code than 0; it was
+           // stopped, and who started it was not
+  kWish    // exit code 0, SIGINT, SIGTERM or SIGHUP; culprit ended it; it was stopped with its
+           // launcher
+};
+
 // What the operating system says about the process behind a component.
 struct ProcessSeen {
   ComponentId component;
   ProcessState state = ProcessState::kGone;
   int pid = 0;         // of the process that this is about
   std::string remark;  // how it ended ("killed by signal 9", "exit code 1"); empty while it lives
+  Cause cause = Cause::kUnknown;  // of kStopped and kGone
+};
+
+// Who started the component's process, where that was not culprit: a launch file, a shell.
+struct LauncherSeen {
+  ComponentId component;
+  int pid = 0;
+  bool has_ended = false;
 };
 
 // A process whose node is still awaited did something since it was started, or since this was told
@@ -193,12 +211,25 @@ struct Overslept {
   Duration by{};
 };
 
+// What the robots of a fleet learned of strategies: what is believed of each begins from there. Where
+// they learned nothing it is what the rule file says. Pseudo-counts, above zero.
+struct PriorsTold {
+  struct Prior {
+    StrategyId strategy;
+    double alpha = 1;
+    double beta = 1;
+  };
+  std::vector<Prior> priors;
+  std::string source;  // for people: who learned it; empty: nobody
+};
+
 struct Observation {
   Time at;
   std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived,
                SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply,
                LinkTrouble, Order, NamesakesSeen, HearingLost, HearingRegained, Overslept,
-               StatusHeard, ParametersListed, ProcessWorked, HostReached, EndsWith>
+               StatusHeard, ParametersListed, ProcessWorked, HostReached, EndsWith, LauncherSeen,
+               PriorsTold>
       what;
 };
 

@@ -16,10 +16,14 @@
 #include "live/robot_names.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
+#include "terminal/local_service.h"
 #include "terminal/planner_options.h"
 #include "terminal/web_service.h"
+#include "web/component_route.h"
+#include "web/doctor_routes.h"
 #include "web/fault_routes.h"
 #include "web/hub_observer.h"
+#include "web/incident_routes.h"
 #include "web/live_routes.h"
 #include "web/name_routes.h"
 #include "web/order_routes.h"
@@ -38,7 +42,7 @@ struct DemoOptions {
   std::string scenario;
   std::uint64_t seed = 1;
   double speed = 1;
-  std::string json;
+  std::string output;
   PlannerOptions planner;
   std::optional<std::uint32_t> domain;
   bool stay = false;
@@ -143,12 +147,16 @@ std::vector<web::Route> web_routes(SunsetDemo& demo, web::Hub& hub, const web::M
                                    web::StudyRunner& studies, live::RobotNames& names,
                                    PlannerFactory planner) {
   std::vector<web::Route> routes = web::live_routes(hub);
-  for (web::Route& route : web::order_routes(orders)) routes.push_back(std::move(route));
+  for (web::Route& route : web::order_routes(orders, hub)) routes.push_back(std::move(route));
   for (web::Route& route : web::status_routes(hub, metrics)) routes.push_back(std::move(route));
   for (web::Route& route : web::rule_routes(desk)) routes.push_back(std::move(route));
-  for (web::Route& route :
-       web::name_routes([&names](const LiveInterest& interest) { return names.look(interest); }))
+  const auto look = [&names](const LiveInterest& interest) { return names.look(interest); };
+  for (web::Route& route : web::name_routes(look)) routes.push_back(std::move(route));
+  for (web::Route& route : web::incident_routes(hub, "")) routes.push_back(std::move(route));
+  for (web::Route& route : web::doctor_routes(web::examine_robot))
     routes.push_back(std::move(route));
+  routes.push_back(web::component_route(
+      hub, look, [&names](const std::string& node) { return names.log_of(node); }));
   routes.push_back(web::what_if_route(std::move(planner)));
   for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
   routes.push_back(web::single_run_route());
@@ -199,6 +207,11 @@ int demo_sunset(const DemoOptions& options) {
     say(stderr, "culprit: {}\n", server.error());
     return kUsage;
   }
+  std::vector<web::Route> local = web::live_routes(hub);
+  for (web::Route& route : web::order_routes(orders, hub)) local.push_back(std::move(route));
+  const auto asked = serve_this_machine({"", (*demo)->rules().robot, "sunset.rules",
+                                         (*demo)->domain(), "culprit", (*server)->address()},
+                                        std::move(local), hub);
   if (options.stay) {
     say(stdout, "Break it in the browser, and see what becomes of it; Ctrl-C ends it.\n");
     signals.wait_until_stopped();
@@ -222,8 +235,8 @@ int demo_sunset(const DemoOptions& options) {
                                       [](const PlayOutcome& o) { return o.is_resolved(); });
   if (!all_healed)
     say(stdout, "The logs of the nodes are in {}\n", ((*demo)->keep_state() / "log").string());
-  if (!options.json.empty()) {
-    const auto written = write_text(options.json, to_json(outcomes).dump(2) + "\n");
+  if (!options.output.empty()) {
+    const auto written = write_text(options.output, to_json(outcomes).dump(2) + "\n");
     if (!written) {
       say(stderr, "culprit: {}\n", written.error());
       return kFailed;
@@ -256,7 +269,7 @@ int demo(const DemoOptions& options) {
   setup.seed = options.seed;
   setup.domain = options.domain;
   setup.planner = options.planner.factory();
-  return demo_suave(std::move(setup), options.json);
+  return demo_suave(std::move(setup), options.output);
 }
 
 }  // namespace
@@ -286,8 +299,8 @@ void add_demo(CLI::App& app, int& exit_code) {
   command->add_option("--speed", options->speed, "How much faster than real time the robot lives")
       ->check(CLI::Range(0.1, 20.0))
       ->capture_default_str();
-  command->add_option("--json", options->json,
-                      "Also write the outcome to this file, as one JSON object");
+  command->add_option("-o,--output,--json", options->output,
+                      "Also write the outcome to this file, as one JSON document");
   command
       ->add_option("--domain", options->domain,
                    "The DDS domain (default: the first from 1 on that nobody on this machine uses)")

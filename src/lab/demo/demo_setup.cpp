@@ -13,7 +13,7 @@ RuleSet embedded_rules(const char* name, const char* text) {
 }
 
 live::LoadedRules embedded_file(const char* name, const char* text) {
-  return {embedded_rules(name, text), text, ""};
+  return {embedded_rules(name, text), Source(name, text), ""};
 }
 
 live::LiveSession::Options demo_session(const char* rules_file, live::LiveRobot::Options robot,

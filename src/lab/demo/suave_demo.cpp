@@ -100,13 +100,14 @@ Expected<void> SuaveDemo::open() {
   auto observer = suave::MissionObserver::start(options_.speed, *participant);
   if (!observer) return Error{observer.error()};
   observer_ = std::move(*observer);
-  auto opened = live::LiveSession::open({.options = how_,
-                                         .records = false,
-                                         .lease = {},
-                                         .orders = keeper_,
-                                         .listener = *this,
-                                         .start = live_now()},
-                                        {rules_, rule_text(options_.is_extended), ""});
+  auto opened = live::LiveSession::open(
+      {.options = how_,
+       .records = false,
+       .lease = {},
+       .orders = keeper_,
+       .listener = *this,
+       .start = live_now()},
+      {rules_, Source(how_.rules_file, rule_text(options_.is_extended)), ""});
   if (!opened) return Error{opened.error()};
   session_ = std::move(*opened);
   if (auto started = start_processes(); !started) return started;

@@ -10,6 +10,7 @@
 #include "laboratory/commands.h"
 #include "laboratory/live_campaign.h"
 #include "laboratory/live_run.h"
+#include "laboratory/study_fleet_command.h"
 #include "laboratory/study_output.h"
 #include "laboratory/study_rca_command.h"
 #include "laboratory/study_runs.h"
@@ -366,6 +367,7 @@ void add_study(CLI::App& app, const std::string& version, int& exit_code) {
   add_sunset(*command, version, exit_code);
   add_study_suave(*command, version, exit_code);
   add_study_rca(*command, version, exit_code);
+  add_study_fleet(*command, exit_code);
   add_merge(*command, exit_code);
 }
 

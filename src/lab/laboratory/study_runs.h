@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "laboratory/commands.h"
+#include "shards/shard_damage.h"
 #include "shards/shard_writer.h"
 #include "study/ordered_work.h"
 #include "terminal/console.h"
@@ -24,6 +25,10 @@ struct ShardOptions {
   std::string file;
 
   bool is_sharded() const { return shard != "1/1" || !file.empty(); }
+  // Which one this is. Errors: nobody says so.
+  Expected<study::Shard> which() const;
+  // The file of `its`: "%" stands for its number.
+  std::string file_of(const study::Shard& its) const;
   // --shard, --shard-file
   void add_to(CLI::App& command);
 };
@@ -68,17 +73,32 @@ std::optional<typename study::ShardKind<C>::Result> run_whole(const C& campaign,
   return std::nullopt;
 }
 
+// The writer of a shard; a file that is damaged is set aside first, which is said.
+template <class C>
+Expected<study::ShardWriter<C>> open_shard(const std::string& file,
+                                           const study::ShardHeader<C>& header) {
+  auto writer = study::ShardWriter<C>::open(file, header);
+  if (writer) return writer;
+  const auto aside = study::set_damage_aside<C>(file, header);
+  if (!aside) return writer;
+  fmt::print(stderr, "culprit: {} was damaged; it is kept as {}, and what was lost is done anew\n",
+             file, aside->string());
+  return study::ShardWriter<C>::open(file, header);
+}
+
 // A shard, into its file. Gives an exit code.
 template <class C, class Play>
 int fill_shard(const C& campaign, const ShardOptions& options, unsigned jobs,
                const StopSignals& signals, Play play) {
   using Run = typename study::ShardKind<C>::Run;
-  const auto shard = study::parse_shard(options.shard);
+  const auto shard = options.which();
   if (!shard) return fail(shard.error(), kUsage);
   if (options.file.empty())
     return fail("--shard needs --shard-file, where its runs are kept for `culprit study merge`",
                 kUsage);
-  auto writer = study::ShardWriter<C>::open(options.file, {campaign, *shard});
+  const std::string file = options.file_of(*shard);
+  const study::ShardHeader<C> header{campaign, *shard};
+  auto writer = open_shard(file, header);
   if (!writer) return fail(writer.error(), kFailed);
   if (writer->done() > 0)
     fmt::print(stderr, "culprit: {} of {} runs are there already\n", writer->done(),
@@ -101,7 +121,7 @@ int fill_shard(const C& campaign, const ShardOptions& options, unsigned jobs,
     return fail(fmt::format("interrupted after {} of {} runs; the same command goes on from there",
                             writer->done(), writer->size()),
                 kFailed);
-  fmt::print(stderr, "culprit: {} has its {} runs\n", options.file, writer->size());
+  fmt::print(stderr, "culprit: {} has its {} runs\n", file, writer->size());
   return kOk;
 }
 

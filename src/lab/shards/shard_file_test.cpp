@@ -6,6 +6,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "shards/merge.h"
+#include "shards/shard_damage.h"
 #include "shards/shard_writer.h"
 #include "study/csv.h"
 #include "study/sealed_line.h"
@@ -248,6 +249,44 @@ TEST(ShardFile, LeavesADamagedFileAsItIs) {
                                 ":2: the line is damaged: its checksum does not fit; remove the "
                                 "file and run its shard again");
   EXPECT_EQ(content(path), damaged);
+}
+
+TEST(ShardDamage, IsKeptAsideAndTheShardGoesOnBeforeIt) {
+  const std::string path = fresh_file("mended");
+  for (const auto& each : std::filesystem::directory_iterator(testing::TempDir())) {
+    if (each.path().string().starts_with(path + ".damaged")) std::filesystem::remove(each.path());
+  }
+  work(path, {1, 1});
+  const std::string whole = content(path);
+  std::size_t third = 0;  // the line of the second run
+  for (int lines = 0; lines < 2; ++lines) third = whole.find('\n', third) + 1;
+  std::string damaged = whole;
+  damaged[third + 9] ^= 1;
+  overwrite(path, damaged);
+  const auto aside = set_damage_aside<Campaign>(path, header({1, 1}));
+  ASSERT_TRUE(aside) << aside.error();
+  EXPECT_EQ(content(*aside), damaged);
+  EXPECT_EQ(content(path), whole.substr(0, third));
+  work(path, {1, 1});
+  EXPECT_EQ(content(path), whole);
+  // Also where nothing can be saved.
+  damaged = whole;
+  damaged[40] ^= 1;
+  overwrite(path, damaged);
+  ASSERT_TRUE(set_damage_aside<Campaign>(path, header({1, 1})));
+  work(path, {1, 1});
+  EXPECT_EQ(content(path), whole);
+}
+
+TEST(ShardDamage, NothingElseIsSetAside) {
+  const std::string path = fresh_file("undamaged");
+  work(path, {1, 2}, 3);
+  const std::string before = content(path);
+  EXPECT_FALSE(set_damage_aside<Campaign>(path, header({1, 2}))) << "it is not damaged";
+  EXPECT_FALSE(set_damage_aside<Campaign>(path, header({2, 2}))) << "of another shard";
+  EXPECT_EQ(content(path), before);
+  overwrite(path, "a text that somebody named by mistake\n");
+  EXPECT_FALSE(set_damage_aside<Campaign>(path, header({1, 2})));
 }
 
 TEST(ShardFile, IsNotWrittenOverAnotherCampaign) {

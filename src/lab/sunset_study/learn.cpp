@@ -1,46 +1,10 @@
 // What a manager learns from one experiment after the other (paper, "Learning mechanism").
 #include <algorithm>
 
-#include "manager/manager.h"
-#include "study/published.h"
 #include "sunset_study/study.h"
 
 namespace culprit::study {
 namespace {
-
-// How long an outcome has to stand until it is learned from. The tables of the study judge at once,
-// as the paper does; but SUNSET's own monitoring shows an outage late, and until then every strategy
-// for a bad picture seems not to help: a topic is slow once its last pictures, a window of them, came
-// in at less than one each second.
-Duration proof(const sunset::model::Profile& profile) {
-  constexpr Duration kEach = std::chrono::seconds(1);
-  return (static_cast<std::int64_t>(profile.frequency_window) + 1) * kEach;
-}
-
-// Of the bag's pictures.
-constexpr Duration kFramePeriod = std::chrono::milliseconds(100);
-
-// A run that is learned from begins shortly before its faults. The managers of the profiles `head`
-// and `october` begin before the blackboard has counted as many pictures as it wants to: it says
-// that all is silent, and whatever is restarted then seems to help. It lasts longer than one of the
-// tables: a second repair comes later than an outage is shown, and each outcome has to stand.
-sunset::model::Profile to_learn_from(sunset::model::Profile profile) {
-  profile.manager_start = profile.injection.least - profile.blackboard_period;
-  profile.end_of_run += 3 * proof(profile);
-  return profile;
-}
-
-// The fusion passes on old pictures first. Whoever judges before what it keeps has gone by takes
-// what helped for a failure, undoes it, and thanks the next strategy.
-void wait_for_pictures(RuleSet& rules, const sunset::model::Profile& profile) {
-  const Duration lag = kFramePeriod * static_cast<std::int64_t>(profile.fusion_keeps);
-  const Cycles cycles{lag / rules.cycle + 1};
-  for (Strategy& strategy : rules.strategies) {
-    if (rules[strategy.rule].name == "SegmentationBad")
-      strategy.impact = std::max(strategy.impact, cycles);
-    rules.heaviest = std::max(rules.heaviest, strategy.impact);
-  }
-}
 
 struct Learner {
   StrategyId strategy;
@@ -95,41 +59,40 @@ std::vector<Learner> learners(const RuleSet& rules, std::uint32_t experiments) {
 
 }  // namespace
 
+LearningRuns SunsetStudy::learning_runs() const {
+  const Setting& setting = settings_.front();
+  return {*setting.rules, *setting.profile,
+          [configuration = setting.configuration] { return planner_of(configuration); },
+          manager_options(*setting.profile)};
+}
+
 std::vector<LearningCurve> SunsetStudy::learn(
     std::uint32_t experiments, std::uint32_t repetitions,
     const std::function<void(std::uint64_t)>& told) const {
-  const Setting& setting = settings_.front();
-  RuleSet rules = *setting.rules;
-  for (Strategy& strategy : rules.strategies) strategy.confidence = published::kLearning.confidence;
-  const sunset::model::Profile profile = to_learn_from(*setting.profile);
-  wait_for_pictures(rules, profile);
+  const LearningRuns runs = learning_runs();
+  const RuleSet& rules = runs.rules();
   const std::vector<sunset::Scenario> scenarios = sunset::scenarios();
   std::vector<Learner> all = learners(rules, experiments);
-  const Beliefs initial(rules);
+  std::vector<Belief> initial;
+  for (const Strategy& strategy : rules.strategies)
+    initial.push_back(initial_belief(strategy.success, strategy.confidence));
   for (std::uint32_t repetition = 0; repetition < repetitions; ++repetition) {
-    Beliefs beliefs = initial;
+    std::vector<Belief> beliefs = initial;
     simulation::Random order(seed_of({repetition, experiments}));
     for (std::uint32_t experiment = 0; experiment < experiments; ++experiment) {
       const std::uint64_t seed = seed_of({repetition, experiment});
-      sunset::model::SunsetModel model(profile, seed);
-      Manager::Options options = manager_options(profile);
-      options.governor.limits.backoff.healthy = proof(profile);
-      Manager manager(rules, planner_of(setting.configuration), options);
-      for (std::size_t s = 0; s < rules.strategies.size(); ++s)
-        manager.set_belief(StrategyId(s), beliefs[StrategyId(s)]);
       const auto scenario =
           static_cast<std::size_t>(order.below(static_cast<int>(scenarios.size())));
-      const SunsetRun run = study::play(model, rules, manager, scenarios[scenario]);
-      beliefs = manager.knowledge().beliefs;
+      const SunsetRun run = runs.play(scenarios[scenario], seed, beliefs);
       if (told) told(std::uint64_t{repetition} * experiments + experiment + 1);
       for (Learner& learner : all) {
-        learner.curve.learned[experiment].add(beliefs[learner.strategy].mean().value);
+        learner.curve.learned[experiment].add(beliefs[learner.strategy.index].mean().value);
         learner.note(run, rules);
       }
     }
     for (Learner& learner : all) {
-      const Belief now = beliefs[learner.strategy];
-      const Belief before = initial[learner.strategy];
+      const Belief now = beliefs[learner.strategy.index];
+      const Belief before = initial[learner.strategy.index];
       learner.curve.counted +=
           (now.alpha + now.beta - before.alpha - before.beta) / std::max(1U, repetitions);
     }

@@ -18,6 +18,7 @@
 #include "study/learning.h"
 #include "study/single_run.h"
 #include "study/timeline.h"
+#include "sunset_study/learning_run.h"
 #include "sunset_study/run.h"
 
 namespace culprit::study {
@@ -47,6 +48,9 @@ class SunsetStudy {
   // The same run, to look at moment by moment; and told in sentences.
   SingleRun single_run(RunId id) const;
   Timeline explain(RunId id) const;
+
+  // Runs of row 0 that are learned from. They refer to nothing of the study.
+  LearningRuns learning_runs() const;
 
   // `experiments` runs after each other with beliefs that are carried on, `repetitions` times: what
   // row 0, of culprit's own planners, learns. A curve for each strategy of the paper's failures F1

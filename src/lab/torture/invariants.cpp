@@ -155,6 +155,10 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
     if (state.in_graph && state.namesakes > 0)
       fail(at, name + " is begun though another node has the name of " + rules_[component].name);
   }
+  for (const ComponentId component : strategy.components) {
+    if (is_seen_true_ && truth.is_leaving[component.index] && !strategy.is_last_resort)
+      fail(at, name + " is begun though somebody ends the launch of " + rules_[component].name);
+  }
   if (!manager.hears()) fail(at, name + " is begun though the robot cannot be heard");
   if (is_paused_) fail(at, name + " is begun while paused");
   if (truth.is_moving) fail(at, name + " is begun though the robot moves");

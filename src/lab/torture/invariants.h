@@ -18,7 +18,8 @@
 // - What was never there is not started.
 // - Nothing healthy is replaced, as long as samples and clocks are not tampered with.
 // - Nothing is begun while the robot cannot be heard.
-// - Nothing is begun at a component while another node has its name.
+// - Nothing is begun at a component while another node has its name, or at what has left while the
+//   launch that it belongs to is being ended.
 // All of this holds across crashes of the manager: budgets, pauses and silences go on.
 // - A belief changes by one outcome at a time, and only with the verdict that says so.
 // - The manager never wants to be stepped without end.
@@ -50,7 +51,9 @@ class Invariants {
     std::vector<bool> is_launched;
     std::vector<bool> was_there;   // by component: its process ran once
     std::vector<Time> well_since;  // by component; kNever: it does not work
-    bool is_moving = false;        // for long enough that the manager must know
+    // By component: it has left because its launch is being ended, and the manager must know.
+    std::vector<bool> is_leaving;
+    bool is_moving = false;  // for long enough that the manager must know
   };
 
   // `rules` must outlive the invariants.

@@ -121,6 +121,8 @@ std::string_view to_string(Kind kind) {
       return "the manager stands still";
     case Kind::kTotalLoss:
       return "everything is killed";
+    case Kind::kLaunchEnds:
+      return "a person ends the launch";
   }
   return "";
 }
@@ -143,8 +145,6 @@ Scenario draw(std::uint64_t seed) {
   const int mishaps = is_large ? 9 + random.below(12) : 1 + random.below(8);
   for (int i = 0; i < mishaps; ++i)
     scenario.mishaps.push_back(draw_mishap(scenario.parts.size(), random));
-  std::stable_sort(scenario.mishaps.begin(), scenario.mishaps.end(),
-                   [](const Mishap& a, const Mishap& b) { return a.at < b.at; });
   scenario.noise = draw_noise(random);
   scenario.governor = draw_governor(random);
   scenario.has_interlock = random.chance(0.3);
@@ -152,6 +152,14 @@ Scenario draw(std::uint64_t seed) {
   scenario.operator_answers = random.chance(0.8);
   scenario.has_infrastructure = random.chance(0.3);
   if (random.chance(0.5)) scenario.governor.limits.restarts = {1 + random.below(5), 1h};
+  scenario.has_launcher = random.chance(0.3);
+  if (scenario.has_launcher && random.chance(0.5)) {
+    scenario.mishaps.push_back(draw_mishap(scenario.parts.size(), random));
+    scenario.mishaps.back().kind = Kind::kLaunchEnds;
+    scenario.mishaps.back().lasts += kEndsOfLaunch;
+  }
+  std::stable_sort(scenario.mishaps.begin(), scenario.mishaps.end(),
+                   [](const Mishap& a, const Mishap& b) { return a.at < b.at; });
   return scenario;
 }
 

@@ -36,12 +36,13 @@ struct Mishap {
     kPause,       // by a person, for a while
     kSilence,     // of the component, for a while
     kRunByHand,
-    kFlap,      // it works and does not, in turns, for a while
-    kNamesake,  // for a while another node has its name
-    kRival,     // for a while its launcher starts it again when it is gone
-    kDeaf,      // for a while the manager hears nothing of topics, and knows it a moment later
-    kStall,     // the manager stands still for a while
-    kTotalLoss  // every process is killed
+    kFlap,       // it works and does not, in turns, for a while
+    kNamesake,   // for a while another node has its name
+    kRival,      // for a while its launcher starts it again when it is gone
+    kDeaf,       // for a while the manager hears nothing of topics, and knows it a moment later
+    kStall,      // the manager stands still for a while
+    kTotalLoss,  // every process is killed
+    kLaunchEnds  // somebody ends what was launched together, and starts it again after a while
   };
   Time at{};
   Kind kind = Kind::kKill;
@@ -69,9 +70,13 @@ struct Scenario {
   bool has_interlock = false;
   // All parts publish and hear one topic, as /rosout or /parameter_events.
   bool has_infrastructure = false;
+  bool has_launcher = false;  // it started all parts
   bool uses_paper_planner = false;
   bool operator_answers = true;  // where each strategy has to be approved
 };
+
+// How long it takes until all that was launched together has ended.
+inline constexpr Duration kEndsOfLaunch = std::chrono::milliseconds(1500);
 
 inline constexpr Duration kPeriod = std::chrono::milliseconds(200);  // of what each part says
 

@@ -269,6 +269,8 @@ class Run {
       truth.processes.push_back(robot_.process(i));
       truth.is_launched.push_back(robot_.was_launched_within(i, known));
     }
+    for (std::size_t i = 0; i < scenario_.parts.size(); ++i)
+      truth.is_leaving.push_back(robot_.has_left_for(i, known));
     truth.was_there = was_there_;
     truth.is_moving = scenario_.has_interlock && robot_.has_moved_for(known);
     return truth;

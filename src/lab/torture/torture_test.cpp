@@ -53,13 +53,27 @@ TEST(Torture, MishapsLeaveTheirMark) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     for (const std::string& line : run(draw(seed)).timeline) all += line + "\n";
   }
-  for (const char* part :
-       {"is killed", "everything is killed", "is started again by its launcher", "was never seen",
-        "the manager crashes", "comes and goes: detected", "culprit stood still", "resolved by",
-        "did not resolve", "is held back", "is exhausted", "waits for approval",
-        "the last resort is left", "is left where it is", "is silenced",
-        "INTERLOCK moving == false is false", "was restarted a short while ago",
-        "and no more are allowed"})
+  for (const char* part : {"is killed",
+                           "everything is killed",
+                           "is started again by its launcher",
+                           "was never seen",
+                           "is known dead",
+                           "a person ends the launch",
+                           "had started is being ended",
+                           "the manager crashes",
+                           "comes and goes: detected",
+                           "culprit stood still",
+                           "resolved by",
+                           "did not resolve",
+                           "is held back",
+                           "is exhausted",
+                           "waits for approval",
+                           "the last resort is left",
+                           "is left where it is",
+                           "is silenced",
+                           "INTERLOCK moving == false is false",
+                           "was restarted a short while ago",
+                           "and no more are allowed"})
     EXPECT_NE(all.find(part), std::string::npos) << part;
 }
 

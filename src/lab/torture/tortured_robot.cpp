@@ -25,6 +25,13 @@ bool is_reading(const Command& command) {
 
 bool take(std::vector<CommandId>& ids, CommandId id) { return std::erase(ids, id) > 0; }
 
+// As the operating system tells it. "stopped": it was asked to end, by culprit or by somebody else.
+Cause cause_of(const ProcessSeen& seen) {
+  if (seen.state == ProcessState::kRunning || seen.remark.empty())
+    return seen.state == ProcessState::kStopped ? Cause::kFault : Cause::kUnknown;
+  return seen.remark == "stopped" ? Cause::kWish : Cause::kFault;
+}
+
 }  // namespace
 
 class Machine : public simulation::Node {
@@ -100,7 +107,9 @@ TorturedRobot::TorturedRobot(const Scenario& scenario, const RuleSet& rules)
     : rules_(rules),
       noise_(scenario.noise),
       world_(scenario.seed),
-      random_(world_.random("noise")) {
+      random_(world_.random("noise")),
+      launcher_of_(scenario.parts.size(), scenario.has_launcher ? kFirstLauncher : 0),
+      left_(scenario.parts.size(), kNever) {
   if (scenario.has_infrastructure)
     infrastructure_ = std::make_unique<simulation::Topic<int>>(
         world_, "/infrastructure", simulation::Transport{{1ms, 1ms}, 0});
@@ -137,6 +146,7 @@ TorturedRobot::Source TorturedRobot::source_of(const Observation& observation) {
     return Source::kTopics;
   // What the operating system says, and what its adapter answers, come one after the other.
   if (std::holds_alternative<ProcessSeen>(observation.what) ||
+      std::holds_alternative<LauncherSeen>(observation.what) ||
       std::holds_alternative<Reply>(observation.what))
     return Source::kSystem;
   return Source::kGraph;
@@ -151,12 +161,19 @@ void TorturedRobot::receive(Observation observation) {
     if (take(unanswered_, answer->command)) return;
     if (take(denied_, answer->command)) *answer = {answer->command, Outcome::kRefused, {}, "no"};
   }
+  auto* process = std::get_if<ProcessSeen>(&observation.what);
+  if (process != nullptr) process->cause = cause_of(*process);
+  const bool is_launched = process != nullptr && process->state == ProcessState::kRunning &&
+                           launcher_of_[process->component.index] != 0;
+  const ComponentId component = process != nullptr ? process->component : ComponentId();
   const simulation::Span lateness{{}, noise_.lateness};
   auto& queue = on_the_way_[static_cast<std::size_t>(source_of(observation))];
   Time due = world_.now() + lateness.draw(random_);
   if (!queue.empty()) due = std::max(due, queue.back().due);
   queue.push_back({due, observation});
   if (random_.chance(noise_.duplication)) queue.push_back({due, std::move(observation)});
+  if (is_launched)
+    queue.push_back({due, {now(), LauncherSeen{component, launcher_of_[component.index], false}}});
 }
 
 void TorturedRobot::observe(Time until, std::vector<Observation>& observations) {
@@ -190,6 +207,7 @@ void TorturedRobot::execute(const Command& command) {
   } else if (random_.chance(noise_.false_failure)) {
     denied_.push_back(command.id);
   }
+  if (std::holds_alternative<StartProcess>(command.what)) launcher_of_[command.component.index] = 0;
   robots_.back()->execute(command);
 }
 
@@ -236,6 +254,8 @@ void TorturedRobot::befall(const Mishap& mishap) {
     case Kind::kTotalLoss:
       for (const auto& each : machines_) each->kill();
       return;
+    case Kind::kLaunchEnds:
+      return end_launch(mishap.lasts);
     case Kind::kNamesake:
       tell_namesakes(mishap.part, 1);
       world_.after(mishap.lasts, [this, part = mishap.part] { tell_namesakes(part, 0); });
@@ -249,6 +269,42 @@ void TorturedRobot::launch(std::size_t part) {
   if (process(part) != ProcessState::kGone) return;
   machines_[part]->launch();
   launched_[part] = world_.now();
+}
+
+// One after the other, then who had started them; and after `pause` somebody starts them again.
+void TorturedRobot::end_launch(Duration pause) {
+  const int launcher = *std::ranges::max_element(launcher_of_);
+  if (launcher == 0) return;
+  for (std::size_t part = 0; part < machines_.size(); ++part) {
+    if (launcher_of_[part] != launcher) continue;
+    world_.after(simulation::Span{{}, 1s}.draw(random_), [this, part, launcher] {
+      Machine& machine = *machines_[part];
+      const bool is_there = launcher_of_[part] == launcher && machine.is_in_graph() &&
+                            machine.process() == ProcessState::kRunning;
+      if (launcher_of_[part] != launcher) return;
+      machine.terminate([this, part, is_there] {
+        if (is_there) left_[part] = world_.now();
+      });
+    });
+  }
+  world_.after(kEndsOfLaunch, [this, launcher] {
+    for (std::size_t part = 0; part < machines_.size(); ++part) {
+      left_[part] = kNever;  // from now on it depends on why
+      if (launcher_of_[part] == launcher)
+        receive({now(), LauncherSeen{ComponentId(part), launcher, true}});
+    }
+  });
+  world_.after(pause, [this, launcher] {
+    for (std::size_t part = 0; part < machines_.size(); ++part) {
+      if (launcher_of_[part] != launcher || process(part) != ProcessState::kGone) continue;
+      launcher_of_[part] = launcher + 1;
+      launch(part);
+    }
+  });
+}
+
+bool TorturedRobot::has_left_for(std::size_t part, Duration time) const {
+  return left_[part] != kNever && world_.now() - left_[part] >= time;
 }
 
 void TorturedRobot::relaunch(std::size_t part, Time until) {
@@ -306,6 +362,7 @@ void TorturedRobot::rediscover(const History& past) {
   denied_.clear();
   robots_.push_back(std::make_unique<simulation::SimulatedRobot>(rules_, world_));
   announced_.clear();
+  left_.assign(left_.size(), kNever);  // it knows of no launch that is being ended
   std::vector<Observation> seen;
   robots_.back()->observe(world_.now(), seen);
   for (Observation& observation : seen) {

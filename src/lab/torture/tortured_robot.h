@@ -49,6 +49,8 @@ class TorturedRobot : public Robot {
     const auto at = launched_.find(part);
     return at != launched_.end() && world_.now() - at->second <= time;
   }
+  // It left that long ago because somebody ends its launch, which is not over.
+  bool has_left_for(std::size_t part, Duration time) const;
   bool has_moved_for(Duration time) const {
     return moving_since_ != kNever && world_.now() - moving_since_ >= time;
   }
@@ -71,6 +73,7 @@ class TorturedRobot : public Robot {
   void launch(std::size_t part);
   void relaunch(std::size_t part, Time until);
   void tell_namesakes(std::size_t part, int others);
+  void end_launch(Duration pause);
 
   const RuleSet& rules_;
   Noise noise_;
@@ -92,6 +95,11 @@ class TorturedRobot : public Robot {
   std::set<std::string> announced_;       // nodes, to the present manager
   std::map<std::size_t, int> namesakes_;  // by part
   std::map<std::size_t, Time> launched_;  // by part: when others started it last
+  // By part: the process that started it, 0 for culprit's; and since when it is gone because its
+  // launch is being ended, until that is over.
+  static constexpr int kFirstLauncher = 7000;
+  std::vector<int> launcher_of_;
+  std::vector<Time> left_;
 };
 
 }  // namespace culprit::torture

@@ -1,125 +1,385 @@
+// Who does not hear whom, and why.
 #include <algorithm>
-#include <chrono>
+#include <array>
+#include <cctype>
+#include <fnmatch.h>
 #include <map>
-#include <optional>
+#include <set>
+#include <tuple>
 
 #include <fmt/core.h>
 
 #include "base/ros_names.h"
+#include "base/tool_names.h"
 #include "doctor/examine.h"
+#include "doctor/wiring.h"
+#include "doctor/wording.h"
 
 namespace culprit::doctor {
 namespace {
 
-struct End {
-  std::string node;
-  ros2::GraphEndpoint endpoint;
-};
+using namespace std::chrono_literals;
 
-struct Topic {
-  std::vector<End> publishers;
-  std::vector<End> subscribers;
-};
+enum class Medium : std::uint8_t { kTopic, kService };
 
-using Topics = std::map<std::string, Topic>;
-
-Topics topics_of(const Picture& picture) {
-  Topics topics;
-  for (const auto& [node, endpoints] : picture.nodes) {
-    for (const ros2::GraphEndpoint& each : endpoints) {
-      if (each.kind == EndpointKind::kPublisher)
-        topics[each.name].publishers.push_back({node.name, each});
-      if (each.kind == EndpointKind::kSubscriber)
-        topics[each.name].subscribers.push_back({node.name, each});
-    }
-  }
-  return topics;
-}
-
-std::string seconds(Duration time) {
-  if (time == ros2::kInfinite) return "none";
-  return fmt::format("{:g} s", std::chrono::duration<double>(time).count());
-}
-
-// What a subscription requests and the publisher does not offer (DDS 1.4, 2.2.3: "requested versus
-// offered"). Nothing if they match.
+// What a receiver requests and a sender does not offer (DDS 1.4, 2.2.3: "requested versus offered").
 struct Mismatch {
   std::string policy, offered, requested;
 };
-std::optional<Mismatch> mismatch(const ros2::Qos& offered, const ros2::Qos& requested) {
-  using ros2::Durability;
-  using ros2::Reliability;
-  if (requested.reliability == Reliability::kReliable &&
-      offered.reliability == Reliability::kBestEffort)
-    return Mismatch{"reliability", "best effort", "reliable"};
-  if (requested.durability == Durability::kTransientLocal &&
-      offered.durability == Durability::kVolatile)
-    return Mismatch{"durability", "volatile", "transient local"};
-  if (offered.keys != requested.keys) {
-    const auto words = [](ros2::Keys keys) { return keys == ros2::Keys::kSome ? "some" : "none"; };
-    return Mismatch{"keys", words(offered.keys), words(requested.keys)};
-  }
-  if (offered.deadline > requested.deadline)
-    return Mismatch{"deadline", seconds(offered.deadline), seconds(requested.deadline)};
-  return std::nullopt;
+
+std::string word(ros2::Reliability reliability) {
+  return reliability == ros2::Reliability::kReliable ? "reliable" : "best effort";
+}
+std::string word(ros2::Durability durability) {
+  return durability == ros2::Durability::kTransientLocal ? "transient local" : "volatile";
+}
+std::string word(ros2::Liveliness liveliness) {
+  return liveliness == ros2::Liveliness::kManualByTopic ? "manual by topic" : "automatic";
+}
+std::string word(ros2::Ownership ownership) {
+  return ownership == ros2::Ownership::kExclusive ? "exclusive" : "shared";
+}
+std::string word(ros2::Keys keys) { return keys == ros2::Keys::kSome ? "some" : "none"; }
+std::string word(Duration time) { return duration(time); }
+
+std::vector<Mismatch> mismatches(const ros2::Qos& offered, const ros2::Qos& requested) {
+  std::vector<Mismatch> all;
+  const auto compare = [&](const char* policy, auto member, auto is_enough) {
+    if (!is_enough(offered.*member, requested.*member))
+      all.push_back({policy, word(offered.*member), word(requested.*member)});
+  };
+  const auto no_less = [](auto a, auto b) { return a >= b; };
+  const auto no_longer = [](auto a, auto b) { return a <= b; };
+  const auto same = [](auto a, auto b) { return a == b; };
+  compare("reliability", &ros2::Qos::reliability, no_less);
+  compare("durability", &ros2::Qos::durability, no_less);
+  compare("deadline", &ros2::Qos::deadline, no_longer);
+  compare("liveliness", &ros2::Qos::liveliness, no_less);
+  compare("liveliness lease", &ros2::Qos::liveliness_lease, no_longer);
+  compare("ownership", &ros2::Qos::ownership, same);
+  compare("keys", &ros2::Qos::keys, same);
+  return all;
 }
 
-std::string between(const std::string& topic, const End& from, const End& to) {
-  return topic + ": " + from.node + " → " + to.node;
+std::string in_words(const std::vector<Mismatch>& all) {
+  std::string text;
+  for (const Mismatch& each : all)
+    text += fmt::format("{}{}: offered is {}, requested is {}", text.empty() ? "" : "; ",
+                        each.policy, each.offered, each.requested);
+  return text;
 }
 
-void compare(const std::string& topic, const End& from, const End& to, std::vector<Finding>& all) {
-  if (from.endpoint.type != to.endpoint.type) {
-    all.push_back({"D002", Gravity::kError, between(topic, from, to),
-                   "published as " + from.endpoint.type + ", subscribed to as " + to.endpoint.type,
-                   to.node + " hears nothing of " + from.node,
-                   "give both the same type, or one of the topics another name"});
-    return;
+// Why somebody is not heard: what was seen, and of quality of service the first that does not fit.
+struct Break {
+  std::string code, seen;
+  std::string offered{}, requested{};
+  auto operator<=>(const Break&) const = default;
+};
+// Who sends, why it is not heard, and who all do not hear it.
+using Breaks = std::map<std::pair<std::string, Break>, std::set<std::string>>;
+
+bool have_one_in_common(std::vector<std::string> a, std::vector<std::string> b) {
+  if (a.empty()) a.emplace_back();
+  if (b.empty()) b.emplace_back();
+  return std::ranges::any_of(a, [&](const std::string& x) {
+    return std::ranges::any_of(b, [&](const std::string& y) {
+      return fnmatch(x.c_str(), y.c_str(), 0) == 0 || fnmatch(y.c_str(), x.c_str(), 0) == 0;
+    });
+  });
+}
+
+std::string partitions_of(const End& end) {
+  return end.endpoint.partitions.empty() ? "none" : listed(end.endpoint.partitions);
+}
+
+// rmw_fastrtps and rmw_cyclonedds pair replies with requests in ways of their own.
+bool have_one_mapping(const End& client, const End& server) {
+  if (client.vendor == server.vendor) return true;
+  for (const End* end : {&client, &server}) {
+    if (end->vendor == ros2::Vendor::kOther) return true;
+    if (end->vendor == ros2::Vendor::kFastDds && end->endpoint.names_its_pair) return true;
   }
-  if (const auto wrong = mismatch(from.endpoint.qos, to.endpoint.qos))
+  return false;
+}
+
+std::string middleware(ros2::Vendor vendor) {
+  return vendor == ros2::Vendor::kCyclone ? "Cyclone DDS" : "Fast DDS";
+}
+
+// Why the one does not hear the other, although both have the name; nothing if it may.
+std::vector<Break> breaks_between(Medium medium, const End& from, const End& to) {
+  const ros2::GraphEndpoint& a = from.endpoint;
+  const ros2::GraphEndpoint& b = to.endpoint;
+  const bool is_topic = medium == Medium::kTopic;
+  if (a.type != b.type)
+    return {{"D002", fmt::format("{} as {}, {} as {}", is_topic ? "published" : "called", a.type,
+                                 is_topic ? "subscribed to" : "served", b.type)}};
+  std::vector<Break> all;
+  if (!a.type_hash.empty() && !b.type_hash.empty() && a.type_hash != b.type_hash)
     all.push_back(
-        {"D001", Gravity::kError, between(topic, from, to),
-         wrong->policy + ": offered is " + wrong->offered + ", requested is " + wrong->requested,
-         to.node + " hears nothing of " + from.node,
-         "let " + from.node + " offer " + wrong->requested + ", or " + to.node + " request " +
-             wrong->offered});
+        {"D005", fmt::format("both call their type {}, and it is not the same: {} and {}", a.type,
+                             a.type_hash.substr(0, 15), b.type_hash.substr(0, 15))});
+  if (const auto wrong = mismatches(a.qos, b.qos); !wrong.empty())
+    all.push_back({"D001", in_words(wrong), wrong.front().offered, wrong.front().requested});
+  if (!have_one_in_common(a.partitions, b.partitions))
+    all.push_back({"D008", fmt::format("partitions that it sends to: {}; that are listened to: {}",
+                                       partitions_of(from), partitions_of(to))});
+  if (!is_topic && !have_one_mapping(from, to))
+    all.push_back({"D007", fmt::format("who calls is on {}, who serves on {}",
+                                       middleware(from.vendor), middleware(to.vendor))});
+  return all;
 }
 
-// A topic that somebody publishes and nobody reads, of that type, with nearly that name.
-std::string meant_by(const std::string& name, const std::string& type, const Topics& topics) {
-  std::vector<std::string_view> unread;
-  for (const auto& [other, topic] : topics) {
-    const bool is_of_type = std::ranges::any_of(
-        topic.publishers, [&](const End& end) { return end.endpoint.type == type; });
-    if (topic.subscribers.empty() && is_of_type) unread.push_back(other);
+std::string remedy(const Break& why, const std::string& from, const std::string& to) {
+  if (why.code == "D001")
+    return fmt::format("let {} offer {}, or {} request {}", from, why.requested, to, why.offered);
+  if (why.code == "D002") return "give both the same type, or one of them another name";
+  if (why.code == "D005") return "build both with the same version of its package";
+  if (why.code == "D008") return "give both one partition: the middleware's XML profiles set them";
+  return "set RMW_IMPLEMENTATION to the same for both";
+}
+
+Gravity gravity_of(const std::string& code) {
+  return code == "D005" ? Gravity::kWarning : Gravity::kError;
+}
+
+std::string consequence(const std::string& code, Medium medium, const std::string& from,
+                        const std::string& to) {
+  if (code == "D005") return "what arrives is read wrongly, or refused as broken";
+  if (medium == Medium::kTopic) return to + " hears nothing of " + from;
+  return code == "D007" ? from + " waits for answers for ever, and nobody says why"
+                        : "calls of " + from + " do not reach " + to;
+}
+
+void compare_all(Medium medium, const std::string& name, const Channel& channel, Findings& all) {
+  Breaks breaks;
+  for (const End& from : channel.senders) {
+    for (const End& to : channel.receivers) {
+      if (from.node == to.node) continue;  // both are somebody's intention
+      for (Break& each : breaks_between(medium, from, to))
+        breaks[{from.node, std::move(each)}].insert(to.node);
+    }
   }
-  return closest_full_name(name, unread);
+  for (const auto& [key, nodes] : breaks) {
+    const auto& [from, why] = key;
+    const std::vector<std::string> receivers(nodes.begin(), nodes.end());
+    const std::string to = listed(receivers);
+    Finding& finding = all.emplace_back(Finding{why.code,
+                                                gravity_of(why.code),
+                                                name + ": " + from + " → " + to,
+                                                why.seen,
+                                                consequence(why.code, medium, from, to),
+                                                remedy(why, from, to),
+                                                {from},
+                                                name});
+    finding.nodes.insert(finding.nodes.end(), receivers.begin(), receivers.end());
+  }
 }
 
-void look_for_publisher(const std::string& name, const Topic& topic, const Topics& topics,
-                        std::vector<Finding>& all) {
-  const End& reader = topic.subscribers.front();
-  const std::string meant = meant_by(name, reader.endpoint.type, topics);
+// ---- names
+
+using Channels = std::map<std::string, Channel>;
+
+// What each node has, or what is part of something larger: nobody mistypes that.
+bool is_internal(const std::string& name) {
+  constexpr std::array kOfEachNode = {
+      "get_parameters",      "get_parameter_types",       "set_parameters",      "list_parameters",
+      "describe_parameters", "set_parameters_atomically", "get_type_description"};
+  return is_topic_of_ros(name) || name.find("/_action/") != std::string::npos ||
+         std::ranges::find(kOfEachNode, own_name(name)) != kOfEachNode.end();
+}
+
+bool has_type(const std::vector<End>& ends, const std::string& type) {
+  return std::ranges::any_of(ends, [&](const End& end) { return end.endpoint.type == type; });
+}
+
+// Something that is offered and that nobody uses, of that type, with nearly that name.
+std::string meant_by(const std::string& name, const std::string& type, Medium medium,
+                     const Channels& channels) {
+  std::vector<std::string_view> unused;
+  for (const auto& [other, channel] : channels) {
+    const bool is_topic = medium == Medium::kTopic;
+    const auto& offering = is_topic ? channel.senders : channel.receivers;
+    const auto& using_it = is_topic ? channel.receivers : channel.senders;
+    if (using_it.empty() && has_robots_end(offering) && has_type(offering, type) &&
+        !is_internal(other))
+      unused.push_back(other);
+  }
+  return closest_full_name(name, unused);
+}
+
+void look_for_near_name(Medium medium, const std::string& name, const Channel& channel,
+                        const Channels& channels, Findings& all) {
+  const bool is_topic = medium == Medium::kTopic;
+  const auto& waiting = is_topic ? channel.receivers : channel.senders;
+  const auto& offering = is_topic ? channel.senders : channel.receivers;
+  if (!offering.empty() || !has_robots_end(waiting) || is_internal(name)) return;
+  const End& reader =
+      *std::ranges::find_if(waiting, [](const End& end) { return !is_tool_node(end.node); });
+  const std::string meant = meant_by(name, reader.endpoint.type, medium, channels);
   if (meant.empty()) return;  // an input that nobody feeds yet is no fault
-  const std::string& writer = topics.at(meant).publishers.front().node;
-  all.push_back({"D003", Gravity::kWarning, name + ": nobody → " + reader.node,
-                 "nobody publishes " + name + ", and nobody reads " + meant + " of " + writer,
-                 reader.node + " hears nothing, if that is what it means",
-                 "remap one of them, or start both in the same namespace"});
+  const Channel& other = channels.at(meant);
+  const std::string& writer = (is_topic ? other.senders : other.receivers).front().node;
+  if (is_topic) {
+    all.push_back({"D003",
+                   Gravity::kWarning,
+                   name + ": nobody → " + reader.node,
+                   "nobody publishes " + name + ", and nobody reads " + meant + " of " + writer,
+                   reader.node + " hears nothing, if that is what it means",
+                   "remap one of them, or start both in the same namespace",
+                   {reader.node, writer},
+                   name});
+  } else {
+    all.push_back({"D003",
+                   Gravity::kWarning,
+                   name + ": " + reader.node + " → nobody",
+                   "nobody serves " + name + ", and nobody calls " + meant + " of " + writer,
+                   reader.node + " waits for a service for ever, if that is what it means",
+                   "remap one of them, or start both in the same namespace",
+                   {reader.node, writer},
+                   name});
+  }
+}
+
+// "/camera_2/image" -> "/camera_#/image".
+std::string without_numbers(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const bool is_digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
+    if (!is_digit)
+      out += c;
+    else if (!out.ends_with('#'))
+      out += '#';
+  }
+  return out;
+}
+
+// "/left/scan" -> "/*/scan". Empty: it is in no namespace.
+std::string in_any_namespace(const std::string& name) {
+  const std::string space = namespace_of(name);
+  return space.empty() ? "" : namespace_of(space) + "/*/" + own_name(name);
+}
+
+// Of several topics of one kind one lacks what all others have.
+void look_for_odd_ones(const Channels& topics, Findings& all) {
+  constexpr std::size_t kFewest = 3;
+  std::map<std::pair<std::string, std::string>, std::vector<const Channels::value_type*>> kinds;
+  for (const auto& topic : topics) {
+    const auto& [name, channel] = topic;
+    const auto& ends = channel.senders.empty() ? channel.receivers : channel.senders;
+    if (is_internal(name) || !has_robots_end(ends)) continue;
+    const std::string numbered = without_numbers(name);
+    if (numbered != name) kinds[{ends.front().endpoint.type, numbered}].push_back(&topic);
+    if (const std::string spaced = in_any_namespace(name); !spaced.empty())
+      kinds[{ends.front().endpoint.type, spaced}].push_back(&topic);
+  }
+  std::set<std::string> told;  // by two kinds it is odd once
+  for (const auto& [kind, members] : kinds) {
+    if (members.size() < kFewest) continue;
+    const auto is_whole = [](const Channels::value_type* each) {
+      return !each->second.senders.empty() && !each->second.receivers.empty();
+    };
+    if (static_cast<std::size_t>(std::ranges::count_if(members, is_whole)) + 1 != members.size())
+      continue;
+    const auto& [name, channel] = **std::ranges::find_if_not(members, is_whole);
+    if (!told.insert(name).second) continue;
+    const bool is_unread = channel.receivers.empty();
+    const std::string& node = (is_unread ? channel.senders : channel.receivers).front().node;
+    const std::string others =
+        fmt::format("the {} others of its kind ({})", members.size() - 1, kind.second);
+    all.push_back(
+        {"D004",
+         Gravity::kWarning,
+         name + ": " + (is_unread ? node + " → nobody" : "nobody → " + node),
+         is_unread ? "nobody subscribes to it, and somebody does to each of " + others
+                   : "nobody publishes it, and somebody does each of " + others,
+         is_unread ? "what " + node + " says of it is lost" : node + " waits for what never comes",
+         is_unread ? "start what should read it, or see to which name that was remapped"
+                   : "start what should publish it, or see to which name that was remapped",
+         {node},
+         name});
+  }
+}
+
+// ---- latched, and read too late
+
+void look_for_missed(const Picture& picture, const std::string& name, const Channel& topic,
+                     Findings& all) {
+  constexpr Duration kMargin = 1s;  // by which clocks and the kernel's hundredths may differ
+  const auto flow = picture.flows.find(name);
+  if (flow == picture.flows.end() || !flow->second.last_sent || is_internal(name)) return;
+  const auto latches = [](const End& end) {
+    return end.endpoint.qos.durability == ros2::Durability::kTransientLocal;
+  };
+  if (topic.senders.empty() || !std::ranges::all_of(topic.senders, latches)) return;
+  const auto process_of = [&](const std::string& node) -> const Process* {
+    for (const Node& each : picture.nodes) {
+      if (each.node.name != node) continue;
+      const auto found = picture.processes.find(each.node.pid);
+      return found == picture.processes.end() ? nullptr : &found->second;
+    }
+    return nullptr;
+  };
+  // Its clock says when it was sent.
+  if (!std::ranges::all_of(topic.senders, [&](const End& end) { return process_of(end.node); }))
+    return;
+  for (const End& to : topic.receivers) {
+    const Process* process = process_of(to.node);
+    if (latches(to) || process == nullptr || is_tool_node(to.node)) continue;
+    const Duration late = process->started - *flow->second.last_sent;
+    if (late < kMargin) continue;
+    all.push_back(
+        {"D006",
+         Gravity::kError,
+         name + ": " + topic.senders.front().node + " → " + to.node,
+         fmt::format("what is latched there was published {} before {} was started, which "
+                     "asks for what comes from now on (volatile)",
+                     duration(late), to.node),
+         to.node + " never got it, and will not until it is published again",
+         "let " + to.node + " request transient local",
+         {topic.senders.front().node, to.node},
+         name});
+  }
+}
+
+// ---- what is said to be there, and did not come
+
+void look_for_undiscovered(const Picture& picture, Findings& all) {
+  constexpr Duration kSettled = 3s;  // its discovery takes less
+  for (const Participant& each : picture.participants) {
+    if (each.undiscovered == 0 || each.nodes.empty()) continue;
+    const bool is_settled = std::ranges::all_of(each.nodes, [&](const std::string& node) {
+      const auto comings = picture.comings.find(node);
+      return comings == picture.comings.end() ||
+             comings->second.back().at + kSettled <= picture.looked;
+    });
+    if (!is_settled || std::ranges::all_of(each.nodes, is_tool_node)) continue;
+    all.push_back({"D009", Gravity::kWarning, listed(each.nodes),
+                   fmt::format("{} of its endpoints were announced and did not come in {}",
+                               each.undiscovered, duration(picture.looked)),
+                   "who does not discover an endpoint does not hear it: at least the doctor does "
+                   "not, and perhaps others",
+                   "start it again; if it stays, see whether large or fragmented datagrams get "
+                   "through (MTU, Wi-Fi, firewall)",
+                   each.nodes});
+  }
 }
 
 }  // namespace
 
-std::vector<Finding> examine_connections(const Picture& picture) {
-  const Topics topics = topics_of(picture);
-  std::vector<Finding> all;
-  for (const auto& [name, topic] : topics) {
-    for (const End& from : topic.publishers) {
-      for (const End& to : topic.subscribers) compare(name, from, to, all);
-    }
-    if (topic.publishers.empty()) look_for_publisher(name, topic, topics, all);
+void examine_connections(const Picture& picture, Findings& all) {
+  const Wiring wiring = wiring_of(picture);
+  for (const auto& [name, topic] : wiring.topics) {
+    compare_all(Medium::kTopic, name, topic, all);
+    look_for_near_name(Medium::kTopic, name, topic, wiring.topics, all);
+    look_for_missed(picture, name, topic, all);
   }
-  return all;
+  for (const auto& [name, service] : wiring.services) {
+    compare_all(Medium::kService, name, service, all);
+    look_for_near_name(Medium::kService, name, service, wiring.services, all);
+  }
+  look_for_odd_ones(wiring.topics, all);
+  look_for_undiscovered(picture, all);
 }
 
 }  // namespace culprit::doctor

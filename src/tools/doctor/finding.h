@@ -13,13 +13,19 @@ enum class Gravity : std::uint8_t {
   kError,    // something does not work
 };
 
+// "warning", "error".
+std::string label(Gravity gravity);
+
 struct Finding {
-  std::string code;  // "D001": docs/doctor.md has a section for each
+  std::string code;  // "D001": explanations.h has a page for each
   Gravity gravity = Gravity::kError;
-  std::string who;      // "/scan: /lidar_driver → /slam"
-  std::string seen;     // what was seen
-  std::string matters;  // what follows from it
-  std::string remedy;   // what to do
+  std::string who;                   // "/scan: /lidar_driver → /slam"
+  std::string seen;                  // what was seen
+  std::string matters;               // what follows from it
+  std::string remedy;                // what to do
+  std::vector<std::string> nodes{};  // concerned, by their full names
+  std::string topic{};               // or service, concerned; empty: none
+  bool operator==(const Finding&) const = default;
 };
 
 }  // namespace culprit::doctor

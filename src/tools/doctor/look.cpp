@@ -1,130 +1,426 @@
 #include "doctor/look.h"
 
 #include <algorithm>
-#include <chrono>
+#include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <vector>
 
+#include "base/live_clock.h"
+#include "base/tool_names.h"
+#include "doctor/asking.h"
+#include "doctor/clock_listening.h"
+#include "doctor/listening.h"
+#include "doctor/machine.h"
+#include "doctor/nodes_to_ask.h"
+#include "doctor/process_watch.h"
+#include "doctor/transform_listening.h"
+#include "doctor/wording.h"
 #include "ros2/node.h"
 #include "ros2/process_finder.h"
-#include "ros2/service_client.h"
-#include "ros2/services.h"
+#include "ros2/timer.h"
 
 namespace culprit::doctor {
 namespace {
 
-constexpr std::size_t kMostStatuses = 10'000;  // the network decides how many there are
+using namespace std::chrono_literals;
 
-// Of the executor's thread, which is this one's.
+constexpr std::size_t kMostStatuses = 10'000;  // the network decides how many there are
+constexpr std::size_t kMostComings = 100;      // of one node
+constexpr const char* kDiagnostics = "/diagnostics";
+
+// Of the executor's thread, which is the caller's, but for what it hears.
 class Look {
  public:
-  Expected<void> open(const ros2::ParticipantOptions& options) {
+  Look(const LookOptions& options, std::function<void(const Picture&)> on_picture)
+      : options_(options), on_picture_(std::move(on_picture)), tasks_(executor_) {}
+
+  Expected<void> open() {
     ros2::Graph::Options graph;
     graph.listener = [this](const ros2::GraphChange& change) { on_change(change); };
     graph.find_process = [](const ros2::ParticipantInfo& info) {
       return ros2::ProcessFinder().find(info);
     };
-    auto context = ros2::Context::create(executor_, options, std::move(graph));
+    graph.is_running = [](int pid) { return ros2::ProcessFinder().is_running(pid); };
+    auto context = ros2::Context::create(executor_, options_.participant, std::move(graph));
     if (!context) return Error{context.error()};
     context_ = std::move(*context);
     auto node = ros2::Node::create(*context_, {"/", "_culprit_doctor"});
     if (!node) return Error{node.error()};
     node_ = std::move(*node);
-    constexpr ros2::Qos kQos{.reliability = ros2::Reliability::kBestEffort, .depth = 100};
-    auto diagnostics = node_->create_subscription<ros2::msg::DiagnosticArray>(
-        "/diagnostics", kQos,
-        [this](const ros2::msg::DiagnosticArray& message) { on_diagnostics(message); });
-    if (!diagnostics) return Error{diagnostics.error()};
-    diagnostics_ = std::move(*diagnostics);
-    picture_.domain = options.domain;
-    return {};
+    asking_.emplace(*node_);
+    transforms_.emplace(node_->entry());
+    clock_.emplace(node_->entry());
+    topics_.emplace(node_->entry(), [this] { return clock_->now(); });
+    return listen_to_diagnostics();
   }
 
   ~Look() {
-    clients_.clear();
+    tasks_.close();
+    timer_.reset();
     diagnostics_.reset();
+    topics_.reset();
+    clock_.reset();
+    transforms_.reset();
+    asking_.reset();
     node_.reset();
     context_.reset();
   }
 
-  Picture take(Duration time) {
-    ros2::TaskGroup tasks(executor_);
-    const auto begin = ros2::Executor::Clock::now();
-    // By then who is there was discovered.
-    tasks.post_at(begin + time / 3, [&] { ask_all(time / 2); });
-    tasks.post_at(begin + time, [&] {
-      // Their leases may run for 20 s after they were killed.
-      context_->forget_ended_namesakes();
-      tasks.post([this] {
-        picture_.nodes = context_->graph().nodes();
-        executor_.stop();
-      });
-    });
+  void run(const std::stop_token& stop) {
+    const std::stop_callback end(stop, [this] { executor_.stop(); });
+    timer_.emplace(executor_, std::clamp<Duration>(options_.time / 16, 100ms, 500ms),
+                   [this] { on_tick(); });
+    begin();
     executor_.run();
-    return std::move(picture_);
   }
+  void stop() { executor_.stop(); }
 
  private:
-  // Every node of rclcpp and rclpy answers questions about its parameters, in the thread that runs
-  // its callbacks. The question is about none, and changes nothing.
-  void ask_all(Duration patience) {
-    for (const auto& [node, endpoints] : context_->graph().nodes()) {
-      const std::string service = node.name + "/get_parameters";
-      const bool answers = std::ranges::any_of(endpoints, [&](const ros2::GraphEndpoint& each) {
-        return each.kind == EndpointKind::kServer && each.name == service;
-      });
-      if (answers) ask(node, service, patience);
+  Expected<void> listen_to_diagnostics() {
+    constexpr ros2::Qos kQos{.reliability = ros2::Reliability::kBestEffort, .depth = 100};
+    auto diagnostics = node_->create_subscription<ros2::msg::DiagnosticArray>(
+        kDiagnostics, kQos,
+        [this](const ros2::msg::DiagnosticArray& message) { on_diagnostics(message); });
+    if (!diagnostics) return Error{diagnostics.error()};
+    diagnostics_ = std::move(*diagnostics);
+    return {};
+  }
+
+  // ---- one look
+
+  void begin() {
+    began_ = live_now();
+    const auto at = [&](Duration after) { return ros2::Executor::Clock::now() + after; };
+    // By then who is there was discovered.
+    tasks_.post_at(at(options_.time / 3), [this] { ask_all(options_.time / 2); });
+    tasks_.post_at(at(options_.time * 5 / 6), [this] { ask_for_states(options_.time / 6); });
+    tasks_.post_at(at(options_.time), [this] {
+      // Their leases may run for 20 s after they were killed.
+      context_->forget_ended_namesakes();
+      tasks_.post([this] { end(); });
+    });
+  }
+
+  void end() {
+    listen();
+    processes_.sample(nodes_, since_begin());
+    on_picture_(picture());
+    const Time now = live_now();
+    asking_->begin_anew([this](const std::string& node) { return nodes_.contains(node); });
+    topics_->begin_anew(now);
+    transforms_->begin_anew(now);
+    clock_->begin_anew();
+    processes_.begin_anew();
+    disks_.clear();
+    wiring_changed_ = true;
+    ++round_;
+    for (auto& [name, status] : statuses_) status.report = {};
+    begin();
+  }
+
+  void on_tick() {
+    listen();
+    topics_->take_turns(live_now());
+    processes_.sample(nodes_, since_begin());
+    if (disks_.empty()) disks_ = disks_of(nodes_);
+    const ros2::ProcessFinder finder;
+    for (const auto& [node, pid] : nodes_) {
+      if (pid != 0 && !finder.is_running(pid)) ended_.try_emplace(pid, live_now());
     }
   }
 
-  void ask(const ros2::GraphNode& node, const std::string& service, Duration patience) {
-    using Question = ros2::srv::GetParameters;
-    auto client = ros2::ServiceClient::create(
-        node_->entry(), {service, std::string(Question::kType)}, ros2::qos::kParameterServices);
-    if (!client) return;
-    clients_.push_back(std::move(*client));
-    clients_.back()->call(ros2::encode(Question::Request{}), ros2::Repeat::kUntilAnswered, patience,
-                          [this, node, patience](const ros2::CallResult& result) {
-                            // Only this outcome comes on the executor's thread. Who was never reached is no proof.
-                            if (result.outcome != ros2::CallOutcome::kTimedOut) return;
-                            picture_.unanswered[node.name] = {
-                                std::chrono::duration<double>(patience).count(),
-                                node.pid != 0 && !ros2::ProcessFinder().is_running(node.pid)};
-                          });
+  Duration since_begin() const { return live_now() - began_; }
+
+  // ---- what is listened to
+
+  void listen() {
+    if (!std::exchange(wiring_changed_, false)) return;
+    const Time now = live_now();
+    Picture wiring;
+    wiring.nodes = nodes_with_endpoints(context_->graph().participants());
+    topics_->listen_to(wanted_topics(wiring, options_.extent));
+    for (const char* topic : {"/tf", "/tf_static"}) {
+      if (published_.contains(topic)) transforms_->listen_to(topic, now);
+    }
+    if (published_.contains("/clock")) clock_->listen();
   }
+
+  // ---- what is asked
+
+  bool serves(const ros2::Graph::NodeView& view, const std::string& service) const {
+    return std::ranges::any_of(view.endpoints, [&](const ros2::GraphEndpoint& each) {
+      return each.kind == EndpointKind::kServer && each.name == view.node.name + service;
+    });
+  }
+
+  void ask_all(Duration patience) {
+    std::vector<ros2::Graph::NodeView> views = context_->graph().nodes();
+    std::erase_if(views, [&](const auto& view) { return view.node.name == node_->name().full(); });
+    const std::size_t all = views.size();
+    const auto chosen = nodes_to_ask(std::move(views), round_);
+    unasked_ = all - chosen.size();
+    asked_ = chosen.size();
+    for (const ros2::Graph::NodeView& view : chosen) {
+      const std::string& node = view.node.name;
+      if (serves(view, "/get_parameters")) asking_->ask_whether_it_answers(view.node, patience);
+      if (serves(view, "/get_state")) asking_->ask_for_state(node, live_now(), patience);
+      if (serves(view, "/list_parameters")) ask_for_parameters(view.node, patience / 2);
+    }
+  }
+
+  // Those that it was started with, unless all are wanted.
+  void ask_for_parameters(const ros2::GraphNode& node, Duration patience) {
+    if (options_.extent == Extent::kEverything)
+      return asking_->ask_for_parameters(node.name, {}, patience);
+    const auto process = processes_.processes().find(node.pid);
+    if (process == processes_.processes().end()) return;
+    const auto given = process->second.parameters.find(node.name);
+    if (given == process->second.parameters.end()) return;
+    std::vector<std::string> names;
+    for (const auto& [name, value] : given->second) names.push_back(name);
+    asking_->ask_for_parameters(node.name, names, patience);
+  }
+
+  void ask_for_states(Duration patience) {
+    for (const auto& [node, state] : asking_->lifecycles())
+      asking_->ask_for_state(node, live_now(), patience);
+  }
+
+  // ---- what is heard
 
   void on_change(const ros2::GraphChange& change) {
-    const auto* namesakes = std::get_if<ros2::NodeNamesakes>(&change);
-    if (namesakes == nullptr) return;
-    if (namesakes->others == 0) {
-      picture_.namesakes.erase(namesakes->node);
-    } else {
-      picture_.namesakes[namesakes->node] = namesakes->all;
+    if (const auto* namesakes = std::get_if<ros2::NodeNamesakes>(&change)) {
+      if (namesakes->others == 0) {
+        namesakes_.erase(namesakes->node);
+      } else {
+        namesakes_[namesakes->node] = namesakes->all;
+      }
+    } else if (const auto* joined = std::get_if<ros2::NodeJoined>(&change)) {
+      nodes_[joined->node.name] = joined->node.pid;
+      on_joined(joined->node);
+    } else if (const auto* left = std::get_if<ros2::NodeLeft>(&change)) {
+      // Of two nodes of one name the graph shows one, and now another one.
+      if (!namesakes_.contains(left->node)) on_left(*left);
+      nodes_.erase(left->node);
+    } else if (const auto* endpoint = std::get_if<ros2::EndpointJoined>(&change)) {
+      wiring_changed_ = true;
+      if (endpoint->endpoint.kind == EndpointKind::kPublisher)
+        published_.insert(endpoint->endpoint.name);
     }
+  }
+
+  void on_joined(const ros2::GraphNode& node) {
+    const auto comings = comings_.find(node.name);
+    if (comings == comings_.end() || comings->second.back().what.is_there) return;
+    add(node.name, {.is_there = true, .pid = node.pid});
+  }
+  void on_left(const ros2::NodeLeft& left) {
+    add(left.node, {.is_there = false, .was_lost = left.was_lost});
+  }
+  void add(const std::string& node, Coming coming) {
+    std::vector<Dated>& all = comings_[node];
+    if (all.size() < kMostComings) all.push_back({live_now(), coming});
   }
 
   void on_diagnostics(const ros2::msg::DiagnosticArray& message) {
-    for (const ros2::msg::DiagnosticStatus& status : message.status) {
-      if (picture_.statuses.size() >= kMostStatuses && !picture_.statuses.contains(status.name))
-        continue;
-      picture_.statuses[status.name] = status;
+    const Time now = live_now();
+    for (const ros2::msg::DiagnosticStatus& report : message.status) {
+      if (statuses_.size() >= kMostStatuses && !statuses_.contains(report.name)) continue;
+      HeardStatus& status = statuses_[report.name];
+      if (status.count++ == 0) status.first = now;
+      status.last = now;
+      status.report = report;
     }
   }
 
-  Picture picture_;
+  // ---- what was seen
+
+  std::vector<Node> nodes_with_endpoints(
+      const std::vector<ros2::Graph::ParticipantView>& participants) const {
+    std::map<ros2::GuidPrefix, const ros2::Graph::ParticipantView*> by_prefix;
+    for (const auto& each : participants) by_prefix[each.info.guid.prefix()] = &each;
+    std::vector<Node> nodes;
+    for (const ros2::Graph::NodeView& view : context_->graph().nodes()) {
+      Node& node = nodes.emplace_back(Node{view.node});
+      for (const auto& owned : by_prefix.at(view.participant)->endpoints) {
+        if (owned.node == view.node.name) node.endpoints.push_back(owned.endpoint);
+      }
+    }
+    return nodes;
+  }
+
+  Picture picture() {
+    const Time now = live_now();
+    const auto participants = context_->graph().participants();
+    Picture seen;
+    seen.domain = options_.participant.domain;
+    seen.looked = now - began_;
+    seen.nodes = nodes_with_endpoints(participants);
+    seen.namesakes = namesakes_;
+    for (const auto& each : participants) seen.participants.push_back(described(each));
+    seen.unanswered = asking_->unanswered();
+    seen.asked = asked_;
+    add_ended(seen, now);
+    seen.lifecycles = asking_->lifecycles();
+    seen.uses_simulated_time = asking_->uses_simulated_time();
+    seen.parameters = asking_->parameters();
+    add_comings(seen, now);
+    for (const auto& [name, status] : statuses_)
+      seen.statuses[name] = {status.report, status.count, status.first - began_,
+                             status.last - began_};
+    seen.flows = topics_->flows(now);
+    seen.clock = clock_->seen();
+    add_transforms(seen, participants, now);
+    seen.processes = processes_.processes();
+    seen.free_memory = free_memory();
+    add_disks(seen);
+    seen.other_domains = other_domains(seen.domain, nodes_);
+    add_left_out(seen);
+    return seen;
+  }
+
+  static Participant described(const ros2::Graph::ParticipantView& view) {
+    Participant out;
+    out.nodes = view.nodes;
+    out.vendor = view.info.vendor;
+    out.host = view.info.host;
+    out.pid = view.pid;
+    out.is_secured = view.info.is_secured;
+    const auto& addresses = view.info.metatraffic;
+    out.is_local = !addresses.empty() && std::ranges::all_of(addresses, [](const auto& address) {
+      return address.ip[0] == 127;
+    });
+    out.form = view.form;
+    out.undiscovered = view.undiscovered;
+    out.shares_memory = view.info.shares_memory;
+    for (std::size_t i = 0; i < 4; ++i)
+      out.host_number = out.host_number << 8 | view.info.guid.bytes[i];
+    return out;
+  }
+
+  // In the graph until its lease ends, if it said no good-bye, for which it has a moment.
+  void add_ended(Picture& seen, Time now) const {
+    constexpr Duration kGoodBye = 300ms;
+    for (const auto& [node, pid] : nodes_) {
+      const auto ended = ended_.find(pid);
+      if (ended != ended_.end() && now - ended->second >= kGoodBye)
+        seen.unanswered[node] = {0, true};
+    }
+  }
+
+  void add_comings(Picture& seen, Time now) {
+    constexpr Duration kRemembered = 10min;
+    for (auto& [node, all] : comings_) {
+      std::erase_if(all, [&](const Dated& each) { return now - each.at > kRemembered; });
+      for (const Dated& each : all) {
+        seen.comings[node].push_back(each.what);
+        seen.comings[node].back().at = each.at - began_;
+      }
+    }
+    std::erase_if(comings_, [](const auto& entry) { return entry.second.empty(); });
+  }
+
+  void add_transforms(Picture& seen, const std::vector<ros2::Graph::ParticipantView>& participants,
+                      Time now) {
+    std::map<ros2::Guid, std::string> writers;
+    for (const auto& each : participants) {
+      for (const auto& owned : each.endpoints) writers[owned.id] = owned.node;
+    }
+    std::map<ros2::Guid, std::size_t> numbers;
+    for (auto& [writer, edge] : transforms_->heard(began_)) {
+      const auto owner = writers.find(writer);
+      if (owner == writers.end()) continue;  // it has left
+      edge.node = owner->second;
+      edge.writer = std::to_string(numbers.try_emplace(writer, numbers.size()).first->second);
+      seen.transforms.push_back(std::move(edge));
+    }
+    seen.transforms_listened = transforms_->listened(now);
+  }
+
+  void add_left_out(Picture& seen) const {
+    if (topics_->waiting() > 0)
+      seen.left_out.push_back(
+          count_of(topics_->waiting(), "topic") +
+          " had no turn to be listened to; a longer look (--for) listens to more");
+    if (unasked_ > 0)
+      seen.left_out.push_back(
+          count_of(unasked_, "node") +
+          " were not asked anything, only others of their processes; --watch asks "
+          "others each time");
+  }
+
+  void add_disks(Picture& seen) const {
+    for (const Disk& now : disks_of(nodes_)) {
+      seen.disks.push_back(now);
+      for (const Disk& before : disks_) {
+        if (before.folder == now.folder)
+          seen.disks.back().taken = std::max<std::int64_t>(0, before.free - now.free);
+      }
+    }
+  }
+
+  struct Dated {
+    Time at{};
+    Coming what{};
+  };
+  struct HeardStatus {
+    ros2::msg::DiagnosticStatus report{};
+    std::size_t count = 0;
+    Time first{}, last{};
+  };
+
+  const LookOptions options_;
+  const std::function<void(const Picture&)> on_picture_;
+  Time began_{};
+  std::map<std::string, int> nodes_;  // with their processes; 0: not known
+  std::map<std::string, std::vector<ros2::GraphNode>> namesakes_;
+  std::map<std::string, std::vector<Dated>> comings_;
+  std::map<std::string, HeardStatus> statuses_;
+  std::set<std::string> published_;
+  std::map<int, Time> ended_;
+  bool wiring_changed_ = false;
+  std::size_t round_ = 0;  // of looks
+  std::size_t asked_ = 0;  // nodes
+  std::size_t unasked_ = 0;
+  ProcessWatch processes_;
+  std::vector<Disk> disks_;  // when it began
+
   ros2::Executor executor_;
+  ros2::TaskGroup tasks_;
   std::unique_ptr<ros2::Context> context_;
   std::unique_ptr<ros2::Node> node_;
+  std::optional<Asking> asking_;
+  std::optional<TransformListening> transforms_;
+  std::optional<ClockListening> clock_;
+  std::optional<Listening> topics_;
   std::unique_ptr<ros2::Subscription> diagnostics_;
-  std::vector<std::unique_ptr<ros2::ServiceClient>> clients_;
+  std::optional<ros2::Timer> timer_;
 };
 
 }  // namespace
 
-Expected<Picture> look(const ros2::ParticipantOptions& options, Duration time) {
-  Look look;
-  if (const auto opened = look.open(options); !opened) return Error{opened.error()};
-  return look.take(time);
+Expected<Picture> look(const LookOptions& options, const std::stop_token& stop) {
+  std::optional<Picture> taken;
+  Look* running = nullptr;
+  Look look(options, [&](const Picture& picture) {
+    taken = picture;
+    running->stop();
+  });
+  running = &look;
+  if (const auto opened = look.open(); !opened) return Error{opened.error()};
+  look.run(stop);
+  if (!taken) return Error{"the look was stopped before its end"};
+  return std::move(*taken);
+}
+
+Expected<void> watch(const LookOptions& options, std::function<void(const Picture&)> on_picture,
+                     const std::stop_token& stop) {
+  Look look(options, std::move(on_picture));
+  if (const auto opened = look.open(); !opened) return Error{opened.error()};
+  look.run(stop);
+  return {};
 }
 
 }  // namespace culprit::doctor

@@ -1,7 +1,6 @@
 #include "init/draft.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <set>
 
@@ -9,47 +8,33 @@
 
 #include "base/name_grammar.h"
 #include "base/ros_names.h"
+#include "base/tool_names.h"
 #include "base/units.h"
 #include "init/launch_text.h"
+#include "init/limits.h"
+#include "init/marks.h"
+#include "init/movement.h"
 #include "init/names.h"
+#include "init/packs.h"
+#include "init/silence.h"
 #include "language/line_reader.h"
 
 namespace culprit::init {
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr std::size_t kFewestMessages = 10;
-constexpr double kMargin = 3;          // silence is so many times the longest pause that was seen
-constexpr Duration kShortest = 300ms;  // less than this any busy machine is silent
-constexpr Duration kLongest = 30s;     // what comes more rarely is no rhythm
-constexpr double kMostIrregular = 5;   // longest pause to mean pause; more: it comes when it comes
-constexpr double kRuleOfThree = 3;     // none in n: with 95 % certainty at most 3/n
-
-// Up to the next number that people would write: 1, 1.5, 2, 3, 5 or 7.5 times a power of ten.
-Duration rounded_up(Duration time) {
-  const double power = std::pow(10, std::floor(std::log10(seconds(time))));
-  for (const double step : {1.0, 1.5, 2.0, 3.0, 5.0, 7.5}) {
-    if (step * power >= seconds(time)) return from_seconds(step * power);
-  }
-  return from_seconds(10 * power);
-}
-
-std::string in_milliseconds(Duration time) {
-  return fmt::format("{:.0f}ms", std::ceil(seconds(time) * 1000));
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
 // Node names are unique by their path only: "/left/wheel" and "/right/wheel".
-std::map<std::string, std::string> component_names(const std::vector<std::string>& nodes) {
+std::map<std::string, std::string> component_names(const std::vector<std::string>& nodes,
+                                                   const KnownNames& known) {
   std::map<std::string, int> uses;
   for (const std::string& node : nodes) ++uses[own_name(node)];
   std::map<std::string, std::string> names;
-  std::set<std::string> taken(reserved_words().begin(), reserved_words().end());
+  std::set<std::string> taken = known.taken;
+  taken.insert(reserved_words().begin(), reserved_words().end());
   for (const std::string& node : nodes) {
+    if (const auto named = known.components.find(node); named != known.components.end()) {
+      names[node] = named->second;
+      continue;
+    }
     std::string name = uses[own_name(node)] > 1 ? node.substr(1) : own_name(node);
     std::replace(name.begin(), name.end(), '/', '_');
     while (!taken.insert(name).second) name += "_node";
@@ -58,32 +43,68 @@ std::map<std::string, std::string> component_names(const std::vector<std::string
   return names;
 }
 
+// Of containers of which the dump knows how all of their nodes are loaded: else one that is replaced
+// could not have them again.
+std::map<std::string, Recipe> usable_recipes(const Sighting& seen) {
+  std::map<std::string, Recipe> usable;
+  const auto& nodes = seen.robot.nodes;
+  for (const auto& each_known : seen.dump.recipes) {
+    const auto& name = each_known.first;
+    const Recipe& recipe = each_known.second;
+    const auto container = nodes.find(recipe.container);
+    if (container == nodes.end() || container->second.pid == 0) continue;
+    const bool knows_all = std::ranges::all_of(nodes, [&](const auto& each) {
+      const auto known = seen.dump.recipes.find(each.first);
+      return each.second.pid != container->second.pid || each.first == recipe.container ||
+             is_tool_node(each.first) ||
+             (known != seen.dump.recipes.end() && known->second.container == recipe.container);
+    });
+    const auto node = nodes.find(name);
+    if (knows_all && node != nodes.end() && node->second.pid == container->second.pid)
+      usable[name] = recipe;
+  }
+  return usable;
+}
+
 class Draft {
  public:
-  explicit Draft(const Sighting& seen) : seen_(seen) {
+  Draft(const Sighting& seen, Packs packs, const KnownNames& known)
+      : seen_(seen), recipes_(usable_recipes(seen)) {
     for (const auto& [name, node] : seen_.robot.nodes) {
-      if (is_tool(name) || !is_valid_topic_name(name)) continue;
+      if (is_tool_node(name) || !is_valid_topic_name(name)) continue;
       if (const auto why = why_not(name, node)) {
         left_out_.push_back(name + ": " + *why);
       } else {
         nodes_.push_back(name);
       }
     }
-    names_ = component_names(nodes_);
+    names_ = component_names(nodes_, known);
+    for (const std::string& name : known.taken) declared_.take(name);
+    for (const auto& each : names_) {
+      declared_.take(each.second);
+      declared_.take(each.second, "_failed");
+    }
+    if (packs == Packs::kChosen) packs_ = packs_for(seen_, names_, left_out_);
   }
 
-  std::string text() {
-    header();
+  std::vector<Part> parts() {
+    head();
+    includes();
     notes_on_starts();
     for (const std::string& node : nodes_) component(node);
-    for (const std::string& node : nodes_) rule(node);
-    topics_without_rule();
-    statuses();
-    if (!left_out_.empty()) {
-      text_ += "\n# Left out, since it could not be found out:\n";
-      for (const std::string& each : left_out_) text_ += "# " + each + "\n";
+    for (const PackUse& each : packs_) use(each);
+    for (const std::string& node : nodes_) {
+      if (pack_of(node) == nullptr) rule(node);
     }
-    return text_;
+    topics_without_rule();
+    for (Part& each : limits(seen_, declared_, left_out_)) parts_.push_back(std::move(each));
+    add(Part::Kind::kComment, "", interlocks_text(seen_, declared_));
+    if (!left_out_.empty()) {
+      std::string text = "# Left out, since it could not be found out:\n";
+      for (const std::string& each : left_out_) text += "# " + each + "\n";
+      add(Part::Kind::kComment, "", text);
+    }
+    return std::move(parts_);
   }
 
  private:
@@ -93,25 +114,62 @@ class Draft {
     if (node.pid == 0)
       return "its process is not on this machine, or of another user. Write who starts it: "
              "LAUNCH, UNIT or CONTAINER";
+    if (recipes_.contains(name)) return std::nullopt;
     const auto start = seen_.starts.find(name);
     if (start == seen_.starts.end())
       return fmt::format("it could not be read how process {} was started", node.pid);
     for (const auto& [other, its] : seen_.robot.nodes) {
-      if (other != name && its.pid == node.pid && !is_tool(other))
-        return fmt::format("it lives in process {} with {}. Write what loads it: IN {} PLUGIN ...",
-                           node.pid, other, other);
+      if (other != name && its.pid == node.pid && !is_tool_node(other) && !recipes_.contains(other))
+        return fmt::format(
+            "it lives in process {} with {}. Write what loads it: IN {} PLUGIN ..., "
+            "or give a dump of its launch file: --launch",
+            node.pid, other, other);
     }
     if (start->second.declare.starts_with("CONTAINER"))
       return start->second.owner + " runs it. Write CONTAINER with the engine and its name there";
     return std::nullopt;
   }
 
-  void header() {
-    text_ += fmt::format(
-        "# Drafted by `culprit init` from what domain {} showed in {}, while it was taken to be "
-        "well.\n# What culprit guessed is marked \"guess\". Read it, then try it: culprit run "
-        "--dry-run FILE\n\nCYCLE 200ms\n\n",
-        seen_.domain, to_string(seen_.looked));
+  void add(Part::Kind kind, std::string subject, std::string text) {
+    if (!text.empty())
+      parts_.push_back({.kind = kind, .subject = std::move(subject), .text = std::move(text)});
+  }
+
+  void head() {
+    add(Part::Kind::kHead, "",
+        fmt::format(
+            "# Drafted by `culprit init` from what domain {} showed in {}, while it was taken "
+            "to be well.\n# What culprit guessed is marked \"guess\". Read it, then try it: "
+            "culprit run --dry-run FILE\n",
+            seen_.domain, to_string(seen_.looked)));
+    add(Part::Kind::kHead, "", "CYCLE 200ms\n");
+  }
+
+  void includes() {
+    std::set<std::string> files;
+    for (const PackUse& each : packs_) files.insert(each.pack);
+    std::string text;
+    for (const std::string& file : files) text += include_of(file) + "\n";
+    add(Part::Kind::kHead, "", text);
+  }
+
+  void use(const PackUse& pack) {
+    // Not the rates in it: they are never measured twice the same.
+    const std::string node = pack.nodes.empty() ? "" : *pack.nodes.begin();
+    const std::string about =
+        node.empty() ? pack.call : pack.call.substr(0, pack.call.find('(')) + " " + node;
+    add(pack.is_proposal ? Part::Kind::kComment : Part::Kind::kUse, about,
+        fmt::format("# {}: {}.\n{}USE {}\n", pack.is_proposal ? "proposal" : "guess", pack.evidence,
+                    pack.is_proposal ? "#   " : "", pack.call));
+    parts_.back().pack = pack.pack;
+    parts_.back().node = node;
+  }
+
+  // Which sees its loss and silence; null: none.
+  const PackUse* pack_of(const std::string& node) const {
+    const auto found = std::ranges::find_if(
+        packs_, [&](const PackUse& each) { return each.nodes.contains(node); });
+    return found == packs_.end() ? nullptr : &*found;
   }
 
   // Who started them, and what of their environment is not repeated.
@@ -119,120 +177,123 @@ class Draft {
     std::map<std::string, std::vector<std::string>> launchers;
     std::set<std::string> withheld;
     for (const std::string& node : nodes_) {
+      if (recipes_.contains(node)) continue;
       const Start& start = seen_.starts.at(node);
       if (!start.declare.empty()) continue;
-      if (!start.owner.empty()) launchers[start.owner].push_back(names_.at(node));
+      if (!start.owner.empty() && !seen_.dump.respawned.contains(node))
+        launchers[start.owner].push_back(names_.at(node));
       withheld.insert(start.withheld.begin(), start.withheld.end());
     }
+    std::string text;
     for (const auto& [owner, components] : launchers)
-      text_ +=
+      text +=
           fmt::format("# guess: {} started {}. If it starts again what ends, write RESPAWNED.\n",
                       owner, fmt::join(components, ", "));
     if (!withheld.empty())
-      text_ +=
+      text +=
           fmt::format("# Variables of theirs that are not copied, for they may be secrets: {}\n",
                       fmt::join(withheld, ", "));
+    add(Part::Kind::kHead, "", text);
   }
 
   void component(const std::string& node) {
+    const PackUse* pack = pack_of(node);
+    const bool is_managed = !seen_.robot.nodes.at(node).lifecycle.empty();
+    add(Part::Kind::kComponent, node,
+        "COMPONENT " + names_.at(node) + " NODE " + node + " " + owner_of(node) +
+            (pack != nullptr && pack->has_launcher && is_managed ? " LIFECYCLE launcher\n" : "\n"));
+  }
+
+  std::string owner_of(const std::string& node) const {
+    if (const auto recipe = recipes_.find(node); recipe != recipes_.end())
+      return composed_text(recipe->second, seen_.parameter_file);
     const Start& start = seen_.starts.at(node);
-    text_ += "COMPONENT " + names_.at(node) + " NODE " + node + " " +
-             (start.declare.empty() ? launch_text(start) : start.declare) + "\n";
+    if (!start.declare.empty()) return start.declare;
+    return launch_text(start) + (seen_.dump.respawned.contains(node) ? " RESPAWNED" : "");
   }
 
   void rule(const std::string& node) {
     const std::string& name = names_.at(node);
     const bool is_managed = seen_.robot.nodes.at(node).lifecycle == "active";
+    std::string text;
     std::string trigger = "!alive(" + name + ")";
-    text_ += "\n";
     for (const auto& [topic, what] : seen_.robot.topics) {
-      if (is_of_ros(topic) || !is_valid_topic_name(topic) || what.publishers != std::set{node})
+      if (is_topic_of_ros(topic) || !is_valid_topic_name(topic) ||
+          what.publishers != std::set{node})
         continue;
-      const auto limit = silence_of(topic);
+      const auto limit = silence_of(seen_, topic);
       if (!limit) continue;
-      text_ += evidence(topic);
+      text += evidence_of_silence(seen_, topic);
       trigger += " || age(" + topic + ") > " + to_string(*limit);
     }
-    text_ += "RULE " + name + "_failed\n  POLICIES ERROR\n  TRIGGER " + trigger + "\n";
-    text_ +=
-        "    # guess: how often it helps, in percent; culprit learns that from every attempt\n";
-    if (is_managed) strategy(name, "restart", 50, 10);
-    strategy(name, "redeploy", 90, 25);
+    text += "RULE " + name + "_failed\n  POLICIES ERROR\n  TRIGGER " + trigger + "\n";
+    text += "    # guess: how often it helps, in percent; culprit learns that from every attempt\n";
+    if (is_managed) text += strategy(name, "restart", 50, 10);
+    add(Part::Kind::kRule, node, text + strategy(name, "redeploy", 90, 25));
   }
 
   // The impact is in cycles: until the failure is gone.
-  void strategy(const std::string& name, const std::string& what, int percent, int impact) {
-    text_ += fmt::format("    STRATEGY {0}_{1} {2} 10\n      ADAPTATION {0} {1} {3}\n", name, what,
-                         percent, impact);
-  }
-
-  // Silence is what is longer. Errors: why no rhythm can be told.
-  Expected<Duration> silence_of(const std::string& topic) const {
-    const auto found = seen_.rhythms.find(topic);
-    const ros2::Rhythm rhythm = found == seen_.rhythms.end() ? ros2::Rhythm{} : found->second;
-    if (rhythm.messages < kFewestMessages)
-      return Error{fmt::format("{} messages came, too few for a rhythm", rhythm.messages)};
-    const double mean = seconds(rhythm.first_to_last) / static_cast<double>(rhythm.messages - 1);
-    const Duration limit =
-        rounded_up(std::max(kShortest, from_seconds(kMargin * seconds(rhythm.longest_pause))));
-    if (seconds(rhythm.longest_pause) > kMostIrregular * mean || limit > kLongest)
-      return Error{fmt::format("it has no rhythm: {} messages, {} apart on average and {} at most",
-                               rhythm.messages, in_milliseconds(from_seconds(mean)),
-                               in_milliseconds(rhythm.longest_pause))};
-    return limit;
-  }
-
-  std::string evidence(const std::string& topic) const {
-    const ros2::Rhythm& rhythm = seen_.rhythms.at(topic);
-    const auto pauses = static_cast<double>(rhythm.messages - 1);
-    return fmt::format(
-        "# guess: {} came {:.3g} times a second, {} messages, at most {} apart.\n"
-        "# Less than {:.2g} % of its pauses are longer (95 % certain); silence is {:.0f} times "
-        "that, {} "
-        "at least.\n",
-        topic, pauses / seconds(rhythm.first_to_last), rhythm.messages,
-        in_milliseconds(rhythm.longest_pause), 100 * std::min(1.0, kRuleOfThree / pauses), kMargin,
-        to_string(kShortest));
+  static std::string strategy(const std::string& name, const std::string& what, int percent,
+                              int impact) {
+    return fmt::format("    STRATEGY {0}_{1} {2} 10\n      ADAPTATION {0} {1} {3}\n", name, what,
+                       percent, impact);
   }
 
   void topics_without_rule() {
     for (const auto& [topic, what] : seen_.robot.topics) {
-      if (is_of_ros(topic) || !what.is_published()) continue;
+      if (is_topic_of_ros(topic) || !what.is_published()) continue;
       if (what.publishers.size() > 1) {
         left_out_.push_back(topic +
                             ": several nodes publish it, so its silence has no one to blame");
-      } else if (const auto limit = silence_of(topic);
+      } else if (const auto limit = silence_of(seen_, topic);
                  !limit && names_.contains(*what.publishers.begin())) {
         left_out_.push_back(topic + ": " + limit.error());
       }
     }
   }
 
-  void statuses() {
-    if (seen_.robot.diagnostics.empty()) return;
-    text_ += "\n# Diagnostics that a rule may read. What would help?\n";
-    for (const LiveInventory::Status& status : seen_.robot.diagnostics) {
-      text_ += fmt::format("#   TRIGGER level(\"{}\") == 2", printable(status.name));
-      if (!status.values.empty()) text_ += "   # keys: " + keys_of(status);
-      text_ += "\n";
-    }
-  }
-
-  static std::string keys_of(const LiveInventory::Status& status) {
-    std::vector<std::string> keys;
-    for (const auto& [key, value] : status.values) keys.push_back(printable(key));
-    return joined(keys);
-  }
-
   const Sighting& seen_;
+  const std::map<std::string, Recipe> recipes_;
   std::vector<std::string> nodes_;
   std::map<std::string, std::string> names_;
+  Names declared_;
   std::vector<std::string> left_out_;
-  std::string text_;
+  std::vector<PackUse> packs_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace
 
-std::string draft(const Sighting& seen) { return Draft(seen).text(); }
+std::vector<Part> parts_of_draft(const Sighting& seen, Packs packs, const KnownNames& known) {
+  return Draft(seen, packs, known).parts();
+}
+
+std::string draft(const Sighting& seen, Packs packs) {
+  const std::vector<Part> parts = parts_of_draft(seen, packs);
+  std::string text;
+  std::vector<Mark> marks;
+  const Part* before = nullptr;
+  for (const Part& part : parts) {
+    const bool belongs_to_it = before != nullptr && part.kind == Part::Kind::kComponent &&
+                               (before->kind == part.kind || (before->kind == Part::Kind::kHead &&
+                                                              before->text.starts_with('#')));
+    if (before != nullptr && !belongs_to_it) text += "\n";
+    text += part.text;
+    before = &part;
+    if (const auto mark = mark_of(part)) marks.push_back(*mark);
+  }
+  return text + (marks.empty() ? "" : "\n" + text_of(marks));
+}
+
+std::string parameters_text(const Sighting& seen) {
+  std::string all;
+  for (const auto& [node, recipe] : usable_recipes(seen)) {
+    if (recipe.parameters.empty()) continue;
+    all += node + ":\n  ros__parameters:\n";
+    for (const auto& [name, value] : recipe.parameters)
+      all += "    \"" + name + "\": " + value + "\n";
+  }
+  return all;
+}
 
 }  // namespace culprit::init

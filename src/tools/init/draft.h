@@ -1,16 +1,35 @@
 // A first rule file for a robot, from what was seen of it while it was well.
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <set>
 #include <string>
+#include <vector>
 
+#include "init/part.h"
 #include "init/sighting.h"
 
 namespace culprit::init {
 
-// The text of a rule file, in the canonical layout, that `culprit check --robot --strict` finds
-// nothing in: for each node whose process can be started again a component, and a rule that it is
-// there and its topics go on. What was guessed is marked "# guess:", and what was left out is listed
-// at the end, with the reason.
-std::string draft(const Sighting& seen);
+enum class Packs : std::uint8_t { kNone, kChosen };
+
+// Names that are there already, of a file that is brought up to a robot.
+struct KnownNames {
+  std::map<std::string, std::string> components;  // by node
+  std::set<std::string> taken;                    // for something else, too
+};
+
+// For each node whose process can be started again a component, and a rule that it is there and its
+// topics go on, or with kChosen the pack that sees that; what else is worth a rule or a proposal; at the end
+// what was left out, with the reason. What was guessed is marked "# guess:".
+std::vector<Part> parts_of_draft(const Sighting& seen, Packs packs, const KnownNames& known = {});
+
+// These together: the text of a rule file that `culprit check --robot --strict` finds nothing in. Ends in the
+// marks by which update() knows what was drafted (marks.h).
+std::string draft(const Sighting& seen, Packs packs = Packs::kNone);
+
+// The file of parameters that the draft names, as --params-file takes it; empty: it names none.
+std::string parameters_text(const Sighting& seen);
 
 }  // namespace culprit::init

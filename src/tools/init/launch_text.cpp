@@ -56,4 +56,14 @@ std::string launch_text(const Start& start) {
   return clauses;
 }
 
+std::string composed_text(const Recipe& recipe, const std::string& parameter_file) {
+  std::string clauses = "IN " + recipe.container + " PLUGIN " + recipe.plugin;
+  if (!recipe.plugin.starts_with(recipe.package + "::")) clauses += " PACKAGE " + recipe.package;
+  if (!recipe.parameters.empty()) clauses += " PARAMETERS " + text(parameter_file);
+  std::vector<std::string> remaps;
+  for (const auto& [from, to] : recipe.remaps) remaps.push_back(from + ":=" + to);
+  if (!remaps.empty()) clauses += " REMAP " + text(row(remaps));
+  return clauses;
+}
+
 }  // namespace culprit::init

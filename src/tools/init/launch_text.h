@@ -11,4 +11,7 @@ namespace culprit::init {
 // @pre start.command is not empty
 std::string launch_text(const Start& start);
 
+// IN /box PLUGIN cameras::Driver PACKAGE my_cameras PARAMETERS "/a/file.yaml" REMAP "image:=/left/image".
+std::string composed_text(const Recipe& recipe, const std::string& parameter_file);
+
 }  // namespace culprit::init

@@ -5,7 +5,8 @@
 #include <thread>
 
 #include "base/environment.h"
-#include "init/names.h"
+#include "base/tool_names.h"
+#include "init/movement.h"
 #include "owners/found_owner.h"
 #include "owners/start_of.h"
 #include "robot/inbox.h"
@@ -49,7 +50,7 @@ Start start_as_written(const owners::Started& started) {
 std::map<std::string, Start> starts_of(const LiveInventory& robot) {
   std::map<std::string, Start> starts;
   for (const auto& [name, node] : robot.nodes) {
-    if (node.pid == 0 || is_tool(name)) continue;
+    if (node.pid == 0 || is_tool_node(name)) continue;
     const auto started = owners::start_of(node.pid);
     if (!started) continue;
     Start& start = starts[name] = start_as_written(*started);
@@ -64,10 +65,11 @@ std::map<std::string, Start> starts_of(const LiveInventory& robot) {
 LiveInterest all_of(const LiveInventory& robot) {
   LiveInterest interest;
   for (const auto& [name, node] : robot.nodes) {
-    if (!is_tool(name)) interest.nodes.insert(name);
+    if (!is_tool_node(name)) interest.nodes.insert(name);
   }
   for (const auto& [name, topic] : robot.topics) {
-    if (!is_of_ros(name) && topic.is_published()) interest.fields_of_topics[name];
+    if (!is_topic_of_ros(name) && topic.is_published())
+      interest.fields_of_topics[name] = fields_of_movement(topic.type);
   }
   return interest;
 }
@@ -83,7 +85,13 @@ Sighting look(ros2::Survey& survey, std::uint32_t domain, Duration time) {
     if (interest != asked) survey.ask_for(asked = std::move(interest));
     std::this_thread::sleep_for(std::min<Duration>(kTurn, end - live_now()));
   }
-  Sighting seen{survey.inventory(), survey.rhythms(), {}, time, domain};
+  Sighting seen{.robot = survey.inventory(),
+                .rhythms = survey.rhythms(),
+                .starts = {},
+                .fields = survey.fields(),
+                .statuses = survey.statuses(),
+                .looked = time,
+                .domain = domain};
   seen.starts = starts_of(seen.robot);
   return seen;
 }

@@ -1,14 +1,22 @@
-// Which names of a robot are no part of it.
+// Names for what a draft declares.
 #pragma once
 
+#include <set>
 #include <string>
 
 namespace culprit::init {
 
-// What ROS 2 itself publishes, or a tool: "/rosout".
-bool is_of_ros(const std::string& topic);
+class Names {
+ public:
+  // The words of the language are taken.
+  Names();
 
-// What people look with, and what only holds other nodes together: "/rviz", "/launch_ros_4711".
-bool is_tool(const std::string& node);
+  // An identifier that is like `wanted`, and that nobody had yet. With a number or `suffix` where it
+  // has to be.
+  std::string take(const std::string& wanted, const std::string& suffix = "");
+
+ private:
+  std::set<std::string> taken_;
+};
 
 }  // namespace culprit::init

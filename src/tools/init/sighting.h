@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "base/time.h"
+#include "init/launch_dump.h"
 #include "language/live_inventory.h"
 #include "link/rhythm.h"
+#include "link/survey.h"
 
 namespace culprit::init {
 
@@ -27,8 +29,13 @@ struct Sighting {
   LiveInventory robot;
   std::map<std::string, ros2::Rhythm> rhythms;  // by topic
   std::map<std::string, Start> starts;          // by node, of those whose process is proven
+  // Of topics that command movements, by topic and field.
+  std::map<std::string, std::map<std::string, ros2::ValueCourse>> fields;
+  std::map<ros2::Survey::StatusKey, ros2::StatusCourse> statuses;
   Duration looked{};
   std::uint32_t domain = 0;
+  LaunchDump dump{};             // of what started it, if somebody gave one
+  std::string parameter_file{};  // where what the dump has of parameters is written; whole
 };
 
 }  // namespace culprit::init

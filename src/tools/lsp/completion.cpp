@@ -23,8 +23,10 @@ std::vector<Proposal> keywords(std::initializer_list<const char*> words) {
 void add_named(const Document& document, Occurrence::Kind kind, Kind as,
                std::vector<Proposal>& out) {
   std::set<std::string> seen;
-  for (const Occurrence& o : document.names()) {
-    if (o.kind == kind && seen.insert(o.name).second) out.push_back({as, o.name, ""});
+  for (const auto* all : {&document.names(), &document.names_elsewhere()}) {
+    for (const Occurrence& o : *all) {
+      if (o.kind == kind && seen.insert(o.name).second) out.push_back({as, o.name, ""});
+    }
   }
 }
 
@@ -71,8 +73,13 @@ OpenCall open_call(std::string_view text) {
 // What fits at the end of one line's text.
 class Completion {
  public:
-  Completion(const Document& document, std::string_view before, const LiveInventory* robot)
-      : document_(document), before_(before), robot_(robot), words_(words_of(before)) {
+  Completion(const Document& document, std::string_view before, const LiveInventory* robot,
+             const std::vector<std::string>& files)
+      : document_(document),
+        before_(before),
+        robot_(robot),
+        files_(files),
+        words_(words_of(before)) {
     // The word under the cursor is what is being typed.
     const bool is_typing = !before.empty() && before.back() != ' ' && before.back() != '\t';
     if (is_typing && !words_.empty()) words_.pop_back();
@@ -81,8 +88,12 @@ class Completion {
   std::vector<Proposal> find() {
     if (words_.empty()) {
       return keywords({"RULE", "POLICIES", "TRIGGER", "STRATEGY", "ADAPTATION", "COMPONENT",
-                       "SIGNAL", "CONST", "DEPENDENCY", "IGNORE", "INTERLOCK", "ROBOT", "CYCLE"});
+                       "SIGNAL", "CONST", "DEPENDENCY", "IGNORE", "INTERLOCK", "ROBOT", "CYCLE",
+                       "INCLUDE", "USE", "TEMPLATE", "END"});
     }
+    if (words_.front() == "INCLUDE") return includable();
+    if (words_.front() == "USE") return use();
+    if (words_.front() == "TEMPLATE" || words_.front() == "END") return {};
     if (const OpenCall call = open_call(before_); call.function != nullptr) return argument(call);
     const std::string& statement = words_.front();
     if (statement == "ADAPTATION") return adaptation();
@@ -105,8 +116,9 @@ class Completion {
       return words_.size() == 1 ? keywords({"TOPIC"}) : names(&live_topics);
     }
     if (statement == "POLICIES") {
-      return words_.size() == 1 ? keywords({"ERROR", "WARNING", "NON_CRITICAL"})
-                                : keywords({"FOR", "HOLD", "COOLDOWN", "ATTEMPTS", "ON_CHANGE"});
+      return words_.size() == 1
+                 ? keywords({"ERROR", "WARNING", "NON_CRITICAL"})
+                 : keywords({"FOR", "HOLD", "COOLDOWN", "ATTEMPTS", "ON_CHANGE", "REPORT"});
     }
     if (statement == "STRATEGY" && words_.size() == 4) return keywords({"WHEN", "LASTRESORT"});
     if (statement == "DEPENDENCY") {
@@ -119,6 +131,26 @@ class Completion {
   }
 
  private:
+  std::vector<Proposal> includable() {
+    std::vector<Proposal> out;
+    for (const std::string& file : files_) out.push_back({Kind::kFile, "\"" + file + "\"", ""});
+    return out;
+  }
+
+  std::vector<Proposal> use() {
+    if (before_.find('(') != std::string_view::npos) {
+      if (before_.find(')') != std::string_view::npos) return keywords({"IN"});
+      std::vector<Proposal> out = components();
+      for (Proposal& topic : topics()) out.push_back(std::move(topic));
+      return out;
+    }
+    if (words_.size() > 1) return keywords({"IN"});
+    std::vector<Proposal> out;
+    for (const auto& [name, known] : document_.rules.templates)
+      out.push_back({Kind::kTemplate, name, known.usage});
+    return out;
+  }
+
   std::vector<Proposal> expression() {
     std::vector<Proposal> out;
     add_named(document_, Occurrence::Kind::kSignal, Kind::kSignal, out);
@@ -205,16 +237,29 @@ class Completion {
   const Document& document_;
   const std::string_view before_;
   const LiveInventory* robot_;
+  const std::vector<std::string>& files_;
   std::vector<std::string> words_;
 };
+
+// The parameters of the template whose lines are around `offset`.
+void add_parameters(const Document& document, std::uint32_t offset, std::vector<Proposal>& out) {
+  for (const syntax::Template& t : document.file.templates) {
+    if (offset < t.lines.begin || offset > t.lines.end) continue;
+    for (const syntax::TemplateParameter& p : t.parameters)
+      out.push_back({Kind::kParameter, "{" + p.name.text + "}", "parameter of " + t.name.text});
+  }
+}
 
 }  // namespace
 
 std::vector<Proposal> proposals(const Document& document, std::uint32_t offset,
-                                const LiveInventory* robot) {
+                                const LiveInventory* robot, const std::vector<std::string>& files) {
   const std::uint32_t line_begin =
       document.source.line(document.source.position(offset).line).begin;
-  return Completion(document, document.source.text({line_begin, offset}), robot).find();
+  const std::string_view before = document.source.text({line_begin, offset});
+  std::vector<Proposal> out = Completion(document, before, robot, files).find();
+  if (words_of(before).size() > 1) add_parameters(document, offset, out);
+  return out;
 }
 
 Span typed_part(const Document& document, std::uint32_t offset, const Proposal& proposal) {

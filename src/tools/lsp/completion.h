@@ -19,7 +19,9 @@ struct Proposal {
     kTopic,
     kParameter,
     kService,
-    kStatus
+    kStatus,
+    kTemplate,
+    kFile
   };
   Kind kind = Kind::kKeyword;
   std::string text;
@@ -28,9 +30,10 @@ struct Proposal {
 };
 
 // Sorted by what fits, without regard to what is typed already: editors filter. `robot` may be
-// null.
+// null; `files` are what an INCLUDE could name.
 std::vector<Proposal> proposals(const Document& document, std::uint32_t offset,
-                                const LiveInventory* robot = nullptr);
+                                const LiveInventory* robot = nullptr,
+                                const std::vector<std::string>& files = {});
 
 // What an editor has to replace by the proposal: what is typed of it already.
 Span typed_part(const Document& document, std::uint32_t offset, const Proposal& proposal);

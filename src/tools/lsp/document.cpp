@@ -4,15 +4,68 @@
 #include "language/parser.h"
 
 namespace culprit::lsp {
+namespace {
 
-Document::Document(std::string text) : source("", std::move(text)) {
+std::string place_text(const Source& source, const Place& place) {
+  const Source& file = source.file(place.file);
+  return file.name() + ":" + std::to_string(file.position(place.span.begin).line);
+}
+
+// The steps to it as lines of its remedy.
+std::string with_notes(const Diagnostic& diagnostic, const LocatedDiagnostic& here,
+                       const Source& source) {
+  std::string text = diagnostic.remedy;
+  for (const auto& note : here.notes)
+    text += (text.empty() ? "" : "\n") + note.text + ": " + place_text(source, note.place);
+  return text;
+}
+
+}  // namespace
+
+Document::Document(std::string text, const std::string& name, const RuleLoader& load)
+    : source(name, std::move(text)) {
   std::vector<Diagnostic> said;
   file = parse(source, said);
-  checked = check(file, std::move(said));
-  diagnostics = checked.diagnostics;
+  if (!file.has_reuse()) {
+    rules.source = source;
+    checked = check(file, std::move(said));
+  } else {
+    rules = expand(source, load);
+    std::vector<Diagnostic> ignored;  // what is wrong is among those of the check
+    whole_ = parse(rules.source, ignored);
+    checked = check(rules);
+  }
+  tell(checked.diagnostics);
+}
+
+void Document::tell(const std::vector<Diagnostic>& found) {
+  diagnostics.clear();
+  elsewhere.clear();
+  for (const Diagnostic& d : found) {
+    const LocatedDiagnostic here = located(d, rules.source);
+    Diagnostic written = d;
+    written.span = here.place.span;
+    written.fix = here.fix;
+    written.remedy = with_notes(d, here, rules.source);
+    if (here.place.file == 0) {
+      diagnostics.push_back(std::move(written));
+      continue;
+    }
+    for (const auto& note : here.notes) {
+      if (note.place.file != 0) continue;
+      diagnostics.push_back({d.code, d.severity, note.place.span,
+                             place_text(rules.source, here.place) + ": " + d.cause, d.remedy});
+    }
+    elsewhere[here.place.file].push_back(std::move(written));
+  }
 }
 
 Component Document::component_called(const std::string& name) const {
+  if (checked.rules) {
+    for (const Component& c : checked.rules->components) {
+      if (c.declared && c.name == name) return c;
+    }
+  }
   for (const syntax::Component& c : file.components) {
     if (c.name.text == name) return {name, c.node ? c.node->text : "", {}, true};
   }
@@ -20,17 +73,30 @@ Component Document::component_called(const std::string& name) const {
 }
 
 const std::vector<Occurrence>& Document::names() const {
-  if (!names_) names_ = occurrences(file);
+  if (!names_) names_ = occurrences(file, source);
   return *names_;
+}
+
+const std::vector<Occurrence>& Document::names_elsewhere() const {
+  if (names_elsewhere_) return *names_elsewhere_;
+  names_elsewhere_.emplace();
+  if (!whole_) return *names_elsewhere_;
+  for (Occurrence& o : occurrences(*whole_)) {
+    const Origin origin = rules.source.origin(o.span);
+    if (o.declares && (origin.place.file != 0 || !origin.steps.empty() || origin.goes_in))
+      names_elsewhere_->push_back(std::move(o));
+  }
+  return *names_elsewhere_;
 }
 
 bool Document::compare_with(const LiveInventory& robot) {
   std::vector<Diagnostic> all = checked.diagnostics;
   // A robot without any node is one that is not there, and says nothing about the rules.
-  if (checked.rules && !robot.nodes.empty()) check_live(file, *checked.rules, robot, all);
-  if (all == diagnostics) return false;
-  diagnostics = std::move(all);
-  return true;
+  if (checked.rules && !robot.nodes.empty())
+    check_live(whole_ ? *whole_ : file, *checked.rules, robot, all);
+  const auto before = std::pair(std::move(diagnostics), std::move(elsewhere));
+  tell(all);
+  return before != std::pair(diagnostics, elsewhere);
 }
 
 }  // namespace culprit::lsp

@@ -1,6 +1,7 @@
 // One open rule file: its text, what it says, and what is wrong with it.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,28 +9,42 @@
 #include "language/checker.h"
 #include "language/live_inventory.h"
 #include "language/occurrences.h"
+#include "language/reuse/expansion.h"
 #include "language/source.h"
 #include "language/syntax.h"
 
 namespace culprit::lsp {
 
 struct Document {
-  explicit Document(std::string text);
+  // `name` is what messages and `load` call it; it may be empty.
+  explicit Document(std::string text, const std::string& name = "",
+                    const RuleLoader& load = nullptr);
 
-  // The component of this name: as the file declares it, or the node of this name.
+  // The component of this name: as the rules declare it, or the node of this name.
   Component component_called(const std::string& name) const;
   // Every place that names something, found when it is first asked for: not at each keystroke.
   const std::vector<Occurrence>& names() const;
+  // What included files and templates declare, as it is called in these rules. Their spans are of
+  // `rules.source`.
+  const std::vector<Occurrence>& names_elsewhere() const;
   // Checks against the robot too, from now on. False if that changes nothing.
   bool compare_with(const LiveInventory& robot);
 
   Source source;
   syntax::File file;
-  Checked checked;
-  std::vector<Diagnostic> diagnostics;  // of the check, and of the robot
+  Expansion rules;  // with all that the file includes and uses put in
+  Checked checked;  // its diagnostics are of `rules`
+  // Of the file as it is written. What is wrong in a file that it includes is shown at the INCLUDE,
+  // and in that file.
+  std::vector<Diagnostic> diagnostics;
+  std::map<std::uint32_t, std::vector<Diagnostic>> elsewhere;  // by the file of rules.source
 
  private:
+  void tell(const std::vector<Diagnostic>& found);
+
+  std::optional<syntax::File> whole_;  // of rules.source; nothing: the file is whole
   mutable std::optional<std::vector<Occurrence>> names_;
+  mutable std::optional<std::vector<Occurrence>> names_elsewhere_;
 };
 
 }  // namespace culprit::lsp

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "language/functions.h"
+#include "language/scanner.h"
 #include "lsp/live_hover.h"
 
 namespace culprit::lsp {
@@ -12,12 +13,45 @@ using OccurrenceKind = Occurrence::Kind;
 
 std::string code(std::string_view text) { return "```\n" + std::string(text) + "\n```"; }
 
+std::string line_at(const Source& source, std::uint32_t offset) {
+  return code(source.text(source.line(source.position(offset).line)));
+}
+
 // The line on which `thing` is declared; empty if none does.
 std::string declaration(const Document& document, const Occurrence& thing) {
   for (const Occurrence& o : document.names()) {
     if (!o.declares || !o.same_as(thing)) continue;
-    const std::uint32_t line = document.source.position(o.span.begin).line;
-    return code(document.source.text(document.source.line(line)));
+    return line_at(document.source, o.span.begin);
+  }
+  for (const Occurrence& o : document.names_elsewhere()) {
+    if (!o.same_as(thing)) continue;
+    const Place place = document.rules.source.origin(o.span).place;
+    const Source& file = document.rules.source.file(place.file);
+    return line_at(file, place.span.begin) +
+           (place.file == 0 ? "" : "\n\nIn `" + file.name() + "`.");
+  }
+  return "";
+}
+
+// How it is used, and what is written above it.
+std::string of_template(const Document& document, const Occurrence& thing) {
+  const auto known = document.rules.templates.find(thing.name);
+  if (known == document.rules.templates.end()) return "";
+  const Place& place = known->second.name;
+  const Source& file = document.rules.source.file(place.file);
+  std::string above;
+  for (std::uint32_t n = file.position(place.span.begin).line - 1; n > 0; --n) {
+    const std::string_view line = trimmed(file.text(file.line(n)));
+    if (!line.starts_with('#')) break;
+    above = std::string(trimmed(line.substr(1))) + "\n" + above;
+  }
+  return code("USE " + known->second.usage) + (above.empty() ? "" : "\n\n" + above);
+}
+
+std::string of_file(const Document& document, const Occurrence& thing) {
+  for (std::uint32_t f = 1; f < document.rules.source.file_count(); ++f) {
+    const std::string& name = document.rules.source.file(f).name();
+    if (name.ends_with(thing.name)) return "`" + name + "`";
   }
   return "";
 }
@@ -70,6 +104,12 @@ std::string meaning(const Document& document, const Occurrence& thing) {
     case OccurrenceKind::kRule:
     case OccurrenceKind::kStrategy:
       return declaration(document, thing);
+    case OccurrenceKind::kTemplate:
+      return of_template(document, thing);
+    case OccurrenceKind::kHole:
+      return "Parameter `" + thing.name + "` of the template `" + thing.scope + "`";
+    case OccurrenceKind::kFile:
+      return of_file(document, thing);
     case OccurrenceKind::kTopic:
       return "Topic `" + thing.name + "`";
     case OccurrenceKind::kDiagnostic:

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "language/formatter.h"
+#include "language/scanner.h"
 #include "lsp/completion.h"
 #include "lsp/hover.h"
 #include "lsp/text_position.h"
@@ -82,6 +84,39 @@ Json to_json(const Diagnostic& diagnostic, const Source& source) {
           {"message", diagnostic.cause + remedy}};
 }
 
+// file:///a%20b.rules -> /a b.rules; empty for what is no file.
+std::string path_of(const std::string& uri) {
+  constexpr std::string_view kScheme = "file://";
+  if (!uri.starts_with(kScheme)) return "";
+  std::string path;
+  for (std::size_t i = kScheme.size(); i < uri.size(); ++i) {
+    unsigned value = 0;
+    const char* begin = uri.data() + i + 1;
+    const bool is_escape = uri[i] == '%' && i + 2 < uri.size() &&
+                           std::from_chars(begin, begin + 2, value, 16).ptr == begin + 2;
+    path += is_escape ? static_cast<char>(value) : uri[i];
+    if (is_escape) i += 2;
+  }
+  return path;
+}
+
+// As VS Code writes them: an editor knows its documents by what it called them.
+std::string uri_of(const std::string& path) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~/";
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string uri = "file://";
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (kPlain.find(c) != std::string_view::npos) {
+      uri += c;
+    } else {
+      uri += {'%', kDigits[byte / 16], kDigits[byte % 16]};
+    }
+  }
+  return uri;
+}
+
 Json succeeded(Json result) { return {{"result", std::move(result)}}; }
 
 Json failed(int code, const std::string& message) {
@@ -108,13 +143,18 @@ int item_kind(Proposal::Kind kind) {
       return 10;
     case Proposal::Kind::kService:
       return 2;
+    case Proposal::Kind::kTemplate:
+      return 15;
+    case Proposal::Kind::kFile:
+      return 17;
   }
   return 1;
 }
 
 // What editors colour names by; the order is that of Occurrence::Kind.
-constexpr std::array kTokenTypes = {"enumMember", "class",  "variable", "string", "property",
-                                    "namespace",  "method", "function", "string", "string"};
+constexpr std::array kTokenTypes = {"enumMember", "class",     "variable", "string", "property",
+                                    "namespace",  "method",    "function", "string", "string",
+                                    "macro",      "parameter", "string"};
 
 // SymbolKind, for things that a file declares.
 int symbol_kind(OccurrenceKind kind) {
@@ -127,9 +167,18 @@ int symbol_kind(OccurrenceKind kind) {
       return 3;
     case OccurrenceKind::kStrategy:
       return 6;
+    case OccurrenceKind::kTemplate:
+      return 12;
     default:
       return 13;
   }
+}
+
+// Whether the line at `offset` is an INCLUDE.
+bool includes_at(const Document& document, std::uint32_t offset) {
+  const Source& source = document.source;
+  const std::string_view line = source.text(source.line(source.position(offset).line));
+  return trimmed(line).starts_with("INCLUDE");
 }
 
 Span line_of(const Source& source, Span span) {
@@ -190,26 +239,85 @@ void Server::notice(const std::string& method, const Json& params) {
     if (changes != nullptr && changes->is_array() && !changes->empty())
       open(uri, text_at(changes->back(), {"text"}));
   } else if (method == "textDocument/didClose") {
-    documents_.erase(uri);
+    std::set<std::string> uris = {uri};
+    if (const auto closed = documents_.find(uri); closed != documents_.end()) {
+      uris = concerned(uri, closed->second);
+      documents_.erase(closed);
+    }
     interests_.erase(uri);
-    send_({{"jsonrpc", "2.0"},
-           {"method", "textDocument/publishDiagnostics"},
-           {"params", {{"uri", uri}, {"diagnostics", Json::array()}}}});
+    uris.merge(read_includers_of(uri));
+    publish(uris);
   }
 }
 
-void Server::open(const std::string& uri, std::string text) {
-  Document& document = documents_.insert_or_assign(uri, Document(std::move(text))).first->second;
+// The text that is open counts, not the one on the disk.
+Expected<Source> Server::load(const std::string& file, const std::string& from) const {
+  if (!files_.load) return Error{"no other file can be read here"};
+  auto loaded = files_.load(file, from);
+  if (!loaded) return loaded;
+  const auto open = documents_.find(uri_of(loaded->name()));
+  if (open == documents_.end()) return loaded;
+  return Source(loaded->name(), std::string(open->second.source.text()));
+}
+
+void Server::read(const std::string& uri, std::string text) {
+  const auto load_file = [this](const std::string& file, const std::string& from) {
+    return load(file, from);
+  };
+  Document& document =
+      documents_.insert_or_assign(uri, Document(std::move(text), path_of(uri), load_file))
+          .first->second;
   if (document.checked.rules) interests_[uri] = interest_of(*document.checked.rules);
   if (robot_) document.compare_with(*robot_);
-  publish(uri);
+}
+
+std::set<std::string> Server::concerned(const std::string& uri, const Document& document) {
+  std::set<std::string> uris = {uri};
+  for (const auto& [file, diagnostics] : document.elsewhere)
+    uris.insert(uri_of(document.rules.source.file(file).name()));
+  return uris;
+}
+
+// Reads the documents that include `uri` anew. Gives all that are concerned.
+std::set<std::string> Server::read_includers_of(const std::string& uri) {
+  const std::string path = path_of(uri);
+  std::set<std::string> uris;
+  std::vector<std::string> includers;
+  for (const auto& [other, document] : documents_) {
+    const Source& source = document.rules.source;
+    for (std::uint32_t f = 1; f < source.file_count(); ++f) {
+      if (other != uri && !path.empty() && source.file(f).name() == path)
+        includers.push_back(other);
+    }
+  }
+  for (const std::string& other : includers) {
+    uris.merge(concerned(other, documents_.at(other)));
+    read(other, std::string(documents_.at(other).source.text()));
+    uris.merge(concerned(other, documents_.at(other)));
+  }
+  return uris;
+}
+
+void Server::open(const std::string& uri, std::string text) {
+  std::set<std::string> uris;
+  if (const auto before = documents_.find(uri); before != documents_.end())
+    uris = concerned(uri, before->second);
+  read(uri, std::move(text));
+  uris.merge(concerned(uri, documents_.at(uri)));
+  uris.merge(read_includers_of(uri));
+  publish(uris);
 }
 
 void Server::see(LiveInventory robot) {
   robot_ = std::move(robot);
+  std::set<std::string> uris;
   for (auto& [uri, document] : documents_) {
-    if (document.compare_with(*robot_)) publish(uri);
+    std::set<std::string> before = concerned(uri, document);
+    if (!document.compare_with(*robot_)) continue;
+    uris.merge(before);
+    uris.merge(concerned(uri, document));
   }
+  publish(uris);
 }
 
 LiveInterest Server::interest() const {
@@ -222,11 +330,30 @@ LiveInterest Server::interest() const {
   return all;
 }
 
+void Server::publish(const std::set<std::string>& uris) {
+  for (const std::string& uri : uris) publish(uri);
+}
+
+// What is wrong with the document, or with those that include it and is written in it; each once.
 void Server::publish(const std::string& uri) {
-  const Document& document = documents_.at(uri);
   Json diagnostics = Json::array();
-  for (const Diagnostic& d : document.diagnostics)
-    diagnostics.push_back(to_json(d, document.source));
+  const auto add = [&](const Diagnostic& d, const Source& source) {
+    Json json = to_json(d, source);
+    const bool is_said = std::any_of(diagnostics.begin(), diagnostics.end(), [&](const Json& said) {
+      return said["range"] == json["range"] && said["code"] == json["code"];
+    });
+    if (!is_said) diagnostics.push_back(std::move(json));
+  };
+  if (const auto own = documents_.find(uri); own != documents_.end()) {
+    for (const Diagnostic& d : own->second.diagnostics) add(d, own->second.source);
+  }
+  for (const auto& [other, document] : documents_) {
+    for (const auto& [file, found] : document.elsewhere) {
+      const Source& source = document.rules.source.file(file);
+      if (other == uri || uri_of(source.name()) != uri) continue;
+      for (const Diagnostic& d : found) add(d, source);
+    }
+  }
   send_({{"jsonrpc", "2.0"},
          {"method", "textDocument/publishDiagnostics"},
          {"params", {{"uri", uri}, {"diagnostics", std::move(diagnostics)}}}});
@@ -246,7 +373,7 @@ Json Server::answer(const std::string& method, const Json& params) {
   const auto found = documents_.find(uri);
   if (method.starts_with("textDocument/") && found == documents_.end())
     return failed(kRequestFailed, "the document '" + uri + "' is not open");
-  if (method == "textDocument/completion") return succeeded(completion(found->second, params));
+  if (method == "textDocument/completion") return succeeded(completion(uri, found->second, params));
   if (method == "textDocument/hover") return succeeded(hover_at(found->second, params));
   if (method == "textDocument/definition") return succeeded(definition(uri, found->second, params));
   if (method == "textDocument/references") return succeeded(references(uri, found->second, params));
@@ -282,10 +409,13 @@ const Occurrence* Server::pointed_at(const Document& document, const Json& param
   return occurrence_at(document.names(), place_in(document, params));
 }
 
-Json Server::completion(const Document& document, const Json& params) const {
+Json Server::completion(const std::string& uri, const Document& document,
+                        const Json& params) const {
   Json items = Json::array();
   const std::uint32_t place = place_in(document, params);
-  for (const Proposal& p : proposals(document, place, robot())) {
+  std::vector<std::string> files;
+  if (files_.includable && includes_at(document, place)) files = files_.includable(path_of(uri));
+  for (const Proposal& p : proposals(document, place, robot(), files)) {
     // Editors do not know what belongs to the name of a topic.
     Json edit{{"range", to_json(document.source, typed_part(document, place, p))},
               {"newText", p.text}};
@@ -311,6 +441,24 @@ Json Server::definition(const std::string& uri, const Document& document,
   for (const Occurrence& o : document.names()) {
     if (o.declares && o.same_as(*thing))
       return {{"uri", uri}, {"range", to_json(document.source, o.span)}};
+  }
+  const Source& source = document.rules.source;
+  const auto at_place = [&](const Place& place) -> Json {
+    const Source& file = source.file(place.file);
+    return {{"uri", place.file == 0 ? uri : uri_of(file.name())},
+            {"range", to_json(file, place.span)}};
+  };
+  if (thing->kind == OccurrenceKind::kFile) {
+    const auto included = load(thing->name, path_of(uri));
+    if (!included) return nullptr;
+    return {{"uri", uri_of(included->name())}, {"range", to_json(*included, {0, 0})}};
+  }
+  if (thing->kind == OccurrenceKind::kTemplate) {
+    const auto known = document.rules.templates.find(thing->name);
+    return known == document.rules.templates.end() ? Json() : at_place(known->second.name);
+  }
+  for (const Occurrence& o : document.names_elsewhere()) {
+    if (o.same_as(*thing)) return at_place(source.origin(o.span).place);
   }
   return nullptr;
 }
@@ -385,7 +533,7 @@ Json Server::code_actions(const std::string& uri, const Document& document,
 Json Server::symbols(const Document& document) const {
   Json all = Json::array();
   for (const Occurrence& o : document.names()) {
-    if (!o.declares) continue;
+    if (!o.declares || o.kind == OccurrenceKind::kHole) continue;
     Json entry = symbol(document, o);
     if (o.kind == OccurrenceKind::kStrategy && !all.empty() && all.back().contains("children")) {
       all.back()["range"]["end"] = entry["range"]["end"];

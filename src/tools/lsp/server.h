@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -15,8 +16,16 @@ class Server {
  public:
   using Send = std::function<void(const nlohmann::json& message)>;
 
+  // Where documents find the files that they include. `from` is the path of the document; empty: it
+  // has none.
+  struct Files {
+    RuleLoader load;
+    std::function<std::vector<std::string>(const std::string& from)> includable;
+  };
+
   // `version` is what the server says of itself.
-  Server(std::string version, Send send) : version_(std::move(version)), send_(std::move(send)) {}
+  Server(std::string version, Send send, Files files = {})
+      : version_(std::move(version)), send_(std::move(send)), files_(std::move(files)) {}
 
   // One message of the client, of any content; answers and diagnostics go through Send. False when
   // the client said that the server has to end.
@@ -40,7 +49,7 @@ class Server {
   void notice(const std::string& method, const Json& params);
 
   Json capabilities() const;
-  Json completion(const Document& document, const Json& params) const;
+  Json completion(const std::string& uri, const Document& document, const Json& params) const;
   Json hover_at(const Document& document, const Json& params) const;
   Json definition(const std::string& uri, const Document& document, const Json& params) const;
   Json references(const std::string& uri, const Document& document, const Json& params) const;
@@ -51,13 +60,20 @@ class Server {
   Json semantic_tokens(const Document& document) const;
 
   void open(const std::string& uri, std::string text);
+  void read(const std::string& uri, std::string text);
+  Expected<Source> load(const std::string& file, const std::string& from) const;
+  std::set<std::string> read_includers_of(const std::string& uri);
   void publish(const std::string& uri);
+  void publish(const std::set<std::string>& uris);
+  // The documents that `document` is about: those in which something is wrong with it, too.
+  static std::set<std::string> concerned(const std::string& uri, const Document& document);
   const LiveInventory* robot() const { return robot_ ? &*robot_ : nullptr; }
   // The thing that the request's position points at; null if at none.
   const Occurrence* pointed_at(const Document& document, const Json& params) const;
 
   const std::string version_;
   const Send send_;
+  const Files files_;
   std::map<std::string, Document> documents_;      // by URI
   std::map<std::string, LiveInterest> interests_;  // by URI
   std::optional<LiveInventory> robot_;             // nothing while none was seen

@@ -13,7 +13,9 @@ namespace culprit::lsp {
 namespace {
 
 using Json = nlohmann::json;
+using testing::AllOf;
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -368,6 +370,145 @@ TEST(LspMessages, ComeBackAsTheyWereWritten) {
   const auto end = read_message(stream);
   ASSERT_TRUE(end);
   EXPECT_FALSE(*end);
+}
+
+// ---- Files that include others
+
+constexpr const char* kDriver = R"(# A driver that falls silent is started again.
+TEMPLATE driver(name, topic)
+  CONST late = 1s
+  RULE {name}_silent
+    POLICIES ERROR
+    TRIGGER age({topic}) > late
+      STRATEGY redeploy 50 10
+        ADAPTATION {name} redeploy 5
+END
+SIGNAL charge TOPIC /battery FIELD percentage
+)";
+constexpr const char* kDriverUri = "file:///packs/driver.rules";
+
+// An editor with a file open beside a file that it may include.
+class ReuseSession {
+ public:
+  explicit ReuseSession(const std::string& text) { open(kUri, text); }
+
+  void open(const std::string& uri, const std::string& text) {
+    server.handle({{"method", "textDocument/didOpen"},
+                   {"params", {{"textDocument", {{"uri", uri}, {"text", text}}}}}});
+  }
+  Json ask(const std::string& what, std::uint32_t line, std::uint32_t character) {
+    server.handle({{"id", 1},
+                   {"method", "textDocument/" + what},
+                   {"params",
+                    {{"textDocument", {{"uri", kUri}}},
+                     {"position", {{"line", line}, {"character", character}}}}}});
+    return sent.back()["result"];
+  }
+  // The newest of each document, "line: message".
+  std::map<std::string, std::vector<std::string>> said() const {
+    std::map<std::string, std::vector<std::string>> all;
+    for (const Json& message : sent) {
+      if (message.value("method", "") != "textDocument/publishDiagnostics") continue;
+      auto& lines = all[message["params"]["uri"]];
+      lines.clear();
+      for (const Json& d : message["params"]["diagnostics"])
+        lines.push_back(d["range"]["start"]["line"].dump() + ": " +
+                        d["message"].get<std::string>());
+    }
+    return all;
+  }
+
+  std::string on_disk = kDriver;
+  std::vector<Json> sent;
+  Server server{
+      "1.0",
+      [this](const Json& message) { sent.push_back(message); },
+      {[this](const std::string& file, const std::string& from) -> Expected<Source> {
+         EXPECT_EQ(from, "/robot.rules");
+         if (file != "packs/driver.rules") return Error{"there is no '" + file + "'"};
+         return Source("/packs/driver.rules", on_disk);
+       },
+       [](const std::string&) { return std::vector<std::string>{"packs/driver.rules"}; }}};
+};
+
+constexpr const char* kUses =
+    "INCLUDE \"packs/driver.rules\"\n"
+    "COMPONENT lidar NODE /lidar LAUNCH \"lidar\"\n"
+    "USE driver(lidar, /scan)\n"
+    "INTERLOCK charge > 0.1\n";
+
+TEST(LspReuse, FindsNothingWrongWithWhatFits) {
+  ReuseSession editor(kUses);
+  EXPECT_EQ(editor.said()[kUri], std::vector<std::string>());
+}
+
+TEST(LspReuse, SaysWhereAnArgumentGoes) {
+  ReuseSession editor(
+      "INCLUDE \"packs/driver.rules\"\nCOMPONENT lidar LAUNCH \"l\"\n"
+      "USE driver(lidra, /scan)\n");
+  const auto said = editor.said()[kUri];
+  ASSERT_FALSE(said.empty());
+  EXPECT_THAT(said, Contains(AllOf(HasSubstr("2: component 'lidra' is not declared"),
+                                   HasSubstr("it goes in here: /packs/driver.rules:8"))));
+}
+
+TEST(LspReuse, ShowsMistakesInTheFileThatHasThem) {
+  ReuseSession editor(kUses);
+  editor.open(kDriverUri, "SIGNAL charge TOPIC /battery\n");
+  EXPECT_THAT(editor.said()[kDriverUri], ElementsAre(HasSubstr("0: expected FIELD")));
+  EXPECT_THAT(editor.said()[kUri], Contains(HasSubstr("0: /packs/driver.rules:1: expected FIELD")));
+  // What is open counts, not the disk; once it is mended there, all is well.
+  editor.open(kDriverUri, kDriver);
+  EXPECT_TRUE(editor.said()[kDriverUri].empty());
+  EXPECT_TRUE(editor.said()[kUri].empty());
+}
+
+TEST(LspReuse, GoesToDefinitionsInOtherFiles) {
+  ReuseSession editor(kUses);
+  EXPECT_EQ(editor.ask("definition", 0, 12)["uri"], kDriverUri);
+  const Json pattern = editor.ask("definition", 2, 6);
+  EXPECT_EQ(pattern["uri"], kDriverUri);
+  EXPECT_EQ(pattern["range"]["start"]["line"], 1);
+  const Json charge = editor.ask("definition", 3, 12);
+  EXPECT_EQ(charge["uri"], kDriverUri);
+  EXPECT_EQ(charge["range"]["start"]["line"], 9);
+}
+
+TEST(LspReuse, TellsWhatATemplateIs) {
+  ReuseSession editor(kUses);
+  const std::string text = editor.ask("hover", 2, 6)["contents"]["value"];
+  EXPECT_THAT(text, HasSubstr("USE driver(name, topic)"));
+  EXPECT_THAT(text, HasSubstr("A driver that falls silent is started again."));
+  EXPECT_THAT(editor.ask("hover", 3, 12)["contents"]["value"].get<std::string>(),
+              AllOf(HasSubstr("SIGNAL charge TOPIC"), HasSubstr("/packs/driver.rules")));
+}
+
+std::vector<std::string> labels_of(const Json& items) {
+  std::vector<std::string> labels;
+  for (const Json& item : items) labels.push_back(item["label"]);
+  return labels;
+}
+
+TEST(LspReuse, ProposesFilesTemplatesAndParameters) {
+  ReuseSession editor(std::string(kUses) +
+                      "INCLUDE \nUSE \nTEMPLATE t(node)\n  COMPONENT c NODE \n"
+                      "END\n");
+  EXPECT_THAT(labels_of(editor.ask("completion", 4, 8)), Contains("\"packs/driver.rules\""));
+  editor.open(kUri, std::string(kUses) + "TEMPLATE t(node)\n  COMPONENT c NODE \nEND\nUSE \n");
+  EXPECT_THAT(labels_of(editor.ask("completion", 5, 19)), Contains("{node}"));
+  editor.open(kUri, std::string(kUses) + "USE d");
+  EXPECT_THAT(labels_of(editor.ask("completion", 4, 5)), Contains("driver"));
+}
+
+TEST(LspReuse, RenamesAParameterWithItsUses) {
+  ReuseSession editor("TEMPLATE t(node)\n  COMPONENT c NODE /{node}/x\nEND\nUSE t(a)\n");
+  editor.server.handle({{"id", 1},
+                        {"method", "textDocument/rename"},
+                        {"params",
+                         {{"textDocument", {{"uri", kUri}}},
+                          {"position", {{"line", 1u}, {"character", 22u}}},
+                          {"newName", "where"}}}});
+  EXPECT_EQ(editor.sent.back()["result"]["changes"][kUri].size(), 2u) << editor.sent.back();
 }
 
 TEST(LspMessages, RefuseWhatIsNone) {

@@ -1,5 +1,7 @@
 #include "replay/replay.h"
 
+#include <map>
+
 #include "journal/history.h"
 #include "journal/known_robot.h"
 #include "journal/recorder.h"
@@ -25,12 +27,61 @@ Expected<std::vector<std::string>> said_after(const journal::Reader& journal, st
   return said;
 }
 
+// What was observed before the part of a run that is looked at, as if all of it were seen at its beginning. Of what is
+// read again and again the last counts; messages of topics, and what was asked and answered, are over.
+class Prelude {
+ public:
+  void add(std::span<const Observation> observations) {
+    for (const Observation& each : observations) {
+      if (const auto thing = read_of(each)) {
+        read_[{each.what.index(), *thing}] = each;
+      } else if (lasts(each)) {
+        lasting_.push_back(each);
+      }
+    }
+  }
+  std::vector<Observation> as_of(Time begin) const {
+    std::vector<Observation> all = lasting_;
+    for (const auto& [thing, each] : read_) all.push_back(each);
+    for (Observation& each : all) each.at = begin;
+    return all;
+  }
+
+ private:
+  // Whose reading it is, by its number.
+  static std::optional<std::size_t> read_of(const Observation& observation) {
+    if (const auto* signal = std::get_if<SignalRead>(&observation.what))
+      return signal->signal.index;
+    if (const auto* status = std::get_if<DiagnosticRead>(&observation.what))
+      return status->diagnostic.index;
+    if (const auto* parameter = std::get_if<ParameterRead>(&observation.what))
+      return parameter->parameter.index;
+    if (const auto* lifecycle = std::get_if<LifecycleRead>(&observation.what))
+      return lifecycle->component.index;
+    return std::nullopt;
+  }
+  static bool lasts(const Observation& observation) {
+    const auto& what = observation.what;
+    return !std::holds_alternative<SampleArrived>(what) && !std::holds_alternative<Probed>(what) &&
+           !std::holds_alternative<ProcessWorked>(what) &&
+           !std::holds_alternative<Overslept>(what) && !std::holds_alternative<LinkTrouble>(what);
+  }
+
+  std::vector<Observation> lasting_;
+  std::map<std::pair<std::size_t, std::size_t>, Observation> read_;
+};
+
 }  // namespace
 
-void restore(Manager& manager, const journal::Learned& learned, const RuleSet& rules) {
+void restore(Manager& manager, const journal::Learned& learned, const RuleSet& rules,
+             Priors priors) {
   for (const journal::LearnedBelief& each : learned.beliefs) {
     const auto id = journal::find_strategy(rules, each.rule, each.strategy);
     if (!id) continue;
+    if (priors == Priors::kAsLearned) {
+      manager.set_belief(*id, each.belief, each.prior);
+      continue;
+    }
     const Belief prior = initial_belief(rules[*id].success, rules[*id].confidence);
     manager.set_belief(*id, journal::grown_from(prior, each));
   }
@@ -51,7 +102,8 @@ std::unique_ptr<Manager> manager_for(const journal::Session& session, const Rule
   options.discovery = session.discovery;
   options.forgetting = session.forgetting;
   auto manager = std::make_unique<Manager>(rules, std::move(planner), options);
-  restore(*manager, session.learned, rules);
+  restore(*manager, session.learned, rules,
+          session.fleet_context ? Priors::kAsLearned : Priors::kOfRules);
   manager->remember(journal::history_from_json(session.past, rules));
   manager->remember(journal::known_robot_from_json(session.known_robot));
   if (!session.interrupted.is_array()) return manager;
@@ -106,17 +158,31 @@ Expected<Repetition> repeat(Recording& recording, const journal::Reader& journal
 
 Expected<std::vector<std::string>> advise(Recording& recording, const RuleSet& rules,
                                           std::unique_ptr<const Planner> planner,
-                                          const EventSink& sink) {
+                                          const EventSink& sink, Stretch stretch) {
   if (const auto ready = recording.rewind(); !ready) return Error{ready.error()};
-  const auto manager =
-      manager_for(recording.session(), rules, std::move(planner), {Autonomy::kAdvise, {}});
   const Translation translate(recording.rules(), rules);
+  journal::Session session = recording.session();
+  journal::Step step;
+  Prelude prelude;
+  auto more = recording.next(step);
+  for (; more && *more && step.now < stretch.from; more = recording.next(step))
+    prelude.add(step.observations);
+  const bool is_whole = session.start >= stretch.from;
+  if (!is_whole) session.start = stretch.from;
+  const auto manager = manager_for(session, rules, std::move(planner), {Autonomy::kAdvise, {}});
   const auto tell = [&] {
     for (const Event& event : manager->events()) sink(event, rules);
   };
-  journal::Step step;
   std::vector<Observation> observations;
-  auto more = recording.next(step);
+  const auto step_with = [&](Time now, std::span<const Observation> recorded) {
+    observations.clear();
+    for (const Observation& observation : recorded) {
+      if (auto translated = translate(observation)) observations.push_back(std::move(*translated));
+    }
+    manager->step(now, observations);
+    tell();
+  };
+  if (!is_whole) step_with(stretch.from, prelude.as_of(stretch.from));
   for (; more && *more; more = recording.next(step)) {
     // Other rules have other deadlines. A damaged clock may leap over millions of them.
     constexpr int kMostDeadlines = 100'000;
@@ -127,12 +193,8 @@ Expected<std::vector<std::string>> advise(Recording& recording, const RuleSet& r
       manager->step(manager->next_deadline(), {});
       tell();
     }
-    observations.clear();
-    for (const Observation& observation : step.observations) {
-      if (auto translated = translate(observation)) observations.push_back(std::move(*translated));
-    }
-    manager->step(step.now, observations);
-    tell();
+    step_with(step.now, step.observations);
+    if (stretch.newest != nullptr) *stretch.newest = step.now;
   }
   if (!more) return Error{more.error()};
   return translate.missing();

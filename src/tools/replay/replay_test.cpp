@@ -12,6 +12,7 @@
 #include "journal/recorder.h"
 #include "journal/verify.h"
 #include "manager/test_robot.h"
+#include "replay/hindsight.h"
 
 namespace culprit::replay {
 namespace {
@@ -189,6 +190,86 @@ TEST(Recorder, LosesNothingWhileTheJournalCannotBeWritten) {
   }
   EXPECT_FALSE(repeated(path).difference);
   EXPECT_THAT(troubles, testing::Contains("the journal is written again"));
+}
+
+// ---- what rules would have seen in the last while
+
+constexpr const char* kPatientRules = R"(
+COMPONENT camera NODE /camera
+COMPONENT lidar NODE /lidar
+RULE CameraSilentForLong
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 2s
+    STRATEGY restart 50 10
+      ADAPTATION camera restart 3
+RULE LidarSilent
+  POLICIES ERROR
+  TRIGGER age(/scan) > 2s
+    STRATEGY restart 50 10
+      ADAPTATION lidar restart 3
+)";
+
+Hindsight in_hindsight(const std::filesystem::path& path, const RuleSet* rules, Duration since) {
+  const journal::Reader reader = value_of(journal::Reader::open(path));
+  const auto planner = [](const journal::Session&) -> Expected<std::unique_ptr<const Planner>> {
+    return std::unique_ptr<const Planner>(std::make_unique<BayesPlanner>());
+  };
+  return value_of(hindsight(reader, rules, planner, kWall + since.count()));
+}
+
+std::vector<std::string> words(const std::vector<Said>& all) {
+  constexpr const char* kWhat[] = {" detected", " gone", ": "};
+  std::vector<std::string> words;
+  for (const Said& each : all)
+    words.push_back(each.rule + kWhat[static_cast<int>(each.what)] + each.strategy);
+  return words;
+}
+
+// The camera is silent from 7 s to 12 s, fusion is killed at 30 s.
+struct AnHour : testing::Test {
+  AnHour() {
+    record(folder / "a.journal", [](TestRobot& robot) {
+      robot.run_for(7s - (robot.now - Time()));
+      robot["camera"].fault = "restart";
+      robot.run_for(23s);
+      robot.kill("fusion");
+      robot.run_for(10s);
+    });
+  }
+  const TestFolder folder;
+};
+
+TEST_F(AnHour, IsSeenByItsOwnRulesAsItWas) {
+  const Hindsight whole = in_hindsight(folder / "a.journal", nullptr, 0s);
+  EXPECT_THAT(words(whole.said),
+              testing::IsSupersetOf({"CameraSilent detected", "CameraSilent: restart",
+                                     "CameraSilent gone", "FusionSilent detected"}));
+  EXPECT_THAT(whole.missing, testing::IsEmpty());
+  EXPECT_NEAR(whole.until - whole.since, 40, 3);
+  // From the middle on: the node of the camera appeared long before.
+  const Hindsight end = in_hindsight(folder / "a.journal", nullptr, 20s);
+  EXPECT_THAT(words(end.said), testing::Contains("FusionSilent detected"));
+  EXPECT_THAT(words(end.said), testing::Not(testing::Contains(HasSubstr("CameraSilent"))));
+  EXPECT_NEAR(end.since, 1'800'000'020.0, 0.5);
+  for (const Said& each : end.said) EXPECT_GE(each.wall, end.since);
+}
+
+TEST_F(AnHour, IsSeenOtherwiseByOthers) {
+  const RuleSet patient = *check(Source("patient", kPatientRules)).rules;
+  const Hindsight whole = in_hindsight(folder / "a.journal", &patient, 0s);
+  EXPECT_THAT(words(whole.said), testing::Each(testing::Not(HasSubstr("CameraSilent detected"))));
+  EXPECT_THAT(whole.missing, testing::ElementsAre("topic /scan"));
+}
+
+TEST(Hindsight, SaysThatNothingIsRecorded) {
+  const TestFolder folder;
+  { const auto writer = value_of(journal::Writer::open(folder / "empty.journal", {})); }
+  const journal::Reader reader = value_of(journal::Reader::open(folder / "empty.journal"));
+  const auto found = hindsight(
+      reader, nullptr,
+      [](const journal::Session&) { return Expected<std::unique_ptr<const Planner>>(nullptr); }, 0);
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error(), HasSubstr("nothing is recorded"));
 }
 
 }  // namespace

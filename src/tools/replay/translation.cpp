@@ -11,6 +11,9 @@ struct Namer {
   std::string operator()(const Signal& signal) const { return signal.name; }
   std::string operator()(const StatusLevel& status) const { return status.name; }
   std::string operator()(const Component& component) const { return component.name; }
+  std::string operator()(const Strategy& strategy) const {
+    return rules[strategy.rule].name + " " + strategy.name;
+  }
   std::string operator()(const Parameter& parameter) const {
     return rules[parameter.component].name + " " + parameter.name;
   }
@@ -49,6 +52,9 @@ Translation::Translation(const RuleSet& from, const RuleSet& to) {
   std::vector<std::string> new_components;  // the graph tells of them by name
   components_ =
       match<ComponentId>(from.components, ours, to.components, theirs, "component", new_components);
+  std::vector<std::string> new_strategies;  // nothing of the recording is missing for them
+  strategies_ =
+      match<StrategyId>(from.strategies, ours, to.strategies, theirs, "strategy", new_strategies);
 }
 
 std::optional<Observation> Translation::operator()(const Observation& observation) const {
@@ -71,6 +77,8 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     is_known = renumber(lifecycle->component, components_);
   } else if (auto* process = std::get_if<ProcessSeen>(&out.what)) {
     is_known = renumber(process->component, components_);
+  } else if (auto* launcher = std::get_if<LauncherSeen>(&out.what)) {
+    is_known = renumber(launcher->component, components_);
   } else if (auto* worked = std::get_if<ProcessWorked>(&out.what)) {
     is_known = renumber(worked->component, components_);
   } else if (auto* reached = std::get_if<HostReached>(&out.what)) {
@@ -80,6 +88,8 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     std::erase_if(ends->others, [&](ComponentId& each) { return !renumber(each, components_); });
   } else if (auto* probed = std::get_if<Probed>(&out.what)) {
     is_known = renumber(probed->component, components_);
+  } else if (auto* told = std::get_if<PriorsTold>(&out.what)) {
+    std::erase_if(told->priors, [&](auto& each) { return !renumber(each.strategy, strategies_); });
   } else if (std::holds_alternative<Reply>(out.what) || std::holds_alternative<Order>(out.what)) {
     is_known = false;
   }

@@ -30,6 +30,7 @@ class Translation {
   Map<DiagnosticId> diagnostics_;
   Map<ParameterId> parameters_;
   Map<ComponentId> components_;
+  Map<StrategyId> strategies_;
   std::vector<std::string> missing_;
 };
 

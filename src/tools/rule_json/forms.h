@@ -24,6 +24,8 @@ enum class Part : std::uint8_t {
   kExpression,  // a string
   kHold,        // n/k: an array of two numbers
   kRange,       // low..high: an array of two numbers
+  kParameters,  // (a, b = 1): an array of strings, and of {"name", "usual"}
+  kArguments,   // (a, b): an array of names
   kFlag         // nothing but the word: true
 };
 

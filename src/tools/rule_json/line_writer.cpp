@@ -33,6 +33,10 @@ const char* describe(Part part) {
       return "two whole numbers: [3, 5] for 3 of the last 5";
     case Part::kRange:
       return "two numbers: [low, high]";
+    case Part::kParameters:
+      return "an array of names, or of objects with a \"name\" and its \"usual\" value";
+    case Part::kArguments:
+      return "an array of names, numbers as texts, and quoted texts";
     case Part::kFlag:
       return "true or false";
   }
@@ -78,6 +82,18 @@ Words names_words(const Json& value) {
   return all;
 }
 
+// "(a, b)"; nothing in between is no parentheses either.
+Words list_words(const Json& value, Words (*part)(const Json&)) {
+  if (!value.is_array()) return std::nullopt;
+  std::string all;
+  for (const Json& each : value) {
+    const Words words = part(each);
+    if (!words) return std::nullopt;
+    all += (all.empty() ? "(" : ", ") + *words;
+  }
+  return all.empty() ? all : all + ")";
+}
+
 Words text_words(const Json& value) {
   if (!value.is_string()) return std::nullopt;
   const auto& text = value.get_ref<const std::string&>();
@@ -89,6 +105,14 @@ Words string_words(const Json& value, bool (*is_good)(std::string_view)) {
   if (!value.is_string()) return std::nullopt;
   const auto& text = value.get_ref<const std::string&>();
   return is_good(text) ? Words(text) : std::nullopt;
+}
+
+Words parameter_words(const Json& value) {
+  if (!value.is_object()) return string_words(value, is_word);
+  if (value.size() != 2 || !value.contains("name") || !value.contains("usual")) return std::nullopt;
+  const Words name = string_words(value["name"], is_word);
+  const Words usual = name_words(value["usual"]);
+  return name && usual ? Words(*name + " = " + *usual) : std::nullopt;
 }
 
 Words words(Part part, const Json& value) {
@@ -114,6 +138,10 @@ Words words(Part part, const Json& value) {
       return pair_words(value, number_words, "/");
     case Part::kRange:
       return pair_words(value, signed_words, " .. ");  // apart, for "0." and ".5"
+    case Part::kParameters:
+      return list_words(value, parameter_words);
+    case Part::kArguments:
+      return list_words(value, name_words);
     case Part::kFlag:
       return value == true ? Words("") : std::nullopt;
   }
@@ -126,7 +154,7 @@ std::optional<Diagnostic> mistake_in(const std::string& text) {
     return Diagnostic{Code::kSyntax, Severity::kError, {}, "an expression is one line", ""};
   std::vector<Diagnostic> diagnostics;
   const auto end = static_cast<std::uint32_t>(text.size());
-  Scanner scanner(text, {0, end});
+  Scanner scanner(text, {0, end}, nullptr, Holes::kAllowed);
   const auto expression = parse_expression(scanner, diagnostics);
   if (!expression) return diagnostics.front();
   if (expression->span.end == end) return std::nullopt;

@@ -11,9 +11,11 @@ Span whole(std::string_view text) { return {0, static_cast<std::uint32_t>(text.s
 
 bool is_one_line(std::string_view text) { return text.find('\n') == std::string_view::npos; }
 
+// A template's parameter may be any; whether it stands in one is seen once all lines are there.
 bool is_token(std::string_view text, Token::Kind kind) {
-  const Token token = Scanner(text, whole(text)).next();
-  return is_one_line(text) && token.kind == kind && token.span == whole(text);
+  const Token token = Scanner(text, whole(text), nullptr, Holes::kAllowed).next();
+  const bool is_kind = token.kind == kind || (token.has_hole && kind != Token::Kind::kString);
+  return is_one_line(text) && is_kind && token.span == whole(text);
 }
 
 syntax::Name read_name(std::string_view text) { return Scanner(text, whole(text)).next_name(); }

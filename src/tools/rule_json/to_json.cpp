@@ -95,10 +95,40 @@ class StatementReader {
         take();  // the / or the ..
         return Json::array({std::move(first), signed_number()});
       }
+      case Part::kParameters:
+        return parameters();
+      case Part::kArguments: {
+        Json arguments = Json::array();
+        for_each_in_parentheses([&] { arguments.push_back(name_to_json(take())); });
+        return arguments;
+      }
       case Part::kFlag:
         return true;
     }
     return {};
+  }
+
+  // Nothing, if there are no parentheses.
+  template <class TakeOne>
+  void for_each_in_parentheses(TakeOne take_one) {
+    if (next_ == lexemes_.size() || lexemes_[next_].kind != Lexeme::Kind::kSymbol) return;
+    take();
+    while (text(next_) != ")" || lexemes_[next_].kind != Lexeme::Kind::kSymbol) {
+      take_one();
+      if (text(next_) == ",") take();
+    }
+    take();
+  }
+
+  Json parameters() {
+    Json all = Json::array();
+    for_each_in_parentheses([&] {
+      Json name = take();
+      if (text(next_) != "=") return all.push_back(std::move(name));
+      take();
+      all.push_back({{"name", std::move(name)}, {"usual", name_to_json(take())}});
+    });
+    return all;
   }
 
   Json signed_number() {
@@ -158,9 +188,7 @@ Expected<Json> to_json(const Source& source, Colour colour) {
   std::vector<Lexeme> lexemes;
   parse(source, diagnostics, &lexemes);
   if (!diagnostics.empty()) {
-    Error error;
-    for (const Diagnostic& d : diagnostics) error.message += render(d, source, colour);
-    return error;
+    return Error{render(diagnostics, source, colour)};
   }
   if (const std::uint32_t line = first_line_that_is_not_utf8(source); line != 0) {
     return Error{

@@ -4,16 +4,10 @@
 #include <filesystem>
 
 #include "language/checker.h"
+#include "rule_files/rule_files.h"
 
 namespace culprit::rule_test {
 namespace {
-
-std::string rendered(const std::vector<Diagnostic>& diagnostics, const Source& source,
-                     Colour colour) {
-  std::string out;
-  for (const Diagnostic& d : diagnostics) out += render(d, source, colour);
-  return out;
-}
 
 struct Part {
   std::string rules_path;
@@ -24,17 +18,17 @@ struct Part {
 // The tests as they are read for one rule file. Nothing if there are errors.
 std::optional<Part> read_part(const Source& source, const std::string& rules_path, Colour colour,
                               std::string& complaints) {
-  const auto rules_source = Source::read(rules_path);
-  if (!rules_source) {
-    complaints += source.name() + ": " + rules_source.error() + "\n";
+  const auto rules = rule_files::read(rules_path);
+  if (!rules) {
+    complaints += source.name() + ": " + rules.error() + "\n";
     return std::nullopt;
   }
-  Checked checked = check(*rules_source);
-  complaints += rendered(checked.diagnostics, *rules_source, colour);
+  Checked checked = check(*rules);
+  complaints += render(checked.diagnostics, rules->source, colour);
   if (!checked.rules) return std::nullopt;
   std::vector<Diagnostic> diagnostics;
   Suite suite = read_suite(source, *checked.rules, diagnostics);
-  complaints += rendered(diagnostics, source, colour);
+  complaints += render(diagnostics, source, colour);
   if (!diagnostics.empty()) return std::nullopt;
   return Part{rules_path, std::move(*checked.rules), std::move(suite)};
 }
@@ -65,7 +59,7 @@ FileRun run_file(const std::string& path, const std::string& filter, const Plann
   }
   std::vector<Diagnostic> diagnostics;
   const std::vector<syntax::Name> files = rule_files(*source, diagnostics);
-  run.complaints = rendered(diagnostics, *source, colour);
+  run.complaints = render(diagnostics, *source, colour);
   if (!diagnostics.empty()) return run;
 
   std::vector<Part> parts;

@@ -11,17 +11,17 @@ namespace {
 TEST(Report, SaysWhatWasExpectedAndWhatHappenedInstead) {
   const Played played = play("AT 2s camera KILLED\nRUN 5s\nEXPECT CameraDead RESOLVED BY 2.3s\n");
   EXPECT_EQ(played.text(), R"(  FAILED  t (5 s)
-    x.test:9: EXPECT CameraDead RESOLVED BY 2.3s: it happened later, at 2.760 s
+    x.test:9: EXPECT CameraDead RESOLVED BY 2.3s: it happened later, at 2.520 s
     what happened:
        2.000  camera is lost: killed by signal 9
-       2.250  CameraDead detected (ERROR)
+       2.010  CameraDead detected (ERROR): camera is known dead, killed by signal 9
+       2.010  camera is held responsible for CameraDead: redeploy camera (camera_redeploy, cost 1.10)
        2.250  FusionDead detected (ERROR)
-       2.250  camera is held responsible for CameraDead and FusionDead: redeploy camera (camera_redeploy, cost 1.10)
        2.250  FusionDead waits: it depends on camera, which may be the cause (CameraDead)
-       2.560  camera is there (process 103)
-       2.565  redeploy camera: done
-       2.760  CameraDead resolved by camera_redeploy after 0.51 s
-       2.760  FusionDead went away without a strategy of its own after 0.51 s
+       2.320  camera is there (process 103)
+       2.325  redeploy camera: done
+       2.520  CameraDead resolved by camera_redeploy after 0.51 s
+       2.520  FusionDead went away without a strategy of its own after 0.27 s
 )");
 }
 

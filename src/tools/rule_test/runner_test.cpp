@@ -18,6 +18,7 @@ using testing::IsEmpty;
 // ---- each kind of expectation can be met, and can fail
 
 constexpr const char* kCameraKilled = "AT 2s camera KILLED\nRUN 10s\n";
+constexpr const char* kCameraHung = "AT 2s camera HUNG\nRUN 10s\n";
 constexpr const char* kCameraSick =
     "TOPIC /rgb 2s: silent\nADAPTATION camera redeploy HEALS /rgb\nRUN 10s\n";
 constexpr const char* kCameraLost = "TOPIC /rgb 2s: silent\nRUN 10min\n";
@@ -47,11 +48,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Case{kCameraKilled, "CameraDead DETECTED BY 2.5s", "Blurred DETECTED", "did not happen"},
         Case{kCameraKilled, "CameraDead DETECTED AFTER 2s", "CameraDead DETECTED BY 1s",
-             "happened later, at 2.250 s"},
+             "happened later, at 2.010 s"},
         Case{kCameraKilled, "NOT Blurred DETECTED", "NOT CameraDead DETECTED",
-             "it happened at 2.250 s"},
+             "it happened at 2.010 s"},
         Case{kCameraKilled, "NOT CameraDead DETECTED BY 2s", "CameraDead DETECTED AFTER 5s",
-             "too early, at 2.250 s"},
+             "too early, at 2.010 s"},
         Case{kCameraKilled, "CameraDead RESOLVED", "CameraDead RESOLVED BY 2.3s", "happened later"},
         Case{kCameraKilled, "CameraDead RESOLVED WITH camera_redeploy",
              "CameraDead RESOLVED WITH camera_restart", "did not happen"},
@@ -65,12 +66,12 @@ INSTANTIATE_TEST_SUITE_P(
              "did not happen"},
         Case{kCameraSick, "camera_restart FAILED", "camera_redeploy FAILED", "did not happen"},
         Case{kCameraKilled, "camera BLAMED", "fusion BLAMED", "did not happen"},
-        Case{kCameraKilled, "camera BLAMED FOR FusionDead", "camera BLAMED FOR Blurred",
+        Case{kCameraHung, "camera BLAMED FOR FusionDead", "camera BLAMED FOR Blurred",
              "did not happen"},
         Case{kCameraKilled, "NO STRATEGY OF fusion", "NO STRATEGY OF camera", "happened at"},
         Case{kCameraKilled, "NO STRATEGY FOR FusionDead", "NO STRATEGY FOR CameraDead",
              "happened at"},
-        Case{kCameraKilled, "NO STRATEGY BY 2s", "NO STRATEGY", "happened at 2.250 s"},
+        Case{kCameraKilled, "NO STRATEGY BY 2s", "NO STRATEGY", "happened at 2.010 s"},
         Case{kCameraKilled, "camera_restart EXCLUDED BECAUSE invalid ON camera",
              "camera_restart EXCLUDED BECAUSE tried",
              "what was said of it: camera_restart makes no sense now: camera is not alive"},
@@ -116,7 +117,7 @@ TEST(ScriptedRobot, RefusesWhatItIsToldToRefuse) {
 TEST(ScriptedRobot, TakesItsTime) {
   const Played played = play(
       "AT 2s camera KILLED\nADAPTATION camera redeploy TAKES 4s\nRUN 10s\n"
-      "EXPECT camera_redeploy EXECUTED AFTER 6.2s BY 6.5s\n");
+      "EXPECT camera_redeploy EXECUTED AFTER 6s BY 6.3s\n");
   EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
@@ -144,8 +145,8 @@ TEST(ScriptedRobot, IsNotAliveWhileItHangsThoughItPublishesNothing) {
 
 TEST(ScriptedRobot, LeavesAComponentOutThatIsAbsentAndNobodyStartsIt) {
   const Played played = play(
-      "COMPONENT camera STATE absent\nRUN 20s\nEXPECT NOT CameraDead DETECTED BY 4s\n"
-      "EXPECT camera_redeploy EXCLUDED BECAUSE withheld\nEXPECT NOT CameraDead RESOLVED\n");
+      "COMPONENT camera STATE absent\nRUN 20s\nEXPECT NOT CameraDead DETECTED\n"
+      "EXPECT NO STRATEGY OF camera\n");
   EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
@@ -196,7 +197,7 @@ TEST(Runner, KeepsWithinTheBudgetOfAComponentWhateverFails) {
       "COMPONENT lidar NODE /lidar LAUNCH \"lidar\"\n"
       "RULE Stuck\n  POLICIES ERROR ATTEMPTS 1000\n  TRIGGER stuck > 0.5\n"
       "    STRATEGY again 50 10\n      ADAPTATION lidar restart 1\n"
-      "    STRATEGY anew 50 10\n      ADAPTATION lidar redeploy 1\n"
+      "    STRATEGY anew 50 10\n      ADAPTATION lidar redeploy 2\n"
       "RULE Rough\n  POLICIES WARNING ATTEMPTS 1000\n  TRIGGER rough > 0.5\n"
       "    STRATEGY smooth 50 10\n      ADAPTATION lidar set_parameter smooth true 1\n";
   const Played played =

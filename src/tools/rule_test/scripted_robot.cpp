@@ -71,18 +71,17 @@ void ScriptedRobot::build_components(const Scenario& scenario) {
     component.process = component.is_in_graph ? ProcessState::kRunning : ProcessState::kGone;
     component.state = component.state_at_start = state.lifecycle;
   }
-  for (const Need& need : scenario.needs)
-    components_[need.consumer.index].needs.push_back(need.producer);
-  for (std::size_t c = 0; c < components_.size(); ++c) appear(ComponentId(c));
   for (const Endpoint& endpoint : scenario.endpoints)
-    tell(
-        EndpointAppeared{components_[endpoint.component.index].node, endpoint.kind, endpoint.name});
+    components_[endpoint.component.index].endpoints.emplace_back(endpoint.kind, endpoint.name);
   for (const Need& need : scenario.needs) {
-    const std::string& producer = components_[need.producer.index].node;
-    const std::string service = producer + "/needed";
-    tell(EndpointAppeared{producer, EndpointKind::kServer, service});
-    tell(EndpointAppeared{components_[need.consumer.index].node, EndpointKind::kClient, service});
+    Component& producer = components_[need.producer.index];
+    Component& consumer = components_[need.consumer.index];
+    consumer.needs.push_back(need.producer);
+    const std::string service = producer.node + "/needed";
+    producer.endpoints.emplace_back(EndpointKind::kServer, service);
+    consumer.endpoints.emplace_back(EndpointKind::kClient, service);
   }
+  for (std::size_t c = 0; c < components_.size(); ++c) appear(ComponentId(c));
 }
 
 // Courses of one subject, in the file's shared part and in the test, make one voice.
@@ -135,13 +134,15 @@ KnownRobot ScriptedRobot::declared() const {
     if (!is_absent(ComponentId(c)))
       known.parts.push_back({rules_.components[c].name, components_[c].node, {}});
   }
-  for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
-    const auto voice = std::find_if(voices_.begin(), voices_.end(), [&](const Voice& v) {
-      return v.subject == Subject(TopicId(t));
-    });
-    const bool has_tellers = voice != voices_.end() && !voice->tellers.empty();
-    if (!has_tellers || !std::all_of(voice->tellers.begin(), voice->tellers.end(), is_absent))
-      known.topics.push_back(rules_.topics[t].name);
+  for (const Topic& topic : rules_.topics) {
+    const std::pair publisher(EndpointKind::kPublisher, topic.name);
+    const auto publishes = [&](const Component& c) {
+      return std::ranges::find(c.endpoints, publisher) != c.endpoints.end();
+    };
+    const bool has_publisher = std::ranges::any_of(components_, publishes);
+    const bool is_there = std::ranges::any_of(
+        components_, [&](const Component& c) { return c.is_in_graph && publishes(c); });
+    if (is_there || !has_publisher) known.topics.push_back(topic.name);
   }
   return known;
 }
@@ -238,6 +239,8 @@ void ScriptedRobot::appear(ComponentId id) {
   if (!component.is_in_graph) return;
   tell(ProcessSeen{id, ProcessState::kRunning, component.pid, ""});
   tell(NodeAppeared{component.node, component.pid});
+  for (const auto& [kind, name] : component.endpoints)
+    tell(EndpointAppeared{component.node, kind, name});
   if (component.state != Lifecycle::kUnknown) tell(LifecycleRead{id, component.state});
 }
 
@@ -249,12 +252,13 @@ void ScriptedRobot::incident(const Incident& incident) {
     case Incident::Kind::kKilled:
       component.end();
       component.is_in_graph = false;
-      tell(ProcessSeen{incident.component, ProcessState::kGone, component.pid,
-                       "killed by signal 9"});
+      tell(ProcessSeen{incident.component, ProcessState::kGone, component.pid, "killed by signal 9",
+                       Cause::kFault});
       break;
     case Incident::Kind::kStopped:
       component.process = ProcessState::kStopped;
-      tell(ProcessSeen{incident.component, ProcessState::kStopped, component.pid, ""});
+      tell(ProcessSeen{incident.component, ProcessState::kStopped, component.pid, "",
+                       Cause::kFault});
       break;
     case Incident::Kind::kHung:
       component.answers = false;
@@ -380,7 +384,8 @@ void ScriptedRobot::tell_change(const Command& command) {
 
 void ScriptedRobot::stop(const Command& command) {
   Component& c = components_[command.component.index];
-  if (c.end()) tell(ProcessSeen{command.component, ProcessState::kGone, c.pid, "stopped"});
+  if (c.end())
+    tell(ProcessSeen{command.component, ProcessState::kGone, c.pid, "stopped", Cause::kWish});
   c.is_in_graph = false;
   has_changed_ = true;
   reply(command, Outcome::kDone);

@@ -50,6 +50,7 @@ class ScriptedRobot : public Robot {
     std::string node;
     Lifecycle state_at_start = Lifecycle::kActive;
     std::optional<StrategyId> adapted_by;
+    std::vector<std::pair<EndpointKind, std::string>> endpoints{};
     std::vector<ComponentId> needs;
   };
   struct Voice {

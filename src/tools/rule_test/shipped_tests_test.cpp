@@ -1,11 +1,14 @@
 // The tests that ship with the rules: they are examples, and they hold.
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "language/checker.h"
 #include "plan/bayes/bayes_planner.h"
 #include "plan/paper_planner.h"
+#include "rule_files/rule_files.h"
 #include "rule_test/file_run.h"
 
 namespace culprit::rule_test {
@@ -18,7 +21,7 @@ class ShippedTests : public testing::TestWithParam<PlannerFactory> {};
 
 TEST_P(ShippedTests, AllHold) {
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator("rules/tests")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator("rules/tests")) {
     if (entry.path().extension() != ".test") continue;
     ++files;
     const FileRun run = run_file(entry.path().string(), "", GetParam(), Colour::kOff);
@@ -29,11 +32,39 @@ TEST_P(ShippedTests, AllHold) {
       for (const auto& test : suite.cases) EXPECT_EQ(test.failure, "") << entry.path();
     }
   }
-  EXPECT_GE(files, 2);
+  EXPECT_GE(files, 14);
 }
 
 INSTANTIATE_TEST_SUITE_P(WithEachPlanner, ShippedTests, testing::Values(paper, bayes),
                          [](const auto& test) { return test.index == 0 ? "paper" : "bayes"; });
+
+// Absent is not dead: whatever a pack is for, it does nothing to a robot that has nothing of it.
+TEST(Packs, DoNothingToARobotThatHasNothingOfThem) {
+  int packs = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("rules/tests/packs")) {
+    if (entry.path().extension() != ".rules") continue;
+    ++packs;
+    const auto rules = rule_files::read(entry.path().string());
+    const Checked checked = check(*rules);
+    ASSERT_TRUE(checked.rules) << render(checked.diagnostics, rules->source);
+    std::string text = "RULES " + std::filesystem::absolute(entry.path()).string() + "\n";
+    // What is absent never spoke; all else did before a test begins.
+    std::string publishes = " PUBLISHES";
+    for (const Topic& topic : checked.rules->topics) publishes += " " + topic.name;
+    if (checked.rules->topics.empty()) publishes.clear();
+    for (const Component& component : checked.rules->components)
+      text += "COMPONENT " + component.name + " STATE absent" + std::exchange(publishes, "") + "\n";
+    text += "TEST absent\n  RUN 3min\n  EXPECT NO STRATEGY\n";
+    for (const Rule& rule : checked.rules->rules)
+      text += "  EXPECT NOT " + rule.name + " DETECTED\n";
+    const auto path = std::filesystem::path(testing::TempDir()) / "absent_pack.test";
+    std::ofstream(path) << text;
+    const FileRun run = run_file(path.string(), "", bayes, Colour::kOff);
+    ASSERT_TRUE(run.is_usable) << run.complaints;
+    EXPECT_EQ(run.suites.at(0).cases.at(0).failure, "") << entry.path();
+  }
+  EXPECT_GE(packs, 12);
+}
 
 TEST(FileRun, TakesOnlyTestsThatTheFilterNames) {
   const FileRun run = run_file("rules/tests/sunset.test", "F3:", bayes, Colour::kOff);

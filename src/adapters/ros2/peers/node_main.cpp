@@ -1,15 +1,17 @@
 // A managed node in a process of its own, for tests to watch, steer and kill:
 //
 //     ros2_peer_node <domain> [--subnet] [--hangs-if FILE] [--container] [--keeps-if FILE]
-//                    <full name>...
+//                    [--active] <full name>...
 //
 // It is heard on this machine only, unless --subnet.
 //
 // If there is FILE when it is activated, it takes the file away and does nothing more.
 //
+// With --active the first configures and activates itself, as many drivers do.
+//
 // Each has the parameters gain (0..10), count (not negative), label and serial (read-only), the
-// service ~/trigger, ~/value at 10 Hz while it is active, and one status on /diagnostics each
-// second.
+// service ~/trigger, ~/value and ~/load, which is of a type of its own, at 10 Hz while it is active,
+// and one status on /diagnostics each second.
 //
 // Of several, or with --container, the first is a component container, and the others live in it. It
 // loads, unloads and lists as rclcpp_components' ComponentManager does: classes by the ament index of
@@ -41,6 +43,14 @@ namespace {
 using namespace culprit;
 using namespace culprit::ros2;
 using namespace std::chrono_literals;
+
+// That nobody knows who was not told.
+struct Load {
+  static constexpr std::string_view kType = "peer_msgs/msg/Load";
+  double share = 0;
+  std::int64_t jobs = 0;
+  static void visit(auto& self, auto& each) { each(self.share, self.jobs); }
+};
 
 class PeerNode {
  public:
@@ -80,6 +90,11 @@ class PeerNode {
 
   ros2::Node& node() { return managed_->node(); }
 
+  bool bring_up() {
+    return managed_->trigger(TransitionId::kConfigure) &&
+           managed_->trigger(TransitionId::kActivate);
+  }
+
  private:
   Expected<void> declare_parameters() {
     ParameterStore& parameters = managed_->node().parameters();
@@ -107,12 +122,16 @@ class PeerNode {
     auto value = managed_->node().create_publisher<msg::Float64>("~/value");
     if (!value) return TransitionResult::kError;
     value_.emplace(std::move(*value));
+    auto load = managed_->node().create_publisher<Load>("~/load");
+    if (!load) return TransitionResult::kError;
+    load_.emplace(std::move(*load));
     return TransitionResult::kSuccess;
   }
   TransitionResult activate() {
     if (std::filesystem::remove(hangs_if_)) std::this_thread::sleep_for(1h);
     tick_.emplace(executor_, 100ms, [this] {
       value_->publish({managed_->node().parameters().get<double>("gain") * ++ticks_});
+      load_->publish({0.5, ticks_});
     });
     return TransitionResult::kSuccess;
   }
@@ -123,6 +142,7 @@ class PeerNode {
   TransitionResult release() {
     tick_.reset();
     value_.reset();
+    load_.reset();
     return TransitionResult::kSuccess;
   }
 
@@ -145,6 +165,7 @@ class PeerNode {
   std::unique_ptr<ServiceServer> trigger_;
   std::optional<Publisher<msg::DiagnosticArray>> diagnostics_;
   std::optional<Publisher<msg::Float64>> value_;
+  std::optional<Publisher<Load>> load_;
   std::optional<Timer> diagnose_;
   std::optional<Timer> tick_;
 };
@@ -255,11 +276,14 @@ int main(int argc, char** argv) {
   std::string hangs_if;
   std::string keeps_if;
   bool is_container = false;
+  bool is_active = false;
   std::vector<NodeName> names;
   for (int i = 2; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--container") {
       is_container = true;
+    } else if (argument == "--active") {
+      is_active = true;
     } else if (argument == "--subnet") {
       options.reach = Reach::kSubnet;
     } else if (argument == "--hangs-if" && i + 1 < argc) {
@@ -277,6 +301,7 @@ int main(int argc, char** argv) {
   if (!context) return fail(context.error());
   PeerNode first(executor, hangs_if);
   if (auto opened = first.open(**context, names.front()); !opened) return fail(opened.error());
+  if (is_active && !first.bring_up()) return fail("cannot be brought up");
   std::optional<Container> container;
   if (is_container || names.size() > 1) {
     container.emplace(executor, **context, keeps_if);

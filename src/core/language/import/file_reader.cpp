@@ -92,6 +92,13 @@ bool FileReader::marker(const std::vector<Word>& words) {
 }
 
 bool FileReader::constant(const std::vector<Word>& words) {
+  const auto is_type = [](const std::string& word) {
+    return word == "bool" || word == "string" || word == "int" || word == "double";
+  };
+  if (words.size() == 2 && is_type(words[0].text)) {
+    file_.without_value.push_back({remarks(), words[0].text, words[1].text, {}, ""});
+    return true;
+  }
   if (words.size() != 3) {
     return fail({words.front().span.begin, words.back().span.end},
                 "a constant is three words: type, name and value",

@@ -72,7 +72,8 @@ struct Rule {
 struct File {
   std::string dialect;  // for people
   std::vector<Constant> constants;
-  bool last_constant_counts = false;  // of several with one name
+  std::vector<Constant> without_value;  // lines that declare a constant and give it no value
+  bool last_constant_counts = false;    // of several with one name
   std::vector<Rule> rules;
   std::vector<std::string> comments_at_end;
 };

@@ -128,6 +128,14 @@ class Writer {
       block.lines = {"CONST " + ours + " = " + literal_text(constant.value) +
                      behind(constant.remarks)};
     }
+    for (const Constant& constant : file_.without_value) {
+      Block& block = this->block(constant.remarks.line);
+      block.comments = constant.remarks.comments;
+      note(block, "'" + constant.type + " " + constant.name +
+                      "' has no value, so it is taken for a monitored one, unknown until it is "
+                      "first observed; if it is a constant, add CONST " +
+                      constant.name + " = and its value");
+    }
   }
 
   void components() {

@@ -57,11 +57,12 @@ bool may_be_broken(RuleId rule, const RuleSet& rules) {
 }  // namespace
 
 Failures::Failures(const Knowledge& knowledge, const Reach& reach, const FailurePaths& paths)
-    : knowledge_(knowledge),
-      rules_(by_name(knowledge)),
+    : rules_(by_name(knowledge)),
+      places_(knowledge.rules.rules.size(), kAbsent),
       causes_(rules_.size(), rules_.size()),
       circle_of_(rules_.size()) {
   const RuleSet& rules = knowledge.rules;
+  for (std::size_t i = 0; i < rules_.size(); ++i) places_[rules_[i].index] = i;
   BitRows touching(reach.size(), rules_.size());  // by place: which failures touch it
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     for (const ComponentId c : rules[rules_[i]].components) set(touching[reach.place_of(c)], i);
@@ -119,22 +120,9 @@ void Failures::find_circles(const BitRows& effects) {
   }
 }
 
-bool Failures::holds(RuleId rule) const {
-  const std::size_t i = place_of(rule);
-  return i < rules_.size() && rules_[i] == rule;
-}
-
 std::size_t Failures::index_of(RuleId rule) const {
   assert(holds(rule));
-  return place_of(rule);
-}
-
-// Where it is, or would be.
-std::size_t Failures::place_of(RuleId rule) const {
-  const auto found = std::lower_bound(rules_.begin(), rules_.end(), rule, [&](RuleId a, RuleId b) {
-    return knowledge_.rules[a].name < knowledge_.rules[b].name;
-  });
-  return static_cast<std::size_t>(found - rules_.begin());
+  return places_[rule.index];
 }
 
 }  // namespace culprit::plan

@@ -27,7 +27,7 @@ class Failures {
 
   std::size_t size() const { return rules_.size(); }
   RuleId operator[](std::size_t i) const { return rules_[i]; }
-  bool holds(RuleId rule) const;
+  bool holds(RuleId rule) const { return places_[rule.index] != kAbsent; }
   // @pre holds(rule)
   std::size_t index_of(RuleId rule) const;
 
@@ -38,11 +38,12 @@ class Failures {
   const std::vector<std::vector<std::size_t>>& circles() const { return circles_; }
 
  private:
-  std::size_t place_of(RuleId rule) const;
+  static constexpr std::size_t kAbsent = static_cast<std::size_t>(-1);
+
   void find_circles(const BitRows& effects);
 
-  const Knowledge& knowledge_;
   std::vector<RuleId> rules_;
+  std::vector<std::size_t> places_;  // in rules_, by RuleId
   BitRows causes_;
   std::vector<std::size_t> circle_of_;
   std::vector<std::vector<std::size_t>> circles_;

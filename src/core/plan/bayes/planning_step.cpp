@@ -117,13 +117,12 @@ std::optional<RuleId> PlanningStep::cause_of(std::size_t failure) const {
   return cause;
 }
 
-// By level, then by worth, then by name.
+// By level, then by worth, then by name, which failures are in the order of.
 bool PlanningStep::is_before(const WeighedCandidate& a, const WeighedCandidate& b) const {
   const auto key = [&](const WeighedCandidate& e) {
     const Strategy& strategy = knowledge_.rules[e.candidate.strategy];
-    const Rule& rule = knowledge_.rules[strategy.rule];
-    return std::tuple<int, std::int64_t, std::int64_t, const std::string&, const std::string&>(
-        -static_cast<int>(levels_.of(strategy.rule)), -e.worth, parts(e.candidate.cost), rule.name,
+    return std::tuple<int, std::int64_t, std::int64_t, std::size_t, const std::string&>(
+        -static_cast<int>(levels_.of(strategy.rule)), -e.worth, parts(e.candidate.cost), e.failure,
         strategy.name);
   };
   return key(a) < key(b);

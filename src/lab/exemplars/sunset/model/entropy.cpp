@@ -6,8 +6,6 @@
 namespace culprit::sunset::model {
 namespace {
 
-constexpr Duration kFramePeriod = std::chrono::milliseconds(100);
-
 // Fitted to the entropies in the exemplar's logs.
 constexpr EntropyLevel kHealthy{0.0185, 0.032, 0.056, 0.0072};
 constexpr EntropyLevel kDegraded{0.098, 0.106, 0.116, 0.0036};

@@ -11,6 +11,9 @@
 
 namespace culprit::sunset::model {
 
+// Of the camera.
+inline constexpr Duration kFramePeriod = std::chrono::milliseconds(100);
+
 struct Frame {
   Duration stamp{};       // in the bag
   double brightness = 1;  // factor on the pixels; 0.25 is degraded, 4 is washed out

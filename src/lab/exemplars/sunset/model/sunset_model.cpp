@@ -7,7 +7,6 @@
 namespace culprit::sunset::model {
 namespace {
 
-constexpr Duration kFramePeriod = std::chrono::milliseconds(100);
 constexpr Duration kWatchedBefore = std::chrono::seconds(1);
 
 }  // namespace

@@ -1,0 +1,30 @@
+// Delivers alerts to all destinations, on a thread for each, so that one that hangs delays no other, and
+// nobody delays whoever posts.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "alerts/outbox.h"
+#include "alerts/settings.h"
+
+namespace culprit::alerts {
+
+class Courier {
+ public:
+  // `tell` is told, from any thread, what could not be sent and when it can be again; nothing of it is
+  // secret. A name server that hangs may delay it beyond the end of the courier.
+  Courier(std::vector<Destination> destinations, std::function<void(const std::string&)> tell);
+  // What can be sent in a moment is sent before it ends; the rest is told.
+  ~Courier();
+
+  // Does not wait for anybody. From any thread.
+  void post(const Alert& alert);
+
+ private:
+  class Route;
+  std::vector<std::shared_ptr<Route>> routes_;
+};
+
+}  // namespace culprit::alerts

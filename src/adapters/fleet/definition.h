@@ -1,0 +1,19 @@
+// What a strategy does, as a short text: outcomes of strategies that do the same are added up,
+// whatever rule file they stand in and whatever its numbers say.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "fleet/tally.h"
+#include "language/rule_set.h"
+
+namespace culprit::fleet {
+
+// 16 hexadecimal digits of the hash of all that its adaptations say.
+std::string definition_of(const Strategy& strategy, const RuleSet& rules);
+
+// By name, of all strategies.
+std::map<StrategyName, std::string> definitions_of(const RuleSet& rules);
+
+}  // namespace culprit::fleet

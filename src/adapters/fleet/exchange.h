@@ -1,0 +1,35 @@
+// One visit to the database: what waits is sent, in transactions of a few hundred rows, and what the
+// fleet knows is taken back.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "fleet/outbox.h"
+#include "fleet/priors.h"
+#include "fleet/server.h"
+
+namespace culprit::fleet {
+
+// How this robot is shown to people.
+struct Introduction {
+  std::string name;
+  Run run;  // that goes on now
+};
+
+// Everything that waits. What the database does not take is sent row by row, and what it does not
+// take alone is told to `refused` and not sent again. Errors: the rest waits for the next visit.
+Expected<void> send(Server& server, Outbox& outbox, const Introduction& introduction,
+                    const std::function<void(const std::string&)>& refused);
+
+// Whether another process reports under this robot's number, and began to after this one did, or
+// did before and still does.
+enum class Twin : std::uint8_t { kNone, kElder, kYounger };
+Expected<Twin> find_twin(Server& server, const Identity& identity, const Run& run);
+
+// What the database knows of the strategies of `rules`, in this context.
+Expected<FleetKnowledge> ask(Server& server, const Identity& identity, const RuleSet& rules,
+                             const std::string& context);
+
+}  // namespace culprit::fleet

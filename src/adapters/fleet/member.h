@@ -1,0 +1,67 @@
+// A robot as a member of its fleet: what it learns goes to a PostgreSQL database, and what the others
+// learned comes back as what the planner's beliefs begin with.
+//
+// All of it happens on a thread of its own, which the robot never waits for. That thread reads the
+// journal, as any other reader does, keeps what it amounts to beside it (outbox.h), and visits the
+// database when there is news, and now and then. While the database is away, slow, full or of
+// another version the robot is managed as before; that is said once, and nothing is lost.
+#pragma once
+
+#include <condition_variable>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "base/time.h"
+#include "fleet/server.h"
+#include "language/rule_set.h"
+#include "robot/observation.h"
+
+namespace culprit::fleet {
+
+class Member {
+ public:
+  // How long it takes until ...
+  struct Pace {
+    Duration read = std::chrono::seconds(1);        // the journal is read after something happened
+    Duration visit = std::chrono::seconds(10);      // the database is visited again
+    Duration beat = std::chrono::minutes(15);       // it is visited though there is no news
+    Duration ask = std::chrono::minutes(15);        // it is asked for the fleet's priors again
+    Duration retry = std::chrono::seconds(10);      // it is tried again, at first
+    Duration retry_most = std::chrono::minutes(5);  // and later
+  };
+  struct Options {
+    Address address;
+    std::filesystem::path journal;
+    std::string name;     // of the robot, for people
+    std::string context;  // that it works in
+    std::string machine;  // its computer's id; empty: it has none
+    Pace pace{};
+  };
+  // Both are called on the thread of the member.
+  struct Ears {
+    std::function<void(PriorsTold)> priors;
+    std::function<void(const std::string&)> trouble;  // what a person should know
+  };
+
+  explicit Member(Options options);
+  // Comes back at once, whatever the database does.
+  ~Member();
+  Member(const Member&) = delete;
+
+  // A session with these rules: its priors are told, those known from before first.
+  void begin(const RuleSet& rules, Ears ears);
+  // Nothing more is told.
+  void end();
+  // The journal has news, or will have soon.
+  void happened();
+
+  const std::string& context() const;
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace culprit::fleet

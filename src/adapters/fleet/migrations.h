@@ -1,0 +1,13 @@
+// The SQL that makes a fleet's database: one step for each version. A released step never changes.
+#pragma once
+
+#include <string>
+
+namespace culprit::fleet {
+
+int migration_count();
+
+// What makes version n + 1 of version n. @pre 0 <= n < migration_count()
+std::string migration(int n);
+
+}  // namespace culprit::fleet

@@ -1,0 +1,110 @@
+// What a fleet is still to be told, and who this robot is in it: a small SQLite file beside the
+// journal, "a.journal-fleet". The journal's own rows go after a month; what is here stays until the
+// database has it.
+//
+// Nothing is counted here: what a run amounts to replaces what it amounted to (tally.h). So it may
+// be written as often as one likes, and lost: as far back as the journal goes it is made anew, and
+// only the robot's number is another one then.
+//
+// It is bounded: beyond kMostFailures and kMostCounts the oldest go, those that were sent first, and
+// how many were not sent is kept, to be said.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "fleet/tally.h"
+#include "journal/database.h"
+
+namespace culprit::fleet {
+
+struct Identity {
+  std::string robot;  // made once: 32 hexadecimal digits
+  std::string
+      before;  // that this one was until its journal turned up on another computer; or empty
+  std::string machine;  // a hash of the computer's id and `robot`; empty: it has none
+  bool is_new = false;
+  bool is_copy = false;  // the journal came from another computer since it was opened last
+};
+
+struct Outcome {
+  std::string run;
+  StrategyName name;
+  std::string definition;  // of the strategy (definition.h); empty: the rules do not have it
+  Counts counts;
+};
+
+// Of one run.
+struct RunFailure {
+  std::string run;
+  Failure failure;
+};
+
+struct Waiting {
+  std::vector<Run> runs;  // of the others
+  std::vector<Outcome> outcomes;
+  std::vector<RunFailure> failures;
+  bool empty() const { return outcomes.empty() && failures.empty(); }
+};
+
+class Outbox {
+ public:
+  static constexpr std::int64_t kMostFailures = 20'000;
+  static constexpr std::int64_t kMostCounts = 50'000;
+
+  // Makes the file if it is not there; one that is damaged is set aside, and said in remark().
+  // `machine`: the computer's id, empty if it has none. Errors: it cannot be written.
+  static Expected<Outbox> open(const std::filesystem::path& path, const std::string& machine);
+
+  const Identity& identity() const { return identity_; }
+  const std::string& remark() const { return remark_; }
+  // Takes another number: somebody else reports under this one.
+  Expected<void> become_another(const std::string& machine);
+
+  // The newest run that was looked at, as far as it is known here: where it begins, and its id.
+  struct Place {
+    std::int64_t row = 0;
+    std::string run;
+  };
+  Expected<Place> newest_run() const;
+
+  // `definitions`: by strategy. All of it, or nothing.
+  Expected<void> keep(const Run& run, const std::map<StrategyName, Counts>& counts,
+                      const std::map<StrategyName, std::string>& definitions,
+                      const std::vector<Failure>& failures);
+
+  // What was not sent yet, oldest first: at most so many of each.
+  Expected<Waiting> waiting(int most) const;
+  // It was sent as it is here; what changed since goes again.
+  Expected<void> sent(const Waiting& what);
+  // How much was never sent and is gone, in all.
+  Expected<std::int64_t> dropped() const;
+
+  // A value kept under a name; nothing: there is none.
+  Expected<std::optional<std::string>> value(const std::string& name) const;
+  Expected<void> set_value(const std::string& name, const std::string& value);
+
+ private:
+  Outbox(journal::Database database, std::string remark)
+      : database_(std::move(database)), remark_(std::move(remark)) {}
+  Expected<void> identify(const std::string& machine);
+  Expected<void> write(const Run& run, const std::map<StrategyName, Counts>& counts,
+                       const std::map<StrategyName, std::string>& definitions,
+                       const std::vector<Failure>& failures);
+  Expected<void> bound();
+  Expected<void> in_one(const std::function<Expected<void>()>& write);
+
+  journal::Database database_;
+  std::string remark_;
+  Identity identity_;
+};
+
+std::filesystem::path outbox_beside(const std::filesystem::path& journal);
+
+// What tells this computer from others: /etc/machine-id and, where it may be read, the number of its
+// board. Empty: it has neither.
+std::string machine_id();
+
+}  // namespace culprit::fleet

@@ -1,0 +1,47 @@
+// For tests: a PostgreSQL server of the distribution, in a folder of its own, on a unix socket there,
+// as a user that may do nothing else. It ends with the test, however that ends.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <sys/types.h>
+
+#include "base/test_folder.h"
+#include "fleet/server.h"
+
+namespace culprit::fleet {
+
+class TestPostgres {
+ public:
+  // Why there is none; empty: there is.
+  static std::string why_not();
+
+  // Throws if it does not start.
+  TestPostgres();
+  ~TestPostgres();
+  TestPostgres(const TestPostgres&) = delete;
+
+  void start();
+  // As a power failure would.
+  void stop();
+
+  // Of the server, whose processes are its children.
+  pid_t pid() const { return pid_; }
+
+  // As this login, which needs no password.
+  Address address(const std::string& login = "postgres") const;
+  // Throws if that is impossible.
+  Server connect(const std::string& login = "postgres") const;
+  // Of the owner of the database; throws if it fails.
+  Rows query(const std::string& sql) const;
+  void run(const std::string& sql) const;
+  // Set up for a fleet, with this login as a robot's.
+  void set_up_fleet(const std::string& login = "rover") const;
+
+ private:
+  test::TestFolder folder_;
+  pid_t pid_ = 0;
+  static inline const std::atomic<bool> kGoesOn = false;
+};
+
+}  // namespace culprit::fleet

@@ -1,0 +1,31 @@
+#include "link/course.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace culprit::ros2 {
+namespace {
+
+double number_in(const Value& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  return NAN;
+}
+
+}  // namespace
+
+void ValueCourse::note(const Value& value) {
+  const double number = number_in(value);
+  if (!std::isfinite(number)) {
+    ++others;
+    return;
+  }
+  if (numbers++ == 0) least = most = last = number;
+  rose |= number > last;
+  fell |= number < last;
+  least = std::min(least, number);
+  most = std::max(most, number);
+  last = number;
+}
+
+}  // namespace culprit::ros2

@@ -1,0 +1,36 @@
+// How values went while somebody looked.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "base/value.h"
+
+namespace culprit::ros2 {
+
+// Of something that was read again and again.
+struct ValueCourse {
+  std::size_t numbers = 0;
+  std::size_t others = 0;  // texts, true and false, what is no finite number
+  double least = 0;        // of the numbers, if there are any
+  double most = 0;
+  double last = 0;
+  bool rose = false;  // ever, from one to the next
+  bool fell = false;
+  bool operator==(const ValueCourse&) const = default;
+
+  void note(const Value& value);
+};
+
+// Of a diagnostic status.
+struct StatusCourse {
+  std::size_t messages = 0;
+  std::uint8_t worst = 0;                       // level
+  std::map<std::string, ValueCourse> keys;      // the first kMostKeys
+  static constexpr std::size_t kMostKeys = 64;  // strangers choose how many there are
+  bool operator==(const StatusCourse&) const = default;
+};
+
+}  // namespace culprit::ros2

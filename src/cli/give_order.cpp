@@ -1,0 +1,54 @@
+#include "cli/give_order.h"
+
+#include <pwd.h>
+#include <unistd.h>
+
+#include "base/environment.h"
+#include "base/live_clock.h"
+
+namespace culprit::cli {
+namespace {
+
+// Who is at the terminal, for the record.
+std::string who_orders() {
+  const std::string behind_sudo = geteuid() == 0 ? environment("SUDO_USER") : "";
+  if (!behind_sudo.empty()) return behind_sudo;
+  const passwd* user = getpwuid(geteuid());
+  return user != nullptr ? user->pw_name : "user " + std::to_string(geteuid());
+}
+
+OutcomeOfOrder outcome_of(const web::Answer& answer) {
+  const std::string error = web::text_of(answer.body, "error").value_or("");
+  if (answer.status >= 400) return {false, "refused: " + error, answer.body};
+  const std::string text = web::text_of(answer.body, "order").value_or("");
+  if (answer.status != 200)
+    return {false,
+            "NOT CONFIRMED: culprit has the order, but its decision loop did not take it within " +
+                to_string(kPatienceWithCulprit) + "; culprit status shows what holds",
+            answer.body};
+  const auto kept = answer.body.find("kept");
+  if (kept == answer.body.end()) return {true, text, answer.body};
+  if (kept->is_boolean() && kept->get<bool>())
+    return {true, text + "; kept, so that it holds after a restart of culprit, too", answer.body};
+  return {false,
+          text + "; " + web::text_of(answer.body, "text").value_or("not kept") +
+              ". A restart of culprit would forget it",
+          answer.body};
+}
+
+}  // namespace
+
+OutcomeOfOrder give(const RunningCulprit& culprit, web::Json order, const std::string& reason) {
+  order["author"] = who_orders();
+  order["reason"] = reason;
+  // It waits less than we do, and is not followed once we have given up.
+  constexpr Duration kMargin = std::chrono::milliseconds(500);
+  order["wait_s"] = seconds(kPatienceWithCulprit - kMargin);
+  order["valid_until"] = seconds(live_now().time_since_epoch() + kPatienceWithCulprit);
+  const auto answer = culprit.client.ask(web::Method::kPost, "/api/orders", order);
+  if (!answer)
+    return {false, "NOT CONFIRMED: " + answer.error() + "; culprit status shows what holds"};
+  return outcome_of(*answer);
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,22 @@
+// Gives an order to a running culprit, and hears what becomes of it.
+//
+// It counts as done when the manager itself has said that it follows it and, if it stands (a pause, say), when
+// it is on the disk, so that a restart of culprit does not forget it. All else is not done.
+#pragma once
+
+#include <string>
+
+#include "cli/running_culprit.h"
+
+namespace culprit::cli {
+
+struct OutcomeOfOrder {
+  bool is_done = false;
+  std::string text;            // what became of it
+  web::Json answer = nullptr;  // of the call; null: there was none
+};
+
+// `order` is as POST /api/orders takes it, but for who gives it: that is who is at the terminal.
+OutcomeOfOrder give(const RunningCulprit& culprit, web::Json order, const std::string& reason);
+
+}  // namespace culprit::cli

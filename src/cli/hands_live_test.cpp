@@ -1,0 +1,139 @@
+// A running culprit, asked and told from another terminal, as people do it.
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/environment.h"
+#include "terminal/test_program.h"
+
+namespace culprit::cli {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kHandsRules = R"(
+ROBOT two_cameras
+COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
+COMPONENT depth  NODE /managed_subsystem/depth  LAUNCH "sunset-node depth"
+RULE CameraGone
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera redeploy 5
+RULE DepthGone
+  POLICIES WARNING
+  TRIGGER alive(depth) == false
+    STRATEGY depth_redeploy 90 10
+      ADAPTATION depth redeploy 5
+)";
+
+struct Hands : testing::Test {
+  struct Ended {
+    int code = 0;
+    std::string said;
+  };
+  // Asks the culprits of this test's domain.
+  Ended ended(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "culprit");
+    arguments.insert(arguments.end(), {"--domain", environment("ROS_DOMAIN_ID")});
+    TestProgram program(world, std::move(arguments));
+    const int code = program.wait().value_or(-1);
+    return {code, program.output()};
+  }
+  // Until it says so; the last that was said.
+  std::string status_says(const std::string& text) const {
+    std::string said;
+    for (int i = 0; i < 100 && said.find(text) == std::string::npos; ++i)
+      said = ended({"status"}).said;
+    return said;
+  }
+  std::unique_ptr<TestProgram> run(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{"culprit", "run", world.write("two.rules", kHandsRules),
+                                       "--state-dir", (world.folder() / "state").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return std::make_unique<TestProgram>(world, std::move(arguments));
+  }
+
+  TestWorld world;
+};
+
+TEST_F(Hands, SeeAndSteerARunningCulprit) {
+  const Ended nobody = ended({"pause"});
+  EXPECT_EQ(nobody.code, 1);
+  EXPECT_THAT(nobody.said, HasSubstr("no culprit on this machine answers"));
+  EXPECT_THAT(nobody.said, HasSubstr("Nothing was ordered"));
+
+  TestProgram camera(world, {"sunset-node", "camera"});
+  const TestProgram depth(world, {"sunset-node", "depth"});
+  auto run_ = run({"--approve"});
+  ASSERT_TRUE(run_->prints("culprit status")) << run_->output();
+  ASSERT_TRUE(run_->prints("camera is there")) << run_->output();
+  ASSERT_TRUE(run_->prints("depth is there")) << run_->output();
+  EXPECT_THAT(status_says("all is well"), HasSubstr("two_cameras: all is well"));
+  EXPECT_EQ(ended({"status"}).code, 0);
+
+  // What it asks for is approved by name.
+  camera.signal(SIGKILL);
+  camera.wait();
+  EXPECT_THAT(status_says("culprit approve"),
+              HasSubstr("culprit approve CameraGone.camera_redeploy"));
+  EXPECT_EQ(ended({"status"}).code, 1) << "somebody is ill";
+  const Ended mistyped = ended({"approve", "CameraGone.camera_redploy"});
+  EXPECT_EQ(mistyped.code, 2);
+  EXPECT_THAT(mistyped.said, HasSubstr("did you mean 'CameraGone.camera_redeploy'?"));
+  EXPECT_EQ(ended({"approve", "camera_redeploy"}).code, 0);
+  EXPECT_TRUE(run_->prints("CameraGone resolved by camera_redeploy")) << run_->output();
+
+  // A pause is kept, and holds in the process that follows.
+  const Ended paused = ended({"pause", "--reason", "people on the floor"});
+  EXPECT_EQ(paused.code, 0) << paused.said;
+  EXPECT_THAT(paused.said, HasSubstr("kept, so that it holds after a restart"));
+  EXPECT_THAT(run_->output(), HasSubstr("people on the floor"));
+  const Ended refused = ended({"run-strategy", "depth_redeploy"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.said, HasSubstr("paused"));
+
+  // One that is killed has no last word, and nobody takes its silence for one.
+  run_->signal(SIGKILL);
+  run_->wait();
+  const Ended dead = ended({"resume"});
+  EXPECT_EQ(dead.code, 1);
+  EXPECT_THAT(dead.said, HasSubstr("has ended without a word"));
+  run_ = run();
+  ASSERT_TRUE(run_->prints("culprit status")) << run_->output();
+  EXPECT_THAT(status_says("[paused]"), HasSubstr("[paused]"));
+  const Ended resumed = ended({"resume"});
+  EXPECT_EQ(resumed.code, 0) << resumed.said;
+  EXPECT_EQ(ended({"silence", "depth", "--for", "10min"}).code, 0);
+  EXPECT_THAT(ended({"status"}).said, HasSubstr("Left alone: depth until"));
+  EXPECT_EQ(ended({"silence", "depth", "--lift"}).code, 0);
+}
+
+TEST_F(Hands, AreToldWhenACulpritThatIsStoppedDoesNotAnswer) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  const auto run_ = run({"--no-journal"});
+  ASSERT_TRUE(run_->prints("culprit status")) << run_->output();
+  const Ended unkept = ended({"pause"});
+  EXPECT_EQ(unkept.code, 1) << "a restart would forget it";
+  EXPECT_THAT(unkept.said, HasSubstr("in force, not kept: of --no-journal"));
+  run_->signal(SIGSTOP);
+  const Ended unheard = ended({"resume"});
+  EXPECT_EQ(unheard.code, 1);
+  EXPECT_THAT(unheard.said, HasSubstr("is stopped and does nothing: kill -CONT"));
+  EXPECT_THAT(unheard.said, HasSubstr("Nothing was ordered"));
+  run_->signal(SIGCONT);
+  EXPECT_THAT(status_says("[paused]"), HasSubstr("[paused]")) << "and so it is";
+
+  // The terminal's view, on a terminal.
+  TestProgram top(
+      world, {"script", "-qec",
+              (own_folder() / "culprit").string() + " top --domain " + environment("ROS_DOMAIN_ID"),
+              "/dev/null"});
+  EXPECT_TRUE(top.prints("q ends, p pauses culprit")) << top.output();
+  EXPECT_TRUE(top.prints("two_cameras: ") && top.prints("all is well")) << top.output();
+  EXPECT_EQ(ended({"top"}).code, 2) << "there is no terminal";
+}
+
+}  // namespace
+}  // namespace culprit::cli

@@ -1,0 +1,180 @@
+// What people order of a running culprit from a terminal: pause, resume, silence, approve, refuse,
+// run-strategy.
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <tuple>
+
+#include <fmt/core.h>
+
+#include "base/closest.h"
+#include "base/name_grammar.h"
+#include "cli/commands.h"
+#include "cli/give_order.h"
+#include "terminal/console.h"
+#include "terminal/seconds_option.h"
+
+namespace culprit::cli {
+namespace {
+
+using web::Json;
+
+struct OrderOptions {
+  WhichCulprit which;
+  std::string reason;
+  std::string name;  // of what it is about
+  double seconds = 0;
+  bool lifts = false;
+  bool all = false;
+  bool json = false;
+};
+
+// "; did you mean 'camera'?"
+std::string suggestion(const std::string& name, const std::vector<std::string>& known) {
+  const std::string near = closest(name, {known.begin(), known.end()});
+  return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
+// The names of a list of what GET /api/robot says.
+std::vector<std::string> names_in(const Json& document, const char* list) {
+  std::vector<std::string> names;
+  if (!document.is_object() || !document.contains(list) || !document[list].is_array()) return names;
+  for (const Json& each : document[list]) {
+    if (auto name = web::text_of(each, "name")) names.push_back(std::move(*name));
+  }
+  return names;
+}
+
+using MakeOrder = std::function<Expected<Json>(const RunningCulprit&, const OrderOptions&)>;
+
+// {"rule": …, "strategy": …} of "Rule.strategy", or of a strategy whose name is the only one of its kind.
+Expected<Json> strategy_named(const RunningCulprit& culprit, const std::string& name) {
+  const auto robot = culprit.client.get("/api/robot");
+  if (!robot) return Error{robot.error()};
+  std::vector<Json> found;
+  std::vector<std::string> known;
+  for (const Json& rule : robot->value("rules", Json::array())) {
+    const std::string of_rule = web::text_of(rule, "name").value_or("");
+    for (const std::string& strategy : names_in(rule, "strategies")) {
+      known.push_back(of_rule + "." + strategy);
+      if (name == known.back() || name == strategy)
+        found.push_back({{"rule", of_rule}, {"strategy", strategy}});
+    }
+  }
+  if (found.size() == 1) return found.front();
+  if (found.empty())
+    return Error{"the rules have no strategy '" + printable(name) + "'" + suggestion(name, known)};
+  return Error{"several rules have a strategy '" + name + "'; name the rule, too: " +
+               web::text_of(found.front(), "rule").value_or("") + "." + name};
+}
+
+MakeOrder about_strategy(const char* word) {
+  return [word](const RunningCulprit& culprit, const OrderOptions& options) {
+    auto order = strategy_named(culprit, options.name);
+    if (order) (*order)["order"] = word;
+    return order;
+  };
+}
+
+Expected<Json> silence_of(const RunningCulprit& culprit, const OrderOptions& options) {
+  const auto robot = culprit.client.get("/api/robot");
+  if (!robot) return Error{robot.error()};
+  const auto components = names_in(*robot, "components");
+  const auto rules = names_in(*robot, "rules");
+  const auto is_among = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), options.name) != names.end();
+  };
+  Json order{{"order", options.lifts ? "lift" : "silence"}};
+  if (!options.lifts && options.seconds > 0) order["seconds"] = options.seconds;
+  if (is_among(components) || is_among(rules)) {
+    order[is_among(components) ? "component" : "rule"] = options.name;
+    return order;
+  }
+  std::vector<std::string> known = components;
+  known.insert(known.end(), rules.begin(), rules.end());
+  return Error{"there is no component and no rule '" + printable(options.name) + "'" +
+               suggestion(options.name, known)};
+}
+
+int order(const OrderOptions& options, const MakeOrder& make) {
+  const CulpritsHere here = culprits_here(options.which);
+  if (here.answering.empty()) return fail(none_to_ask(here) + "\nNothing was ordered.");
+  if (here.answering.size() > 1 && !options.all) {
+    const auto one = the_culprit(options.which);
+    return fail((one ? "" : one.error()) + "\nNothing was ordered.", kUsage);
+  }
+  bool is_all_done = true;
+  Json list = Json::array();
+  for (const RunningCulprit& culprit : here.answering) {
+    auto made = make(culprit, options);
+    if (!made) return fail(made.error() + "\nNothing was ordered.", kUsage);
+    OutcomeOfOrder outcome = give(culprit, std::move(*made), options.reason);
+    is_all_done &= outcome.is_done;
+    if (!options.json)
+      say(outcome.is_done ? stdout : stderr, "{}: {}\n", culprit.name(),
+          without_controls(outcome.text));
+    list.push_back({{"process", culprit.process},
+                    {"done", outcome.is_done},
+                    {"text", outcome.text},
+                    {"answer", std::move(outcome.answer)}});
+  }
+  if (options.json) say(stdout, "{}\n", web::to_line({{"orders", list}, {"others", here.others}}));
+  // Somebody may have meant one of these.
+  for (const std::string& other : here.others) say(stderr, "culprit: not told: {}\n", other);
+  return is_all_done && (here.others.empty() || !options.all) ? kOk : kFailed;
+}
+
+CLI::App* add_order(CLI::App& app, int& exit_code, const char* name, const char* description,
+                    MakeOrder make, const std::shared_ptr<OrderOptions>& options) {
+  CLI::App* command = app.add_subcommand(name, description);
+  command->add_option("--reason", options->reason, "Why, for the record");
+  command->add_flag("--json", options->json, "What became of it, as a JSON document");
+  options->which.add_to(*command);
+  command->callback(
+      [options, make = std::move(make), &exit_code] { exit_code = order(*options, make); });
+  return command;
+}
+
+MakeOrder plain(const char* word) {
+  return [word](const RunningCulprit&, const OrderOptions&) -> Expected<Json> {
+    return Json{{"order", word}};
+  };
+}
+
+}  // namespace
+
+void add_orders(CLI::App& app, int& exit_code) {
+  const auto make = [] { return std::make_shared<OrderOptions>(); };
+  auto options = make();
+  CLI::App* pause = add_order(app, exit_code, "pause",
+                              "Let a running culprit change nothing more, until it is resumed",
+                              plain("pause"), options);
+  pause->add_flag("--all", options->all, "Each culprit that runs on this machine");
+  add_order(app, exit_code, "resume", "Let a culprit that is paused go on", plain("resume"),
+            make());
+
+  options = make();
+  CLI::App* silence = add_order(
+      app, exit_code, "silence",
+      "Let a running culprit leave a component, or a rule, alone. It is watched all the same",
+      silence_of, options);
+  silence->add_option("NAME", options->name, "A component or a rule")->required();
+  auto* lasts = add_seconds(*silence, "--for", options->seconds,
+                            "For so long (default: until it is lifted)", 1, 7 * 24 * 3600)
+                    ->default_str("");
+  silence->add_flag("--lift", options->lifts, "It is left alone no longer")->excludes(lasts);
+
+  for (const auto& [word, call, description] :
+       {std::tuple("approve", "approve",
+                   "Let a running culprit do what it asks for (run --approve)"),
+        std::tuple("refuse", "refuse",
+                   "Let a running culprit not do what it asks for, but the next best"),
+        std::tuple("run-strategy", "run", "Let a running culprit carry out a strategy now")}) {
+    options = make();
+    add_order(app, exit_code, word, description, about_strategy(call), options)
+        ->add_option("STRATEGY", options->name, "As culprit status names it: Rule.strategy")
+        ->required();
+  }
+}
+
+}  // namespace culprit::cli

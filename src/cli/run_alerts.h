@@ -1,0 +1,30 @@
+// Tells people of faults while culprit runs, if they want to be told: what happens is looked at on the thread that
+// manages, and sent by others.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "alerts/courier.h"
+#include "live/alerting.h"
+
+namespace culprit::cli {
+
+class RunAlerts {
+ public:
+  // Null if `file` is empty. Errors: the file is wrong.
+  static Expected<std::unique_ptr<RunAlerts>> open(const std::string& file);
+  explicit RunAlerts(alerts::Settings settings);
+
+  live::Observer& observer() { return alerting_; }
+  // Where the page is, where the file does not say: "http://127.0.0.1:8642/#token=..."; the token is not passed on.
+  // On the thread that manages.
+  void set_page(const std::string& address);
+
+ private:
+  std::string page_;
+  alerts::Courier courier_;
+  live::Alerting alerting_;
+};
+
+}  // namespace culprit::cli

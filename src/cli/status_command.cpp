@@ -1,0 +1,82 @@
+#include <memory>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/running_culprit.h"
+#include "cli/status_report.h"
+#include "terminal/console.h"
+
+namespace culprit::cli {
+namespace {
+
+struct StatusOptions {
+  WhichCulprit which;
+  bool json = false;
+};
+
+// Errors: it says who it is, and nothing more.
+Expected<WhatCulpritSays> asked(const RunningCulprit& culprit) {
+  WhatCulpritSays said;
+  said.about = culprit.about;
+  for (const auto& [path, document] :
+       {std::pair("/api/robot", &said.robot), std::pair("/api/state", &said.state),
+        std::pair("/api/control", &said.control)}) {
+    auto answer = culprit.client.get(path);
+    if (!answer) return Error{answer.error()};
+    *document = std::move(*answer);
+  }
+  if (auto events = culprit.client.get("/api/events"); events && events->is_array())
+    said.events = events->get<std::vector<web::Json>>();
+  return said;
+}
+
+int status(const StatusOptions& options) {
+  constexpr std::size_t kEvents = 6;
+  CulpritsHere here = culprits_here(options.which);
+  bool is_well = !here.answering.empty() && here.others.empty();
+  web::Json list = web::Json::array();
+  for (const RunningCulprit& culprit : here.answering) {
+    const auto said = asked(culprit);
+    if (!said) {
+      here.others.push_back(culprit.name() + " does not say how the robot is: " + said.error());
+      is_well = false;
+      continue;
+    }
+    is_well &= is_all_well(*said);
+    list.push_back({{"about", said->about},
+                    {"well", is_all_well(*said)},
+                    {"control", said->control},
+                    {"state", said->state}});
+    if (options.json) continue;
+    const Colour colour = colour_of(STDOUT_FILENO);
+    for (const auto& lines : {situation_lines(*said, colour),
+                              event_lines(*said, kEvents, colour),
+                              about_lines(*said),
+                              {""}}) {
+      for (const std::string& line : lines) say(stdout, "{}\n", line);
+    }
+  }
+  if (options.json) {
+    say(stdout, "{}\n", web::to_line({{"culprits", list}, {"others", here.others}}));
+  } else if (here.answering.empty()) {
+    return fail(none_to_ask(here));
+  } else {
+    for (const std::string& other : here.others) say(stdout, "{}\n", other);
+  }
+  return is_well ? kOk : kFailed;
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<StatusOptions>();
+  CLI::App* command = app.add_subcommand("status",
+                                         "Show who is ill, who is blamed and what happens next, as "
+                                         "the culprits that run on this machine say.\n"
+                                         "Exits with 0 if all is well, else with 1.");
+  command->add_flag("--json", options->json, "As one JSON document (docs/web.md)");
+  options->which.add_to(*command);
+  command->callback([options, &exit_code] { exit_code = status(*options); });
+}
+
+}  // namespace culprit::cli

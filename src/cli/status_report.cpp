@@ -1,0 +1,290 @@
+#include "cli/status_report.h"
+
+#include <cmath>
+#include <ctime>
+
+#include <fmt/core.h>
+
+#include "knowledge/describe.h"
+#include "terminal/console.h"
+
+namespace culprit::cli {
+namespace {
+
+using web::Json;
+
+// ---- documents of any form
+
+const Json kNothing = nullptr;
+
+const Json& member_at(const Json& json, const char* name) {
+  const auto found = json.is_object() ? json.find(name) : json.end();
+  return json.is_object() && found != json.end() ? *found : kNothing;
+}
+std::string text_at(const Json& json, const char* name) {
+  const Json& text = member_at(json, name);
+  return text.is_string() ? without_controls(text.get<std::string>()) : "";
+}
+bool is_set(const Json& json, const char* name) {
+  const Json& flag = member_at(json, name);
+  return flag.is_boolean() && flag.get<bool>();
+}
+std::optional<double> number_at(const Json& json, const char* name) {
+  const Json& number = member_at(json, name);
+  return number.is_number() ? std::optional(number.get<double>()) : std::nullopt;
+}
+std::vector<Json> list_at(const Json& json, const char* name) {
+  const Json& list = member_at(json, name);
+  return list.is_array() ? list.get<std::vector<Json>>() : std::vector<Json>{};
+}
+std::vector<std::string> texts_at(const Json& json, const char* name) {
+  std::vector<std::string> texts;
+  for (const Json& each : list_at(json, name)) {
+    if (each.is_string()) texts.push_back(without_controls(each.get<std::string>()));
+  }
+  return texts;
+}
+
+// ---- words
+
+std::string counted(std::size_t count, const char* one) {
+  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+}
+
+enum class Precision : std::uint8_t { kSecond, kTenth };
+
+// "14:03:12"; with the day if it is another one than that of `now`. Both in seconds since 1970.
+std::string by_the_clock(double clock, double now, Precision precision = Precision::kSecond) {
+  const auto at = static_cast<std::time_t>(std::floor(clock));
+  const auto today = static_cast<std::time_t>(std::floor(now));
+  std::tm day{};
+  std::tm day_now{};
+  localtime_r(&at, &day);
+  localtime_r(&today, &day_now);
+  const bool is_today = day.tm_yday == day_now.tm_yday && day.tm_year == day_now.tm_year;
+  char text[64];
+  std::strftime(text, sizeof text, is_today ? "%H:%M:%S" : "%Y-%m-%d %H:%M:%S", &day);
+  const auto tenths = static_cast<int>(10 * (clock - std::floor(clock)));
+  return precision == Precision::kSecond ? text : fmt::format("{}.{}", text, tenths);
+}
+
+// "8.2s", "3min", "2h": as long as it lasts by now.
+std::string lasting(double seconds) {
+  if (seconds < 60) return fmt::format("{:.1f} s", std::max(0.0, seconds));
+  const auto whole = static_cast<long>(seconds);
+  if (seconds < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
+}
+
+std::string tinted(const std::string& text, Tone tone, Colour colour) {
+  return in_tone(text, tone, Weight::kStrong, colour);
+}
+
+// What the wall clock showed at a time `t` of culprit's; nothing: it is not known.
+std::optional<double> clock_at(const WhatCulpritSays& said, double t) {
+  const auto now = number_at(said.state, "t");
+  const auto clock = number_at(said.state, "clock");
+  return now && clock ? std::optional(*clock - (*now - t)) : std::nullopt;
+}
+
+std::string since(const WhatCulpritSays& said, const Json& incident) {
+  const auto t = number_at(incident, "since");
+  const auto now = number_at(said.state, "t");
+  const auto clock = number_at(said.state, "clock");
+  if (!t || !now || !clock) return "";
+  return fmt::format("since {}, for {}", by_the_clock(*clock_at(said, *t), *clock),
+                     lasting(*now - *t));
+}
+
+std::string tinted_health(const std::string& text, const std::string& health, Colour colour) {
+  const Tone tone = health == "ERROR" || health == "EXHAUSTED" ? Tone::kAlarm
+                    : health == "WARNING"                      ? Tone::kWarning
+                    : health == "OK"                           ? Tone::kRelief
+                                                               : Tone::kAside;
+  return tinted(text, tone, colour);
+}
+
+// What keeps culprit from acting as it usually does, in words; empty: nothing.
+std::vector<std::string> modes_of(const Json& control) {
+  std::vector<std::string> modes;
+  if (is_set(control, "paused")) modes.emplace_back("paused");
+  if (control.is_object() && !is_set(control, "hears")) modes.emplace_back("deaf");
+  if (is_set(control, "dry_run")) modes.emplace_back("only advises");
+  if (!list_at(control, "asked").empty()) modes.emplace_back("asks");
+  if (!list_at(control, "silences").empty()) modes.emplace_back("leaves something alone");
+  return modes;
+}
+
+std::string robot_name(const WhatCulpritSays& said) {
+  const std::string name = text_at(said.robot, "robot");
+  return name.empty() ? "the robot" : name;
+}
+
+using Lines = std::vector<std::string>;
+
+void add_incident(const WhatCulpritSays& said, const Json& incident, Colour colour, Lines& lines) {
+  const std::string health = text_at(incident, "health");
+  lines.push_back(fmt::format("  {}  ({}, rule {})",
+                              tinted_health(text_at(incident, "headline"), health, colour), health,
+                              text_at(incident, "rule")));
+  if (const std::string when = since(said, incident); !when.empty())
+    lines.push_back("      " + when);
+  const auto consequences = texts_at(incident, "consequences");
+  if (!consequences.empty())
+    lines.push_back("      and so " + (consequences.size() == 1 ? "fails " : std::string("fail ")) +
+                    listed(consequences));
+  lines.push_back("      now: " + text_at(incident, "doing"));
+  if (const std::string next = text_at(incident, "next"); !next.empty())
+    lines.push_back("      next: " + next);
+}
+
+// What people have ordered, and are asked.
+void add_people(const WhatCulpritSays& said, Lines& lines) {
+  const Json& control = said.control;
+  const double now = number_at(said.state, "clock").value_or(0);
+  if (is_set(control, "paused"))
+    lines.emplace_back("  Paused: nothing is changed on the robot until `culprit resume`.");
+  if (control.is_object() && !is_set(control, "hears"))
+    lines.emplace_back(
+        "  Deaf: the robot cannot be heard, so nothing is judged and nothing is done.");
+  if (is_set(control, "dry_run"))
+    lines.emplace_back("  It only advises: a dry run, or another culprit manages this robot.");
+  for (const Json& each : list_at(control, "asked")) {
+    const std::string name = text_at(each, "rule") + "." + text_at(each, "strategy");
+    lines.push_back("  Waits for your word: culprit approve " + name + ", or culprit refuse " +
+                    name);
+  }
+  for (const Json& each : list_at(control, "silences")) {
+    const std::string name = text_at(each, "component") + text_at(each, "rule");
+    const auto until = number_at(each, "until");
+    const auto clock = until ? clock_at(said, *until) : std::nullopt;
+    const std::string reason = text_at(each, "reason");
+    lines.push_back(fmt::format("  Left alone: {}{}, by {}{}; culprit silence --lift {}", name,
+                                clock ? " until " + by_the_clock(*clock, now) : "",
+                                text_at(each, "author"), reason.empty() ? "" : " (" + reason + ")",
+                                name));
+  }
+}
+
+std::string counts_line(const WhatCulpritSays& said) {
+  const auto components = list_at(said.state, "components");
+  const auto names = list_at(said.robot, "components");
+  Lines ill;
+  Lines gone;
+  for (std::size_t c = 0; c < std::min(components.size(), names.size()); ++c) {
+    const std::string name = text_at(names[c], "name");
+    const Json& alive = member_at(components[c], "alive");
+    if (alive.is_boolean() && !alive.get<bool>()) {
+      gone.push_back(name);
+    } else if (text_at(components[c], "health") != "OK") {
+      ill.push_back(name);
+    }
+  }
+  std::size_t failing = 0;
+  const auto rules = list_at(said.state, "rules");
+  for (const Json& rule : rules) failing += text_at(rule, "phase") != "quiet" ? 1 : 0;
+  const auto some = [](const Lines& names_of, const char* what) {
+    constexpr std::size_t kMost = 8;
+    if (names_of.empty()) return std::string();
+    Lines first(names_of.begin(),
+                names_of.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, names_of.size())));
+    if (names_of.size() > kMost) first.push_back(fmt::format("{} more", names_of.size() - kMost));
+    return fmt::format(", {} {} ({})", names_of.size(), what, listed(first));
+  };
+  return fmt::format("{}{}{}; {}, {} with a failure", counted(components.size(), "component"),
+                     some(gone, "gone"), some(ill, "affected"), counted(rules.size(), "rule"),
+                     failing);
+}
+
+std::string event_line(const Json& event, double now, Colour colour) {
+  const auto kind = kind_named(text_at(event, "type"));
+  EventWords words = kind ? words_of(*kind) : EventWords{};
+  const std::string label = text_at(event, "label");
+  words.label = label;
+  const auto clock = number_at(event, "clock");
+  return fmt::format("  {}  {}  {}",
+                     clock ? by_the_clock(*clock, now, Precision::kTenth) : "          ",
+                     label_of(words, colour), text_at(event, "text"));
+}
+
+std::string headline_from(const WhatCulpritSays& said, Colour colour) {
+  const std::string robot = robot_name(said);
+  const auto modes = modes_of(said.control);
+  const std::string mode = modes.empty() ? "" : "  [" + listed(modes) + "]";
+  if (!said.state.is_object()) return robot + ": nothing is known yet" + mode;
+  const auto incidents = list_at(said.state, "incidents");
+  if (incidents.empty() && !is_set(said.control, "hears"))
+    return robot + ": " + tinted("nobody knows", Tone::kWarning, colour) +
+           ", the robot cannot be heard" + mode;
+  if (incidents.empty()) return robot + ": " + tinted("all is well", Tone::kRelief, colour) + mode;
+  const std::string more =
+      incidents.size() > 1 ? fmt::format(", and {} more", incidents.size() - 1) : "";
+  return robot + ": " +
+         tinted_health(text_at(incidents[0], "headline"), text_at(incidents[0], "health"), colour) +
+         more + mode;
+}
+
+}  // namespace
+
+bool is_all_well(const WhatCulpritSays& said) {
+  return said.state.is_object() && list_at(said.state, "incidents").empty() &&
+         !is_set(said.control, "paused") && is_set(said.control, "hears") &&
+         list_at(said.control, "asked").empty();
+}
+
+std::vector<std::string> situation_lines(const WhatCulpritSays& said, Colour colour) {
+  Lines lines{headline_from(said, colour)};
+  for (const Json& incident : list_at(said.state, "incidents"))
+    add_incident(said, incident, colour, lines);
+  add_people(said, lines);
+  lines.push_back(counts_line(said));
+  return lines;
+}
+
+std::vector<std::string> component_lines(const WhatCulpritSays& said, Colour colour) {
+  const auto components = list_at(said.state, "components");
+  const auto names = list_at(said.robot, "components");
+  Lines well;
+  Lines lines{
+      fmt::format("{:<28} {:<12} {:<9} {:<12} now", "component", "health", "process", "lifecycle")};
+  for (std::size_t c = 0; c < std::min(components.size(), names.size()); ++c) {
+    const Json& each = components[c];
+    const std::string health = text_at(each, "health");
+    const std::string process = text_at(each, "process");
+    const std::string adapting = text_at(each, "adapting");
+    std::string line = fmt::format(
+        "{:<28} {} {:<9} {:<12} {}", text_at(names[c], "name"),
+        tinted_health(fmt::format("{:<12}", health), health, colour),
+        process.empty() ? (is_set(each, "present") ? "?" : "-") : process,
+        text_at(each, "lifecycle"), adapting.empty() ? text_at(each, "remark") : adapting);
+    const Json& alive = member_at(each, "alive");
+    const bool is_well = health == "OK" && (!alive.is_boolean() || alive.get<bool>());
+    (is_well ? well : lines).push_back(std::move(line));
+  }
+  lines.insert(lines.end(), well.begin(), well.end());
+  return lines;
+}
+
+std::vector<std::string> event_lines(const WhatCulpritSays& said, std::size_t most, Colour colour) {
+  Lines lines;
+  const double now = number_at(said.state, "clock").value_or(0);
+  for (std::size_t i = said.events.size() - std::min(most, said.events.size());
+       i < said.events.size(); ++i)
+    lines.push_back(event_line(said.events[i], now, colour));
+  return lines;
+}
+
+std::vector<std::string> about_lines(const WhatCulpritSays& said) {
+  const auto domain = number_at(said.about, "domain");
+  const auto process = number_at(said.about, "process");
+  Lines lines{fmt::format("culprit {}, process {}, domain {}, node /{}, rules {}",
+                          text_at(said.about, "version"),
+                          process ? fmt::format("{:.0f}", *process) : "?",
+                          domain ? fmt::format("{:.0f}", *domain) : "?",
+                          text_at(said.about, "node"), text_at(said.about, "rules"))};
+  if (const std::string page = text_at(said.about, "page"); !page.empty())
+    lines.push_back("in a browser: " + page);
+  return lines;
+}
+
+}  // namespace culprit::cli

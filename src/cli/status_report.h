@@ -1,0 +1,38 @@
+// How a robot is and what its culprit does about it, in words for a terminal: who is ill, who is blamed, what
+// happens next. Made from what a running culprit says of itself (docs/web.md).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "language/diagnostic.h"
+#include "web/event_json.h"
+
+namespace culprit::cli {
+
+// The latest documents of GET /api/stream, and of /api/about. Documents are null, or of any other form,
+// where it has said nothing, or is of another version.
+struct WhatCulpritSays {
+  web::Json about = nullptr;
+  web::Json robot = nullptr;
+  web::Json state = nullptr;
+  web::Json control = nullptr;
+  std::vector<web::Json> events{};  // oldest first
+};
+
+// No failure is seen, nothing keeps culprit from acting, and nobody is asked.
+bool is_all_well(const WhatCulpritSays& said);
+
+// "rover: camera is dead  [paused]"; what fails, why and what comes next; what people have ordered.
+std::vector<std::string> situation_lines(const WhatCulpritSays& said, Colour colour);
+
+// One for each component, those that are not well first.
+std::vector<std::string> component_lines(const WhatCulpritSays& said, Colour colour);
+
+// The latest events, oldest first.
+std::vector<std::string> event_lines(const WhatCulpritSays& said, std::size_t most, Colour colour);
+
+// Who says this, and where its page is.
+std::vector<std::string> about_lines(const WhatCulpritSays& said);
+
+}  // namespace culprit::cli

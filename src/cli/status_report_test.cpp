@@ -1,0 +1,123 @@
+#include "cli/status_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/terminal_screen.h"
+#include "terminal/console.h"
+
+namespace culprit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using web::Json;
+
+std::string all_of(const WhatCulpritSays& said) {
+  std::string text;
+  for (const auto& lines :
+       {situation_lines(said, Colour::kOff), component_lines(said, Colour::kOff),
+        event_lines(said, 5, Colour::kOff), about_lines(said)}) {
+    for (const std::string& line : lines) text += line + "\n";
+  }
+  return text;
+}
+
+WhatCulpritSays well() {
+  WhatCulpritSays said;
+  said.about = Json::parse(
+      R"({"version": "1.2", "process": 4711, "domain": 3, "node": "culprit", "rules": "my.rules"})");
+  said.robot =
+      Json::parse(R"({"robot": "rover", "components": [{"name": "camera"}, {"name": "fusion"}]})");
+  said.state =
+      Json::parse(R"({"t": 20, "clock": 1795538720, "incidents": [], "rules": [{"phase": "quiet"}],
+      "components": [{"health": "OK", "alive": true, "process": "running", "present": true},
+                     {"health": "OK", "alive": true, "process": "running", "present": true}]})");
+  said.control = Json::parse(
+      R"({"paused": false, "dry_run": false, "hears": true, "silences": [], "asked": []})");
+  return said;
+}
+
+WhatCulpritSays ill() {
+  WhatCulpritSays said = well();
+  said.state["incidents"].push_back(
+      Json::parse(R"({"headline": "camera is dead", "health": "ERROR", "since": 11.5,
+      "rule": "CameraGone", "components": ["camera"], "certain": true, "consequences": ["FusionSilent", "PoseSilent"],
+      "needs_person": false, "doing": "being repaired: redeploy camera", "next": "redeploy is being carried out"})"));
+  said.state["components"][0] = Json::parse(
+      R"({"health": "ERROR", "alive": false, "process": "gone", "adapting": "redeploy"})");
+  said.state["rules"][0]["phase"] = "attempting";
+  return said;
+}
+
+TEST(StatusReport, SaysThatAllIsWell) {
+  EXPECT_TRUE(is_all_well(well()));
+  EXPECT_THAT(all_of(well()), HasSubstr("rover: all is well\n"));
+  EXPECT_THAT(all_of(well()), HasSubstr("2 components; 1 rule, 0 with a failure"));
+  EXPECT_THAT(all_of(well()),
+              HasSubstr("culprit 1.2, process 4711, domain 3, node /culprit, rules my.rules"));
+}
+
+TEST(StatusReport, SaysWhoIsIllWhoIsBlamedAndWhatHappensNext) {
+  EXPECT_FALSE(is_all_well(ill()));
+  const std::string text = all_of(ill());
+  EXPECT_THAT(text, HasSubstr("rover: camera is dead\n"));
+  EXPECT_THAT(text, HasSubstr("  camera is dead  (ERROR, rule CameraGone)\n"));
+  EXPECT_THAT(text, HasSubstr(", for 8.5 s\n"));
+  EXPECT_THAT(text, HasSubstr("and so fail FusionSilent and PoseSilent\n"));
+  EXPECT_THAT(text, HasSubstr("now: being repaired: redeploy camera\n"));
+  EXPECT_THAT(text, HasSubstr("next: redeploy is being carried out\n"));
+  EXPECT_THAT(text, HasSubstr("1 gone (camera)"));
+}
+
+TEST(StatusReport, SaysWhatKeepsCulpritFromActingAndHowToLetItGoOn) {
+  WhatCulpritSays said = well();
+  said.control["paused"] = true;
+  said.control["silences"].push_back(
+      {{"component", "fusion"}, {"until", 80}, {"author", "ada"}, {"reason", "lens"}});
+  said.control["asked"].push_back({{"rule", "CameraGone"}, {"strategy", "redeploy"}});
+  EXPECT_FALSE(is_all_well(said)) << "nobody would be helped";
+  const std::string text = all_of(said);
+  EXPECT_THAT(text, HasSubstr("rover: all is well  [paused, asks and leaves something alone]"));
+  EXPECT_THAT(text, HasSubstr("culprit resume"));
+  EXPECT_THAT(text, HasSubstr("culprit approve CameraGone.redeploy"));
+  EXPECT_THAT(text, HasSubstr("by ada (lens); culprit silence --lift fusion"));
+}
+
+TEST(StatusReport, NeverSaysThatARobotIsWellThatCannotBeHeard) {
+  WhatCulpritSays said = well();
+  said.control["hears"] = false;
+  EXPECT_FALSE(is_all_well(said));
+  EXPECT_THAT(all_of(said), HasSubstr("nobody knows, the robot cannot be heard"));
+  EXPECT_THAT(all_of(WhatCulpritSays{}), HasSubstr("nothing is known yet"));
+}
+
+TEST(StatusReport, TakesDocumentsOfAnyForm) {
+  for (const char* text :
+       {"1", "[]", "\"x\"", "{}", R"({"components": 1, "incidents": {"a": 1}, "rules": [1, null]})",
+        R"({"components": [1, null, {}], "incidents": [1, null, [], {"since": "x"}], "t": "x",
+                               "clock": [], "silences": [3], "asked": [null], "paused": 1, "hears": "yes"})"}) {
+    const Json any = Json::parse(text);
+    const WhatCulpritSays said{any, any, any, any, {any, any}};
+    EXPECT_FALSE(is_all_well(said)) << text;
+    all_of(said);
+  }
+}
+
+TEST(StatusReport, LetsNoNameSteerTheTerminal) {
+  WhatCulpritSays said = ill();
+  said.state["incidents"][0]["headline"] = "\033[2J\u009b2Jcamera\n";
+  EXPECT_THAT(all_of(said), Not(HasSubstr("\033")));
+  EXPECT_THAT(all_of(said), HasSubstr("?[2J??2Jcamera?"));
+}
+
+TEST(TerminalScreen, CutsLinesAtItsEdge) {
+  EXPECT_EQ(cut_to("camera", 3), "cam");
+  EXPECT_EQ(cut_to("äöü", 2), "äö");
+  EXPECT_EQ(cut_to("\033[1;31mcamera\033[0m is", 3), "\033[1;31mcam");
+  EXPECT_EQ(cut_to("short", 80), "short");
+  EXPECT_EQ(cut_to("\033[", 80), "\033[");
+}
+
+}  // namespace
+}  // namespace culprit::cli

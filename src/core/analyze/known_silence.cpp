@@ -1,0 +1,99 @@
+#include "analyze/known_silence.h"
+
+#include <algorithm>
+
+namespace culprit {
+namespace {
+
+// Where silence ends, whatever else is done with the value: a rate at 0; an age or a suspicion
+// beyond all constants, if it is compared with nothing else.
+bool is_decided_by_silence(const Input& input) {
+  return input.kind == Input::Kind::kRate ||
+         ((input.kind == Input::Kind::kAge || input.kind == Input::Kind::kPhi) &&
+          input.only_compared && !input.thresholds.empty());
+}
+
+Slot after_long_silence(const Input& input) {
+  switch (input.kind) {
+    case Input::Kind::kRate:
+      return Slot::of(0.0);
+    case Input::Kind::kAge:
+      return Slot::of(from_seconds(input.thresholds.back()) + Duration(1));
+    default:
+      return Slot::of(input.thresholds.back() + 1);
+  }
+}
+
+bool can_bring_back(const Rule& rule, ComponentId component, const RuleSet& rules) {
+  return std::ranges::any_of(rule.strategies, [&](StrategyId id) {
+    return std::ranges::any_of(rules[id].adaptations, [&](const Adaptation& a) {
+      return a.component == component &&
+             (a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart);
+    });
+  });
+}
+
+}  // namespace
+
+KnownSilence::KnownSilence(const Knowledge& knowledge)
+    : knowledge_(knowledge),
+      is_brought_back_(knowledge.rules.components.size(), false),
+      of_silence_(knowledge.rules.rules.size()) {
+  const RuleSet& rules = knowledge.rules;
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    for (const ComponentId component : rules.rules[r].components) {
+      if (can_bring_back(rules.rules[r], component, rules))
+        is_brought_back_[component.index] = true;
+    }
+    for (const InputId input : rules.rules[r].inputs) {
+      if (is_decided_by_silence(rules[input])) of_silence_[r].push_back(input);
+    }
+  }
+}
+
+std::optional<ComponentId> KnownSilence::behind(RuleId rule) const {
+  const auto& state = knowledge_.states[rule];
+  if (!knowledge_.components.is_any_known_dead() && !state.detection.known_death)
+    return std::nullopt;
+  std::optional<ComponentId> dead;
+  std::vector<Assumed> assumed;
+  for (const InputId input : of_silence_[rule.index]) {
+    const auto component = silent_through(knowledge_.rules[input].topic, rule);
+    if (!component) continue;
+    if (!dead) dead = component;
+    assumed.push_back({input, after_long_silence(knowledge_.rules[input])});
+  }
+  if (!dead) return std::nullopt;
+  const Slot value = evaluate(knowledge_.rules[rule].trigger, knowledge_.signals.slots(), assumed);
+  return value.known && value.b ? dead : std::nullopt;
+}
+
+// Whoever alone publishes the topic, spoke since its process began, and does so no more.
+std::optional<ComponentId> KnownSilence::silent_through(TopicId topic, RuleId rule) const {
+  const auto component = knowledge_.graph.only_publisher(knowledge_.rules[topic].name);
+  const auto& heard = knowledge_.signals.rhythm(topic).last;
+  if (!component || !heard) return std::nullopt;
+  const ComponentState& state = knowledge_.components[*component];
+  if (state.known_dead)
+    return *heard >= state.node_seen && sees(rule, *component) ? component : std::nullopt;
+  const auto& before = knowledge_.states[rule].detection.known_death;
+  const bool is_awaited = before && before->component == *component && *heard <= before->since &&
+                          knowledge_.states[rule].attempt;
+  return is_awaited ? component : std::nullopt;
+}
+
+bool KnownSilence::sees(RuleId rule, ComponentId component) const {
+  return !is_brought_back_[component.index] ||
+         can_bring_back(knowledge_.rules[rule], component, knowledge_.rules);
+}
+
+FailureDetected KnownSilence::detected(RuleId rule) const {
+  const auto& death = knowledge_.states[rule].detection.known_death;
+  if (!death) return {rule};
+  const ComponentState& state = knowledge_.components[death->component];
+  return {
+      rule, death->component,
+      state.process == ProcessState::kStopped ? "its process is stopped" : state.process_remark};
+}
+
+}  // namespace culprit

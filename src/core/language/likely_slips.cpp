@@ -1,0 +1,127 @@
+#include "language/likely_slips.h"
+
+#include <algorithm>
+#include <array>
+
+namespace culprit {
+namespace {
+
+// No node is there, discovered and at work, in less.
+constexpr Duration kFastestStart = std::chrono::milliseconds(400);
+
+bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool is_shell(std::string_view program) {
+  return is_one_of(program.substr(program.rfind('/') + 1), {"sh", "bash", "dash", "zsh", "ksh"});
+}
+
+// NAME=value
+bool sets_variable(std::string_view word) {
+  const auto equals = word.find('=');
+  return equals != std::string_view::npos && equals > 0 &&
+         word.find_first_not_of(
+             "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_0123456789") == equals;
+}
+
+struct ShellWord {
+  std::string word;  // that only a shell understands; empty: there is none
+  std::string remedy;
+};
+
+ShellWord shell_word(const std::vector<std::string>& command) {
+  const std::string& program = command.front();
+  if (is_shell(program)) return {};
+  if (is_one_of(program, {"source", "."}))
+    return {program,
+            "what is sourced first is a clause of its own: SETUP /opt/ros/humble/setup.bash"};
+  if (program == "cd")
+    return {program, "the folder to run in is a clause of its own: CWD /a/folder"};
+  if (program == "export" || sets_variable(program))
+    return {program, "variables are a clause of their own: ENV \"NAME=value\""};
+  for (const std::string& word : command) {
+    if (is_one_of(word, {"&&", "||", ";", "|", "&", ">", ">>", "<", "2>&1"}) ||
+        word.starts_with("$(") || word.starts_with("${"))
+      return {word, "leave it out, or ask for a shell: LAUNCH \"bash -c '...'\""};
+  }
+  return {};
+}
+
+// source /a/setup.bash && program: with the clause that is meant instead.
+std::optional<Edit> with_setup(const syntax::Component& written,
+                               const std::vector<std::string>& command) {
+  const bool is_so = command.size() > 3 && is_one_of(command[0], {"source", "."}) &&
+                     command[1].starts_with('/') && is_one_of(command[2], {"&&", ";"});
+  if (!is_so || written.setup) return std::nullopt;
+  const std::string& text = written.launch->text;
+  const auto begin = text.find(command[2]) + command[2].size();
+  const auto first = text.find_first_not_of(" \t", begin);
+  const bool is_plain = first != std::string::npos &&
+                        text.find_first_of("\"\\\n\t") == std::string::npos &&
+                        command[1].find_first_of(" ()#,") == std::string::npos;
+  if (!is_plain) return std::nullopt;
+  return Edit{written.launch->span, "\"" + text.substr(first) + "\" SETUP " + command[1]};
+}
+
+}  // namespace
+
+void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
+                         std::vector<Diagnostic>& diagnostics) {
+  for (const syntax::Strategy& strategy : rule.strategies) {
+    for (const syntax::Adaptation& a : strategy.adaptations) {
+      const bool starts = a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart;
+      const Duration given = duration_of(Cycles{static_cast<std::int64_t>(a.impact.value)}, rules);
+      if (!starts || given >= kFastestStart) continue;
+      diagnostics.push_back(
+          {Code::kShortImpact, Severity::kWarning, a.impact.span,
+           "an impact of " + to_string(given) + " is over before a process is at work again",
+           "count the cycles of " + to_string(rules.cycle) +
+               " from when its node is there until the failure is gone: 10 and more are usual"});
+    }
+  }
+}
+
+void check_shell(const syntax::Component& written, const Component& component,
+                 std::vector<Diagnostic>& diagnostics) {
+  if (!written.launch || component.launch.empty()) return;
+  const ShellWord found = shell_word(component.launch);
+  if (found.word.empty()) return;
+  diagnostics.push_back(
+      {Code::kNoShell, Severity::kWarning, written.launch->span,
+       "no shell reads this command, so '" + found.word + "' is a word like any other",
+       found.remedy, with_setup(written, component.launch)});
+}
+
+void check_unused(const syntax::File& file, const RuleSet& rules,
+                  std::vector<Diagnostic>& diagnostics) {
+  // What is misspelt may be about it.
+  const bool is_misspelt = std::ranges::any_of(
+      diagnostics, [](const Diagnostic& d) { return d.code == Code::kUnknownName; });
+  if (rules.rules.empty() || is_misspelt) return;
+  std::vector<bool> is_used(rules.components.size());
+  const auto use = [&](ComponentId id) { is_used[id.index] = true; };
+  for (const Strategy& strategy : rules.strategies) {
+    for (const ComponentId id : strategy.components) use(id);
+  }
+  for (const Input& input : rules.inputs) {
+    if (input.kind == Input::Kind::kAlive || input.kind == Input::Kind::kLifecycle)
+      use(input.component);
+  }
+  for (const Parameter& parameter : rules.parameters) use(parameter.component);
+  for (const Dependency& dependency : rules.dependencies) {
+    use(dependency.consumer);
+    use(dependency.producer);
+  }
+  // Declared components come first, in the order of the file.
+  for (std::size_t i = 0; i < file.components.size(); ++i) {
+    const Component& component = rules.components[i];
+    if (is_used[i] || component.is_required) continue;
+    diagnostics.push_back({Code::kUnused, Severity::kWarning, file.components[i].name.span,
+                           "nothing in these rules is about component '" + component.name + "'",
+                           "write a rule about it, or add REQUIRED, so that a person is told if it "
+                           "is not there"});
+  }
+}
+
+}  // namespace culprit

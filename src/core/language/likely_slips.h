@@ -1,0 +1,25 @@
+// Design-time checks of what is allowed and was hardly meant. All are warnings.
+#pragma once
+
+#include <vector>
+
+#include "language/diagnostic.h"
+#include "language/rule_set.h"
+#include "language/syntax.h"
+
+namespace culprit {
+
+// An adaptation that starts a process and counts on less time than any process takes.
+void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
+                         std::vector<Diagnostic>& diagnostics);
+
+// A LAUNCH command written for a shell: source ... && ..., NAME=value program, a pipe. `component` is
+// what `written` declares.
+void check_shell(const syntax::Component& written, const Component& component,
+                 std::vector<Diagnostic>& diagnostics);
+
+// Components that are declared and that nothing in the rules is about, if there are rules.
+void check_unused(const syntax::File& file, const RuleSet& rules,
+                  std::vector<Diagnostic>& diagnostics);
+
+}  // namespace culprit

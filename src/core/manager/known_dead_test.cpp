@@ -1,0 +1,425 @@
+// What is known is not waited for; and what is somebody's wish is not fought.
+#include <set>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+constexpr const char* kPatientRules = R"(
+CYCLE 100ms
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+RULE CameraSilent
+  POLICIES ERROR
+  TRIGGER age(/image) > 5s
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 10
+)";
+
+TestRobot robot_with(const std::string& rules, const Manager::Options& options = {}) {
+  TestRobot robot(rules, std::make_unique<BayesPlanner>(), options);
+  robot.add("camera", {}, "/image");
+  robot.add("fusion", {"camera"}, "/fused");
+  robot.discover();
+  robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/image"});
+  robot.tell(EndpointAppeared{"/fusion", EndpointKind::kPublisher, "/fused"});
+  robot.run_for(6s);
+  return robot;
+}
+
+// Of `rule`, after the end of a component at `ended`.
+std::optional<Duration> detected_after(const TestRobot& robot, const std::string& rule,
+                                       Time ended) {
+  for (const Event& event : robot.events) {
+    const auto* detected = std::get_if<FailureDetected>(&event.what);
+    if (detected != nullptr && robot.rules()[detected->rule].name == rule && event.at >= ended)
+      return event.at - ended;
+  }
+  return std::nullopt;
+}
+
+void end(TestRobot& robot, const std::string& name, const std::string& remark, Cause cause) {
+  robot[name].process = ProcessState::kGone;
+  robot.tell(ProcessSeen{robot.id(name), ProcessState::kGone, robot[name].pid, remark, cause});
+}
+
+TEST(KnownDead, AKilledProcessIsAFailureOfTheRulesThatWouldSeeItsSilence) {
+  TestRobot robot = robot_with(kPatientRules);
+  const Time killed = robot.now;
+  robot.kill("camera");
+  robot.run_for(20ms);
+  EXPECT_EQ(detected_after(robot, "CameraSilent", killed), Monitor::kFarewell) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent detected (ERROR): camera is known dead, killed by signal 9"),
+            1u)
+      << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("camera: stop process")) << transcript(robot);
+  robot.run_for(3s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);
+}
+
+TEST(KnownDead, AStoppedProcessIsToo) {
+  TestRobot robot = robot_with(kPatientRules);
+  const Time stopped = robot.now;
+  robot.stop("camera");
+  EXPECT_EQ(detected_after(robot, "CameraSilent", stopped), Duration()) << transcript(robot);
+  EXPECT_EQ(robot.count("camera is known dead, its process is stopped"), 1u) << transcript(robot);
+}
+
+TEST(KnownDead, WhatGoesOnIsDeadNoLonger) {
+  TestRobot robot =
+      robot_with(std::string(kPatientRules)
+                     .replace(std::string(kPatientRules).find("ERROR"), 5, "ERROR FOR 1s"));
+  robot.stop("camera");
+  robot.run_for(500ms);
+  robot["camera"].process = ProcessState::kRunning;
+  robot.tell(ProcessSeen{robot.id("camera"), ProcessState::kRunning, robot["camera"].pid, ""});
+  robot.run_for(10s);
+  EXPECT_EQ(robot.count("CameraSilent detected"), 0u) << transcript(robot);
+}
+
+TEST(KnownDead, SomebodysWishIsNotAndItsOwnSilenceDecides) {
+  for (const Cause cause : {Cause::kWish, Cause::kUnknown}) {
+    TestRobot robot = robot_with(kPatientRules);
+    const Time ended = robot.now;
+    end(robot, "camera", "killed by signal 15", cause);
+    robot.run_for(10s);
+    const auto after = detected_after(robot, "CameraSilent", ended);
+    ASSERT_TRUE(after) << transcript(robot);
+    EXPECT_GT(*after, 4900ms);
+    EXPECT_EQ(robot.count("known dead"), 0u) << transcript(robot);
+  }
+}
+
+// It came down in an orderly way, and broke at the end of that.
+TEST(KnownDead, AGoodByeOnTheWireIsAWishWhateverTheExitCode) {
+  for (const Duration after : {Duration(-50ms), Duration(5ms)}) {
+    TestRobot robot = robot_with(kPatientRules);
+    const Time ended = robot.now;
+    if (after < Duration::zero()) {
+      robot.tell(NodeVanished{"/camera"});
+      robot.run_for(-after);
+    }
+    end(robot, "camera", "killed by signal 11", Cause::kFault);
+    robot.run_for(5ms);
+    if (after > Duration::zero()) robot.tell(NodeVanished{"/camera"});
+    robot.run_for(10s);
+    const auto detected = detected_after(robot, "CameraSilent", ended);
+    ASSERT_TRUE(detected) << transcript(robot);
+    EXPECT_GT(*detected, 4800ms) << transcript(robot);
+  }
+}
+
+TEST(KnownDead, ForAndHoldKeepTheirTime) {
+  for (const auto& [policy, time] : {std::pair("FOR 1s", Duration(1s)), {"HOLD 3/5", 200ms}}) {
+    TestRobot robot = robot_with(
+        std::string(kPatientRules)
+            .replace(std::string(kPatientRules).find("ERROR"), 5, std::string("ERROR ") + policy));
+    const Time killed = robot.now;
+    robot.kill("camera");
+    robot.run_for(4s);
+    const auto after = detected_after(robot, "CameraSilent", killed);
+    ASSERT_TRUE(after) << policy << transcript(robot);
+    EXPECT_GE(*after, time) << policy;
+    EXPECT_LE(*after, time + 200ms) << policy;
+  }
+}
+
+TEST(KnownDead, OnlyWhereTheDeadOneAloneExplainsIt) {
+  const auto rule_with = [](const std::string& trigger) {
+    return std::string(kPatientRules)
+        .replace(std::string(kPatientRules).find("age(/image) > 5s"), 16, trigger);
+  };
+  const auto is_seen_at_once = [&](const std::string& trigger) {
+    TestRobot robot = robot_with(rule_with(trigger));
+    robot.kill("camera");
+    robot.run_for(20ms);
+    return robot.count("CameraSilent detected") == 1;
+  };
+  EXPECT_TRUE(is_seen_at_once("rate(/image, 10s) < 1"));
+  EXPECT_TRUE(is_seen_at_once("phi(/image) > 8"));
+  EXPECT_TRUE(is_seen_at_once("rate(/image, 2s) / rate(/fused, 2s) < 0.5"));
+  EXPECT_TRUE(is_seen_at_once("age(/image) > 5s && age(/fused) < 1s"));
+  // What it does not publish, though it is silent soon.
+  EXPECT_FALSE(is_seen_at_once("age(/fused) > 5s"));
+  EXPECT_FALSE(is_seen_at_once("age(/image) > 5s && age(/fused) > 5s"));
+  // Silence that does not last is none that is known.
+  EXPECT_FALSE(is_seen_at_once("age(/image) > 5s && age(/image) < 6s"));
+}
+
+TEST(KnownDead, NotWhereAnotherOnePublishesItToo) {
+  TestRobot robot = robot_with(kPatientRules);
+  robot.tell(EndpointAppeared{"/fusion", EndpointKind::kPublisher, "/image"});
+  robot.kill("camera");
+  robot.run_for(4s);
+  EXPECT_EQ(robot.count("CameraSilent detected"), 0u) << transcript(robot);
+}
+
+// A mission is called off when the camera did not come back, not when it goes.
+TEST(KnownDead, WhoCannotBringItBackWaitsForWhoCan) {
+  const std::string gone = R"(
+RULE CameraGone
+  POLICIES ERROR
+  TRIGGER age(/image) > 3s
+    STRATEGY give_up 90 10
+      ADAPTATION fusion set_parameter mission "home" 2
+)";
+  TestRobot both = robot_with(kPatientRules + gone);
+  both.kill("camera");
+  both.run_for(2s);
+  EXPECT_TRUE(both.works("camera")) << transcript(both);
+  EXPECT_EQ(both.count("CameraGone detected"), 0u) << transcript(both);
+
+  const std::string rules(kPatientRules);
+  TestRobot alone = robot_with(rules.substr(0, rules.find("RULE")) + gone);
+  alone.kill("camera");
+  alone.run_for(20ms);
+  EXPECT_EQ(alone.count("CameraGone detected (ERROR): camera is known dead"), 1u)
+      << transcript(alone);
+}
+
+// It began, and needs a while until it speaks: that is neither success nor failure.
+TEST(KnownDead, IsResolvedWhenItIsHeardAgain) {
+  TestRobot robot = robot_with(kPatientRules);
+  robot.kill("camera");
+  robot["camera"].fault = "warms up";
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("redeploy camera: done"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent resolved"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent went away"), 0u) << transcript(robot);
+  robot["camera"].fault = "";
+  robot.run_for(2s);
+  EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+}
+
+TEST(KnownDead, WhatSomebodyElseStartedAgainIsLeftAlone) {
+  Manager::Options options;
+  options.governor.quiet_at_start = 8s;  // so that nothing is begun for a while
+  TestRobot robot = robot_with(kPatientRules, options);
+  robot.kill("camera");
+  robot.run_for(100ms);
+  EXPECT_EQ(robot.count("CameraSilent detected"), 1u) << transcript(robot);
+  robot.start_by_hand("camera");
+  robot["camera"].fault = "warms up";
+  robot.run_for(4s);
+  robot["camera"].fault = "";
+  robot.run_for(10s);
+  EXPECT_EQ(robot.count_asked("camera:"), 0u) << transcript(robot);
+}
+
+TEST(KnownDead, NothingIsBegunInTheQuietTimeAfterItsOwnRedeployment) {
+  Manager::Options options;
+  options.governor = Governor::Options::recommended();
+  TestRobot robot = robot_with(kPatientRules, options);
+  robot.kill("camera");
+  robot.run_for(500ms);
+  ASSERT_EQ(robot.count("redeploy camera: done"), 1u) << transcript(robot);
+  const Time died_again = robot.now;
+  robot.kill("camera");
+  robot.run_for(20s);
+  Time begun = kNever;
+  for (const Event& event : robot.events) {
+    if (std::holds_alternative<StrategyChosen>(event.what) && event.at > died_again)
+      begun = std::min(begun, event.at);
+  }
+  EXPECT_GE(begun - died_again, 1s - 200ms) << transcript(robot);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+// ---- a launch that is being ended
+
+constexpr const char* kFiveRules = R"(
+CYCLE 100ms
+COMPONENT a NODE /a LAUNCH "a"
+COMPONENT b NODE /b LAUNCH "b"
+COMPONENT c NODE /c LAUNCH "c"
+COMPONENT d NODE /d LAUNCH "d"
+COMPONENT e NODE /e LAUNCH "e"
+RULE A
+  POLICIES ERROR
+  TRIGGER age(/a) > 300ms
+    STRATEGY redeploy_a 90 10
+      ADAPTATION a redeploy 5
+RULE B
+  POLICIES ERROR
+  TRIGGER age(/b) > 300ms
+    STRATEGY redeploy_b 90 10
+      ADAPTATION b redeploy 5
+RULE C
+  POLICIES ERROR
+  TRIGGER !alive(c)
+    STRATEGY redeploy_c 90 10
+      ADAPTATION c redeploy 5
+RULE D
+  POLICIES ERROR
+  TRIGGER rate(/d, 1s) < 1
+    STRATEGY redeploy_d 90 10
+      ADAPTATION d redeploy 5
+RULE E
+  POLICIES ERROR
+  TRIGGER phi(/e) > 5
+    STRATEGY redeploy_e 90 10
+      ADAPTATION e redeploy 5
+)";
+constexpr int kLauncher = 50;
+const std::vector<std::string> kFive = {"a", "b", "c", "d", "e"};
+
+TestRobot launch_of_five() {
+  TestRobot robot(kFiveRules);
+  for (const std::string& name : kFive) robot.add(name, {}, "/" + name);
+  robot.discover();
+  for (const std::string& name : kFive) {
+    robot.tell(EndpointAppeared{"/" + name, EndpointKind::kPublisher, "/" + name});
+    robot.tell(LauncherSeen{robot.id(name), kLauncher, false});
+  }
+  robot.run_for(6s);
+  return robot;
+}
+
+void end_launcher(TestRobot& robot) {
+  for (const std::string& name : kFive) robot.tell(LauncherSeen{robot.id(name), kLauncher, true});
+}
+
+TEST(ALaunch, OfFiveThatSomebodyEndsIsNotStartedAgain) {
+  TestRobot robot = launch_of_five();
+  for (const std::string& name : kFive) {
+    robot.leave(name);
+    robot.run_for(name == "a" ? 1500ms : 300ms);  // an interpreter takes its time
+  }
+  end_launcher(robot);
+  robot.run_for(1min);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(robot.count("A.redeploy_a is held back: what process 50 had started is being ended"),
+            1u)
+      << transcript(robot);
+  EXPECT_EQ(robot.count("is held back: somebody ended process 50"), 5u) << transcript(robot);
+  for (const std::string& name : kFive) robot.start_by_hand(name);
+  robot.run_for(Departures::kBack);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  robot.kill("b");
+  robot.run_for(2s);
+  EXPECT_TRUE(robot.works("b")) << transcript(robot);
+}
+
+// What does not end when it is asked is killed by its launcher.
+TEST(ALaunch, ThatSomebodyEndsMayHaveToKill) {
+  TestRobot robot = launch_of_five();
+  for (const std::string name : {"a", "b", "c", "d"}) robot.leave(name);
+  robot.run_for(10s);
+  robot.kill("e");
+  robot.run_for(100ms);
+  end_launcher(robot);
+  robot.run_for(1min);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+}
+
+TEST(ALaunch, OfWhichOneAloneEndedIsCompletedAgain) {
+  TestRobot robot = launch_of_five();
+  const Time left = robot.now;
+  robot.leave("b");
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("b")) << transcript(robot);
+  const auto chosen = std::ranges::find_if(robot.events, [](const Event& event) {
+    return std::holds_alternative<StrategyChosen>(event.what);
+  });
+  ASSERT_NE(chosen, robot.events.end());
+  EXPECT_GE(chosen->at - left, Departures::kAlone);
+}
+
+// on_exit=Shutdown(): its launcher ended the rest because one had broken.
+TEST(ALaunch, ThatEndsBecauseOneBrokeIsBroughtBack) {
+  TestRobot robot = launch_of_five();
+  robot.kill("a");
+  robot.run_for(50ms);
+  for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
+  robot.run_for(200ms);
+  end_launcher(robot);
+  robot.run_for(1min);
+  for (const std::string& name : kFive) EXPECT_TRUE(robot.works(name)) << name;
+}
+
+TEST(ALaunch, ThatEndsBecauseCulpritEndedOneIsBroughtBack) {
+  TestRobot robot = launch_of_five();
+  robot["a"].fault = "redeploy";
+  robot.after_step = [&] { robot.after_step = nullptr; };
+  while (!robot.was_asked("a: stop process")) robot.run_for(10ms);
+  robot.run_for(10ms);
+  for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
+  end_launcher(robot);
+  robot.run_for(1min);
+  for (const std::string& name : kFive) EXPECT_TRUE(robot.works(name)) << name << transcript(robot);
+}
+
+TEST(ALaunch, IsNotInTheWayOfWhatItDidNotStart) {
+  TestRobot robot = launch_of_five();
+  robot.tell(LauncherSeen{robot.id("e"), kLauncher + 1, false});
+  robot.leave("a");
+  robot.leave("b");
+  robot.kill("e");
+  robot.run_for(1s);
+  EXPECT_TRUE(robot.was_asked("e: start process")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("a:")) << transcript(robot);
+}
+
+// ---- what holds for all rules and all deaths
+
+const std::vector<std::string> kTriggers = {"age(/a) > 400ms",
+                                            "age(/a) > 3s",
+                                            "rate(/a, 2s) < 3",
+                                            "phi(/a) > 6",
+                                            "age(/a) > 300ms && age(/b) > 1s",
+                                            "age(/a) > 300ms || age(/b) > 1s",
+                                            "age(/a) > 1s && age(/b) < 500ms",
+                                            "!(rate(/a, 1s) > 5) && rate(/b, 1s) > 1",
+                                            "age(/b) > 800ms",
+                                            "age(/a) > 1s && age(/a) < 2s"};
+
+// When each rule was detected, of a robot that nobody repairs.
+std::vector<std::optional<Duration>> detections(const std::vector<std::string>& triggers,
+                                                const std::string& policy, Cause cause,
+                                                Duration killed_at) {
+  std::string rules = "CYCLE 100ms\nCOMPONENT a NODE /a LAUNCH \"a\"\nCOMPONENT b NODE /b\n";
+  for (std::size_t i = 0; i < triggers.size(); ++i) {
+    const std::string n = std::to_string(i);
+    rules += "RULE R" + n + "\n  POLICIES ERROR " + policy + "\n  TRIGGER " + triggers[i] +
+             "\n    STRATEGY s" + n + " 90 10\n      ADAPTATION a redeploy 5\n";
+  }
+  TestRobot robot(rules, std::make_unique<BayesPlanner>(), Autonomy::kAdvise);
+  robot.add("a", {}, "/a");
+  robot.add("b", {}, "/b", 70ms);
+  robot.discover();
+  for (const char* name : {"a", "b"})
+    robot.tell(EndpointAppeared{std::string("/") + name, EndpointKind::kPublisher,
+                                std::string("/") + name});
+  robot.run_for(8s + killed_at);
+  const Time killed = robot.now;
+  end(robot, "a", "killed by signal 9", cause);
+  robot.run_for(20s);
+  std::vector<std::optional<Duration>> times;
+  for (std::size_t i = 0; i < triggers.size(); ++i)
+    times.push_back(detected_after(robot, "R" + std::to_string(i), killed));
+  return times;
+}
+
+// It is what silence would bring, only sooner; what silence would not bring does not come.
+RC_GTEST_PROP(KnownDead, BringsWhatSilenceWouldBringAndNothingElse, ()) {
+  std::vector<std::string> triggers;
+  for (int i = *rc::gen::inRange(1, 5); i > 0; --i)
+    triggers.push_back(*rc::gen::elementOf(kTriggers));
+  const auto policy = *rc::gen::element<std::string>("", "FOR 300ms", "HOLD 2/4");
+  const auto killed_at = std::chrono::milliseconds(*rc::gen::inRange(0, 300));
+  const auto known = detections(triggers, policy, Cause::kFault, killed_at);
+  const auto heard = detections(triggers, policy, Cause::kUnknown, killed_at);
+  for (std::size_t i = 0; i < triggers.size(); ++i) {
+    RC_ASSERT(known[i].has_value() == heard[i].has_value());
+    if (known[i]) RC_ASSERT(*known[i] <= *heard[i]);
+  }
+}
+
+}  // namespace
+}  // namespace culprit::test

@@ -1,0 +1,77 @@
+// The monitor's part about how processes end: whether that is known to be a fault, so that what the
+// component published is known to be silent, or somebody's wish.
+#include "monitor/monitor.h"
+
+namespace culprit {
+
+void Monitor::on(Time at, const LauncherSeen& seen) {
+  if (seen.has_ended) return write_.departures.launcher_ended(seen.pid, at);
+  write_.departures.launched(seen.component, seen.pid);
+}
+
+// Before what was known of its node is forgotten.
+void Monitor::note_process(const ProcessSeen& seen, Time at) {
+  switch (seen.state) {
+    case ProcessState::kRunning:
+      return note_no_longer_dead(seen.component);
+    case ProcessState::kStopped:
+      if (seen.cause == Cause::kFault && knowledge_.components[seen.component].in_graph)
+        note_known_dead(seen.component, at);
+      return;
+    case ProcessState::kGone:
+      return note_end(seen, at);
+  }
+}
+
+void Monitor::note_end(const ProcessSeen& seen, Time at) {
+  const ComponentId component = seen.component;
+  const bool has_said_good_bye = !knowledge_.components[component].in_graph;
+  note_no_longer_dead(component);
+  if (knowledge_.states.reservation(component) != nullptr) {
+    write_.departures.fell(component, at);  // it is culprit that is at it
+  } else if (has_said_good_bye) {
+    write_.departures.lost(component);
+  } else if (seen.cause == Cause::kWish) {
+    write_.departures.left(component, at);
+  } else if (seen.cause == Cause::kUnknown) {
+    write_.departures.lost(component);
+  }
+  if (!has_said_good_bye && seen.cause == Cause::kFault)
+    deadlines_.set(farewell_of(component), later(at, kFarewell));
+}
+
+// Of a node that leaves the graph while its process runs, or the moment after it ended.
+void Monitor::note_farewell(ComponentId component, Time at) {
+  const bool is_running = knowledge_.components[component].process == ProcessState::kRunning &&
+                          knowledge_.components[component].in_graph;
+  const bool is_fallen = deadlines_.at(farewell_of(component)) != kNever;
+  deadlines_.clear(farewell_of(component));
+  if (!is_running && !is_fallen) return;  // its lease ran out, long after its end
+  if (knowledge_.states.reservation(component) == nullptr) write_.departures.left(component, at);
+}
+
+void Monitor::note_known_dead(ComponentId component, Time at) {
+  write_.components.set_known_dead(component, at);
+  if (knowledge_.components[component].process == ProcessState::kGone)
+    write_.departures.fell(component, at);
+  touch_topics_of(component);
+}
+
+void Monitor::note_no_longer_dead(ComponentId component) {
+  deadlines_.clear(farewell_of(component));
+  if (!knowledge_.components[component].known_dead) return;
+  write_.components.set_known_dead(component, std::nullopt);
+  touch_topics_of(component);
+}
+
+// The rules that read whether they come have to be looked at.
+void Monitor::touch_topics_of(ComponentId component) {
+  for (const KnownRobot::End& end : knowledge_.graph.ends_of(component)) {
+    const auto topic = topic_ids_.find(end.name);
+    if (end.kind != EndpointKind::kPublisher || topic == topic_ids_.end()) continue;
+    topics_[topic->second.index].is_known_silent = true;
+    for (const InputId id : topics_[topic->second.index].inputs) write_.signals.touch(id);
+  }
+}
+
+}  // namespace culprit

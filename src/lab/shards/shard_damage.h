@@ -1,0 +1,17 @@
+// What becomes of a shard file that is damaged: it is kept under another name, and the shard goes on
+// behind the last line before the damage.
+#pragma once
+
+#include <filesystem>
+
+#include "shards/shard_file.h"
+
+namespace culprit::study {
+
+// Gives what the damaged file is called now. Errors: the file is not damaged, or is none of this
+// campaign and shard, as far as can be told; it is left as it was.
+template <class C>
+Expected<std::filesystem::path> set_damage_aside(const std::filesystem::path& path,
+                                                 const ShardHeader<C>& header);
+
+}  // namespace culprit::study

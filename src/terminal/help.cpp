@@ -1,0 +1,84 @@
+#include "terminal/help.h"
+
+#include <sstream>
+
+namespace culprit {
+namespace {
+
+constexpr std::size_t kNames = 30;
+constexpr std::size_t kTexts = 70;
+
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() { column_width(kNames); }
+
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const std::string value = option->get_positional() ? "" : value_of(*option);
+    return value.empty() ? "" : " " + value;
+  }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return wrapped(purpose_of(*option), kTexts);
+  }
+  // Of the others of a command, the first line says enough.
+  std::string make_subcommand(const CLI::App* command) const override {
+    const std::string& text = command->get_description();
+    std::stringstream out;
+    CLI::detail::format_help(out, command->get_display_name(true),
+                             wrapped(text.substr(0, text.find('\n')), kTexts), kNames);
+    return out.str();
+  }
+  std::string make_description(const CLI::App* command) const override {
+    return wrapped(CLI::Formatter::make_description(command), kNames + kTexts);
+  }
+};
+
+}  // namespace
+
+std::string value_of(const CLI::Option& option) {
+  if (option.get_items_expected_max() == 0) return "";
+  const std::string type = option.get_type_name();
+  const std::size_t brace = type.find('{');
+  const std::string value =
+      brace != std::string::npos ? type.substr(brace) : type.substr(0, type.find(':'));
+  return (value.empty() ? "TEXT" : value) + (option.get_items_expected_max() > 1 ? " ..." : "");
+}
+
+std::string purpose_of(const CLI::Option& option) {
+  const std::string& text = option.get_description();
+  const std::string fallback = option.get_default_str();
+  const bool is_told = fallback.empty() || text.find("(default") != std::string::npos;
+  return is_told ? text : text + " (default: " + fallback + ")";
+}
+
+std::string wrapped(const std::string& text, std::size_t columns) {
+  std::string out;
+  std::size_t column = 0;
+  std::string word;
+  const auto end_word = [&] {
+    if (word.empty()) return;
+    if (column > 0 && column + 1 + word.size() > columns) {
+      out += '\n';
+      column = 0;
+    }
+    if (column > 0) out += ' ';
+    column += (column > 0 ? 1 : 0) + word.size();
+    out += std::exchange(word, "");
+  };
+  for (const char c : text) {
+    if (c != ' ' && c != '\n') {
+      word += c;
+      continue;
+    }
+    end_word();
+    if (c == '\n') {
+      out += '\n';
+      column = 0;
+    }
+  }
+  end_word();
+  return out;
+}
+
+std::shared_ptr<CLI::FormatterBase> help_formatter() { return std::make_shared<HelpFormatter>(); }
+
+}  // namespace culprit

@@ -1,0 +1,22 @@
+// How --help looks: lines that fit a terminal, and of each option what it takes and what it is by default.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace culprit {
+
+// What an option takes: "{text,json}", "DURATION", "FILE ..."; empty: nothing.
+std::string value_of(const CLI::Option& option);
+
+// What it is for, and its default: "How many of the latest rows (default: 50)".
+std::string purpose_of(const CLI::Option& option);
+
+// `text` in lines of so many characters at most, if its words allow it.
+std::string wrapped(const std::string& text, std::size_t columns);
+
+std::shared_ptr<CLI::FormatterBase> help_formatter();
+
+}  // namespace culprit

@@ -1,0 +1,27 @@
+// Lets people of this machine ask a running culprit, and tell it, from another terminal: culprit status, pause.
+#pragma once
+
+#include <cstdio>
+#include <memory>
+
+#include "web/server.h"
+
+namespace culprit {
+
+// Who is asked. `page` is where its page is; empty: it has none.
+struct WhoServes {
+  std::string version;
+  std::string robot;
+  std::string rules;  // the file
+  std::uint32_t domain = 0;
+  std::string node;
+  std::string page;
+};
+
+// Serves until the server is destroyed, and says on `out` how to ask. Null, and said, if that is
+// impossible: a robot is managed all the same.
+std::unique_ptr<web::Server> serve_this_machine(const WhoServes& who,
+                                                std::vector<web::Route> routes, web::Hub& hub,
+                                                std::FILE* out = stdout);
+
+}  // namespace culprit

@@ -1,0 +1,180 @@
+#include "doctor/process_watch.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <poll.h>
+#include <sstream>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/live_clock.h"
+#include "doctor/start_parameters.h"
+#include "owners/proc.h"
+#include "owners/start_of.h"
+
+namespace culprit::doctor {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_of(int pid) { return "/proc/" + std::to_string(pid); }
+
+Duration ticks(std::int64_t count) {
+  static const std::int64_t per_second = sysconf(_SC_CLK_TCK);
+  return std::chrono::nanoseconds(count * (1'000'000'000 / per_second));
+}
+
+// Processor time and memory of a process, or of one of its threads (proc(5), stat).
+struct Use {
+  Duration processor{};
+  std::int64_t bytes = 0;
+};
+std::optional<Use> use_of(const fs::path& folder) {
+  std::ifstream file(folder / "stat");
+  std::string line;
+  std::getline(file, line);
+  const auto end = line.rfind(')');  // the command before it may hold anything
+  if (end == std::string::npos) return std::nullopt;
+  std::istringstream rest(line.substr(end + 1));
+  std::string skipped;
+  for (int i = 0; i < 11; ++i) rest >> skipped;
+  std::int64_t user = 0, system = 0, pages = 0;
+  rest >> user >> system;
+  for (int i = 0; i < 8; ++i) rest >> skipped;
+  if (!(rest >> pages)) return std::nullopt;
+  static const std::int64_t page = sysconf(_SC_PAGESIZE);
+  return Use{ticks(user + system), pages * page};
+}
+
+std::string command_of(int pid) {
+  std::ifstream file(folder_of(pid) / "comm");
+  std::string name;
+  std::getline(file, name);
+  return name;
+}
+
+// Who takes over processes whose parents have ended.
+bool adopts(int pid) {
+  constexpr std::array kNames = {"systemd",   "init",        "tini",
+                                 "dumb-init", "docker-init", "catatonit"};
+  return pid <= 1 || std::ranges::find(kNames, command_of(pid)) != kNames.end();
+}
+
+std::uint64_t shared_memory_of(int pid) {
+  struct stat status {};
+  const fs::path folder = folder_of(pid) / "root/dev/shm";
+  return stat(folder.c_str(), &status) == 0 ? status.st_dev : 0;
+}
+
+Process started(int pid, const std::vector<std::string>& nodes) {
+  Process process;
+  process.program = command_of(pid);
+  if (const auto at = owners::started_at(pid)) {
+    const Duration age = live_now() - *at;
+    process.age_at_first = age;
+    process.started =
+        std::chrono::time_point_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now()) -
+        age;
+  }
+  const int parent = owners::parent_of(pid).value_or(0);
+  if (!adopts(parent))
+    process.launcher = "process " + std::to_string(parent) + " (" + command_of(parent) + ")";
+  process.is_left_over = adopts(parent) && prints_to_nobody(pid);
+  if (const auto identity = owners::identity_of(pid)) process.user = identity->user;
+  process.shared_memory = shared_memory_of(pid);
+  if (const auto start = owners::start_of(pid))
+    process.parameters = start_parameters(start->command, start->folder, nodes);
+  return process;
+}
+
+}  // namespace
+
+bool prints_to_nobody(int pid) {
+  const fs::path output = folder_of(pid) / "fd/1";
+  std::error_code error;
+  if (!fs::read_symlink(output, error).native().starts_with("pipe:")) return false;
+  const int pipe = open(output.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  if (pipe < 0) return false;
+  // Of the end to write that is an error: the other end is closed (poll(2)).
+  pollfd state{pipe, POLLOUT, 0};
+  const bool is_broken = poll(&state, 1, 0) == 1 && (state.revents & POLLERR) != 0;
+  close(pipe);
+  return is_broken;
+}
+
+std::int64_t free_memory() {
+  std::ifstream file("/proc/meminfo");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("MemAvailable:")) continue;
+    std::int64_t kilobytes = 0;
+    std::istringstream(line.substr(line.find(':') + 1)) >> kilobytes;
+    return kilobytes * 1024;
+  }
+  return 0;
+}
+
+void ProcessWatch::sample(const std::map<std::string, int>& nodes, Offset at) {
+  std::map<int, std::vector<std::string>> by_process;
+  for (const auto& [node, pid] : nodes) {
+    if (pid != 0) by_process[pid].push_back(node);
+  }
+  for (const auto& [pid, names] : by_process) {
+    const auto use = use_of(folder_of(pid));
+    if (!use) continue;
+    const auto known = processes_.find(pid);
+    Process& process =
+        known != processes_.end() ? known->second : processes_[pid] = started(pid, names);
+    process.samples.push_back({at, use->processor, use->bytes});
+    look_at_threads(pid, process, at);
+  }
+  std::erase_if(processes_, [&](const auto& entry) { return !by_process.contains(entry.first); });
+}
+
+// Only of processes that used nearly a whole core since they were looked at last.
+void ProcessWatch::look_at_threads(int pid, Process& process, Offset at) {
+  constexpr double kBusy = 0.9;
+  const auto& samples = process.samples;
+  if (samples.size() < 2) return;
+  const auto& before = samples[samples.size() - 2];
+  const double share = seconds(samples.back().processor - before.processor) /
+                       std::max(1e-3, seconds(at - before.at));
+  if (share < kBusy) {
+    process.busiest_thread = 0;
+    threads_.erase(pid);
+    return;
+  }
+  std::map<int, Duration> used;
+  std::error_code error;
+  for (fs::directory_iterator i(folder_of(pid) / "task", error);
+       !error && i != fs::directory_iterator(); i.increment(error)) {
+    if (const auto use = use_of(i->path()))
+      used[std::atoi(i->path().filename().c_str())] = use->processor;
+  }
+  if (const auto last = threads_.find(pid); last != threads_.end()) {
+    double most = 0;
+    for (const auto& [thread, time] : used) {
+      const auto old = last->second.used.find(thread);
+      if (old != last->second.used.end())
+        most = std::max(
+            most, seconds(time - old->second) / std::max(1e-3, seconds(at - last->second.at)));
+    }
+    process.busiest_thread = std::min(process.busiest_thread.value_or(most), most);
+  }
+  threads_[pid] = {std::move(used), at};
+}
+
+void ProcessWatch::begin_anew() {
+  for (auto& [pid, process] : processes_) {
+    process.samples.clear();
+    process.busiest_thread.reset();
+    if (const auto at = owners::started_at(pid)) process.age_at_first = live_now() - *at;
+  }
+  threads_.clear();
+}
+
+}  // namespace culprit::doctor

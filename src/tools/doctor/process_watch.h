@@ -1,0 +1,42 @@
+// What the processes of a robot's nodes do, as far as they are of this machine: their memory and
+// processor time from time to time, how they were started, and where their launcher is.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "doctor/picture.h"
+
+namespace culprit::doctor {
+
+class ProcessWatch {
+ public:
+  // Looks at `nodes` (by name, with their processes) at `at`. Cheap: two small files for each process.
+  void sample(const std::map<std::string, int>& nodes, Offset at);
+
+  // All that were there, without those that ended meanwhile.
+  const std::map<int, Process>& processes() const { return processes_; }
+
+  // Forgets the samples, not the processes: another look begins.
+  void begin_anew();
+
+ private:
+  struct Threads {
+    std::map<int, Duration> used;  // when they were looked at last
+    Offset at{};
+  };
+
+  void look_at_threads(int pid, Process& process, Offset at);
+
+  std::map<int, Process> processes_;
+  std::map<int, Threads> threads_;  // of those that are busy
+};
+
+// Whether nobody will ever read what the process prints: its standard output is a pipe that has no reader.
+bool prints_to_nobody(int pid);
+
+// Bytes that new processes may have; 0: not known.
+std::int64_t free_memory();
+
+}  // namespace culprit::doctor

@@ -1,0 +1,91 @@
+#include "doctor/report.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "doctor/examine.h"
+#include "doctor/explanations.h"
+#include "doctor/wording.h"
+
+namespace culprit::doctor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finding_json(const Finding& finding) {
+  return {{"code", finding.code},       {"severity", label(finding.gravity)},
+          {"who", finding.who},         {"nodes", finding.nodes},
+          {"topic", finding.topic},     {"seen", finding.seen},
+          {"matters", finding.matters}, {"remedy", finding.remedy}};
+}
+
+Json logical_location(const std::string& name, const char* kind) {
+  return {{"fullyQualifiedName", name}, {"kind", kind}};
+}
+
+Json sarif_result(const Finding& finding) {
+  Json logical = Json::array();
+  for (const std::string& node : finding.nodes) logical.push_back(logical_location(node, "node"));
+  if (!finding.topic.empty()) logical.push_back(logical_location(finding.topic, "topic"));
+  if (logical.empty()) logical.push_back(logical_location(finding.who, "robot"));
+  return {{"ruleId", finding.code},
+          {"level", label(finding.gravity)},
+          {"message",
+           {{"text",
+             finding.who + ": " + finding.seen + "\n" + finding.matters + "\n" + finding.remedy}}},
+          {"locations", Json::array({{{"logicalLocations", std::move(logical)}}})}};
+}
+
+}  // namespace
+
+Report report_of(const Picture& picture, const Baseline* healthy) {
+  Report report{picture.domain, picture.nodes.size(), picture.looked, examine(picture),
+                picture.left_out};
+  if (healthy != nullptr && !picture.nodes.empty()) {
+    const Findings differences = compare(*healthy, baseline_of(picture));
+    report.findings.insert(report.findings.end(), differences.begin(), differences.end());
+    put_worst_first(report.findings);
+  }
+  return report;
+}
+
+Json to_json(const Report& report) {
+  Json findings = Json::array();
+  for (const Finding& finding : report.findings) findings.push_back(finding_json(finding));
+  return {{"domain", report.domain},
+          {"nodes", report.nodes},
+          {"looked_s", seconds(report.looked)},
+          {"findings", std::move(findings)},
+          {"left_out", report.left_out}};
+}
+
+Json to_sarif(const Report& report) {
+  Json rules = Json::array();
+  for (const Explanation& each : explanations())
+    rules.push_back({{"id", each.code},
+                     {"shortDescription", {{"text", each.title}}},
+                     {"fullDescription", {{"text", each.why}}},
+                     {"help", {{"text", page(each)}}}});
+  Json results = Json::array();
+  for (const Finding& finding : report.findings) results.push_back(sarif_result(finding));
+  Json driver{{"name", "culprit doctor"}, {"rules", std::move(rules)}};
+  Json run{{"tool", {{"driver", std::move(driver)}}}, {"results", std::move(results)}};
+  return {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
+          {"version", "2.1.0"},
+          {"runs", Json::array({std::move(run)})}};
+}
+
+std::string summary(const Report& report) {
+  const auto count = [&](Gravity gravity) {
+    return static_cast<std::size_t>(
+        std::ranges::count(report.findings, gravity, &Finding::gravity));
+  };
+  return fmt::format("{} on domain {}: {}", count_of(report.nodes, "node"), report.domain,
+                     report.findings.empty() ? "nothing is wrong that can be seen from outside"
+                                             : count_of(count(Gravity::kError), "error") + ", " +
+                                                   count_of(count(Gravity::kWarning), "warning"));
+}
+
+}  // namespace culprit::doctor

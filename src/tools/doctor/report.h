@@ -1,0 +1,44 @@
+// What the doctor says of a robot, whole: for a terminal, for programs, for the page.
+//
+//     const auto picture = doctor::look({.participant = options});
+//     const doctor::Report report = doctor::report_of(*picture);
+//     std::cout << doctor::to_json(report).dump(2);
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "base/units.h"
+#include "doctor/baseline.h"
+#include "doctor/finding.h"
+#include "doctor/picture.h"
+
+namespace culprit::doctor {
+
+struct Report {
+  std::uint32_t domain = 0;
+  std::size_t nodes = 0;
+  Duration looked{};
+  std::vector<Finding> findings;      // the worst first
+  std::vector<std::string> left_out;  // what was not looked at, in sentences
+  bool operator==(const Report&) const = default;
+};
+
+// `healthy`: what the robot is compared with, too; null: nothing.
+Report report_of(const Picture& picture, const Baseline* healthy = nullptr);
+
+// {domain, nodes, looked_s, findings: [{code, severity, who, nodes, topic, seen, matters, remedy}],
+// left_out}.
+nlohmann::ordered_json to_json(const Report& report);
+
+// SARIF 2.1.0 (OASIS), one run. Every code is a rule, found or not; who is concerned are logical
+// locations.
+nlohmann::ordered_json to_sarif(const Report& report);
+
+// "12 nodes on domain 7: 1 error, 2 warnings".
+std::string summary(const Report& report);
+
+}  // namespace culprit::doctor

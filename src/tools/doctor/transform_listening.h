@@ -1,0 +1,60 @@
+// Hears /tf and /tf_static: who publishes which edge of the tree, how often, and how late.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/mutex.h"
+#include "doctor/picture.h"
+#include "ros2/subscription.h"
+
+namespace culprit::doctor {
+
+// On the executor's thread, but for what it hears.
+class TransformListening {
+ public:
+  static constexpr std::size_t kMostEdges = 10'000;  // the network decides how many there are
+
+  // `self` outlives it.
+  explicit TransformListening(ros2::NodeEntry& self) : self_(self) {}
+
+  // Somebody publishes /tf, or /tf_static.
+  void listen_to(const std::string& topic, Time now);
+  // Since the first of them was listened to; zero: none is.
+  Duration listened(Time now) const;
+
+  // `began`: when the look did. Without the nodes, which the writers tell.
+  struct Heard {
+    ros2::Guid writer;
+    Transform edge;
+  };
+  std::vector<Heard> heard(Time began) const;
+
+  // Counts anew how long it listened. What it heard stays: edges that have stopped are told by that.
+  void begin_anew(Time now);
+
+ private:
+  struct Key {
+    std::string parent, child;
+    ros2::Guid writer;
+    bool is_static = false;
+    auto operator<=>(const Key&) const = default;
+  };
+  struct Edge {
+    std::size_t count = 0;
+    Time first{}, last{};
+    Duration lag{};
+  };
+  void on_sample(const ros2::Sample& sample, bool is_static);
+
+  ros2::NodeEntry& self_;
+  Time opened_ = kNever;
+  mutable Mutex mutex_;
+  std::map<Key, Edge> edges_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<std::string, std::unique_ptr<ros2::RawSubscription>> subscriptions_;
+};
+
+}  // namespace culprit::doctor

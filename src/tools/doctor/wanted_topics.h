@@ -1,0 +1,21 @@
+// Which topics of a robot have to be listened to, so that findings can be made of them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "doctor/listening.h"
+#include "doctor/picture.h"
+
+namespace culprit::doctor {
+
+enum class Extent : std::uint8_t {
+  kFindings,    // what findings need
+  kEverything,  // a robot as it is: also all rates and parameters
+};
+
+// Only those that a node of the robot reads. Without /tf, /clock and /diagnostics, which have ears of
+// their own.
+std::vector<WantedTopic> wanted_topics(const Picture& picture, Extent extent);
+
+}  // namespace culprit::doctor

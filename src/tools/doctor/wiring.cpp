@@ -1,0 +1,30 @@
+#include "doctor/wiring.h"
+
+#include <algorithm>
+
+#include "base/ros_names.h"
+#include "base/tool_names.h"
+
+namespace culprit::doctor {
+
+Wiring wiring_of(const Picture& picture) {
+  Wiring wiring;
+  for (const auto& [node, endpoints] : picture.nodes) {
+    if (own_name(node.name).starts_with('_')) continue;
+    for (const ros2::GraphEndpoint& each : endpoints) {
+      const bool is_topic =
+          each.kind == EndpointKind::kPublisher || each.kind == EndpointKind::kSubscriber;
+      const bool sends =
+          each.kind == EndpointKind::kPublisher || each.kind == EndpointKind::kClient;
+      Channel& channel = (is_topic ? wiring.topics : wiring.services)[each.name];
+      (sends ? channel.senders : channel.receivers).push_back({node.name, node.vendor, each});
+    }
+  }
+  return wiring;
+}
+
+bool has_robots_end(const std::vector<End>& ends) {
+  return std::ranges::any_of(ends, [](const End& end) { return !is_tool_node(end.node); });
+}
+
+}  // namespace culprit::doctor

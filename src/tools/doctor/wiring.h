@@ -1,0 +1,35 @@
+// Who is connected to whom: the endpoints of a picture, by topic and service.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "doctor/picture.h"
+
+namespace culprit::doctor {
+
+struct End {
+  std::string node;
+  ros2::Vendor vendor = ros2::Vendor::kOther;
+  ros2::GraphEndpoint endpoint;
+};
+
+// Of a topic its publishers and subscribers; of a service its clients, which send, and its servers.
+struct Channel {
+  std::vector<End> senders;
+  std::vector<End> receivers;
+};
+
+struct Wiring {
+  std::map<std::string, Channel> topics;
+  std::map<std::string, Channel> services;
+};
+
+// Without the endpoints of hidden nodes, which are somebody's tools.
+Wiring wiring_of(const Picture& picture);
+
+// Whether any of them is of a node of the robot, not of a tool.
+bool has_robots_end(const std::vector<End>& ends);
+
+}  // namespace culprit::doctor

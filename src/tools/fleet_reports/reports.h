@@ -1,0 +1,33 @@
+// The reports of `culprit fleet`: which tables each has, and the queries that make them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fleet_reports/report.h"
+
+namespace culprit::fleet {
+
+// What a report is about; empty fields: all.
+struct Scope {
+  std::string model;
+  std::string robot;  // its name
+  int days = 30;      // back from now
+};
+
+// Who is ill now, who is not heard of, and how the models are.
+std::vector<TableQuery> status_queries(const Scope& scope);
+// What happened: the latest incidents, the worst rules, components and versions, and how long
+// repairs took, by week.
+std::vector<TableQuery> incident_queries(const Scope& scope);
+// What the fleet knows of each strategy.
+std::vector<TableQuery> belief_queries(const Scope& scope);
+// Versions beside each other.
+std::vector<TableQuery> version_queries(const Scope& scope);
+// Robots that are not like the others of their model, and versions beside each other.
+Expected<Report> compare(Server& server, const Scope& scope);
+
+// The statements as text, for other programs.
+std::string sql_of(const std::vector<TableQuery>& queries);
+
+}  // namespace culprit::fleet

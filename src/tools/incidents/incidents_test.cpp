@@ -1,0 +1,178 @@
+// What a list of incidents says of a journal: of events that stand in it, and of a day of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/test_expected.h"
+#include "base/test_folder.h"
+#include "incidents/journal_incidents.h"
+#include "journal/session.h"
+#include "journal/writer.h"
+
+namespace culprit::incidents {
+namespace {
+
+using culprit::test::TestFolder;
+using culprit::test::value_of;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr const char* kTwoRules = R"(
+COMPONENT camera NODE /camera
+COMPONENT fusion NODE /fusion
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY replace 50 10
+      ADAPTATION camera restart 3
+RULE FusionSilent
+  POLICIES WARNING
+  TRIGGER age(/fused) > 1s
+    STRATEGY again 50 10
+      ADAPTATION fusion restart 3
+)";
+constexpr double kNoon = 1'800'000'000;  // s since 1970
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+// A journal that tells what happened so many seconds after noon. The robot's clock was at 100 s then.
+struct JournalIncidents : testing::Test {
+  void tell(double after, journal::Json event) {
+    event["text"] = "something";
+    event["time"] = static_cast<std::int64_t>((100 + after) * kSecond);
+    add(journal::kind::kEvent, after, event);
+  }
+  void detected(double after, const char* rule, const char* criticality = "ERROR") {
+    tell(after, {{"type", "failure_detected"}, {"rule", rule}, {"criticality", criticality}});
+  }
+  void resolved(double after, const char* rule, const char* strategy = nullptr) {
+    journal::Json event{{"type", "failure_resolved"}, {"rule", rule}};
+    if (strategy != nullptr) event["strategy"] = strategy;
+    tell(after, event);
+  }
+  void chosen(double after, const char* rule, const char* strategy) {
+    tell(after, {{"type", "strategy_chosen"}, {"rule", rule}, {"strategy", strategy}});
+  }
+  void session(double after) {
+    journal::Session session;
+    session.rules_path = "two.rules";
+    session.rules_text = kTwoRules;
+    session.planner = journal::Json::object();
+    add(journal::kind::kSession, after, journal::to_json(session));
+  }
+  void add(std::string_view kind, double after, const journal::Json& body) {
+    const auto at = static_cast<std::int64_t>((kNoon + after) * kSecond);
+    rows.entries.push_back({0, at, std::string(kind), journal::to_text(body)});
+  }
+  journal::Reader journal() {
+    auto writer = value_of(journal::Writer::open(folder / "a.journal", {}));
+    const auto done = writer.append(rows, static_cast<std::int64_t>(kNoon) * kSecond,
+                                    journal::Durability::kProcessEnd);
+    EXPECT_TRUE(done) << done.error();
+    return value_of(journal::Reader::open(folder / "a.journal"));
+  }
+  std::vector<Incident> since(double after, const std::set<std::string>& failing_now = {}) {
+    return value_of(incidents_of(journal(), kNoon + after, failing_now)).incidents;
+  }
+
+  const TestFolder folder;
+  journal::Batch rows;
+};
+TEST_F(JournalIncidents, TellWhoseFaultItWasWhatSufferedAndWhatHelped) {
+  session(0);
+  tell(9.5, {{"type", "component_lost"}, {"component", "camera"}});
+  detected(10, "FusionSilent", "WARNING");
+  detected(10.5, "CameraDead");
+  chosen(10.5, "CameraDead", "replace");
+  resolved(13, "CameraDead", "replace");
+  resolved(14, "FusionSilent");
+  const auto all = since(0);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_THAT(all[0].causes, ElementsAre("camera"));
+  EXPECT_THAT(all[0].rules, ElementsAre("FusionSilent", "CameraDead"));
+  EXPECT_THAT(all[0].consequences, ElementsAre("FusionSilent"));
+  EXPECT_THAT(all[0].helped, ElementsAre("replace"));
+  EXPECT_EQ(all[0].worst, Criticality::kError);
+  EXPECT_TRUE(all[0].is_over);
+  EXPECT_FALSE(all[0].is_cut);
+  EXPECT_NEAR(all[0].began, kNoon + 10, 1e-3);
+  EXPECT_NEAR(all[0].seconds, 4, 1e-3);
+  const auto events =
+      value_of(events_of(journal::Reader(value_of(journal::Reader::open(folder / "a.journal"))),
+                         all[0].first_row, all[0].last_row));
+  ASSERT_EQ(events.size(), 6u);
+  EXPECT_EQ(journal::text_of(events[0].event, "type"), "component_lost");
+  EXPECT_THAT(events[3].components, ElementsAre("camera"));
+  EXPECT_NEAR(events[5].wall, kNoon + 14, 1e-3);
+}
+
+TEST_F(JournalIncidents, NameWhoWasGoneWhereNobodyIsBlamed) {
+  session(0);
+  tell(9, {{"type", "component_lost"}, {"component", "camera"}});
+  detected(10, "CameraDead");
+  resolved(11, "CameraDead");
+  const auto all = since(0);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_THAT(all[0].causes, ElementsAre("camera"));
+  EXPECT_THAT(all[0].consequences, IsEmpty());
+  EXPECT_THAT(all[0].helped, IsEmpty());
+}
+
+// A page that is opened the day after shows what lasts, since when it lasts.
+TEST_F(JournalIncidents, ThatBeganBeforeAreToldFromTheirBeginning) {
+  session(0);
+  detected(10, "CameraDead");
+  chosen(11, "CameraDead", "replace");
+  detected(50, "FusionSilent");
+  resolved(60, "FusionSilent");
+  tell(70, {{"type", "rule_exhausted"}, {"rule", "CameraDead"}});
+  for (const double from : {5.0, 40.0, 65.0}) {
+    const auto all = since(from);
+    ASSERT_EQ(all.size(), 1u) << from;
+    EXPECT_NEAR(all[0].began, kNoon + 10, 1e-3) << from;
+    EXPECT_TRUE(all[0].is_given_up) << from;
+    EXPECT_FALSE(all[0].is_over) << from;
+    rows.entries.clear();
+  }
+  EXPECT_EQ(since(80).size(), 0u) << "nothing was said of it since";
+  EXPECT_EQ(since(80, {"CameraDead"}).size(), 1u) << "but it is known to be there";
+}
+
+TEST_F(JournalIncidents, ThatCulpritDidNotSeeTheEndOfAreCut) {
+  session(0);
+  detected(10, "CameraDead");
+  session(20);
+  detected(21, "CameraDead");
+  resolved(22, "CameraDead", "replace");
+  const auto all = since(0);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_TRUE(all[0].is_cut);
+  EXPECT_FALSE(all[1].is_cut);
+  EXPECT_NE(all[0].id(), all[1].id());
+}
+
+TEST_F(JournalIncidents, OfNothingAreNone) { EXPECT_THAT(since(0), IsEmpty()); }
+
+// Rows come from a file: what is no event says nothing.
+TEST_F(JournalIncidents, TakeNothingFromRowsThatSayNothing) {
+  session(0);
+  for (const journal::Json& body :
+       {journal::Json(nullptr), journal::Json(7), journal::Json::array(),
+        journal::Json{{"type", 7}}, journal::Json{{"type", "failure_resolved"}}})
+    add(journal::kind::kEvent, 1, body);
+  tell(2, {{"type", "failure_detected"}, {"rule", "NobodyKnowsThis"}, {"criticality", 9}});
+  chosen(3, "NobodyKnowsThis", "nothing");
+  const auto all = since(0);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_THAT(all[0].causes, IsEmpty());
+  EXPECT_THAT(all[0].rules, ElementsAre("NobodyKnowsThis"));
+}
+
+TEST(Incident, HasAnIdOfItsBeginning) {
+  Incident incident;
+  incident.began = kNoon + 0.123;
+  EXPECT_EQ(incident.id(), "mywpiwzf");
+  incident.began = -5;
+  EXPECT_EQ(incident.id(), "0");
+}
+
+}  // namespace
+}  // namespace culprit::incidents

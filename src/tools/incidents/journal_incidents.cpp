@@ -1,0 +1,192 @@
+#include "incidents/journal_incidents.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "journal/session.h"
+#include "language/checker.h"
+
+namespace culprit::incidents {
+namespace {
+
+using journal::Entry;
+using journal::Reader;
+
+constexpr double kNanosecond = 1e-9;  // s
+
+// What an incident is made of. Most rows are something else, and are not parsed.
+constexpr std::array<std::string_view, 10> kTelling = {
+    "failure_detected", "failure_resolved", "failure_lost",   "strategy_chosen", "approval_asked",
+    "action_held_back", "strategy_failed",  "rule_exhausted", "round_spent",     "component_lost"};
+
+// Rows begin with their type (journal/event_json.h); the few that do not are about no incident.
+bool is_telling(std::string_view body) {
+  constexpr std::string_view kBegin = R"({"type":")";
+  if (!body.starts_with(kBegin)) return false;
+  body.remove_prefix(kBegin.size());
+  return std::ranges::any_of(kTelling, [&](std::string_view type) {
+    return body.starts_with(type) && body.substr(type.size()).starts_with('"');
+  });
+}
+
+// Who is about whom, by the rules of the session that tells.
+class Names {
+ public:
+  void begin(const std::string& session) {
+    if (session == text_) return;
+    text_ = session;
+    rules_.reset();
+    is_checked_ = false;
+  }
+  // What its rules no longer have, or cannot be read, is about nobody.
+  std::vector<std::string> components_of(const std::string& rule, const std::string& strategy) {
+    const RuleSet* rules = checked();
+    if (rules == nullptr) return {};
+    std::vector<std::string> names;
+    for (std::size_t r = 0; r < rules->rules.size(); ++r) {
+      const Rule& each = rules->rules[r];
+      if (each.name != rule) continue;
+      if (strategy.empty()) add(each.components, *rules, names);
+      for (const StrategyId id : each.strategies) {
+        if ((*rules)[id].name == strategy) add((*rules)[id].components, *rules, names);
+      }
+    }
+    return names;
+  }
+
+ private:
+  static void add(const auto& ids, const RuleSet& rules, std::vector<std::string>& names) {
+    for (const ComponentId id : ids) names.push_back(rules[id].name);
+  }
+  // Only once somebody asks: many sessions tell of no incident.
+  const RuleSet* checked() {
+    if (!is_checked_) {
+      is_checked_ = true;
+      const auto session = journal::session_from_json(journal::from_text(text_));
+      if (session) rules_ = check(Source(session->rules_path, session->rules_text)).rules;
+    }
+    return rules_ ? &*rules_ : nullptr;
+  }
+
+  std::string text_;
+  bool is_checked_ = false;
+  std::optional<RuleSet> rules_;
+};
+
+// The newest session row before row `row`: what was told there was told by it.
+Expected<Names> names_at(const Reader& journal, std::int64_t row) {
+  Names names;
+  const auto session = journal.newest(journal::kind::kSession, row);
+  if (!session) return Error{session.error()};
+  if (*session) names.begin((*session)->body);
+  return names;
+}
+
+Expected<IncidentBuilder> build(const Reader& journal, std::int64_t from) {
+  auto names = names_at(journal, from);
+  if (!names) return Error{names.error()};
+  auto rows = journal.entries(journal::Which::kReadable, from);
+  if (!rows) return Error{rows.error()};
+  const ComponentsOf components_of = [&](const std::string& rule, const std::string& strategy) {
+    return names->components_of(rule, strategy);
+  };
+  IncidentBuilder builder;
+  Entry entry;
+  auto more = rows->next(entry);
+  for (; more && *more; more = rows->next(entry)) {
+    if (entry.kind == journal::kind::kSession) {
+      builder.cut();
+      names->begin(entry.body);
+    }
+    if (entry.kind != journal::kind::kEvent || !is_telling(entry.body)) continue;
+    const journal::Json event = journal::from_text(entry.body);
+    const double robot = kNanosecond * static_cast<double>(journal::integer_of(event, "time"));
+    builder.add({entry.id, kNanosecond * static_cast<double>(entry.at), robot, event},
+                components_of);
+  }
+  if (!more) return Error{more.error()};
+  return builder;
+}
+
+// The row at which the failure of `rule` that was there at row `before` was told of; `before` if it is told nowhere.
+Expected<std::int64_t> detection_before(const Reader& journal, const std::string& rule,
+                                        std::int64_t before) {
+  auto found = journal.database().prepare(
+      "SELECT id FROM entry WHERE kind <> 'steps' AND kind = 'event' AND id < ?1 AND "
+      "substr(body, 1, length(?2)) = ?2 ORDER BY id DESC LIMIT 1");
+  if (!found) return Error{found.error()};
+  const std::string begin = R"({"type":"failure_detected","rule":")" + rule + '"';
+  found->bind(1, before).bind(2, std::string_view(begin));
+  const auto row = found->step();
+  if (!row) return Error{row.error()};
+  return *row ? found->integer(0) : before;
+}
+
+Expected<std::int64_t> first_row_after(const Reader& journal, double since) {
+  auto before = journal.database().prepare(
+      "SELECT id FROM entry WHERE kind <> 'steps' AND at < ?1 ORDER BY id DESC LIMIT 1");
+  if (!before) return Error{before.error()};
+  before->bind(1, static_cast<std::int64_t>(since / kNanosecond));
+  const auto row = before->step();
+  if (!row) return Error{row.error()};
+  return *row ? before->integer(0) + 1 : 1;
+}
+
+}  // namespace
+
+Expected<Found> incidents_of(const Reader& journal, double since,
+                             const std::set<std::string>& failing_now) {
+  const auto oldest = journal.database().number(
+      "SELECT coalesce(min(at), 0) FROM (SELECT at FROM entry ORDER BY id LIMIT 1)");
+  if (!oldest) return Error{oldest.error()};
+  auto from = first_row_after(journal, since);
+  if (!from) return Error{from.error()};
+  // What began before and ended after `since` is told from its beginning. Before that something else may have begun.
+  constexpr int kMostSteps = 8;
+  for (int i = 0;; ++i) {
+    const auto builder = build(journal, *from);
+    if (!builder) return Error{builder.error()};
+    std::set<std::string> begun_before = builder->begun_before();
+    for (const std::string& rule : failing_now) {
+      if (!builder->failing().contains(rule)) begun_before.insert(rule);
+    }
+    std::int64_t earlier = *from;
+    for (const std::string& rule : begun_before) {
+      const auto row = detection_before(journal, rule, *from);
+      if (!row) return Error{row.error()};
+      earlier = std::min(earlier, *row);
+    }
+    if (earlier == *from || i == kMostSteps)
+      return Found{builder->incidents(), kNanosecond * static_cast<double>(*oldest)};
+    from = earlier;
+  }
+}
+
+Expected<std::vector<ToldEvent>> events_of(const Reader& journal, std::int64_t first,
+                                           std::int64_t last) {
+  auto names = names_at(journal, first);
+  if (!names) return Error{names.error()};
+  auto rows = journal.entries(journal::Which::kReadable, first);
+  if (!rows) return Error{rows.error()};
+  std::vector<ToldEvent> told;
+  Entry entry;
+  double wall_of_robot = 0;  // when the robot's clock was 0
+  auto more = rows->next(entry);
+  for (; more && *more && entry.id <= last && told.size() < kMostTold; more = rows->next(entry)) {
+    if (entry.kind == journal::kind::kSession) names->begin(entry.body);
+    if (entry.kind != journal::kind::kEvent) continue;
+    journal::Json event = journal::from_text(entry.body);
+    if (journal::text_of(event, "text").empty()) continue;  // for culprit itself
+    const double robot = kNanosecond * static_cast<double>(journal::integer_of(event, "time"));
+    if (told.empty()) wall_of_robot = kNanosecond * static_cast<double>(entry.at) - robot;
+    auto components =
+        names->components_of(journal::text_of(event, "rule"), journal::text_of(event, "strategy"));
+    if (!event.contains("strategy")) components.clear();
+    told.push_back({entry.id, wall_of_robot + robot, std::move(event), std::move(components)});
+  }
+  if (!more) return Error{more.error()};
+  return told;
+}
+
+}  // namespace culprit::incidents

@@ -1,0 +1,39 @@
+// The incidents that a journal tells of, also while it is being written.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "incidents/incident.h"
+#include "journal/reader.h"
+
+namespace culprit::incidents {
+
+struct Found {
+  std::vector<Incident> incidents;  // in the order of their beginnings
+  double oldest = 0;                // seconds since 1970: from when on the journal tells
+};
+
+// Those that were not over at `since`, in seconds since 1970, or began after it. `failing_now`: rules that see a failure,
+// which may have said nothing for days. Errors: the journal cannot be read.
+Expected<Found> incidents_of(const journal::Reader& journal, double since,
+                             const std::set<std::string>& failing_now = {});
+
+// One event of a journal as people are to be told it.
+struct ToldEvent {
+  std::int64_t row = 0;
+  double wall =
+      0;  // seconds since 1970, by the robot's clock from the first one on: within an incident it does not jump
+  journal::Json event;                  // as the row has it
+  std::vector<std::string> components;  // of its strategy, if it is about one
+};
+
+inline constexpr std::size_t kMostTold = 5000;  // of one incident
+
+// What rows `first` to `last` tell, the first kMostTold of them.
+Expected<std::vector<ToldEvent>> events_of(const journal::Reader& journal, std::int64_t first,
+                                           std::int64_t last);
+
+}  // namespace culprit::incidents

@@ -1,0 +1,18 @@
+// What makes a robot move, and what a draft proposes about it: that nothing is begun meanwhile.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "init/names.h"
+#include "init/sighting.h"
+
+namespace culprit::init {
+
+// The fields of such commands that say how fast; empty if `type` has none, or is no such command.
+std::set<std::string> fields_of_movement(const std::string& type);
+
+// INTERLOCK lines as comments, for a person to take; empty if nothing is seen that moves.
+std::string interlocks_text(const Sighting& seen, Names& names);
+
+}  // namespace culprit::init

@@ -1,0 +1,20 @@
+// From when on a topic is silent, by how its messages came while the robot was well.
+#pragma once
+
+#include <string>
+
+#include "base/expected.h"
+#include "init/sighting.h"
+
+namespace culprit::init {
+
+// Silence is what is longer. Errors: why no rhythm can be told.
+Expected<Duration> silence_of(const Sighting& seen, const std::string& topic);
+
+// Messages in a second, in those that came. @pre silence_of() it is known
+double rate_of(const Sighting& seen, const std::string& topic);
+
+// What that was learned from, as comments. @pre likewise
+std::string evidence_of_silence(const Sighting& seen, const std::string& topic);
+
+}  // namespace culprit::init

@@ -1,0 +1,214 @@
+#include "init/update.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "init/marks.h"
+#include "language/checker.h"
+#include "language/formatter.h"
+
+namespace culprit::init {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+void put(Sighting& seen, const std::string& node, const std::string& topic, Duration longest) {
+  seen.robot.nodes[node] = {.parameters = {}, .lifecycle = "", .pid = 10};
+  seen.robot.nodes[node].pid += static_cast<int>(seen.robot.nodes.size());
+  seen.starts[node].command = {"/opt/driver", node};
+  seen.robot.topics[topic].type = "sensor_msgs/msg/LaserScan";
+  seen.robot.topics[topic].publishers = {node};
+  seen.rhythms[topic] = {301, 30s, longest};
+}
+
+Sighting two_lidars() {
+  Sighting seen;
+  seen.looked = 30s;
+  put(seen, "/front", "/front/scan", 110ms);
+  put(seen, "/back", "/back/scan", 110ms);
+  seen.statuses[{"battery", ""}] = {30, 0, {}};
+  return seen;
+}
+
+std::string file_of(const Sighting& seen) {
+  const auto text = format({"draft", draft(seen)});
+  EXPECT_TRUE(text) << text.error();
+  return *text;
+}
+
+struct Updated {
+  std::string text;
+  std::vector<std::string> notes;
+};
+
+Updated updated(const std::string& text, const Sighting& seen, Packs packs = Packs::kNone) {
+  const Checked before = check(expand({"before", text}));
+  if (!before.rules) throw std::runtime_error(text);
+  const Update update = init::update(text, *before.rules, seen, packs);
+  std::string after;
+  std::size_t line = 0;
+  std::size_t at = 0;
+  const auto pass = [&](std::size_t end, bool kept) {
+    for (; line < end; ++line) {
+      const std::size_t next = text.find('\n', at) + 1;
+      if (kept) after += text.substr(at, next - at);
+      at = next;
+    }
+  };
+  for (const Update::Change& change : update.changes) {
+    pass(change.at, true);
+    pass(change.at + change.removed, false);
+    for (const std::string& each : change.added) after += each;
+  }
+  pass(static_cast<std::size_t>(std::ranges::count(text, '\n')), true);
+  if (packs == Packs::kNone) {
+    EXPECT_THAT(check(expand({"after", after}), Strictness::kStrict).diagnostics, IsEmpty())
+        << after;
+  }
+  return {after, update.notes};
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) throw std::runtime_error("no " + from + " in " + text);
+  return text.replace(at, from.size(), to);
+}
+
+TEST(Update, OfARobotThatIsTheSameIsNothing) {
+  const std::string text = file_of(two_lidars());
+  const Updated same = updated(text, two_lidars());
+  EXPECT_EQ(same.text, text);
+  EXPECT_THAT(same.notes, IsEmpty());
+}
+
+TEST(Update, SlightlyOtherPausesAreNoChange) {
+  Sighting seen = two_lidars();
+  seen.rhythms["/front/scan"].longest_pause = 210ms;
+  seen.rhythms["/back/scan"].longest_pause = 80ms;
+  const std::string text = file_of(two_lidars());
+  EXPECT_EQ(updated(text, seen).text, text);
+}
+
+TEST(Update, ANewNodeAndANewDiagnosticAreAddedAndTheNextTimeAreThere) {
+  Sighting seen = two_lidars();
+  put(seen, "/left", "/left/scan", 110ms);
+  seen.statuses[{"motor", ""}] = {30, 0, {}};
+  const std::string before = file_of(two_lidars());
+  const Updated now = updated(before, seen);
+  EXPECT_THAT(now.text,
+              AllOf(HasSubstr("\nCOMPONENT left NODE /left LAUNCH \"/opt/driver /left\"\n"),
+                    HasSubstr("\nRULE left_failed\n"), HasSubstr("level(motor) >= 2\n")));
+  EXPECT_EQ(updated(now.text, seen).text, now.text);
+  const auto laid_out = format({"now", now.text});
+  ASSERT_TRUE(laid_out);
+  EXPECT_EQ(updated(*laid_out, seen).text, *laid_out) << "a layout is no change";
+}
+
+TEST(Update, WhatADraftWroteIsReplacedIfItNoLongerFits) {
+  Sighting seen = two_lidars();
+  seen.starts["/front"].command = {"/opt/new_driver", "/front"};
+  seen.rhythms["/back/scan"] = {31, 30s, 1100ms};
+  const Updated now = updated(file_of(two_lidars()), seen);
+  EXPECT_THAT(now.text, AllOf(HasSubstr("LAUNCH \"/opt/new_driver /front\"\n"),
+                              Not(HasSubstr("LAUNCH \"/opt/driver /front\"")),
+                              HasSubstr("age(/back/scan) > 5s\n"),
+                              HasSubstr("# guess: /back/scan came 1 times a second"),
+                              Not(HasSubstr("/back/scan came 10 times"))));
+  EXPECT_EQ(updated(now.text, seen).text, now.text);
+}
+
+TEST(Update, ATopicThatANodeHasNowIsWatched) {
+  Sighting seen = two_lidars();
+  put(seen, "/front", "/front/imu", 110ms);
+  seen.robot.nodes["/front"].pid = 99;
+  EXPECT_THAT(updated(file_of(two_lidars()), seen).text,
+              HasSubstr("|| age(/front/imu) > 500ms || age(/front/scan) > 500ms"));
+}
+
+TEST(Update, WhatAPersonChangedOrTookAwayStaysAsItIs) {
+  Sighting seen = two_lidars();
+  const std::string draft = file_of(seen);
+  std::string mine = replaced(draft, "age(/back/scan) > 500ms", "age(/back/scan)  >  9s # slow!");
+  mine = replaced(mine, "LAUNCH \"/opt/driver /front\"", "LAUNCH \"/opt/driver /front --mine\"");
+  const std::size_t rule = mine.find("# guess: battery");
+  mine.erase(rule, mine.find("\n\n", rule) + 2 - rule);
+  EXPECT_EQ(updated(mine, seen).text, mine);
+  seen.rhythms["/back/scan"] = {31, 30s, 1100ms};
+  EXPECT_EQ(updated(mine, seen).text, mine) << "also if the robot is another one by now";
+  EXPECT_THAT(
+      updated(mine, seen).notes,
+      ElementsAre("front runs as `/opt/driver /front`, and not as its LAUNCH says, which stays"));
+}
+
+TEST(Update, OfAFileThatAPersonWroteAddsWhatItDoesNotName) {
+  const std::string mine = R"(ROBOT mine
+CYCLE   100ms
+COMPONENT lidar_in_front NODE /front LAUNCH "/opt/mine"
+COMPONENT gone LAUNCH "/opt/gone"
+TEMPLATE t(name)
+  COMPONENT {name} NODE /{name}
+END
+RULE Mine
+  POLICIES ERROR
+  TRIGGER level(battery) > 0 || !alive(gone)
+    STRATEGY s 50 5
+      ADAPTATION lidar_in_front redeploy 10
+)";
+  const Updated now = updated(mine, two_lidars());
+  EXPECT_THAT(now.text,
+              testing::StartsWith(replaced(mine.substr(0, mine.find("TEMPLATE")), "gone\"\n",
+                                           "gone\"\nCOMPONENT back NODE /back LAUNCH "
+                                           "\"/opt/driver /back\"\n")));
+  EXPECT_THAT(now.text, AllOf(HasSubstr("RULE back_failed\n"), Not(HasSubstr("front_failed")),
+                              Not(HasSubstr("battery_error")), HasSubstr("\n# marks ")));
+  EXPECT_THAT(now.notes, ElementsAre("lidar_in_front runs as `/opt/driver /front`, and not as its "
+                                     "LAUNCH says, which stays",
+                                     "gone is not there now; what the file says of it stays"));
+}
+
+TEST(Update, ANodeThatIsGoneMayOnlyBeIllSoItsLinesStay) {
+  Sighting seen = two_lidars();
+  const std::string text = file_of(seen);
+  seen.robot.nodes.erase("/front");
+  seen.starts.erase("/front");
+  seen.robot.topics.erase("/front/scan");
+  const Updated now = updated(text, seen);
+  EXPECT_EQ(now.text, text);
+  EXPECT_THAT(now.notes, ElementsAre("front is not there now; what the file says of it stays"));
+}
+
+TEST(Update, ANewNodeHasAFreeName) {
+  Sighting seen = two_lidars();
+  put(seen, "/robot/front", "/other/scan", 110ms);
+  EXPECT_THAT(updated(file_of(two_lidars()), seen).text,
+              AllOf(HasSubstr("COMPONENT robot_front NODE /robot/front"),
+                    HasSubstr("COMPONENT front  NODE /front")));
+}
+
+TEST(Update, WithPacksANewDriverHasItsPackAndAnOldOneItsRule) {
+  Sighting seen = two_lidars();
+  for (const char* node : {"/back", "/left"}) {
+    put(seen, node, std::string(node) + "/scan", 110ms);
+    seen.starts[node].command = {"/opt/lib/urg_node2/urg_node2", node};
+  }
+  const std::string before = replaced(file_of(two_lidars()), "/opt/driver /back", "/x/y /back");
+  const Updated now = updated(before, seen, Packs::kChosen);
+  EXPECT_THAT(now.text, AllOf(HasSubstr("\nINCLUDE \"packs/lidars.rules\"\n"),
+                              HasSubstr("\nUSE urg_node2(left, /left/scan, 10)\n"),
+                              Not(HasSubstr("USE urg_node2(back")), Not(HasSubstr("left_failed"))));
+  EXPECT_LT(now.text.find("INCLUDE"), now.text.find("COMPONENT"));
+}
+
+TEST(Marks, ThatADiskOrAPersonDamagedAreNone) {
+  EXPECT_THAT(marks_in("# marks 0000000a0000000b 12 zzzzzzzzzzzzzzzz 0000000c0000000d"),
+              ElementsAre(Mark{10, 11}, Mark{12, 13}));
+  EXPECT_FALSE(is_of_marks("# marksman 0000000a0000000b"));
+}
+
+}  // namespace
+}  // namespace culprit::init

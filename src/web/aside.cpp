@@ -1,0 +1,45 @@
+#include "web/aside.h"
+
+#include <csignal>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include "base/text_file.h"
+#include "owners/spawn.h"
+
+namespace culprit::web {
+
+namespace fs = std::filesystem;
+
+AsideFolder::AsideFolder() {
+  std::string name = (fs::temp_directory_path() / "culprit-aside-XXXXXX").string();
+  if (mkdtemp(name.data()) != nullptr) path_ = name;
+}
+
+AsideFolder::~AsideFolder() {
+  std::error_code error;
+  if (!path_.empty()) fs::remove_all(path_, error);
+}
+
+Expected<Printed> run_aside(std::vector<std::string> arguments, const AsideFolder& folder,
+                            int most_seconds) {
+  const std::string limit =
+      "--cpu=" + std::to_string(most_seconds) + ":" + std::to_string(most_seconds + 1);
+  std::vector<std::string> all = {"nice", "-n", "19", "prlimit", limit};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  const std::string output = folder.file("printed");
+  owners::Program program{std::move(all), {}, output};
+  program.lifetime = owners::Lifetime::kStarter;
+  const auto pid = owners::spawn(program);
+  if (!pid) return Error{pid.error()};
+  int status = 0;
+  waitpid(*pid, &status, 0);
+  auto text = read_text(output);
+  if (!text) return Error{text.error()};
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+    return Error{"it takes the processor longer than " + std::to_string(most_seconds) + " s"};
+  if (!WIFEXITED(status)) return Error{arguments.front() + " was killed"};
+  return Printed{WEXITSTATUS(status), std::move(*text)};
+}
+
+}  // namespace culprit::web

@@ -1,0 +1,89 @@
+#include "web/component_route.h"
+
+#include "web/process_stat.h"
+
+namespace culprit::web {
+namespace {
+
+// Of a component, as the stream tells it.
+struct Known {
+  std::string node;
+  int pid = 0;  // on this machine; 0: it is not known which
+};
+
+std::optional<Known> known(Hub& hub, const std::string& component) {
+  const auto robot = hub.latest(Kind::kRobot);
+  if (!robot) return std::nullopt;
+  const Json components = Json::parse(*robot).value("components", Json::array());
+  std::size_t place = 0;
+  while (place < components.size() && components[place].value("name", "") != component) ++place;
+  if (place == components.size()) return std::nullopt;
+  Known found{components[place].value("node", ""), 0};
+  if (const auto graph = hub.latest(Kind::kGraph)) {
+    for (const Json& node : Json::parse(*graph).value("nodes", Json::array())) {
+      if (node.value("component", "") == component) found.node = node.value("node", "");
+    }
+  }
+  if (const auto state = hub.latest(Kind::kState)) {
+    const Json states = Json::parse(*state).value("components", Json::array());
+    if (place < states.size()) found.pid = states[place].value("pid", 0);
+  }
+  return found;
+}
+
+std::string_view word_of_level(std::uint8_t level) {
+  return level >= 50   ? "fatal"
+         : level >= 40 ? "error"
+         : level >= 30 ? "warning"
+         : level >= 20 ? "info"
+                       : "debug";
+}
+
+Json to_json(const std::vector<ros2::msg::Log>& lines) {
+  Json list = Json::array();
+  for (const ros2::msg::Log& line : lines)
+    list.push_back({{"clock", line.stamp.sec + line.stamp.nanosec * 1e-9},
+                    {"level", word_of_level(line.level)},
+                    {"text", line.msg}});
+  return list;
+}
+
+Answer answer(const Json& query, Hub& hub, const Look& look, const LogOf& log_of) {
+  const auto name = text_of(query, "name");
+  if (!name) return refuse(400, "say which: ?name=camera");
+  const auto component = known(hub, *name);
+  if (!component) return refuse(404, "the rules have no component '" + *name + "'");
+  Json json{{"node", component->node},
+            {"process", nullptr},
+            {"parameters", nullptr},
+            {"log", Json::array()}};
+  if (component->pid != 0) {
+    if (const auto stat = process_stat(std::to_string(component->pid)))
+      json["process"] = {{"pid", component->pid},
+                         {"processor_s", stat->processor_seconds},
+                         {"memory", stat->resident_bytes},
+                         {"threads", stat->threads}};
+  }
+  if (component->node.empty()) return {200, json};
+  const auto log = log_of(component->node);
+  if (!log) return refuse(503, log.error());
+  json["log"] = to_json(*log);
+  LiveInterest interest;
+  interest.nodes = {component->node};
+  const auto inventory = look(interest);
+  if (!inventory) return refuse(503, inventory.error());
+  if (const auto node = inventory->nodes.find(component->node); node != inventory->nodes.end())
+    json["parameters"] = parameters_to_json(node->second);
+  return {200, json};
+}
+
+}  // namespace
+
+Route component_route(Hub& hub, Look look, LogOf log_of) {
+  return {Method::kGet, "/api/component",
+          [&hub, look = std::move(look), log_of = std::move(log_of)](const Json& query) {
+            return answer(query, hub, look, log_of);
+          }};
+}
+
+}  // namespace culprit::web

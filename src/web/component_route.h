@@ -1,0 +1,20 @@
+// The call about one component, beyond what the stream tells of all: what its process uses, its parameters, and what it
+// logged last. Asked again and again while somebody looks at it.
+#pragma once
+
+#include <functional>
+
+#include "ros2/messages.h"
+#include "web/hub.h"
+#include "web/name_routes.h"
+#include "web/routes.h"
+
+namespace culprit::web {
+
+// The last lines that a node logged. Errors: the robot's network cannot be joined. Called from any thread.
+using LogOf = std::function<Expected<std::vector<ros2::msg::Log>>(const std::string& node)>;
+
+// `hub` must outlive the route.
+Route component_route(Hub& hub, Look look, LogOf log_of);
+
+}  // namespace culprit::web

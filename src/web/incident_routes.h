@@ -1,0 +1,15 @@
+// The calls about what went wrong so far: the times that the robot was not well, and what happened in one of them.
+#pragma once
+
+#include <filesystem>
+
+#include "web/hub.h"
+#include "web/routes.h"
+
+namespace culprit::web {
+
+// They are told from `journal`; from what the stream still has where that is empty (no journal is written) or cannot be
+// read. `hub` must outlive the routes.
+std::vector<Route> incident_routes(Hub& hub, std::filesystem::path journal);
+
+}  // namespace culprit::web

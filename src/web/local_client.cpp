@@ -1,0 +1,102 @@
+#include "web/local_client.h"
+
+#include <httplib.h>
+#include <optional>
+
+#include "base/live_clock.h"
+
+namespace culprit::web {
+namespace {
+
+constexpr const char* kJsonType = "application/json";
+
+httplib::Client client_of(const std::filesystem::path& socket, Duration patience) {
+  httplib::Client client(socket.string());
+  client.set_address_family(AF_UNIX);
+  const auto limit = std::chrono::duration_cast<std::chrono::microseconds>(patience);
+  client.set_connection_timeout(limit);
+  client.set_read_timeout(limit);
+  client.set_write_timeout(limit);
+  return client;
+}
+
+std::string why_no_answer(httplib::Error error, Duration patience) {
+  if (error == httplib::Error::Connection) return "nobody listens there";
+  if (error == httplib::Error::Read || error == httplib::Error::Write)
+    return "no answer came within " + culprit::to_string(patience);
+  return httplib::to_string(error);
+}
+
+std::string refusal_in(const Json& body) {
+  return text_of(body, "error").value_or("it refuses and does not say why");
+}
+
+// Server-sent events, as they come in pieces.
+class StreamReader {
+ public:
+  explicit StreamReader(const LocalClient::Take& take) : take_(take) {}
+
+  // Whether more is wanted.
+  bool read(std::string_view piece) {
+    rest_ += piece;
+    std::size_t end = 0;
+    while ((end = rest_.find('\n')) != std::string::npos) {
+      const std::string line = rest_.substr(0, end);
+      rest_.erase(0, end + 1);
+      if (!read_line(line)) return false;
+    }
+    return true;
+  }
+
+ private:
+  bool read_line(std::string_view line) {
+    if (line.starts_with("event: ")) kind_ = line.substr(7);
+    if (line.starts_with("data: ")) data_ = line.substr(6);
+    if (line.starts_with(':')) return take_("", nullptr);
+    if (!line.empty() || data_.empty()) return true;
+    Json document = Json::parse(std::exchange(data_, ""), nullptr, false);
+    return document.is_discarded() || take_(kind_, std::move(document));
+  }
+
+  const LocalClient::Take& take_;
+  std::string rest_;
+  std::string kind_;
+  std::string data_;
+};
+
+}  // namespace
+
+Expected<Answer> LocalClient::ask(Method method, const std::string& path, const Json& body) const {
+  httplib::Client client = client_of(socket_, patience_);
+  const auto result =
+      method == Method::kGet ? client.Get(path) : client.Post(path, to_line(body), kJsonType);
+  if (!result) return Error{why_no_answer(result.error(), patience_)};
+  Json document = Json::parse(result->body, nullptr, false);
+  if (document.is_discarded()) return Error{"the answer is no JSON"};
+  return Answer{result->status, std::move(document)};
+}
+
+Expected<Json> LocalClient::get(const std::string& path) const {
+  auto answer = ask(Method::kGet, path);
+  if (!answer) return Error{answer.error()};
+  if (answer->status != 200) return Error{refusal_in(answer->body)};
+  return std::move(answer->body);
+}
+
+Expected<void> LocalClient::follow(const Take& take) const {
+  httplib::Client client = client_of(socket_, patience_);
+  StreamReader reader(take);
+  bool is_enough = false;
+  std::optional<Time> latest;
+  const auto result = client.Get("/api/stream", [&](const char* bytes, std::size_t size) {
+    latest = live_now();
+    is_enough = !reader.read({bytes, size});
+    return !is_enough;
+  });
+  // The server ends it by closing the connection, which is no answer to the library either.
+  const bool has_ended = latest && live_now() < later(*latest, patience_);
+  if (!result && !is_enough && !has_ended) return Error{why_no_answer(result.error(), patience_)};
+  return {};
+}
+
+}  // namespace culprit::web

@@ -1,0 +1,39 @@
+#include "web/process_stat.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <unistd.h>
+
+namespace culprit::web {
+
+std::optional<ProcessStat> process_stat(const std::string& process) {
+  std::ifstream file("/proc/" + process + "/stat");
+  std::string line;
+  if (!std::getline(file, line)) return std::nullopt;
+  // The second field is the program's name in brackets, in which anything may stand.
+  std::istringstream rest(line.substr(std::min(line.rfind(')') + 1, line.size())));
+  std::string skipped;
+  const auto skip = [&](int count) {
+    for (int i = 0; i < count; ++i) rest >> skipped;
+  };
+  ProcessStat stat;
+  std::uint64_t user_ticks = 0;
+  std::uint64_t system_ticks = 0;
+  std::uint64_t start_ticks = 0;
+  std::uint64_t resident_pages = 0;
+  skip(11);  // fields 3 to 13
+  rest >> user_ticks >> system_ticks;
+  skip(4);  // to field 19
+  rest >> stat.threads;
+  skip(1);
+  rest >> start_ticks >> stat.virtual_bytes >> resident_pages;
+  if (rest.fail()) return std::nullopt;
+  const auto ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
+  stat.processor_seconds = static_cast<double>(user_ticks + system_ticks) / ticks;
+  stat.started_after_boot = static_cast<double>(start_ticks) / ticks;
+  stat.resident_bytes = resident_pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  return stat;
+}
+
+}  // namespace culprit::web

@@ -1,0 +1,33 @@
+// What changes many times a second, followed at the pace that people can see: a page that draws each of its parts with every
+// change draws nothing in time.
+import { effect, type ReadonlySignal, signal, untracked } from '@preact/signals'
+import { useEffect, useMemo } from 'preact/hooks'
+
+// Follows what `read` gives: at once if it has been quiet, and at most every `period` ms.
+export function usePaced<T>(read: () => T, period: number): ReadonlySignal<T> {
+  const seen = useMemo(() => signal(untracked(read)), [])
+  useEffect(() => {
+    let timer = 0
+    let isBehind = false
+    const rest = () => {
+      timer = window.setTimeout(() => {
+        timer = 0
+        if (!isBehind) return
+        isBehind = false
+        seen.value = untracked(read)
+        rest()
+      }, period)
+    }
+    const stop = effect(() => {
+      const now = read()
+      if (timer !== 0) return void (isBehind = true)
+      seen.value = now
+      rest()
+    })
+    return () => {
+      stop()
+      clearTimeout(timer)
+    }
+  }, [])
+  return seen
+}

@@ -1,0 +1,324 @@
+// Every page while something is wrong: the status bar says so on each, each can be used by the keyboard alone and with a
+// screen reader, and looks as in the pictures beside this. What each page is for is tried on the stub.
+import { readFileSync } from 'node:fs'
+import { kLargeRobot, largeState } from './large_robot.mjs'
+import { kSchemes, kSizes, pictures } from './pictures.mjs'
+import { kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, state } from './robots.mjs'
+import { expect, expectSoon, file, isAccessible, isUsableByKeyboard, stubbed, suite } from './session.mjs'
+
+const kFindings = [
+  { code: 'D001', severity: 'error', who: '/scan: /lidar → /slam', seen: 'reliability: offered is best effort, requested is reliable', matters: '/slam hears nothing of /lidar', remedy: 'let /lidar offer reliable, or /slam request best effort' },
+  { code: 'D020', severity: 'warning', who: 'battery', seen: 'its diagnostic status is STALE', matters: 'who reports it has stopped reporting', remedy: 'look at its values: ros2 topic echo /diagnostics' },
+]
+let findings = kFindings
+let use = 0 // of the processor, by camera
+let rules = [] // in the form
+const kCalls = {
+  'get /api/stream': () => [200, {}],
+  'post /api/orders': () => [202, { number: 1, text: 'kept' }],
+  'get /api/incidents': () => [200, { journal: '/var/lib/culprit/rover.journal', oldest: kIncidents[0].clock - 3600, incidents: kIncidents }],
+  'get /api/incidents/events': ({ first }) => [200, { events: first === '10' ? kIncidentEvents : [] }],
+  'get /api/component': () => [200, { node: '/camera', process: { pid: 12, processor_s: (use += 0.5), memory: 123_000_000, threads: 7 }, parameters: { gain: 0.5, matrix: null }, log: [{ clock: kToday / 1000 - 13, level: 'warning', text: 'no frame for 200 ms' }] }],
+  'post /api/doctor': () => [200, { domain: 7, nodes: 5, findings }],
+  'get /api/rules': () => [200, { path: 'rover.rules', text: '', version: '1', can_save: true }],
+  'post /api/rules/json': () => [200, { version: 1, statements: rules }],
+  'post /api/rules/text': () => [200, { text: 'RULE RGBDead' }],
+  'post /api/rules/ask': () => [200, { diagnostics: [], result: null }],
+  'post /api/rules/replay': () => [404, { error: 'nothing is recorded' }],
+  'post /api/what-if': () => [200, { failures: [], near: [], unknown: [] }],
+  'get /api/studies': () => [200, { study: null }],
+}
+const kPages = ['robot', 'incidents', 'doctor', 'rules', 'beliefs', 'simulator', 'studies']
+
+async function become(page, server, wanted, hash) {
+  server.anew()
+  play(server, wanted)
+  await page.evaluate((h) => (location.hash = h), hash)
+}
+
+// In the sizes that differ most.
+async function photograph(page, album, name) {
+  await page.evaluate(() => document.activeElement.blur()) // where the focus was left is no matter of this page
+  for (const size of ['desktop', 'phone']) {
+    await page.setViewportSize(kSizes[size])
+    for (const scheme of kSchemes) {
+      await page.emulateMedia({ colorScheme: scheme })
+      await album.compare(name, size, scheme)
+    }
+  }
+  await page.setViewportSize(kSizes.desktop)
+  await page.emulateMedia({ colorScheme: null })
+}
+
+// On every page the same, and the window says it, too.
+async function everyPage(page, server, album) {
+  await become(page, server, kStates.ill, 'robot')
+  for (const name of kPages) {
+    await page.evaluate((hash) => (location.hash = hash), name)
+    await page.locator('nav a[aria-current="page"]', { hasText: new RegExp(name, 'i') }).waitFor()
+    const bar = page.getByRole('region', { name: 'Status' })
+    await bar.getByText('camera is dead').waitFor()
+    await bar.getByRole('button', { name: 'Pause' }).waitFor()
+    expect((await page.title()).startsWith('◆ camera is dead'), `the title is ${await page.title()}`)
+    if (name !== 'robot') await photograph(page, album, `page-${name}`)
+    await isAccessible(page)
+    await isUsableByKeyboard(page)
+    await page.setViewportSize(kSizes.phone)
+    const isOn = await page.locator('nav a').evaluateAll((links) => links.every((l) => l.getBoundingClientRect().left >= 0 && l.getBoundingClientRect().right <= innerWidth))
+    expect(isOn, `on a phone not every page can be reached from ${name}`)
+    expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `on a phone ${name} is wider than the screen`)
+    await page.setViewportSize(kSizes.desktop)
+  }
+  expect((await page.locator('link[rel="icon"]').getAttribute('href')).startsWith('data:image/svg'), 'the icon does not follow')
+}
+
+// Whoever asks about a component is told all that is known of it.
+async function tellsOfAComponent(page, server, album) {
+  await become(page, server, kStates.ill, 'robot')
+  await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'camera' }).click()
+  const panel = page.getByRole('region', { name: 'About camera' })
+  for (const text of ['/camera', 'gone', 'culprit, by its LAUNCH command', 'RGBDead.rgb_restart', 'redeploy camera', 'silent for 12 s', 'killed by signal 9', '123 MB', 'no frame for 200 ms'])
+    await panel.getByText(text).first().waitFor()
+  await panel.getByText('% of a core').waitFor() // of two looks
+  await panel.getByText('Parameters (2)').click()
+  await panel.getByRole('row', { name: 'gain 0.5' }).waitFor()
+  await isAccessible(page)
+  await isUsableByKeyboard(page)
+  await page.setViewportSize({ width: 1440, height: 1800 })
+  await panel.scrollIntoViewIfNeeded()
+  await page.setViewportSize(kSizes.desktop)
+  await page.getByRole('button', { name: 'Show all', exact: true }).click()
+}
+
+// Also what comes to it later does not move what is there.
+async function keepsItsPlaces(page, server) {
+  await become(page, server, kStates.well, 'robot')
+  const all = page.getByLabel('all nodes and topics')
+  const shown = async (count) => {
+    await page.waitForFunction((n) => JSON.parse(localStorage.getItem('culprit-places rover') ?? '[]').length === n, count)
+    return new Map(await page.evaluate(() => JSON.parse(localStorage.getItem('culprit-places rover'))))
+  }
+  await page.evaluate(() => localStorage.clear())
+  await page.getByRole('button', { name: 'Lay out anew' }).click()
+  await all.check()
+  const before = await shown(7)
+  await all.uncheck()
+  await page.reload()
+  await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'camera' }).waitFor()
+  await all.check()
+  const after = await shown(7)
+  for (const [node, { x, y }] of before) expect(after.get(node).x === x && after.get(node).y === y, `${node} has moved`)
+  expect(new Set([...after.values()].map(({ x, y }) => `${x} ${y}`)).size === after.size, 'two nodes stand at one place')
+  // A slip of the finger moves nothing, either.
+  await page.evaluate(() => {
+    const [[node, at], ...others] = JSON.parse(localStorage.getItem('culprit-places rover'))
+    localStorage.setItem('culprit-places rover', JSON.stringify([[node, { ...at, x: at.x - 2000 }], ...others]))
+  })
+  await page.reload()
+  await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'camera' }).waitFor()
+  await all.check()
+  const own = await shown(7)
+  expect(Math.min(...[...own.values()].map(({ x }) => x)) < Math.min(...[...after.values()].map(({ x }) => x)) - 400, 'where a node stood is forgotten')
+  await page.getByRole('button', { name: 'Lay out anew' }).click()
+  await page.waitForFunction((was) => localStorage.getItem('culprit-places rover') !== was, JSON.stringify([...own]))
+  await page.getByRole('status', { name: 'Notice' }).getByRole('button', { name: 'Undo' }).click()
+  await page.waitForFunction((was) => localStorage.getItem('culprit-places rover') === was, JSON.stringify([...own]))
+  await all.uncheck()
+}
+
+// For a screen on a wall: the same words, and nothing to press but the way back.
+async function hangsOnTheWall(page, server, album) {
+  await become(page, server, kStates.ill, 'wall')
+  await page.emulateMedia({ colorScheme: 'light' })
+  const cause = page.getByRole('heading', { name: 'camera is dead' })
+  await cause.waitFor()
+  for (const viewport of [kSizes.desktop, { width: 1920, height: 1080 }]) {
+    await page.setViewportSize(viewport)
+    const cut = await page.evaluate(() =>
+      ['.wall h1', '.wall footer time', '.tile.is-blamed'].filter((part) => {
+        const { top, bottom, left, right } = document.querySelector(part).getBoundingClientRect()
+        return top < 0 || left < 0 || bottom > innerHeight || right > innerWidth
+      })
+    )
+    expect(cut.length === 0, `on the wall one does not see ${cut}`)
+  }
+  expect((await page.getByRole('button').count()) === 0, 'there is something to press on the wall')
+  const background = await page.locator('main').evaluate((e) => getComputedStyle(e).backgroundColor)
+  expect(background === 'rgb(18, 22, 28)', `the wall is not dark: ${background}`)
+  await page.setViewportSize(kSizes.desktop)
+  await isAccessible(page)
+  await album.compare('page-wall', 'desktop', 'dark')
+  await page.getByRole('link', { name: 'Leave' }).click()
+  await page.getByRole('navigation').waitFor()
+}
+
+// A list and a timeline of a day; one of it with what was decided; a link that lasts; a file for somebody without culprit.
+async function tellsIncidents(page, server, album) {
+  await become(page, server, kHealed, 'incidents')
+  const row = page.getByRole('row', { name: /14:03:22.*camera.*FusionSilent, SegmentationBad.*3\.0 s.*rgb_redeploy/ })
+  await row.waitFor()
+  expect((await page.getByRole('row').count()) > 10, 'incidents of the day are missing')
+  const bars = page.getByRole('region', { name: 'All incidents' }).locator('rect.leads')
+  expect((await bars.count()) > 5, 'they are not on a timeline')
+  await bars.last().click({ force: true })
+  await page.getByRole('heading', { name: /^segmentation, / }).waitFor()
+  await row.getByRole('link').click()
+  await page.reload() // the link is about this one and no other, also later
+  const incident = page.getByRole('region', { name: 'Incident', exact: true })
+  await incident.getByRole('heading', { name: 'camera, 14:03:22' }).waitFor()
+  expect((await incident.locator('.tick text').count()) > 2, 'the timeline has no axis')
+  const list = page.locator('.incident-box')
+  expect((await incident.boundingBox()).y < 900, 'the incident that one looks at is not on the screen')
+  expect(await list.evaluate((box) => box.scrollHeight >= box.clientHeight), 'the list has no box')
+  // From all of it to milliseconds, by its buttons and by the wheel.
+  const plot = incident.locator('.plot')
+  const box = await plot.boundingBox()
+  await page.mouse.move(box.x + box.width / 2, box.y + 10)
+  await page.keyboard.down('Control')
+  for (let i = 0; i < 12; ++i) await page.mouse.wheel(0, -300)
+  await page.keyboard.up('Control')
+  await incident.locator('.tick text', { hasText: /^\d\d:\d\d:\d\d\.\d\d\d$/ }).first().waitFor()
+  await incident.locator('.timeline select').selectOption('all')
+  await incident.locator('summary', { hasText: 'camera is held responsible for RGBDead' }).click()
+  await incident.getByRole('row', { name: /rgb_restart.*it was tried already/ }).waitFor()
+  await isAccessible(page)
+  await isUsableByKeyboard(page)
+  const saving = page.waitForEvent('download')
+  await incident.getByRole('button', { name: 'Save as a page to send …' }).click()
+  const html = readFileSync(await (await saving).path(), 'utf8')
+  for (const text of ['<title>camera', 'rgb_redeploy', 'it was tried already', 'killed by signal 9', '<svg']) expect(html.includes(text), `the file is without ${text}`)
+  expect(!/<script|src=|href=/.test(html), 'the file needs something beside itself')
+  expect(html.includes('&lt;b&gt;rover') && !html.includes('<b>rover'), 'a name is not only text')
+  // One that is older than what the list shows is looked for where it must be.
+  const longAgo = kIncidents[0].clock - 10 * 86_400
+  await page.evaluate((id) => (location.hash = `incidents/${id}`), Math.round(longAgo * 1000).toString(36))
+  await expectSoon(() => server.received.some(([call, query]) => call === 'get /api/incidents' && Number(query.since) < longAgo), 'the journal was not asked for that time')
+  await page.getByText('There is no incident of this address').waitFor()
+  await page.evaluate(() => (location.hash = 'incidents/'))
+}
+
+// What is wrong without a rule; and what is new since the last time.
+async function examines(page, server, album) {
+  await become(page, server, kStates.well, 'doctor')
+  await page.getByRole('button', { name: 'Examine' }).click()
+  const report = page.getByRole('region', { name: 'Findings' })
+  await report.getByText('1 error, 1 less grave').waitFor()
+  await report.getByRole('article').filter({ hasText: '/scan: /lidar → /slam' }).getByText('let /lidar offer reliable').waitFor()
+  expect(server.received.find(([call]) => call === 'post /api/doctor')[1].seconds === 8, 'it looks for another time than was chosen')
+  await photograph(page, album, 'doctor-findings')
+  await isAccessible(page)
+  await isUsableByKeyboard(page)
+  await report.getByLabel('Find a finding').fill('battery')
+  expect((await report.getByRole('article').count()) === 1, 'the others are still there')
+  await report.getByLabel('Find a finding').fill('')
+  findings = [kFindings[0], { ...kFindings[1], who: 'motor' }]
+  await page.getByRole('button', { name: 'Examine' }).click()
+  await report.getByText('Gone since the last time: D020 battery').waitFor()
+  await report.getByRole('article').filter({ hasText: 'motor' }).getByText('new').waitFor()
+}
+
+// What a condition looks at is drawn with its threshold, which can be dragged, or moved by keys.
+async function dragsAThreshold(page, server, album) {
+  rules = [
+    { statement: 'RULE', name: 'RGBDead' },
+    { statement: 'POLICIES', criticality: 'ERROR' },
+    { statement: 'TRIGGER', expression: 'age(/rgb) > 500ms && segmentation_entropy > limit' },
+    { statement: 'STRATEGY', name: 'wake', probability: 50, confidence: 10 },
+    { statement: 'ADAPTATION', component: 'camera', type: 'restart', impact: 5 },
+  ]
+  await become(page, server, kStates.well, 'robot')
+  for (let i = 0; i < 14; ++i) {
+    const now = state(kNow + i, {})
+    now.topics[0].age = 0.1 + 0.05 * (i % 7) + (i === 10 ? 0.6 : 0)
+    server.tell('state', now)
+    await page.waitForFunction((t) => document.querySelector('.scrub')?.max >= t, kNow + i, { polling: 20 })
+  }
+  await page.evaluate(() => (location.hash = 'rules'))
+  const threshold = page.getByRole('slider', { name: 'threshold of /rgb' })
+  await threshold.waitFor()
+  await page.getByText('limit is a constant').waitFor()
+  await threshold.scrollIntoViewIfNeeded()
+  await photograph(page, album, 'sketch')
+  await isAccessible(page)
+  const taken = () => server.received.filter(([call]) => call === 'post /api/rules/text').map(([, body]) => body.statements[2].expression)
+  const box = await threshold.boundingBox()
+  await page.mouse.move(box.x + 50, box.y + box.height / 2)
+  await page.mouse.down()
+  await page.mouse.move(box.x + 60, box.y + box.height * 0.25, { steps: 3 })
+  await page.mouse.up()
+  await expectSoon(() => taken().length === 1, 'dragging was not taken')
+  const [, dragged] = /^age\(\/rgb\) > (\d+)ms && segmentation_entropy > limit$/.exec(taken()[0]) ?? []
+  expect(Number(dragged) > 500 && Number(dragged) < 1200, `this was dragged to: ${taken()[0]}`)
+  await threshold.press('ArrowDown')
+  await expectSoon(() => taken().length === 2, 'a key was not taken')
+  expect(Number(/> (\d+)ms/.exec(taken()[1])[1]) < Number(dragged), `a key down led from ${dragged} to ${taken()[1]}`)
+  rules = []
+}
+
+// What one begins to imagine with is the robot as it is: with its dead camera.
+async function imaginesTheRobotAsItIs(page, server) {
+  await become(page, server, kStates.ill, 'simulator')
+  await page.getByRole('button', { name: 'As the robot is now' }).click()
+  const camera = page.locator('label', { hasText: /^camera/ }).getByRole('combobox')
+  expect((await camera.inputValue()) === 'killed', `a dead camera is imagined to be ${await camera.inputValue()}`)
+  expect(await page.getByLabel('/rgb is silent').isChecked(), 'a topic that is silent is imagined to be heard')
+  expect(!(await page.getByLabel('/depth is silent').isChecked()), 'a topic that is heard is imagined to be silent')
+  await expectSoon(() => server.received.some(([call, body]) => call === 'post /api/what-if' && /COMPONENT camera .*KILLED/.test(body.state)), 'the planner is asked about another robot')
+}
+
+async function theKeyPauses(page, server) {
+  await become(page, server, kStates.ill, 'robot')
+  server.received.length = 0
+  await page.keyboard.press('Alt+KeyP')
+  await page.getByRole('status', { name: 'Notice' }).getByText('Pausing: kept').waitFor()
+  server.tell('control', { paused: true, dry_run: false, hears: true, silences: [], asked: [] })
+  await page.getByRole('button', { name: 'Resume' }).waitFor()
+  await page.keyboard.press('Alt+KeyP') // whoever is in a hurry presses twice
+  const orders = server.received.filter(([call]) => call === 'post /api/orders').map(([, body]) => body.order)
+  expect(orders.join() === 'pause', `these were ordered: ${orders}`)
+}
+
+// 500 nodes: from far away groups with the one that is at fault, from near its nodes, and all of it in a corner.
+async function staysUsableWhenLarge(page, server, album) {
+  server.anew()
+  for (const [kind, document] of Object.entries(kLargeRobot)) server.tell(kind, document)
+  server.tell('state', largeState(2, kToday / 1000))
+  await page.evaluate(() => (location.hash = 'robot'))
+  await page.getByText('and 440 more').waitFor()
+  await page.getByRole('button', { name: 'Lay out anew' }).click()
+  await photograph(page, album, 'large')
+  for (let i = 0; i < 7; ++i) await page.getByRole('button', { name: 'Larger' }).click()
+  expect(await page.locator('.minimap').isVisible(), 'there is no map of what is not on the screen')
+  const before = await page.locator('.minimap').evaluate((map) => map.toDataURL())
+  await page.locator('.minimap').click({ position: { x: 20, y: 55 } })
+  await page.waitForFunction((was) => document.querySelector('.minimap').toDataURL() !== was, before)
+  await page.getByLabel('Find a node').fill('node_499')
+  await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'node_499' }).waitFor()
+  await page.getByLabel('Find a node').fill('')
+  for (const by of ['host', 'container', 'none', 'auto']) {
+    await page.getByLabel('Group nodes by').selectOption(by)
+    await page.getByRole('button', { name: 'Show all of the graph' }).click()
+  }
+  await isAccessible(page)
+}
+
+await suite(() =>
+  stubbed(
+    kCalls,
+    async (page, server) => {
+      const album = await pictures(page, file(''))
+      await everyPage(page, server, album)
+      await tellsOfAComponent(page, server, album)
+      await keepsItsPlaces(page, server)
+      await hangsOnTheWall(page, server, album)
+      await tellsIncidents(page, server, album)
+      await examines(page, server, album)
+      await dragsAThreshold(page, server, album)
+      await imaginesTheRobotAsItIs(page, server)
+      await theKeyPauses(page, server)
+      await staysUsableWhenLarge(page, server, album)
+      await album.end()
+    },
+    kToday
+  )
+)

@@ -1,0 +1,16 @@
+// Whoever writes rules in the browser, with and without knowing the language.
+import { buildsThePapersRule, losesNothingToASlowServer } from './builder.mjs'
+import { losesNothingThatWasWritten } from './drafts.mjs'
+import { writesEveryRow } from './grammar.mjs'
+import { mendsABrokenFile } from './repair.mjs'
+import { suite } from './session.mjs'
+import { writesThreeRules } from './task.mjs'
+
+await suite(async () => {
+  await buildsThePapersRule()
+  await losesNothingToASlowServer()
+  await mendsABrokenFile()
+  await writesEveryRow()
+  await writesThreeRules()
+  await losesNothingThatWasWritten()
+})
