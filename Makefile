@@ -16,7 +16,7 @@ demo:
 	@scripts/install-dependencies
 	cmake --preset demo
 	cmake --build --preset demo
-	build/demo/bin/culprit demo --end
+	build/demo/bin/culprit-lab demo --end
 
 test:
 	@scripts/install-dependencies --tests

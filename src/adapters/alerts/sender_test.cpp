@@ -1,6 +1,7 @@
 // Alerts over real sockets and to real programs, to those who take them and to those who do not.
 #include "alerts/sender.h"
 
+#include <atomic>
 #include <fstream>
 #include <sstream>
 #include <sys/socket.h>
@@ -69,8 +70,8 @@ TEST(AlertSender, PostsToAWebhook) {
 }
 
 TEST(AlertSender, TellsWhatAnotherTryMayHelp) {
-  int status = 500;
-  const test::TestWebhook server([&] { return status; });
+  std::atomic<int> status = 500;  // the server asks for it in a thread of its own
+  const test::TestWebhook server([&] { return status.load(); });
   const Destination destination = webhook(Kind::kJson, server.address() + "/secret");
   for (const auto& [answer, how] :
        {std::pair(500, How::kNotNow), std::pair(503, How::kNotNow), std::pair(429, How::kNotNow),
