@@ -70,6 +70,9 @@ Expected<std::unique_ptr<LiveRobot>> LiveRobot::open(const RuleSet& rules, Optio
 void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
   const std::size_t before = observations.size();
   listen(until, observations);
+  // Before that nothing is judged for not being heard.
+  shown_until_ = until - Duration(1);
+  if (live_now() >= until) prove_hearing(observations);
   witness(before, observations);
   // What a container's owner was asked for here is not the manager's.
   const auto is_composed = [this](const Observation& o) {
@@ -130,10 +133,25 @@ void LiveRobot::listen(Time until, std::vector<Observation>& observations) {
   }
 }
 
+// A silence is judged when its time is up, and that the robot was heard last may be shown of a
+// moment before it only. So culprit says something to itself, and what it hears until that comes
+// back, a fraction of a millisecond, belongs to what is judged. Where it does not come back in time
+// it is doubtful whether anything is heard.
+void LiveRobot::prove_hearing(std::vector<Observation>& observations) {
+  constexpr Duration kLook = std::chrono::microseconds(100);
+  const Time asked = live_now();
+  link_->prove_hearing();
+  while (link_->heard() < asked && link_->doubtful() > live_now())
+    inbox_.take(later(live_now(), kLook), observations);
+  inbox_.take(live_now(), observations);
+  shown_until_ = link_->heard();
+}
+
 // What silence means is clear before anything that was observed is judged.
 void LiveRobot::witness(std::size_t before, std::vector<Observation>& observations) {
   const Time now = live_now();
   const bool judges = link_->doubtful() > now;
+  if (!judges) shown_until_ = kNever;  // nothing is judged, whatever the time
   if (judges || link_->is_paused()) {
     deaf_since_.reset();
   } else if (!deaf_since_) {

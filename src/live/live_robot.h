@@ -1,6 +1,7 @@
 // A live robot as one Robot: its nodes over DDS, its processes through the operating system.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -28,6 +29,9 @@ class LiveRobot : public Robot {
   static Expected<std::unique_ptr<LiveRobot>> open(const RuleSet& rules, Options options);
 
   Time now() const override { return live_now(); }
+  // No later than it was last shown that the robot is heard: no silence is measured to a moment at
+  // which culprit may have been deaf.
+  Time observed_until() const override { return std::min(live_now(), shown_until_); }
   void observe(Time until, std::vector<Observation>& observations) override;
   void execute(const Command& command) override;
 
@@ -64,6 +68,7 @@ class LiveRobot : public Robot {
       : rules_(rules), binding_(rules), containers_(rules), units_(rules, inbox_) {}
 
   void listen(Time until, std::vector<Observation>& observations);
+  void prove_hearing(std::vector<Observation>& observations);
   void witness(std::size_t before, std::vector<Observation>& observations);
   void tell_what_ends_together(std::size_t before, std::vector<Observation>& observations);
   void stop_process(const Command& command);
@@ -81,6 +86,7 @@ class LiveRobot : public Robot {
   std::unique_ptr<owners::ContainerClients> container_clients_;
   std::unique_ptr<owners::ComposedNodes> composed_;
   std::map<ComponentId, std::vector<ComponentId>> ends_with_;  // as it was told
+  Time shown_until_ = kNever;
   bool judges_ = true;  // the manager was told that what it hears is all that there is
   std::optional<Time> deaf_since_;
 };

@@ -79,8 +79,11 @@ class Link {
 
   // Until when it is sure that what the robot says is heard (hearing.h), that no other culprit
   // manages it (lease_link.h), and that its time passes (simulated_clock.h). From any thread, as
-  // the next two.
+  // all of the following.
   Time doubtful() const;
+  // When it was last shown that the robot is heard, and to have it shown now.
+  Time heard() const { return hearing_->heard(); }
+  void prove_hearing() { hearing_->say(); }
   // What is not sure, if that time has come.
   std::string doubt() const;
   // Nothing is wrong with culprit: it is only the robot's time that stands still.

@@ -50,12 +50,14 @@ class Hearing {
                      later(participant_.receivers_attended(), kReceivePatience)});
   }
 
+  // Says it now, not only when the next time has come. What was said to us before is heard before it. From any thread.
+  void say();
+
   // What did not come back in time, when it is doubtful.
   const char* doubt(Time now) const;
 
  private:
   explicit Hearing(Participant& participant) : participant_(participant) {}
-  void say();
 
   Participant& participant_;
   // Shared with the reader's callback, which runs before there is a Hearing.

@@ -20,9 +20,10 @@ void Runtime::run(const std::atomic<bool>& stop, Time end) {
 }
 
 void Runtime::step(std::vector<Observation>& observations) {
-  const Time now = stepped_ = robot_.now();
+  const Time begin = robot_.now();
+  const Time now = stepped_ = std::max(stepped_, robot_.observed_until());
   const std::vector<Command> commands = manager_.step(now, observations);
-  if (on_step) on_step({now, robot_.now() - now, observations, commands, manager_.events()});
+  if (on_step) on_step({now, robot_.now() - begin, observations, commands, manager_.events()});
   for (const Command& command : commands) robot_.execute(command);
   if (!manager_.events().empty() && on_events) on_events(manager_.events());
 }

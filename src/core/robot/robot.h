@@ -29,6 +29,10 @@ class Robot {
 
   virtual Time now() const = 0;
 
+  // Up to when all that the robot said was observed: no silence is judged later than that. It is not
+  // after now().
+  virtual Time observed_until() const { return now(); }
+
   // Waits until something was observed, or until `until` (kNever: without end), or until it is
   // interrupted. Appends what came, oldest first. A simulated robot moves its clock instead of
   // waiting.
