@@ -168,6 +168,11 @@ int update_rules(const InitOptions& options) {
   if (update.changes.empty())
     say(stderr, "culprit: {} needs no change for this robot\n", options.update);
   if (options.output.empty() || (is_in_place && update.changes.empty())) return kOk;
+  const auto present = read_text(options.update);
+  if (is_in_place && (!present || *present != *text)) {
+    return fail(options.update +
+                " was changed while the robot was watched, and stays as it is; run it again");
+  }
   if (const auto written = write_text(options.output, now.after); !written)
     return fail(written.error());
   return kOk;

@@ -35,5 +35,23 @@ TEST_F(Init, AFileThatIsThereIsNotOverwritten) {
   EXPECT_EQ(*text, "# mine\n");
 }
 
+TEST_F(Init, AnUpdateIsNotWrittenOverWhatSomebodyChangedMeanwhile) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  std::string mine = "COMPONENT mine NODE /mine\n";
+  ASSERT_TRUE(write_text(file, mine));
+  TestProgram init(world, {"culprit", "init", "--for", "5", "--update", file, "-o", file});
+  std::optional<int> status;
+  while (!(status = init.wait(50ms))) {
+    mine += "# a thought\n";
+    ASSERT_TRUE(write_text(file + ".new", mine));
+    std::filesystem::rename(file + ".new", file);
+  }
+  EXPECT_EQ(status, 1) << init.output();
+  EXPECT_THAT(init.output(), HasSubstr("was changed while the robot was watched"));
+  const auto text = read_text(file);
+  ASSERT_TRUE(text);
+  EXPECT_EQ(*text, mine);
+}
+
 }  // namespace
 }  // namespace culprit::cli
