@@ -340,7 +340,7 @@ function apart(all: Tick[], shareOf: (at: number) => number): (Tick & { anchor?:
   })
 }
 
-const kLogPeriod = 100 // ms
+const kLogPeriod = 50 // ms
 
 function EventLine({ event, view }: { event: ManagerEvent; view: View }) {
   return (
