@@ -23,11 +23,13 @@ test:
 	scripts/test
 
 # What takes longer than a test may, some four hours in all: a robot that is broken and healed for an hour, 500 kills of culprit,
-# 1,000 robots of a fleet, 100 random sequences of faults for each kind of owner, 40 changes of the core that its tests should notice, the laboratory under the address sanitizer, each fuzzer for five minutes.
+# 1,000 robots of a fleet, 100 random sequences of faults for each kind of owner, 40 changes of the core that its tests should notice, what `make test` runs under the
+# address sanitizer as users build, the laboratory under that sanitizer, each fuzzer for five minutes.
 soak:
 	@scripts/install-dependencies --tests
 	cmake --preset release
 	cmake --build --preset release
+	ctest --preset release --parallel 4 -L sanitized
 	scripts/soak
 	scripts/first-hour
 	scripts/chaos

@@ -23,10 +23,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_UNITY_BUILD)
   target_compile_options(culprit_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
 endif()
 if(CULPRIT_SANITIZE)
-  # Not what the address sanitizer or the processor finds as well: that takes a quarter of the time of compiling.
-  target_compile_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE} -fno-sanitize=null,object-size,vptr
-                                                   -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(culprit_options INTERFACE -fsanitize=${CULPRIT_SANITIZE})
+  if(NOT CULPRIT_FUZZ)
+    # Tests do without what the address sanitizer or the processor finds as well: it takes half of the time of compiling. Fuzzers look for it.
+    target_compile_options(culprit_options INTERFACE -fno-sanitize=null,object-size,vptr,alignment,pointer-overflow)
+  endif()
 endif()
 
 # Whoever builds tests has memory: without collecting garbage g++ needs 1.3 GB for the largest file instead of 1.0, and a tenth less time.
@@ -56,6 +58,7 @@ target_compile_options(culprit_test_options INTERFACE -O0)
 if(CULPRIT_TESTS)
   add_custom_target(offline_tests) # those of culprit itself that start no processes of a robot
   add_custom_target(laboratory_tests) # those of the laboratory that start none
+  add_custom_target(unsanitized_tests) # all that the address sanitizer does not look at in `make test`
   add_custom_target(thread_tests) # those that the thread sanitizer is for
   add_library(culprit_test_main OBJECT ${CMAKE_CURRENT_LIST_DIR}/test_main.cpp)
   if(CULPRIT_SANITIZE STREQUAL "thread")
@@ -79,7 +82,7 @@ endif()
 
 # culprit_library(<floor>/<folder> [USES <folder>...] [PACKAGES <target>...]
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL]
-#                 [TEST_LABELS <label>...] [TEST_CASES n] [LIVE_PROCESSORS n])
+#                 [TEST_LABELS <label>...] [TEST_CASES n] [TEST_UNSANITIZED <pattern>...] [LIVE_PROCESSORS n])
 #
 # Builds the library <folder> of src/<floor>/<folder>/**.cpp, but for its tests and programs (*_main.cpp); the library
 # <folder>_testing of what only tests use (test_*.cpp), for others' tests too; and the test program <folder>_test of
@@ -87,9 +90,10 @@ endif()
 # USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
 # *_live_test.cpp make a program of their own, <folder>_live_test: they start the processes of a robot, so each has a
 # machine of its own (in_own_machine.sh) or runs alone, and carries the label "live". The label "threads" is for tests that the thread sanitizer repeats;
-# "laboratory", which all of lab/ has, for those that the address sanitizer repeats only in `make soak`.
+# "laboratory", which all of lab/ has, for those that the address sanitizer repeats only in `make soak`. TEST_UNSANITIZED, as --gtest_filter= takes it, are
+# tests that no sanitizer runs: their results are statistics, or they need a process of their own, or all of its descriptors.
 function(culprit_library path)
-  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES;LIVE_PROCESSORS" ${ARGN})
+  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES;TEST_UNSANITIZED;LIVE_PROCESSORS" ${ARGN})
   get_filename_component(folder ${path} NAME)
   if(path MATCHES "^lab/")
     list(APPEND ARG_TEST_LABELS laboratory)
@@ -147,7 +151,7 @@ function(culprit_library path)
       set(serial SERIAL)
     endif()
     culprit_test(${folder}_test SOURCES ${tests} USES ${with} PACKAGES ${ARG_TEST_PACKAGES}
-                 LABELS ${ARG_TEST_LABELS} CASES ${ARG_TEST_CASES} ${serial})
+                 LABELS ${ARG_TEST_LABELS} CASES ${ARG_TEST_CASES} UNSANITIZED ${ARG_TEST_UNSANITIZED} ${serial})
   endif()
   if(live_tests)
     culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${with} PACKAGES ${ARG_TEST_PACKAGES}
@@ -215,19 +219,21 @@ function(culprit_embed folder header)
 endfunction()
 
 # culprit_program(<name> <source> USES <folder>...): lands in build/<preset>/bin.
+add_custom_target(programs)
 function(culprit_program name source)
   cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
   add_executable(${name} ${source})
   target_link_libraries(${name} PRIVATE ${ARG_USES} culprit_options)
+  add_dependencies(programs ${name})
   install(TARGETS ${name} RUNTIME DESTINATION bin)
 endfunction()
 
-# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LIVE [PROCESSORS n]] [LABELS ...] [CASES n]): one CTest test for each
-# TEST. SERIAL tests run one after the other, beside those of other programs. LIVE tests have a machine of their own
+# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LIVE [PROCESSORS n]] [LABELS ...] [CASES n] [UNSANITIZED ...]): one CTest
+# test for each TEST. Where it is built as users build, what the address sanitizer looks at in `make test` has the label "sanitized". SERIAL tests run one after the other, beside those of other programs. LIVE tests have a machine of their own
 # (in_own_machine.sh), or run alone; most wait more than they compute, so two of them may run where one of the others does: PROCESSORS says of how many of
 # the four that two cores count for. Properties are tried on n random cases each instead of 100.
 function(culprit_test name)
-  cmake_parse_arguments(ARG "SERIAL;LIVE" "" "SOURCES;USES;PACKAGES;LABELS;CASES;PROCESSORS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;LIVE" "" "SOURCES;USES;PACKAGES;LABELS;CASES;UNSANITIZED;PROCESSORS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_precompile_headers(${name} REUSE_FROM culprit_test_main)
   culprit_compile_together(${name} 10 ${CMAKE_CURRENT_SOURCE_DIR} ${ARG_SOURCES})
@@ -251,38 +257,52 @@ function(culprit_test name)
     endif()
   else()
     list(APPEND properties PROCESSORS 2)
-    set(kind offline)
-    if("laboratory" IN_LIST ARG_LABELS)
-      set(kind laboratory)
-    endif()
-    add_dependencies(${kind}_tests ${name})
+  endif()
+  string(REPLACE ";" ":" unsanitized "${ARG_UNSANITIZED}")
+  set(kinds offline sanitized)
+  if(ARG_LIVE)
+    set(kinds unsanitized)
+  elseif("laboratory" IN_LIST ARG_LABELS)
+    set(kinds laboratory unsanitized)
+  elseif(unsanitized)
+    list(APPEND kinds unsanitized)
   endif()
   if("threads" IN_LIST ARG_LABELS)
-    add_dependencies(thread_tests ${name})
+    list(APPEND kinds thread)
   endif()
-  if(ARG_LABELS)
-    list(APPEND properties LABELS "${ARG_LABELS}")
-  endif()
+  foreach(kind IN LISTS kinds)
+    if(TARGET ${kind}_tests)
+      add_dependencies(${kind}_tests ${name})
+    endif()
+  endforeach()
   set(environment "")
   if(ARG_CASES)
     list(APPEND environment "RC_PARAMS=max_success=${ARG_CASES}")
   endif()
   if(CULPRIT_SANITIZE)
+    list(APPEND properties LABELS "${ARG_LABELS}")
     list(LENGTH ARG_SOURCES files)
     math(EXPR shards "1 + ${files} / 8")
-    culprit_add_shards(${name} ${shards} PROPERTIES ${properties} ENVIRONMENT ${environment})
+    culprit_add_shards(${name} ${shards} "${unsanitized}" PROPERTIES ${properties} ENVIRONMENT ${environment})
     return()
   endif()
   if(environment)
     list(APPEND properties ENVIRONMENT "${environment}")
   endif()
-  gtest_discover_tests(${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
-                       PROPERTIES ${properties})
+  set(discover WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
+  if(NOT "sanitized" IN_LIST kinds)
+    gtest_discover_tests(${name} ${discover} LABELS ${ARG_LABELS})
+    return()
+  endif()
+  gtest_discover_tests(${name} TEST_FILTER "-${unsanitized}" ${discover} LABELS sanitized)
+  if(unsanitized)
+    gtest_discover_tests(${name} TEST_FILTER "${unsanitized}" TEST_LIST ${name}_UNSANITIZED ${discover})
+  endif()
 endfunction()
 
-# culprit_add_shards(<test program> <shards> PROPERTIES ... ENVIRONMENT ...): its tests in so many processes. A process with a sanitizer
+# culprit_add_shards(<test program> <shards> <pattern> PROPERTIES ... ENVIRONMENT ...): its tests but those of the pattern in so many processes. A process with a sanitizer
 # takes longer to begin than most tests take. Each leaves what came of its tests in test-results/.
-function(culprit_add_shards name shards)
+function(culprit_add_shards name shards left_out)
   cmake_parse_arguments(ARG "" "" "PROPERTIES;ENVIRONMENT" ${ARGN})
   math(EXPR last "${shards} - 1")
   foreach(shard RANGE ${last})
@@ -290,7 +310,7 @@ function(culprit_add_shards name shards)
     add_test(NAME ${test} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
     set_tests_properties(${test} PROPERTIES ${ARG_PROPERTIES})
     set_property(TEST ${test} PROPERTY TIMEOUT 1200) # of many tests
-    set_property(TEST ${test} PROPERTY ENVIRONMENT ${ARG_ENVIRONMENT} GTEST_FILTER=*-${CULPRIT_TESTS_LEFT_OUT}
+    set_property(TEST ${test} PROPERTY ENVIRONMENT ${ARG_ENVIRONMENT} GTEST_FILTER=*-${left_out}
       GTEST_TOTAL_SHARDS=${shards} GTEST_SHARD_INDEX=${shard} GTEST_OUTPUT=xml:${PROJECT_BINARY_DIR}/test-results/${test}.xml)
   endforeach()
 endfunction()
