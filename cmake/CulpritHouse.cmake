@@ -214,12 +214,12 @@ function(culprit_embed folder header)
   target_include_directories(${folder} PRIVATE ${CMAKE_BINARY_DIR}/include/${folder}-generated)
 endfunction()
 
-# culprit_program(<name> <source> USES <folder>...): lands in build/<preset>/bin.
+# culprit_program(<name> <source> USES <folder>... [COMPONENT <of what is installed>]): lands in build/<preset>/bin.
 function(culprit_program name source)
-  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
+  cmake_parse_arguments(ARG "" "COMPONENT" "USES" ${ARGN})
   add_executable(${name} ${source})
   target_link_libraries(${name} PRIVATE ${ARG_USES} culprit_options)
-  install(TARGETS ${name} RUNTIME DESTINATION bin)
+  install(TARGETS ${name} RUNTIME DESTINATION bin COMPONENT ${ARG_COMPONENT})
 endfunction()
 
 # culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LIVE [PROCESSORS n]] [LABELS ...] [CASES n]): one CTest test for each
