@@ -1,5 +1,5 @@
 # The two commands of this project are `make demo` and `make test`. Each installs what is missing first.
-.PHONY: build install demo test soak bench docs format clean
+.PHONY: build install package demo test soak bench docs format clean
 
 # The programs that the README runs; `make test` builds the tests.
 build:
@@ -11,6 +11,11 @@ build:
 PREFIX ?= /usr/local
 install: build
 	cmake --install build/release --strip --prefix $(PREFIX)
+
+# Debian packages: build/packages/.
+package:
+	@scripts/install-dependencies --packages
+	scripts/package
 
 demo:
 	@scripts/install-dependencies
@@ -24,7 +29,8 @@ test:
 
 # What takes longer than a test may, some four hours in all: a robot that is broken and healed for an hour, 500 kills of culprit,
 # 1,000 robots of a fleet, 100 random sequences of faults for each kind of owner, 40 changes of the core that its tests should notice, what `make test` runs under the
-# address sanitizer as users build, the laboratory under that sanitizer, each fuzzer for five minutes.
+# address sanitizer as users build, the laboratory under that sanitizer, each fuzzer for five minutes,
+# Debian packages that are installed, upgraded and removed.
 soak:
 	@scripts/install-dependencies --tests
 	cmake --preset release
@@ -40,6 +46,8 @@ soak:
 	cmake --build --preset asan-laboratory
 	ctest --preset asan-laboratory
 	scripts/fuzz --seconds 300
+	scripts/install-dependencies --packages
+	scripts/test-packages
 
 # The documents as a site that can be searched: build/docs/index.html. It needs no network.
 docs:

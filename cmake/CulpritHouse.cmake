@@ -218,20 +218,20 @@ function(culprit_embed folder header)
   target_include_directories(${folder} PRIVATE ${CMAKE_BINARY_DIR}/include/${folder}-generated)
 endfunction()
 
-# culprit_program(<name> <source> USES <folder>...): lands in build/<preset>/bin.
+# culprit_program(<name> <source> USES <folder>... [COMPONENT <of what is installed>]): lands in build/<preset>/bin.
 add_custom_target(programs)
 function(culprit_program name source)
-  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
+  cmake_parse_arguments(ARG "" "COMPONENT" "USES" ${ARGN})
   add_executable(${name} ${source})
   target_link_libraries(${name} PRIVATE ${ARG_USES} culprit_options)
   add_dependencies(programs ${name})
-  install(TARGETS ${name} RUNTIME DESTINATION bin)
+  install(TARGETS ${name} RUNTIME DESTINATION bin COMPONENT ${ARG_COMPONENT})
 endfunction()
 
 # culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LIVE [PROCESSORS n]] [LABELS ...] [CASES n] [UNSANITIZED ...]): one CTest
-# test for each TEST. Where it is built as users build, what the address sanitizer looks at in `make test` has the label "sanitized". SERIAL tests run one after the other, beside those of other programs. LIVE tests have a machine of their own
-# (in_own_machine.sh), or run alone; most wait more than they compute, so two of them may run where one of the others does: PROCESSORS says of how many of
-# the four that two cores count for. Properties are tried on n random cases each instead of 100.
+# test for each TEST. Where it is built as users build, what the address sanitizer looks at in `make test` has the label "sanitized". SERIAL tests run one after
+# the other, beside those of other programs. LIVE tests have a machine of their own (in_own_machine.sh), or run alone; most wait more than they
+# compute, so two of them may run where one of the others does: PROCESSORS says of how many of the four that two cores count for. Properties are tried on n random cases each instead of 100.
 function(culprit_test name)
   cmake_parse_arguments(ARG "SERIAL;LIVE" "" "SOURCES;USES;PACKAGES;LABELS;CASES;UNSANITIZED;PROCESSORS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

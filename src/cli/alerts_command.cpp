@@ -59,7 +59,9 @@ void add_alerts(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "alerts",
       "Try out where alerts go, by sending one to each (run --alerts sends the real ones)");
-  command->add_option("FILE", options->file, "Where alerts go (docs/alerts.md)")->required();
+  command->add_option("FILE", options->file, "Where alerts go (docs/alerts.md)")
+      ->type_name("FILE")
+      ->required();
   command->add_flag("--json", options->json, "What became of each, as a JSON document");
   command->callback([options, &exit_code] { exit_code = try_alerts(*options); });
 }

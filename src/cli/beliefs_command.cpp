@@ -136,9 +136,12 @@ void add_beliefs(CLI::App& app, int& exit_code) {
       add("show", "Each strategy's success rate: as the rules have it, and now", show);
   shown.first->add_flag("--json", shown.second->json, "As export writes it");
   const auto out = add("export", "Write what was learned as JSON", write_out);
-  out.first->add_option("-o,--output", out.second->output, "Where to (default: stdout)");
+  out.first->add_option("-o,--output", out.second->output, "Where to (default: stdout)")
+      ->type_name("FILE");
   const auto in = add("import", "Add what other robots learned", read_in);
-  in.first->add_option("FILE", in.second->files, "What culprit beliefs export wrote")->required();
+  in.first->add_option("FILE", in.second->files, "What culprit beliefs export wrote")
+      ->type_name("FILE")
+      ->required();
   const auto forget = add("reset", "Forget what was learned", reset);
   forget.first->add_option("RULE", forget.second->rule, "Of this rule");
   forget.first->add_flag("--all", forget.second->all, "Of all rules");

@@ -145,7 +145,9 @@ void add_check(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand(
       "check", "Check rule files: every mistake with its place, cause and remedy");
-  command->add_option("RULES", options->files, "Rule files, and folders of *.rules")->required();
+  command->add_option("RULES", options->files, "Rule files, and folders of *.rules")
+      ->type_name("FILE")
+      ->required();
   command->add_flag("--strict", options->strict, "Every component and signal must be declared");
   auto* robot = command->add_flag(
       "--robot", options->robot,

@@ -1,6 +1,11 @@
 #include "cli/culprit_manual.h"
 
 namespace culprit::cli {
+namespace {
+
+constexpr const char* kLaboratory = "The laboratory";
+
+}  // namespace
 
 const Manual& culprit_manual() {
   static const Manual manual{
@@ -38,7 +43,8 @@ const Manual& culprit_manual() {
                    {"culprit run --dry-run my.rules", "What culprit would do."},
                    {"culprit run --web my.rules", "culprit does it, and shows it in a browser."},
                    {"culprit status", "Who is ill, who is blamed, what happens next."}},
-      .see_also = "culprit-lab(1); the documents in /usr/share/doc/culprit/docs"};
+      .see_also = "culprit-lab(1); the documents in /usr/share/doc/culprit/docs",
+      .others = {kLaboratory, "culprit-lab"}};
   return manual;
 }
 
@@ -57,7 +63,7 @@ void group_commands(CLI::App& app) {
 #ifdef CULPRIT_FLEET
       {"A fleet", {"fleet"}},
 #endif
-      {"The laboratory", {"demo", "study", "torture"}}};
+      {kLaboratory, {"demo", "study", "torture"}}};
   for (const Group& group : groups) {
     for (const char* command : group.commands) app.get_subcommand(command)->group(group.title);
   }

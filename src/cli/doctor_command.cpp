@@ -171,9 +171,12 @@ void add_doctor(CLI::App& app, int& exit_code) {
       ->excludes(json);
   auto* watch = command->add_flag("--watch", options->watch,
                                   "Look again and again, and say what comes and goes");
-  auto* save = command->add_option("--save", options->save,
-                                   "Write the healthy robot as a file to compare with");
+  auto* save =
+      command
+          ->add_option("--save", options->save, "Write the healthy robot as a file to compare with")
+          ->type_name("FILE");
   command->add_option("--against", options->against, "Compare with a robot that was saved")
+      ->type_name("FILE")
       ->excludes(save);
   save->excludes(watch);
   command->callback([options, &exit_code] { exit_code = examine_robot(*options); });

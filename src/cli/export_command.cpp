@@ -38,8 +38,11 @@ void add_export(CLI::App& app, int& exit_code) {
       "export", "Write a rule file in another form; culprit import reads it back");
   command->add_flag("--json", options->as_json, "As JSON: every statement, comment and blank line")
       ->required();
-  command->add_option("RULES", options->file, "A rule file; - is the standard input")->required();
-  command->add_option("-o,--output", options->output, "Where to write it (default: stdout)");
+  command->add_option("RULES", options->file, "A rule file; - is the standard input")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("-o,--output", options->output, "Where to write it (default: stdout)")
+      ->type_name("FILE");
   command->callback([options, &exit_code] { exit_code = export_json(*options); });
 }
 

@@ -69,6 +69,7 @@ void add_fmt(CLI::App& app, int& exit_code) {
       ->add_option(
           "FILES", options->files,
           "Rule files, and folders of *.rules; - formats the standard input to the standard output")
+      ->type_name("FILE")
       ->required();
   command->add_flag("--check", options->check,
                     "Write nothing; list the files that would change, and fail if there are any");

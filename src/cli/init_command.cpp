@@ -187,13 +187,18 @@ void add_init(CLI::App& app, int& exit_code) {
       "Draft a rule file from a live robot that is well: its components, how they are started, and "
       "how long their topics pause. Changes nothing on the robot");
   add_seconds(*command, "--for", options->seconds, "How long to watch it", 5, 3600);
-  command->add_option(
-      "-o,--output", options->output,
-      "Where to write the draft (default: stdout). No file is overwritten but the one of --update");
-  CLI::Option* launch = command->add_option(
-      "--launch", options->launch_dump,
-      "How composed nodes are loaded, and what is started again: what play_launch dumps of "
-      "the robot's launch file (system_model.yaml, or record.json)");
+  command
+      ->add_option("-o,--output", options->output,
+                   "Where to write the draft (default: stdout). No file is overwritten but the one "
+                   "of --update")
+      ->type_name("FILE");
+  CLI::Option* launch =
+      command
+          ->add_option(
+              "--launch", options->launch_dump,
+              "How composed nodes are loaded, and what is started again: what play_launch dumps of "
+              "the robot's launch file (system_model.yaml, or record.json)")
+          ->type_name("FILE");
   command->add_flag("--pack", options->packs,
                     "Include the packs of rules that fit what is found (docs/packs.md), with the "
                     "rates that were measured");
@@ -203,6 +208,7 @@ void add_init(CLI::App& app, int& exit_code) {
           "Bring this rule file up to the robot, and show how as a unified diff: what is new is "
           "added, what a draft wrote and no longer fits is replaced, and what a person wrote "
           "stays. Writes nothing without -o, which may name the same file")
+      ->type_name("FILE")
       ->excludes(launch);
   command->callback([options, &exit_code] {
     exit_code = options->update.empty() ? draft_rules(*options) : update_rules(*options);

@@ -16,8 +16,10 @@ namespace culprit::cli {
 namespace fs = std::filesystem;
 
 void JournalOption::add_to(CLI::App& command) {
-  command.add_option("--journal", path,
-                     "The journal file (default: the only one in ~/.local/state/culprit)");
+  command
+      .add_option("--journal", path,
+                  "The journal file (default: the only one in ~/.local/state/culprit)")
+      ->type_name("FILE");
 }
 
 Expected<fs::path> JournalOption::file() const {

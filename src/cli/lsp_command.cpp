@@ -105,8 +105,10 @@ void add_lsp(CLI::App& app, const std::string& version, int& exit_code) {
       "lsp", "Serve an editor: the Language Server Protocol on standard input and output");
   command->add_flag("--robot", options->robot,
                     "Show also what the live robot has: its names, values, and what it has not");
-  command->add_option("--message-path", options->message_path,
-                      "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
+  command
+      ->add_option("--message-path", options->message_path,
+                   "Folders with .msg files: <folder>/<package>/msg/<Type>.msg")
+      ->type_name("FOLDER");
   command->callback([version, options, &exit_code] { exit_code = serve(version, *options); });
 }
 

@@ -70,6 +70,7 @@ void add_modes(CLI::App& app, int& exit_code) {
       "Manage the modes of a robot's systems and nodes, in place of system_modes' mode_manager.\n"
       "Offers change_mode, get_mode and get_available_modes for each, until Ctrl-C.");
   command->add_option("MODEL", options->model, "The model file, as system_modes reads it (YAML)")
+      ->type_name("FILE")
       ->required();
   command->add_flag("--check", options->only_checks, "Read the model, list its modes, and end");
   command->callback([options, &exit_code] { exit_code = manage(*options); });

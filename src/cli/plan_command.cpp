@@ -150,9 +150,10 @@ void add_plan(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<PlanOptions>();
   CLI::App* command = app.add_subcommand(
       "plan", "Show what would be decided now, why, and what would have changed the decision");
-  command->add_option("RULES", options->rules, "The rule file")->required();
+  command->add_option("RULES", options->rules, "The rule file")->type_name("FILE")->required();
   CLI::Option_group* what = command->add_option_group("What is the case");
-  what->add_option("--state", options->state, "A file that says how the robot is (docs/plan.md)");
+  what->add_option("--state", options->state, "A file that says how the robot is (docs/plan.md)")
+      ->type_name("FILE");
   what->add_flag("--robot", options->robot,
                  "The live robot is watched for a moment; nothing is changed on it");
   what->require_option(1);
@@ -163,8 +164,10 @@ void add_plan(CLI::App& app, int& exit_code) {
       "--json", [options](std::int64_t) { options->format = "json"; }, "The same as --format json");
   add_seconds(*command, "--settle", options->settle_seconds,
               "With --robot: the time that is given to discovery", 0, 3600);
-  command->add_option("--message-path", options->message_path,
-                      "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
+  command
+      ->add_option("--message-path", options->message_path,
+                   "Folders with .msg files: <folder>/<package>/msg/<Type>.msg")
+      ->type_name("FOLDER");
   options->planner.add_to(*command);
   command->callback([options, &exit_code] { exit_code = plan(*options); });
 }

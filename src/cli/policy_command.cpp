@@ -110,7 +110,7 @@ void add_policy(CLI::App& app, int& exit_code) {
       "policy",
       "Write what a rule file needs to be allowed, and no more: culprit's permissions on a secured "
       "DDS domain (SROS2), or the settings of its systemd unit");
-  command->add_option("RULES", options->rules, "The rule file")->required();
+  command->add_option("RULES", options->rules, "The rule file")->type_name("FILE")->required();
   command
       ->add_option("--format", options->format,
                    "sros2: a policy for the tools of ROS 2; permissions: of DDS, to be signed with "
@@ -125,7 +125,8 @@ void add_policy(CLI::App& app, int& exit_code) {
   command->add_flag("--improvise", options->improvise, "For culprit run --improvise");
   command->add_flag("--other-users", options->other_users,
                     "systemd: the robot's nodes run as other users than culprit");
-  command->add_option("-o,--output", options->output, "Where to write it (default: stdout)");
+  command->add_option("-o,--output", options->output, "Where to write it (default: stdout)")
+      ->type_name("FILE");
   command->callback([options, &exit_code] { exit_code = write_policy(*options); });
 }
 

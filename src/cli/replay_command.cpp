@@ -285,16 +285,20 @@ void add_replay(CLI::App& app, int& exit_code) {
       "replay",
       "Run a recorded journal through the manager again: it must decide the same.\nWith --rules or "
       "--planner: what would have been decided, beside what was. A rosbag2 recording works, too.");
-  command->add_option("JOURNAL", options->journal, "The journal file, or a bag")->required();
+  command->add_option("JOURNAL", options->journal, "The journal file, or a bag")
+      ->type_name("FILE")
+      ->required();
   command->add_option("--session", options->session,
                       "The run that begins with this row (default: the latest)");
-  command->add_option("--rules", options->rules, "Other rules");
+  command->add_option("--rules", options->rules, "Other rules")->type_name("FILE");
   command->add_flag("--events", options->events, "Print what happens");
   command->add_option(
       "--since", options->since,
       "With --rules: what they would have said of so long ago until now, over all runs: 10min, 1h");
-  command->add_option("--message-path", options->message_path,
-                      "For a bag: folders with .msg files: <folder>/<package>/msg/<Type>.msg");
+  command
+      ->add_option("--message-path", options->message_path,
+                   "For a bag: folders with .msg files: <folder>/<package>/msg/<Type>.msg")
+      ->type_name("FOLDER");
   command->add_flag("--json", options->json,
                     "As one JSON document; not of a bag, nor with --events");
   options->planner.add_to(*command);

@@ -118,9 +118,12 @@ void add_test(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<TestOptions>();
   CLI::App* command = app.add_subcommand(
       "test", "Run unit tests of rule files: what the manager does with a robot that is played");
-  command->add_option("FILES", options->files, "Test files, and folders of *.test")->required();
+  command->add_option("FILES", options->files, "Test files, and folders of *.test")
+      ->type_name("FILE")
+      ->required();
   command->add_option("--filter", options->filter, "Only tests whose name contains this");
-  command->add_option("--junit", options->junit, "Write the results as JUnit XML to this file");
+  command->add_option("--junit", options->junit, "Write the results as JUnit XML to this file")
+      ->type_name("FILE");
   command->add_flag("--json", options->json, "The results as a JSON document");
   options->planner.add_to(*command);
   command->callback([options, &exit_code] { exit_code = run_tests(*options); });

@@ -46,7 +46,7 @@ Expected<live::LiveSession::Options> RunOptions::session(const RuleSet& rule_set
 }
 
 void RunOptions::add_to(CLI::App& command) {
-  command.add_option("RULES", rules, "The rule file")->required();
+  command.add_option("RULES", rules, "The rule file")->type_name("FILE")->required();
   command.add_flag("--dry-run", dry_run, "Say what would be done, and do nothing");
   command.add_flag("--launch", launch,
                    "Start components that are missing, by their LAUNCH commands, and bring their "
@@ -57,20 +57,28 @@ void RunOptions::add_to(CLI::App& command) {
   add_seconds(command, "--settle", settle_seconds,
               "For so long, nothing is called missing because it was not seen", 0, 3600);
   command.add_option("--state-dir", state_folder, "Where logs of started components go")
+      ->type_name("FOLDER")
       ->default_str("~/.local/state/culprit");
-  auto* kept = command.add_option(
-      "--journal", journal,
-      "Where everything is written down (default: <robot>.journal in the state folder)");
+  auto* kept =
+      command
+          .add_option(
+              "--journal", journal,
+              "Where everything is written down (default: <robot>.journal in the state folder)")
+          ->type_name("FILE");
   auto* unkept =
       command.add_flag("--no-journal", no_journal, "Write nothing down, and know nothing")
           ->excludes(kept);
   fleet.add_to(command);
   command.get_option("--fleet")->excludes(unkept);
-  command.add_option("--lease-key", lease_key,
-                     "A file that only you can read, with a key that culprits on other machines "
-                     "share: they agree who manages the robot (docs/security.md)");
-  command.add_option("--message-path", message_path,
-                     "Folders with .msg files: <folder>/<package>/msg/<Type>.msg");
+  command
+      .add_option("--lease-key", lease_key,
+                  "A file that only you can read, with a key that culprits on other machines "
+                  "share: they agree who manages the robot (docs/security.md)")
+      ->type_name("FILE");
+  command
+      .add_option("--message-path", message_path,
+                  "Folders with .msg files: <folder>/<package>/msg/<Type>.msg")
+      ->type_name("FOLDER");
   command.add_flag("--use-sim-time", use_sim_time,
                    "The robot is simulated: nothing is judged while its /clock stands still");
   command
@@ -90,9 +98,11 @@ void RunOptions::add_to(CLI::App& command) {
   command.add_flag("--json", json,
                    "Print what happens as JSON, a document each line (docs/web.md); all else "
                    "goes to the standard error output");
-  command.add_option("--alerts", alerts,
-                     "A file that only you can read, of where alerts go: to a webhook, or to a "
-                     "program (docs/alerts.md)");
+  command
+      .add_option("--alerts", alerts,
+                  "A file that only you can read, of where alerts go: to a webhook, or to a "
+                  "program (docs/alerts.md)")
+      ->type_name("FILE");
   planner.add_to(command);
   command.add_flag("--web", is_on_web, "Show in a browser what is seen, decided and done");
   web.add_to(command);

@@ -58,7 +58,9 @@ void add_web(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "web",
       "Write rules in a browser, as text or in a form, checked as you type; and run studies");
-  command->add_option("RULES", options->rules, "The rule file, which may be new")->required();
+  command->add_option("RULES", options->rules, "The rule file, which may be new")
+      ->type_name("FILE")
+      ->required();
   command->add_flag("--robot", options->robot,
                     "Offer what the live robot has: its nodes, topics, parameters and services");
   options->web.add_to(*command);

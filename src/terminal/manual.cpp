@@ -1,28 +1,21 @@
 #include "terminal/manual.h"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include <fmt/core.h>
 
 #include "terminal/command.h"
+#include "terminal/completion.h"
 #include "terminal/console.h"
 #include "terminal/help.h"
+#include "terminal/listed.h"
 
 namespace culprit {
 namespace {
 
 // ---- what the program says of itself
-
-// Groups of options look like commands without a name.
-bool is_group_of_options(const CLI::App* command) { return command->get_name().empty(); }
-bool is_listed(const CLI::App* command) {
-  return !is_group_of_options(command) && !command->get_group().empty();
-}
-
-std::vector<const CLI::App*> commands_in(const CLI::App& app) {
-  return app.get_subcommands(is_listed);
-}
 
 std::vector<std::string> groups_in(const CLI::App& app) {
   std::vector<std::string> groups;
@@ -31,17 +24,6 @@ std::vector<std::string> groups_in(const CLI::App& app) {
       groups.push_back(command->get_group());
   }
   return groups;
-}
-
-std::vector<const CLI::Option*> options_in(const CLI::App& command) {
-  auto options = command.get_options([&command](const CLI::Option* option) {
-    return !option->get_group().empty() && option != command.get_help_ptr();
-  });
-  for (const CLI::App* group : command.get_subcommands(is_group_of_options)) {
-    const auto more = options_in(*group);
-    options.insert(options.end(), more.begin(), more.end());
-  }
-  return options;
 }
 
 // "-n, --lines INT", "RULES"
@@ -222,13 +204,22 @@ std::string as_markdown(const CLI::App& app, const Manual& manual) {
 }
 
 void add_manual(CLI::App& app, const Manual& manual, int& exit_code) {
+  using Format = std::string (*)(const CLI::App&, const Manual&);
+  static const std::map<std::string, Format> formats = {{"man", as_man_page},
+                                                        {"markdown", as_markdown},
+                                                        {"bash", as_bash_completion},
+                                                        {"zsh", as_zsh_completion},
+                                                        {"fish", as_fish_completion}};
   auto format = std::make_shared<std::string>("man");
   CLI::App* command = app.add_subcommand("manual", "Print the manual")->group("");
-  command->add_option("--format", *format, "man for man(1), or markdown")
-      ->check(CLI::IsMember({"man", "markdown"}))
+  command
+      ->add_option("--format", *format,
+                   "man for man(1), or markdown; bash, zsh or fish: what completes its commands "
+                   "and options there")
+      ->check(CLI::IsMember({"man", "markdown", "bash", "zsh", "fish"}))
       ->capture_default_str();
   command->callback([&app, &manual, &exit_code, format] {
-    say_text(stdout, *format == "man" ? as_man_page(app, manual) : as_markdown(app, manual));
+    say_text(stdout, formats.at(*format)(app, manual));
     exit_code = kOk;
   });
 }

@@ -20,6 +20,11 @@ struct Manual {
   Entries environment{};
   Entries examples{};      // a command, and what it is for
   std::string see_also{};  // "culprit-lab(1)"
+  // Commands under this heading are another program's, which has them by the same names.
+  struct {
+    std::string heading{};  // "The laboratory"; empty: there are none
+    std::string program{};  // "culprit-lab"
+  } others{};
 };
 
 // How a command ends, the same for all (terminal/command.h).
@@ -32,7 +37,8 @@ std::string examples_of(const Manual& manual);
 std::string as_man_page(const CLI::App& app, const Manual& manual);
 std::string as_markdown(const CLI::App& app, const Manual& manual);
 
-// Adds the command `manual` to the program, which prints either and is not listed. Both must live as long as `app`.
+// Adds the command `manual` to the program, which prints either, or a shell's completion (terminal/completion.h), and is
+// not listed. Both must live as long as `app`.
 void add_manual(CLI::App& app, const Manual& manual, int& exit_code);
 
 }  // namespace culprit

@@ -25,6 +25,7 @@ void WebOptions::add_to(CLI::App& command) {
       .add_option("--token-file", token_file,
                   "A file that only you can read, with the token that requests have to carry "
                   "(default: a new token each time)")
+      ->type_name("FILE")
       ->group(kGroup);
   command
       .add_option("--allow-host", allowed_hosts,

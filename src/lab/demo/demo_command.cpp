@@ -299,8 +299,10 @@ void add_demo(CLI::App& app, int& exit_code) {
   command->add_option("--speed", options->speed, "How much faster than real time the robot lives")
       ->check(CLI::Range(0.1, 20.0))
       ->capture_default_str();
-  command->add_option("-o,--output,--json", options->output,
-                      "Also write the outcome to this file, as one JSON document");
+  command
+      ->add_option("-o,--output,--json", options->output,
+                   "Also write the outcome to this file, as one JSON document")
+      ->type_name("FILE");
   command
       ->add_option("--domain", options->domain,
                    "The DDS domain (default: the first from 1 on that nobody on this machine uses)")

@@ -353,7 +353,7 @@ void add_merge(CLI::App& study, int& exit_code) {
   auto options = std::make_shared<MergeOptions>();
   CLI::App* command = study.add_subcommand(
       "merge", "Put the shards of a campaign together, of whichever study they are");
-  command->add_option("FILES", options->files, "All shard files")->required();
+  command->add_option("FILES", options->files, "All shard files")->type_name("FILE")->required();
   options->output.add_to(*command);
   command->callback([options, &exit_code] { exit_code = merge(options->files, options->output); });
 }

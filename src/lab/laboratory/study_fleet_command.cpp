@@ -91,7 +91,8 @@ void add_study_fleet(CLI::App& study, int& exit_code) {
   command->add_option("--format", options->format, "text, markdown or json")
       ->check(CLI::IsMember({"text", "markdown", "json"}))
       ->capture_default_str();
-  command->add_option("-o,--output", options->output, "Write there (default: the terminal)");
+  command->add_option("-o,--output", options->output, "Write there (default: the terminal)")
+      ->type_name("FILE");
   command->callback([options, &exit_code] { exit_code = study_fleet(*options); });
 }
 

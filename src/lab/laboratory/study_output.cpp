@@ -42,7 +42,8 @@ void StudyOutput::add_to(CLI::App& command, const std::string& formats_summary,
       ->capture_default_str();
   command.add_flag_callback(
       "--json", [this] { format = "json"; }, "The same as --format json");
-  command.add_option("-o,--output", output, "Write there (default: the terminal)");
+  command.add_option("-o,--output", output, "Write there (default: the terminal)")
+      ->type_name("FILE");
 }
 
 void StudyOutput::add_to(CLI::App& command) {
@@ -50,16 +51,19 @@ void StudyOutput::add_to(CLI::App& command) {
          "text (tables, ours beside the paper's), markdown, latex, csv (each mean), "
          "effects-csv (each pairwise effect) or json",
          {"text", "markdown", "latex", "csv", "effects-csv", "json"});
-  command.add_option("--html", html, "Also write a report: one page that needs nothing else");
-  command.add_option("--svg", plot_folder, "Also write each plot into this folder, for papers");
+  command.add_option("--html", html, "Also write a report: one page that needs nothing else")
+      ->type_name("FILE");
+  command.add_option("--svg", plot_folder, "Also write each plot into this folder, for papers")
+      ->type_name("FOLDER");
 }
 
 void StudyOutput::add_suave_to(CLI::App& command) {
   add_to(command, "text (tables, ours beside the paper's), markdown, latex or json",
          {"text", "markdown", "latex", "json"});
-  command.add_option(
-      "--html", html,
-      "Also write a report there: tables, and the first run of each manager, moving");
+  command
+      .add_option("--html", html,
+                  "Also write a report there: tables, and the first run of each manager, moving")
+      ->type_name("FILE");
 }
 
 Expected<void> write(const study::Findings& findings, const StudyOutput& output) {

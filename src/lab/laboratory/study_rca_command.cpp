@@ -238,14 +238,18 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
                                "(rebet to ghahremani)",
                                fmt::join(study::rca::planner_names(), ", ")))
       ->delimiter(',');
-  auto* scenario = command->add_option("--scenario", options->scenario,
-                                       "Play this scenario (docs/study-rca.md), with other luck in "
-                                       "each episode, instead of random ones");
+  auto* scenario = command
+                       ->add_option("--scenario", options->scenario,
+                                    "Play this scenario (docs/study-rca.md), with other luck in "
+                                    "each episode, instead of random ones")
+                       ->type_name("FILE");
   for (const std::string random : {"--components", "--faults", "--noise", "--cyclic",
                                    "--mixed-levels", "--flapping", "--unfixable", "--ignore"})
     scenario->excludes(random);
-  command->add_option("--write-scenario", options->scenario_output,
-                      "Write the first episode's scenario there, and play nothing");
+  command
+      ->add_option("--write-scenario", options->scenario_output,
+                   "Write the first episode's scenario there, and play nothing")
+      ->type_name("FILE");
   command->add_option("--explain", options->explained,
                       "Tell what happened in this episode, from 0, with each planner");
   auto* learn =
@@ -276,7 +280,9 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->add_flag("--untold", options->untold,
                  "Robots that differ from what the rules say, as those of the benchmark do")
       ->needs(regret);
-  command->add_option("--html", options->html, "Also a page with calibration plots")->needs(learn);
+  command->add_option("--html", options->html, "Also a page with calibration plots")
+      ->type_name("FILE")
+      ->needs(learn);
   command->add_option("--objective", options->objective, "What the bayes planner spares most")
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
       ->capture_default_str();
@@ -294,7 +300,8 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->capture_default_str();
   command->add_flag_callback(
       "--json", [options] { options->format = "json"; }, "The same as --format json");
-  command->add_option("-o,--output", options->output, "Write there (default: the terminal)");
+  command->add_option("-o,--output", options->output, "Write there (default: the terminal)")
+      ->type_name("FILE");
   command->callback([options, &exit_code] { exit_code = study_rca(*options); });
 }
 

@@ -23,9 +23,11 @@ void ShardOptions::add_to(CLI::App& command) {
           "Only the i-th of n parts, as 2/4; auto, or auto/4: the one that Slurm, Kubernetes "
           "or GNU parallel says (examples/cluster)")
       ->capture_default_str();
-  command.add_option("--shard-file", file,
-                     "Keep each run there as it ends, and go on from there if interrupted; % in it "
-                     "is the shard's number");
+  command
+      .add_option("--shard-file", file,
+                  "Keep each run there as it ends, and go on from there if interrupted; % in it "
+                  "is the shard's number")
+      ->type_name("FILE");
 }
 
 }  // namespace culprit::lab

@@ -250,14 +250,17 @@ void add_validation(CLI::App& command, SuaveOptions& options) {
   command
       .add_option("--vehicle", options.vehicle,
                   "The vehicle's constants: what --fit wrote (default: fitted to the paper's rows)")
+      ->type_name("FILE")
       ->group(kGroup);
   auto* fit = command
                   .add_option("--fit", options.fit,
                               "Fit the vehicle to these runs, and write it; repeatable")
+                  ->type_name("FILE")
                   ->group(kGroup);
   command
       .add_option("--validate", options.validate,
                   "Compare the model with these runs, which it should not be fitted to; repeatable")
+      ->type_name("FILE")
       ->excludes(fit)
       ->group(kGroup);
   command

@@ -1,0 +1,29 @@
+#include "terminal/listed.h"
+
+namespace culprit {
+namespace {
+
+// Groups of options look like commands without a name.
+bool is_group_of_options(const CLI::App* command) { return command->get_name().empty(); }
+bool is_listed(const CLI::App* command) {
+  return !is_group_of_options(command) && !command->get_group().empty();
+}
+
+}  // namespace
+
+std::vector<const CLI::App*> commands_in(const CLI::App& app) {
+  return app.get_subcommands(is_listed);
+}
+
+std::vector<const CLI::Option*> options_in(const CLI::App& command) {
+  auto options = command.get_options([&command](const CLI::Option* option) {
+    return !option->get_group().empty() && option != command.get_help_ptr();
+  });
+  for (const CLI::App* group : command.get_subcommands(is_group_of_options)) {
+    const auto more = options_in(*group);
+    options.insert(options.end(), more.begin(), more.end());
+  }
+  return options;
+}
+
+}  // namespace culprit

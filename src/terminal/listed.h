@@ -1,0 +1,17 @@
+// What people are told of a program's commands and options: all but those that are hidden. The manual and the shells'
+// completion are made of it.
+#pragma once
+
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace culprit {
+
+// The commands of `app`, in their order.
+std::vector<const CLI::App*> commands_in(const CLI::App& app);
+
+// The options and the positional arguments of `command` but --help, those of its groups last.
+std::vector<const CLI::Option*> options_in(const CLI::App& command);
+
+}  // namespace culprit
