@@ -228,12 +228,25 @@ export function RulesPage() {
     open().catch((error: Error) => tell({ text: `Opening the rules: ${error.message}`, isTrouble: true }))
     const stopLooking = follow(() => text.value)
     onUndo(() => editor.current?.undo())
+    addEventListener('keydown', takeBack)
     return () => {
+      removeEventListener('keydown', takeBack)
       stopLooking()
       isGone = true
       editor.current?.view.destroy()
     }
   }, [])
+
+  // As in an editor, wherever one is on the page. A field that is typed into takes back its own typing.
+  function takeBack(e: KeyboardEvent): void {
+    const isTyping = (e.target as Element).closest('input, textarea, [contenteditable="true"]') !== null
+    if (!(e.ctrlKey || e.metaKey) || e.altKey || isTyping || document.querySelector('dialog[open]')) return
+    const key = e.key.toLowerCase()
+    if (key !== 'z' && key !== 'y') return
+    e.preventDefault()
+    if (key === 'y' || e.shiftKey) editor.current?.redo()
+    else editor.current?.undo()
+  }
 
   const change = (edit: Edit) => take(edit, (next) => editor.current?.setText(next))
   const format = () =>
@@ -262,10 +275,10 @@ export function RulesPage() {
             ? `◆ ${errors} ${errors > 1 ? 'errors' : 'error'}`
             : `✓ no errors, ${found.value.length} ${found.value.length === 1 ? 'warning' : 'warnings'}`}
         </span>
-        <button type="button" onClick={() => editor.current?.undo()}>
+        <button type="button" aria-keyshortcuts="Control+Z" title="Ctrl-Z, also outside of the text" onClick={() => editor.current?.undo()}>
           Undo
         </button>
-        <button type="button" onClick={() => editor.current?.redo()}>
+        <button type="button" aria-keyshortcuts="Control+Shift+Z Control+Y" title="Ctrl-Shift-Z or Ctrl-Y" onClick={() => editor.current?.redo()}>
           Redo
         </button>
         <button type="button" disabled={!hasToken} onClick={() => void format()}>

@@ -64,6 +64,15 @@ async function slip(page) {
   await page.getByRole('status', { name: 'Notice' }).getByRole('button', { name: 'Undo' }).click()
   await text(page).filter({ hasText: 'LidarSilent' }).waitFor()
   await formOf(page).getByRole('group', { name: 'Strategy turn' }).waitFor()
+  // The same by keyboard, wherever the focus is.
+  await page.getByRole('button', { name: 'Remove rule LidarSilent' }).click()
+  await text(page).filter({ hasNotText: 'LidarSilent' }).waitFor()
+  await page.keyboard.press('Control+z')
+  await text(page).filter({ hasText: 'LidarSilent' }).waitFor()
+  await page.keyboard.press('Control+Shift+z')
+  await text(page).filter({ hasNotText: 'LidarSilent' }).waitFor()
+  await page.keyboard.press('Control+z')
+  await text(page).filter({ hasText: 'LidarSilent' }).waitFor()
 }
 
 async function save(page) {
