@@ -82,7 +82,8 @@ endif()
 
 # culprit_library(<floor>/<folder> [USES <folder>...] [PACKAGES <target>...]
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL]
-#                 [TEST_LABELS <label>...] [TEST_CASES n] [TEST_UNSANITIZED <pattern>...] [LIVE_PROCESSORS n])
+#                 [TEST_LABELS <label>...] [TEST_CASES n] [TEST_UNSANITIZED <pattern>...]
+#                 [LIVE_TEST_USES <folder>...] [LIVE_PROCESSORS n])
 #
 # Builds the library <folder> of src/<floor>/<folder>/**.cpp, but for its tests and programs (*_main.cpp); the library
 # <folder>_testing of what only tests use (test_*.cpp), for others' tests too; and the test program <folder>_test of
@@ -93,7 +94,7 @@ endif()
 # "laboratory", which all of lab/ has, for those that the address sanitizer repeats only in `make soak`. TEST_UNSANITIZED, as --gtest_filter= takes it, are
 # tests that no sanitizer runs: their results are statistics, or they need a process of their own, or all of its descriptors.
 function(culprit_library path)
-  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES;TEST_UNSANITIZED;LIVE_PROCESSORS" ${ARGN})
+  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES;TEST_UNSANITIZED;LIVE_TEST_USES;LIVE_PROCESSORS" ${ARGN})
   get_filename_component(folder ${path} NAME)
   if(path MATCHES "^lab/")
     list(APPEND ARG_TEST_LABELS laboratory)
@@ -154,7 +155,7 @@ function(culprit_library path)
                  LABELS ${ARG_TEST_LABELS} CASES ${ARG_TEST_CASES} UNSANITIZED ${ARG_TEST_UNSANITIZED} ${serial})
   endif()
   if(live_tests)
-    culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${with} PACKAGES ${ARG_TEST_PACKAGES}
+    culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${with} ${ARG_LIVE_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES}
                  LIVE LABELS live PROCESSORS ${ARG_LIVE_PROCESSORS})
   endif()
 endfunction()

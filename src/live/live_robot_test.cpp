@@ -16,18 +16,18 @@ using namespace std::chrono_literals;
 TEST(LiveRobot, JudgesNoSilenceThatItMayHaveMissed) {
   const ros2::TestDomain domain;
   const test::TestFolder folder;
-  const RuleSet rules = *check(Source("test.rules", R"(COMPONENT camera NODE /camera
+  const Checked checked = check(Source("test.rules", R"(COMPONENT camera NODE /camera
 RULE Silent
   POLICIES ERROR
-  TRIGGER age(/camera/image) > 0.1
+  TRIGGER age(/camera/image) > 100ms
     STRATEGY s 50 10
       ADAPTATION camera restart 5
-)"))
-                             .rules;
+)"));
+  ASSERT_TRUE(checked.rules);
   LiveRobot::Options options;
   options.link.participant = domain.options();
   options.supervisor.log_folder = folder.path();
-  auto robot = LiveRobot::open(rules, std::move(options));
+  auto robot = LiveRobot::open(*checked.rules, std::move(options));
   ASSERT_TRUE(robot) << robot.error();
   std::vector<Observation> seen;
   // Before that it is not asked to come back.
