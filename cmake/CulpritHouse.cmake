@@ -242,8 +242,9 @@ function(culprit_test name)
   target_link_libraries(${name} PRIVATE ${ARG_USES} ${ARG_PACKAGES} culprit_test_main GTest::gtest GTest::gmock
                                         rapidcheck culprit_test_options)
   set(properties TIMEOUT 300)
-  if(ARG_LIVE) # first: they take longest
-    list(APPEND properties COST 1000)
+  if(ARG_LIVE) # first: they take longest; before all, those beside which little else runs
+    math(EXPR cost "1000 + 10 * 0${ARG_PROCESSORS}")
+    list(APPEND properties COST ${cost})
   endif()
   if(ARG_SERIAL)
     list(APPEND properties RESOURCE_LOCK ${name} COST 900) # early: a long row of tests that wait, too
