@@ -36,6 +36,7 @@ void add_all(CLI::App& app, const std::string& version, int& exit_code) {
   add_status(app, exit_code);
   add_top(app, exit_code);
   add_orders(app, exit_code);
+  add_record(app, exit_code);
   add_alerts(app, exit_code);
   add_check(app, exit_code);
   add_explain(app, exit_code);

@@ -22,6 +22,7 @@
 #include "web/live_routes.h"
 #include "web/name_routes.h"
 #include "web/order_routes.h"
+#include "web/recording_routes.h"
 #include "web/reload_routes.h"
 #include "web/rule_routes.h"
 #include "web/status_routes.h"
@@ -50,10 +51,21 @@ void add(std::vector<web::Route>& all, std::vector<web::Route> more) {
   for (web::Route& route : more) all.push_back(std::move(route));
 }
 
+// What a person waits for, at most.
+constexpr Duration kDiskAnswers = std::chrono::seconds(3);
+
 // What is asked and told from a terminal of this machine, and on the page.
 std::vector<web::Route> local_routes(web::Hub& hub, const web::Metrics& metrics,
-                                     web::OrderDesk& orders, live::LiveRun& live) {
+                                     web::OrderDesk& orders, live::LiveRun& live,
+                                     RunRecording* recording) {
+  web::RecordNow record;
+  if (recording != nullptr) {
+    record = [recording](const std::string& why) {
+      return recording->recorder().record_now(why, kDiskAnswers);
+    };
+  }
   std::vector<web::Route> all = web::live_routes(hub);
+  add(all, web::recording_routes(std::move(record)));
   add(all, web::order_routes(orders, hub));
   add(all, web::status_routes(hub, metrics));
   add(all, web::reload_routes([&live](const std::string& author) { return live.reload(author); }));
@@ -61,7 +73,9 @@ std::vector<web::Route> local_routes(web::Hub& hub, const web::Metrics& metrics,
 }
 
 std::vector<web::Route> page_routes(web::Hub& hub, web::RuleDesk& desk, live::RobotNames& names,
-                                    const std::filesystem::path& journal, PlannerFactory planner) {
+                                    const std::filesystem::path& journal,
+                                    const std::filesystem::path& recordings,
+                                    PlannerFactory planner) {
   const auto look = [&names](const LiveInterest& interest) { return names.look(interest); };
   const auto log_of = [&names](const std::string& node) { return names.log_of(node); };
   const auto journal_of = [journal](const std::string&) -> Expected<std::filesystem::path> {
@@ -70,12 +84,21 @@ std::vector<web::Route> page_routes(web::Hub& hub, web::RuleDesk& desk, live::Ro
   };
   std::vector<web::Route> all = web::rule_routes(desk);
   add(all, web::name_routes(look, desk.loader()));
-  add(all, web::incident_routes(hub, journal));
+  add(all, web::incident_routes(hub, journal, recordings));
   add(all, web::doctor_routes(web::examine_robot));
   all.push_back(web::component_route(hub, look, log_of));
   all.push_back(web::hindsight_route(journal_of));
   all.push_back(web::what_if_route(std::move(planner), desk.loader()));
   return all;
+}
+
+// Null: nothing is recorded.
+Expected<std::unique_ptr<RunRecording>> open_recording(const RunOptions& options,
+                                                       const std::string& robot,
+                                                       const live::LiveSession::Options& session) {
+  return RunRecording::open(options.recording,
+                            {options.version, robot, options.state_path(),
+                             session.robot.link.participant, session.robot.link.types});
 }
 
 // After Ctrl-C. The middleware can hang with its locks held.
@@ -118,6 +141,9 @@ int run(const RunOptions& options) {
   web::HubObserver observer(hub, metrics);
   std::vector<live::Observer*> onlookers{&observer};
   if (*alerts) onlookers.push_back(&(*alerts)->observer());
+  const auto recording = open_recording(options, rules->rules.robot, *session);
+  if (!recording) return fail(recording.error());
+  if (*recording) onlookers.push_back(&(*recording)->observer());
   live::Observers observers(std::move(onlookers));
   live::OrderKeeper keeper("the run has not begun");
   web::OrderDesk orders(keeper.keeping());
@@ -140,15 +166,20 @@ int run(const RunOptions& options) {
   live::RobotNames names(options.message_path);
   Expected<std::unique_ptr<web::Server>> server(nullptr);
   if (options.is_on_web) {
-    std::vector<web::Route> routes = local_routes(hub, metrics, orders, live);
-    add(routes, page_routes(hub, desk, names, journal, options.planner.factory()));
+    std::vector<web::Route> routes = local_routes(hub, metrics, orders, live, recording->get());
+    add(routes,
+        page_routes(hub, desk, names, journal, options.recording.folder_in(options.state_path()),
+                    options.planner.factory()));
     server = serve(options.web, std::move(routes), &hub, remarks);
     if (!server) return fail(server.error());
     who.page = (*server)->address();
     if (*alerts) (*alerts)->set_page(who.page);
   }
-  const auto local =
-      serve_this_machine(who, local_routes(hub, metrics, orders, live), hub, remarks);
+  signals.on_user_signal([&] {
+    if (*recording) (void)(*recording)->recorder().record_now("SIGUSR1", Duration::zero());
+  });
+  const auto local = serve_this_machine(
+      who, local_routes(hub, metrics, orders, live, recording->get()), hub, remarks);
   signals.on_reload([&] {
     if (const auto reloaded = live.reload("SIGHUP"); !reloaded)
       say(stderr, "culprit: the rules are not reloaded: {}\n", reloaded.error());
@@ -156,6 +187,7 @@ int run(const RunOptions& options) {
   const auto ended = live.run(orders, signals.stopped());
   signals.on_stop({});
   signals.on_reload({});
+  signals.on_user_signal({});
   if (!ended) return fail(ended.error());
   say(remarks, "culprit: stopped; the robot goes on as it is\n");
   return kOk;

@@ -106,6 +106,7 @@ void RunOptions::add_to(CLI::App& command) {
   planner.add_to(command);
   command.add_flag("--web", is_on_web, "Show in a browser what is seen, decided and done");
   web.add_to(command);
+  recording.add_to(command);
   governor.add_to(command);
 }
 

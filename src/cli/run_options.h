@@ -7,6 +7,7 @@
 
 #include "cli/governor_options.h"
 #include "cli/run_fleet.h"
+#include "cli/run_recording.h"
 #include "live/live_session.h"
 #include "terminal/planner_options.h"
 #include "terminal/web_service.h"
@@ -33,6 +34,7 @@ struct RunOptions {
   bool json = false;
   std::string node_name;  // empty: the first that no other culprit of this machine has
   std::string alerts;     // a file; empty: nobody is alerted
+  RecordingOptions recording;
   bool is_on_web = false;
   WebOptions web;
 

@@ -88,6 +88,7 @@ StopSignals::StopSignals(Hangup hangup)
 }
 
 StopSignals::~StopSignals() {
+  is_over_ = true;
   pthread_kill(thread_.native_handle(), SIGUSR1);
   thread_.join();
 }
@@ -101,6 +102,11 @@ void StopSignals::on_stop(std::function<void()> stop) {
 void StopSignals::on_reload(std::function<void()> reload) {
   const MutexLock lock(mutex_);
   reload_ = std::move(reload);
+}
+
+void StopSignals::on_user_signal(std::function<void()> act) {
+  const MutexLock lock(mutex_);
+  user_ = std::move(act);
 }
 
 void StopSignals::stop() {
@@ -131,7 +137,12 @@ int StopSignals::next_signal() {
 void StopSignals::wait() {
   while (true) {
     const int signal = next_signal();
-    if (signal == SIGUSR1) return;
+    if (is_over_) return;
+    if (signal == SIGUSR1) {
+      const MutexLock lock(mutex_);
+      if (user_) user_();
+      continue;
+    }
     const bool is_terminal_gone = has_terminal_ && isatty(STDOUT_FILENO) == 0;
     if (signal != SIGHUP || is_terminal_gone) {
       stop();

@@ -58,6 +58,8 @@ class StopSignals {
   // What to do on SIGHUP, if that means to reload; called on another thread. A SIGHUP because the
   // terminal is gone still stops.
   void on_reload(std::function<void()> reload);
+  // What to do on SIGUSR1; called on another thread. Without it SIGUSR1 does nothing.
+  void on_user_signal(std::function<void()> act);
   // Ends the program the hard way if it has not ended so long after the first signal to stop.
   void end_within(Duration patience) { patience_ = patience; }
   const std::atomic<bool>& stopped() const { return stopped_; }
@@ -71,12 +73,14 @@ class StopSignals {
   int next_signal();
 
   const Hangup hangup_;
+  std::atomic<bool> is_over_ = false;
   std::atomic<Duration> patience_ = Duration::max();
   const bool has_terminal_;
   std::atomic<bool> stopped_ = false;
   Mutex mutex_;
   std::function<void()> stop_ CULPRIT_GUARDED_BY(mutex_);
   std::function<void()> reload_ CULPRIT_GUARDED_BY(mutex_);
+  std::function<void()> user_ CULPRIT_GUARDED_BY(mutex_);
   std::thread thread_;
 };
 

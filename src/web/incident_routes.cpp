@@ -1,11 +1,13 @@
 #include "web/incident_routes.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <set>
 
 #include "incidents/journal_incidents.h"
 #include "knowledge/describe.h"
+#include "recorder/recording_folder.h"
 
 namespace culprit::web {
 namespace {
@@ -28,9 +30,34 @@ Json to_json(const Incident& incident) {
           {"helped", incident.helped}};
 }
 
-Json to_json(const std::vector<Incident>& all) {
+// Those that were written while it lasted, or were begun then.
+Json recordings_of(const Incident& incident,
+                   const std::vector<recorder::StoredRecording>& recordings) {
+  constexpr double kMargin = 2;  // s: between what begins an incident and what begins its recording
+  constexpr double kNanosecond = 1e-9;
   Json list = Json::array();
-  for (const Incident& incident : all) list.push_back(to_json(incident));
+  for (const recorder::StoredRecording& each : recordings) {
+    const bool is_later = incident.is_over && static_cast<double>(each.when) * kNanosecond >
+                                                  incident.began + incident.seconds + kMargin;
+    const bool is_earlier =
+        static_cast<double>(std::max(each.when, each.ended)) * kNanosecond + kMargin <
+        incident.began;
+    if (is_later || is_earlier) continue;
+    list.push_back({{"name", each.path.filename().string()},
+                    {"path", each.path.string()},
+                    {"bytes", each.bytes}});
+  }
+  return list;
+}
+
+Json to_json(const std::vector<Incident>& all, const std::filesystem::path& folder) {
+  const auto recordings =
+      folder.empty() ? std::vector<recorder::StoredRecording>() : recorder::recordings_in(folder);
+  Json list = Json::array();
+  for (const Incident& incident : all) {
+    list.push_back(to_json(incident));
+    list.back()["recordings"] = recordings_of(incident, recordings);
+  }
   return list;
 }
 
@@ -144,7 +171,8 @@ std::set<std::string> failing_now(Hub& hub) {
   return failing;
 }
 
-Answer list(Hub& hub, const std::filesystem::path& path, const Json& query) {
+Answer list(Hub& hub, const std::filesystem::path& path, const std::filesystem::path& recordings,
+            const Json& query) {
   const auto since = number_of<double>(query, "since");
   if (!since || !std::isfinite(*since) || *since < 0)
     return refuse(400, "say from when on, in seconds since 1970: ?since=1800000000");
@@ -157,11 +185,13 @@ Answer list(Hub& hub, const std::filesystem::path& path, const Json& query) {
       return {200,
               {{"journal", path.string()},
                {"oldest", found->oldest},
-               {"incidents", to_json(found->incidents)}}};
+               {"incidents", to_json(found->incidents, recordings)}}};
     why = found.error();
   }
   return {200,
-          {{"journal", nullptr}, {"remark", why}, {"incidents", to_json(Recent(hub).incidents())}}};
+          {{"journal", nullptr},
+           {"remark", why},
+           {"incidents", to_json(Recent(hub).incidents(), recordings)}}};
 }
 
 Answer events(Hub& hub, const std::filesystem::path& path, const Json& query) {
@@ -181,13 +211,29 @@ Answer events(Hub& hub, const std::filesystem::path& path, const Json& query) {
   return {200, {{"events", list}}};
 }
 
+// What is asked for is compared with what is there, and never becomes part of a path.
+Answer recording(const std::filesystem::path& folder, const Json& query) {
+  const auto name = text_of(query, "name");
+  if (!name) return refuse(400, "say which, as GET /api/incidents tells them: ?name=...");
+  for (const recorder::StoredRecording& each : recorder::recordings_in(folder)) {
+    if (each.path.filename() == *name)
+      return {200, {}, {}, Answer::File{each.path.string(), "application/octet-stream", *name}};
+  }
+  return refuse(404, "there is no such recording, or it had to go for newer ones");
+}
+
 }  // namespace
 
-std::vector<Route> incident_routes(Hub& hub, std::filesystem::path journal) {
+std::vector<Route> incident_routes(Hub& hub, std::filesystem::path journal,
+                                   std::filesystem::path recordings) {
   return {{Method::kGet, "/api/incidents",
-           [&hub, journal](const Json& query) { return list(hub, journal, query); }},
+           [&hub, journal, recordings](const Json& query) {
+             return list(hub, journal, recordings, query);
+           }},
           {Method::kGet, "/api/incidents/events",
-           [&hub, journal](const Json& query) { return events(hub, journal, query); }}};
+           [&hub, journal](const Json& query) { return events(hub, journal, query); }},
+          {Method::kGet, "/api/incidents/recording",
+           [recordings](const Json& query) { return recording(recordings, query); }}};
 }
 
 }  // namespace culprit::web

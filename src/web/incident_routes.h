@@ -8,8 +8,9 @@
 
 namespace culprit::web {
 
-// They are told from `journal`; from what the stream still has where that is empty (no journal is written) or cannot be
+// `recordings`: the folder of the black box (recorder/recording_folder.h); empty: there is none. They are told from `journal`; from what the stream still has where that is empty (no journal is written) or cannot be
 // read. `hub` must outlive the routes.
-std::vector<Route> incident_routes(Hub& hub, std::filesystem::path journal);
+std::vector<Route> incident_routes(Hub& hub, std::filesystem::path journal,
+                                   std::filesystem::path recordings = {});
 
 }  // namespace culprit::web

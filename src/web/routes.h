@@ -17,9 +17,15 @@ struct Answer {
     std::string content;
     std::string policy{};  // what the content may do (CSP); empty: as the app
   };
+  struct File {
+    std::string path;
+    std::string type;  // likewise
+    std::string name;  // under which browsers keep it
+  };
   int status = 200;
   Json body = Json::object();
   std::optional<Text> text{};  // instead of the body
+  std::optional<File> file{};  // likewise; it is sent piece by piece, however large it is
 };
 
 // {"error": "..."}: what is wrong and what to do about it.

@@ -8,9 +8,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/live_clock.h"
+#include "base/test_folder.h"
 #include "journal/session.h"
 #include "journal/writer.h"
 #include "language/checker.h"
+#include "recorder/recording_folder.h"
 #include "web/component_route.h"
 #include "web/doctor_routes.h"
 #include "web/fault_routes.h"
@@ -19,6 +22,7 @@
 #include "web/live_routes.h"
 #include "web/name_routes.h"
 #include "web/order_routes.h"
+#include "web/recording_routes.h"
 #include "web/reload_routes.h"
 #include "web/rule_routes.h"
 #include "web/status_routes.h"
@@ -72,7 +76,9 @@ struct Routes : testing::Test {
     for (auto routes : {live_routes(hub), rule_routes(desk), fault_routes(std::move(faults)),
                         order_routes(order_desk, hub), status_routes(hub, metrics),
                         reload_routes(reload), study_routes(studies), name_routes(look),
-                        incident_routes(hub, journal), doctor_routes([this](Duration time) {
+                        incident_routes(hub, journal, recordings.path()),
+                        recording_routes([this](const std::string& why) { return record(why); }),
+                        doctor_routes([this](Duration time) {
                           examined_for = time;
                           return Expected<Json>(Json{{"findings", Json::array()}});
                         })}) {
@@ -100,8 +106,16 @@ struct Routes : testing::Test {
     return {};
   }
 
+  // As the black box does.
+  Expected<std::filesystem::path> record(const std::string& why) const {
+    const auto file = recordings / recorder::recording_name("rover", wall_now(), why);
+    std::ofstream(file) << "what was heard";
+    return file;
+  }
+
   const std::string path;
   const std::string journal = path + ".journal";
+  const test::TestFolder recordings;
   Duration examined_for{};
   Hub hub;
   Metrics metrics;
@@ -475,6 +489,48 @@ TEST_F(Routes, TakeOnlyNumbersBehindTheQuestionMark) {
   EXPECT_EQ(ask("get /api/incidents/events", {{"first", "1"}}).status, 400);
   EXPECT_EQ(ask("get /api/incidents/events", {{"first", "1"}, {"last", "2"}}).status, 503)
       << "there is no journal yet";
+}
+
+TEST_F(Routes, TellWhichRecordingsAnIncidentHasAndGiveThemAndNoOtherFile) {
+  const double now = static_cast<double>(wall_now()) * 1e-9;
+  const auto tell = [&](const char* type, double when) {
+    hub.publish(Kind::kEvent, to_line({{"type", type},
+                                       {"rule", "CameraDead"},
+                                       {"clock", when},
+                                       {"t", when},
+                                       {"criticality", "ERROR"}}));
+  };
+  for (const double began : {now - 1000, now - 1}) {
+    tell("failure_detected", began);
+    tell("failure_resolved", began + 0.5);
+  }
+  const Json made = ask("post /api/recordings", {{"reason", "Dead"}}).body;
+  std::ofstream(recordings / "secret") << "not for everybody";
+  const Json incidents = ask("get /api/incidents", {{"since", "0"}}).body["incidents"];
+  ASSERT_EQ(incidents.size(), 2u) << incidents;
+  EXPECT_EQ(incidents[0]["recordings"], Json::array()) << "it was long before";
+  ASSERT_EQ(incidents[1]["recordings"].size(), 1u) << incidents;
+  const Json& recording = incidents[1]["recordings"][0];
+  EXPECT_EQ(recording["path"], made["recording"]);
+  EXPECT_EQ(recording["bytes"], 14);
+  const Answer given = ask("get /api/incidents/recording", {{"name", recording["name"]}});
+  ASSERT_TRUE(given.file);
+  EXPECT_EQ(given.file->path, made["recording"]);
+  const std::string name = recording["name"];
+  std::filesystem::create_symlink(recordings / "secret",
+                                  recordings / recorder::recording_name("rover", 0, "link"));
+  for (const std::string& other :
+       {std::string("secret"), "../" + recordings.path().filename().string() + "/" + name, "./" + name,
+        recordings.path().string() + "/" + name, std::string("..%2f"),
+        recorder::recording_name("rover", 0, "link"), std::string()})
+    EXPECT_EQ(ask("get /api/incidents/recording", {{"name", other}}).status, 404) << other;
+  EXPECT_EQ(ask("get /api/incidents/recording").status, 400);
+}
+
+TEST(RecordingRoutes, SayWhatToDoWhereNothingIsRecorded) {
+  const Answer answer = recording_routes({}).front().answer(nullptr);
+  EXPECT_EQ(answer.status, 409);
+  EXPECT_THAT(answer.body["error"].get<std::string>(), HasSubstr("--record"));
 }
 
 // ---- one component, and the doctor

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <memory>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -115,8 +117,31 @@ void send(const httplib::Request& request, httplib::Response& response, std::str
   response.set_content(content, type);
 }
 
+// As long as it is now: what comes behind that is of another time.
+void send_file(const httplib::Request& request, httplib::Response& response,
+               const Answer::File& file) {
+  constexpr std::size_t kPiece = 1 << 16;
+  const auto from = std::make_shared<std::ifstream>(file.path, std::ios::binary | std::ios::ate);
+  if (!*from) {
+    response.status = 404;
+    return send(request, response, to_line(refuse(404, "it is not there any more").body), kJson);
+  }
+  const auto size = static_cast<std::size_t>(from->tellg());
+  response.set_header("Content-Disposition", "attachment; filename=\"" + file.name + "\"");
+  response.set_content_provider(
+      size, file.type, [from](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+        std::array<char, kPiece> piece;
+        from->clear();
+        from->seekg(static_cast<std::streamoff>(offset));
+        from->read(piece.data(), static_cast<std::streamsize>(std::min(length, piece.size())));
+        const auto count = static_cast<std::size_t>(from->gcount());
+        return count > 0 && sink.write(piece.data(), count);
+      });
+}
+
 void give(const httplib::Request& request, httplib::Response& response, const Answer& answer) {
   response.status = answer.status;
+  if (answer.file) return send_file(request, response, *answer.file);
   if (!answer.text) return send(request, response, to_line(answer.body), kJson);
   if (!answer.text->policy.empty())
     response.set_header("Content-Security-Policy", answer.text->policy);

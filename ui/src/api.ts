@@ -57,6 +57,10 @@ export async function textOf(path: string): Promise<string> {
   return (await ask(path, { headers: headers() })).text()
 }
 
+export async function fileAt(path: string): Promise<Blob> {
+  return (await ask(path, { headers: headers() })).blob()
+}
+
 export interface StreamMessage {
   id: string
   event: string

@@ -2,6 +2,7 @@
 // chosen; to look at, to link to, and to send to somebody.
 import { computed, signal } from '@preact/signals'
 import { useEffect, useRef } from 'preact/hooks'
+import { fileAt } from './api'
 import { byTheClock, lasting, when } from './clock'
 import { download } from './download'
 import { Candidates, Suspects } from './explain'
@@ -115,14 +116,34 @@ function Decisions() {
   )
 }
 
-// As it was recorded: what came in, and what was decided, to be played again.
-function Recording() {
+// As it was recorded: what came in, and what was decided, to be played again; and what the robot's topics said.
+function Recordings({ incident }: { incident: PastIncident }) {
   const journal = answer.value?.journal
-  if (!journal) return null
+  const save = async (name: string) => {
+    try {
+      download(name, await fileAt(`/api/incidents/recording?name=${encodeURIComponent(name)}`), 'application/octet-stream')
+    } catch (error) {
+      trouble.value = (error as Error).message
+    }
+  }
   return (
-    <p class="muted">
-      Recorded in <code>{journal}</code>: <code>culprit replay</code> plays it again, also with other rules.
-    </p>
+    <>
+      {journal && (
+        <p class="muted">
+          Recorded in <code>{journal}</code>: <code>culprit replay</code> plays it again, also with other rules.
+        </p>
+      )}
+      {(incident.recordings ?? []).map(({ name, path, bytes }) => (
+        <p>
+          <button type="button" onClick={() => void save(name)}>
+            Save the robot's topics (MCAP, {(bytes / 1e6).toFixed(1)} MB)
+          </button>{' '}
+          <span class="muted">
+            from <code>{path}</code>; for Foxglove, <code>ros2 bag</code> and <code>culprit replay</code>
+          </span>
+        </p>
+      ))}
+    </>
   )
 }
 
@@ -147,7 +168,7 @@ function Details({ incident }: { incident: PastIncident }) {
         {incident.consequences.length > 0 && `${listed(incident.consequences)} suffered. `}
         {incident.over && `What helped: ${outcomeOf(incident)}.`}
       </p>
-      <Recording />
+      <Recordings incident={incident} />
       <Timeline view={view} />
       <div class="columns">
         <Decisions />

@@ -20,6 +20,7 @@ export interface PastIncident {
   rules: string[]
   consequences: string[] // rules
   helped: string[] // strategies
+  recordings?: { name: string; path: string; bytes: number }[] // of the black box, the oldest first
 }
 interface Answer {
   journal: string | null

@@ -18,6 +18,7 @@ const kCalls = {
   'post /api/orders': () => [202, { number: 1, text: 'kept' }],
   'get /api/incidents': () => [200, { journal: '/var/lib/culprit/rover.journal', oldest: kIncidents[0].clock - 3600, incidents: kIncidents }],
   'get /api/incidents/events': ({ first }) => [200, { events: first === '10' ? kIncidentEvents : [] }],
+  'get /api/incidents/recording': ({ name }) => [200, { name }],
   'get /api/component': () => [200, { node: '/camera', process: { pid: 12, processor_s: (use += 0.5), memory: 123_000_000, threads: 7 }, parameters: { gain: 0.5, matrix: null }, log: [{ clock: kToday / 1000 - 13, level: 'warning', text: 'no frame for 200 ms' }] }],
   'post /api/doctor': () => [200, { domain: 7, nodes: 5, findings }],
   'get /api/rules': () => [200, { path: 'rover.rules', text: '', version: '1', can_save: true }],
@@ -194,6 +195,14 @@ async function tellsIncidents(page, server, album) {
   await page.evaluate((id) => (location.hash = `incidents/${id}`), Math.round(longAgo * 1000).toString(36))
   await expectSoon(() => server.received.some(([call, query]) => call === 'get /api/incidents' && Number(query.since) < longAgo), 'the journal was not asked for that time')
   await page.getByText('There is no incident of this address').waitFor()
+  // What the black box has of one.
+  await page.evaluate((id) => (location.hash = `incidents/${id}`), kIncidents[0].id)
+  await incident.getByText('/var/lib/culprit/recordings/rover_').waitFor()
+  const keeping = page.waitForEvent('download')
+  await incident.getByRole('button', { name: "Save the robot's topics (MCAP, 1.2 MB)" }).click()
+  const recording = await keeping
+  expect(recording.suggestedFilename() === kIncidents[0].recordings[0].name, 'the recording has another name')
+  expect(readFileSync(await recording.path(), 'utf8').includes(kIncidents[0].recordings[0].name), 'it is another recording')
   await page.evaluate(() => (location.hash = 'incidents/'))
 }
 

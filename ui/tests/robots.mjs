@@ -100,8 +100,9 @@ const idOf = (clock) => Math.round(clock * 1000).toString(36)
 const incident = (clock, more) => ({ id: idOf(clock), first: 10, last: 20, clock, seconds: 3, over: true, cut: false, given_up: false, worst: 'ERROR',
   causes: ['camera'], rules: ['RGBDead', 'FusionSilent', 'SegmentationBad'], consequences: ['FusionSilent', 'SegmentationBad'], helped: ['rgb_redeploy'], ...more })
 const kBrokenAt = kBegan + kBroken
+const kRecording = 'rover_20261125T140322.042Z_FusionSilent.mcap'
 export const kIncidents = [
-  incident(kBrokenAt - 86_000, { first: 1, last: 3, seconds: 7200, causes: ['fusion'], rules: ['FusionSilent'], consequences: [], helped: [], given_up: true }),
+  incident(kBrokenAt - 86_000, { first: 1, last: 3, seconds: 7200, causes: ['fusion'], rules: ['FusionSilent'], consequences: [], helped: [], given_up: true, recordings: [{ name: kRecording, path: `/var/lib/culprit/recordings/${kRecording}`, bytes: 1_200_000 }] }),
   ...Array.from({ length: 9 }, (_, i) => incident(kBrokenAt - 80_000 + i * 8000, { first: 4, last: 4, seconds: 2 + i, worst: i % 2 ? 'WARNING' : 'ERROR', causes: [i % 3 ? 'segmentation' : 'camera'], rules: ['SegmentationBad'], consequences: [], helped: ['recalibration'] })),
   incident(kBrokenAt + 0.01, {}),
 ]

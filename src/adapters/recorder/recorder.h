@@ -1,0 +1,134 @@
+// A black box: keeps the last seconds of a robot in memory, and writes a recording when something goes wrong, from some
+// seconds before to some seconds after.
+//
+//     Recorder recorder({.folder = "recordings", .robot = "submarine"});
+//     const std::size_t chatter = recorder.add_topic({"/chatter", "std_msgs/msg/String", …});
+//     recorder.take(chatter, {…});                      // each message, on whichever thread it comes
+//     recorder.begin("CameraDead");                     // a failure
+//     recorder.over();                                  // all is well again
+//
+// Nobody waits for a disk: a thread of its own, of low priority, opens, writes and ends the files. What it cannot do is
+// said once, and the next recording tries again.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/mutex.h"
+#include "recorder/message_ring.h"
+#include "recorder/recording_file.h"
+#include "recorder/recording_folder.h"
+
+namespace culprit::recorder {
+
+// All members may be called from any thread.
+class Recorder {
+ public:
+  // A recording that nobody ends is ended after so long.
+  static constexpr Duration kLongest = std::chrono::minutes(5);
+  // Whoever is killed loses so much at most.
+  static constexpr Duration kFlushes = std::chrono::seconds(1);
+
+  static constexpr const char* kEventsTopic = "/culprit/events";
+  static constexpr const char* kGraphTopic = "/culprit/graph";
+
+  struct Options {
+    std::filesystem::path folder;
+    std::string robot;    // its name
+    std::string library;  // who writes it: "culprit 0.1.0"
+    Duration before = std::chrono::seconds(20);
+    Duration after = std::chrono::seconds(10);
+    std::size_t memory = 200'000'000;    // bytes, of all that is kept
+    std::uint64_t disk = 5'000'000'000;  // bytes, of all recordings
+    RecordingFolder::SpaceOf space = RecordingFolder::space_of;
+    // What people should know: what cannot be done, and what was written. From the recorder's thread.
+    std::function<void(const std::string&)> say = [](const std::string&) {};
+  };
+
+  explicit Recorder(Options options);
+  // Ends the recording that is on.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+
+  // Of the memory: what large messages may have, and what latched ones may.
+  static std::size_t large_share(std::size_t memory) { return memory / 4; }
+  static std::size_t latched_share(std::size_t memory) { return memory / 10; }
+
+  // Gives the number of the topic; the same for the same name, type and hash. What else is said of it replaces what was
+  // said before, but for recordings that know it already.
+  std::size_t add_topic(RecordedTopic topic);
+  // `number`, `at` and `received` are filled in.
+  void take(RingMessage message, Share share = Share::kSmall);
+  // Likewise of a latched topic, whose last message stays.
+  void take_latched(RingMessage message, const ros2::Guid& publisher, Share share);
+
+  // What culprit found, decided and did: JSON documents.
+  void note_event(const std::string& json);
+  // The robot's graph from now on, likewise.
+  void note_graph(const std::string& json);
+
+  // A failure, called `why`, which is there until over(). If a recording is on, it goes on.
+  void begin(const std::string& why);
+  void over();
+  // Somebody wants a recording, for Options::after from now on. Gives where it is, once it has begun. Errors: it could
+  // not begin, or not within `patience`.
+  Expected<std::filesystem::path> record_now(const std::string& why, Duration patience);
+
+  const std::filesystem::path& folder() const { return folder_.path(); }
+
+ private:
+  // Replaced, never changed: the thread has one while it writes.
+  using SharedTopic = std::shared_ptr<const RecordedTopic>;
+  // What is wanted of the thread.
+  struct Wish {
+    std::string why;        // empty: nothing
+    std::int64_t when = 0;  // nanoseconds since 1970
+    Time at{};
+    std::uint64_t number = 0;
+  };
+
+  void want(const std::string& why) CULPRIT_REQUIRES(mutex_);
+  void work();
+  void open(const Wish& wish);
+  void write_new(Time since);
+  void close();
+  void say_once(const std::string& text);
+  SharedTopic topic_of(const RingMessage& message);
+  RingMessage told(std::size_t topic, const std::string& json) const;
+
+  const Options options_;
+  const RecordingFolder folder_;
+  MessageRing ring_;
+
+  Mutex topics_mutex_;
+  std::vector<SharedTopic> topics_ CULPRIT_GUARDED_BY(topics_mutex_);
+  std::map<std::string, std::size_t> numbers_ CULPRIT_GUARDED_BY(topics_mutex_);
+  std::size_t events_ = 0;
+  std::size_t graph_ = 0;
+
+  Mutex mutex_;
+  ConditionVariable changed_;
+  Wish wish_ CULPRIT_GUARDED_BY(mutex_);
+  std::uint64_t wishes_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  bool is_ill_ CULPRIT_GUARDED_BY(mutex_) = false;
+  Time until_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;  // of the recording, if nothing is wrong
+  bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
+  std::uint64_t answered_ CULPRIT_GUARDED_BY(mutex_) = 0;  // the last wish that was met, or not
+  Expected<std::filesystem::path> answer_ CULPRIT_GUARDED_BY(mutex_) = Error{"it has not begun"};
+
+  // Of the thread.
+  std::unique_ptr<RecordingFile> file_;  // null: none is on
+  std::uint64_t written_ = 0;            // the last message that is in it
+  Time since_{};                         // what it begins with
+  Time opened_{};
+  std::string trouble_;  // the last that was said
+
+  std::thread thread_;  // last: it begins when all is there
+};
+
+}  // namespace culprit::recorder

@@ -1,0 +1,87 @@
+// Hears the topics of a live ROS 2 robot for a recorder, as a hidden node in a DDS participant of its own: nothing that
+// comes is handled on a thread of whoever manages the robot.
+//
+// Readers are best effort and hold no writer back; a latched topic has a second one, which is sent what was published
+// before (link/topic_listener.h). What a type looks like is found as for rules (link/type_finder.h), before its topic is
+// heard; if it is found nowhere, its messages are kept all the same, and that is said once.
+//
+// A message of more than kLarge bytes makes its topic a large one, which is kept in memory of its own. One that nobody
+// named and that would not fit there for the time that is recorded is not heard any more, and that is said once.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "link/topic_listener.h"
+#include "link/type_finder.h"
+#include "recorder/recorder.h"
+#include "recorder/topic_choice.h"
+#include "ros2/node.h"
+
+namespace culprit::recorder {
+
+class RobotTap {
+ public:
+  static constexpr std::size_t kLarge = 64 * 1024;  // bytes
+
+  struct Options {
+    ros2::ParticipantOptions participant;
+    ros2::TypeFinder::Options types{};
+    TopicChoice topics{{}};
+    Duration before{};            // that is recorded
+    std::size_t large_bytes = 0;  // of memory for large messages
+    // What people should know. From any thread of the tap.
+    std::function<void(const std::string&)> say = [](const std::string&) {};
+  };
+
+  // `recorder` must outlive the tap. Errors: the domain cannot be joined.
+  static Expected<std::unique_ptr<RobotTap>> open(Options options, Recorder& recorder);
+  ~RobotTap();
+  RobotTap(const RobotTap&) = delete;
+
+ private:
+  class Listening;
+
+  struct TopicUse {
+    std::map<std::string, ros2::GraphEndpoint> publishers;  // by node
+    std::unique_ptr<Listening> listening;                   // null: it is not heard
+    bool is_asked_for = false;                              // its type is
+    bool is_given_up = false;                               // it is too large
+  };
+
+  RobotTap(Options options, Recorder& recorder);
+  Expected<void> start();
+
+  // On the executor's thread.
+  void on_change(const ros2::GraphChange& change);
+  void on_endpoint(const std::string& node, const ros2::GraphEndpoint& endpoint);
+  void on_endpoint_left(const ros2::EndpointLeft& gone);
+  void hear(const std::string& topic);
+  void hear_with(const std::string& topic, const std::string& type, const std::string& hash,
+                 const Expected<ros2::MessageLibrary*>& library);
+  RecordedTopic describe(const std::string& topic, const TopicUse& use,
+                         std::optional<std::string> definition) const;
+  void give_up(const std::string& topic, double bytes_per_second);
+  void graph_changed();
+  void tell_graph();
+
+  const Options options_;
+  Recorder& recorder_;
+  std::map<std::string, TopicUse> topics_;
+  std::map<std::string, int> pids_;      // of the nodes that are there
+  std::set<std::string> unknown_types_;  // that were told of
+  bool is_graph_due_ = false;
+
+  ros2::Executor executor_;
+  std::unique_ptr<ros2::TaskGroup> tasks_;
+  std::unique_ptr<ros2::Context> context_;
+  std::unique_ptr<ros2::Node> node_;
+  std::unique_ptr<ros2::TypeFinder> types_;
+  std::thread thread_;
+};
+
+}  // namespace culprit::recorder

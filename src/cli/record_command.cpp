@@ -1,0 +1,48 @@
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/running_culprit.h"
+#include "terminal/console.h"
+
+namespace culprit::cli {
+namespace {
+
+struct RecordOptions {
+  WhichCulprit which;
+  std::string name = "by-hand";
+  bool json = false;
+};
+
+int record(const RecordOptions& options) {
+  const auto culprit = the_culprit(options.which);
+  if (!culprit) return fail(culprit.error() + "\nNothing is recorded.");
+  const auto answer =
+      culprit->client.ask(web::Method::kPost, "/api/recordings", {{"reason", options.name}});
+  if (!answer) return fail(answer.error());
+  const std::string error = web::text_of(answer->body, "error").value_or("");
+  if (answer->status != 200) return fail("nothing is recorded: " + error);
+  if (options.json) {
+    say(stdout, "{}\n", web::to_line(answer->body));
+  } else {
+    say(stdout, "{}: recording to {}\n", culprit->name(),
+        without_controls(web::text_of(answer->body, "recording").value_or("")));
+  }
+  return kOk;
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RecordOptions>();
+  CLI::App* command = app.add_subcommand(
+      "record",
+      "Let a running culprit that records (run --record) write a recording now, of the last "
+      "seconds and the next ones");
+  command->add_option("--name", options->name, "What it is called, beside when it was")
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "Where it is, as a JSON document");
+  options->which.add_to(*command);
+  command->callback([options, &exit_code] { exit_code = record(*options); });
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,83 @@
+#include "cli/run_recording.h"
+
+#include "terminal/seconds_option.h"
+
+namespace culprit::cli {
+namespace {
+
+constexpr std::uint64_t kLeastMemory = 1'000'000;
+constexpr std::uint64_t kMostMemory = 100'000'000'000;
+constexpr double kMostSeconds = 600;
+
+void say_of_recording(const std::string& text) { say(stderr, "culprit: {}\n", text); }
+
+void add_bytes(CLI::App& command, const std::string& name, std::uint64_t& value,
+               const std::string& what, const std::string& usual) {
+  // A thousand bytes are a kB, as disks are sold; a KiB is 1024.
+  command.add_option(name, value, what)
+      ->transform(CLI::AsSizeValue(true))
+      ->type_name("SIZE")
+      ->default_str(usual);
+}
+
+}  // namespace
+
+void RecordingOptions::add_to(CLI::App& command) {
+  const std::string kGroup = "Recording";
+  CLI::Option* on = command.add_flag(
+      "--record", is_on,
+      "Keep the last seconds of the robot's topics, and write a recording (MCAP) of each incident "
+      "(docs/recording.md)");
+  add_seconds(command, "--record-before", before_seconds,
+              "What is recorded begins so long before a failure", 0, kMostSeconds);
+  add_seconds(command, "--record-after", after_seconds,
+              "It ends so long after all is well again; after 5 min at the latest", 0, 300);
+  command
+      .add_option("--record-topics", topics,
+                  "Only these topics: names, with * for anything, or with ! before them: all but "
+                  "these (default: all, large ones as far as there is memory for them)")
+      ->type_name("TOPIC");
+  add_bytes(command, "--record-budget", memory,
+            "The memory for what is kept; a quarter of it is for large messages", "200MB");
+  add_bytes(command, "--record-disk", disk,
+            "What all recordings may have of the disk; the oldest goes first", "5GB");
+  command
+      .add_option("--record-folder", folder,
+                  "Where recordings go (default: recordings in the state folder)")
+      ->type_name("FOLDER");
+  command.get_option("--record-budget")->check(CLI::Range(kLeastMemory, kMostMemory));
+  for (CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (name.rfind("--record", 0) != 0) continue;
+    option->group(kGroup);
+    if (option != on) option->needs(on);
+  }
+}
+
+Expected<std::unique_ptr<RunRecording>> RunRecording::open(const RecordingOptions& options,
+                                                           const About& about) {
+  if (!options.is_on) return std::unique_ptr<RunRecording>();
+  recorder::Recorder::Options box;
+  box.folder = options.folder_in(about.state);
+  box.robot = about.robot;
+  box.library = "culprit " + about.version;
+  box.before = from_seconds(options.before_seconds);
+  box.after = from_seconds(options.after_seconds);
+  box.memory = options.memory;
+  box.disk = options.disk;
+  box.say = say_of_recording;
+  recorder::RobotTap::Options tap;
+  tap.participant = about.participant;
+  tap.types = about.types;
+  tap.topics = recorder::TopicChoice(options.topics);
+  tap.before = box.before;
+  tap.large_bytes = recorder::Recorder::large_share(box.memory);
+  tap.say = say_of_recording;
+  std::unique_ptr<RunRecording> run(new RunRecording(std::move(box)));
+  auto opened = recorder::RobotTap::open(std::move(tap), run->recorder_);
+  if (!opened) return Error{"the robot's topics cannot be recorded: " + opened.error()};
+  run->tap_ = std::move(*opened);
+  return run;
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,58 @@
+// The black box of `culprit run --record` (docs/recording.md).
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "live/black_box.h"
+#include "recorder/robot_tap.h"
+#include "terminal/console.h"
+
+namespace culprit::cli {
+
+struct RecordingOptions {
+  bool is_on = false;
+  double before_seconds = seconds(recorder::Recorder::Options().before);
+  double after_seconds = seconds(recorder::Recorder::Options().after);
+  std::vector<std::string> topics;                              // patterns; empty: all
+  std::uint64_t memory = recorder::Recorder::Options().memory;  // bytes
+  std::uint64_t disk = recorder::Recorder::Options().disk;      // bytes
+  std::string folder;                                           // empty: in the state folder
+
+  std::filesystem::path folder_in(const std::filesystem::path& state) const {
+    return folder.empty() ? state / "recordings" : std::filesystem::path(folder);
+  }
+  // --record and what begins with it. The options must live as long as `command`.
+  void add_to(CLI::App& command);
+};
+
+class RunRecording {
+ public:
+  struct About {
+    std::string version;
+    std::string robot;
+    std::filesystem::path state;  // the folder
+    ros2::ParticipantOptions participant;
+    ros2::TypeFinder::Options types;
+  };
+  // Null if it is not on. Errors: the domain cannot be joined.
+  static Expected<std::unique_ptr<RunRecording>> open(const RecordingOptions& options,
+                                                      const About& about);
+
+  live::Observer& observer() { return observer_; }
+  recorder::Recorder& recorder() { return recorder_; }
+
+ private:
+  explicit RunRecording(recorder::Recorder::Options options)
+      : recorder_(std::move(options)), observer_(recorder_) {}
+
+  recorder::Recorder recorder_;
+  live::BlackBox observer_;
+  std::unique_ptr<recorder::RobotTap> tap_;  // last: it fills the recorder
+};
+
+}  // namespace culprit::cli
