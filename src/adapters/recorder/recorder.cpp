@@ -11,7 +11,6 @@
 namespace culprit::recorder {
 namespace {
 
-constexpr std::size_t kMostTopics = 10'000;                // the network decides how many there are
 constexpr std::size_t kMostAtOnce = std::size_t{4} << 20;  // bytes, from the ring
 // What comes while a disk dawdles is held so much longer.
 constexpr Duration kSlack = std::chrono::seconds(5);
@@ -58,8 +57,7 @@ std::size_t Recorder::add_topic(RecordedTopic topic) {
     topics_[known->second] = std::make_shared<const RecordedTopic>(std::move(topic));
     return known->second;
   }
-  // Beyond that, all are one: it is not a robot's doing.
-  if (topics_.size() >= kMostTopics) return topics_.size() - 1;
+  if (topics_.size() >= kMostTopics) return kNoTopic;
   numbers_.emplace(key, topics_.size());
   topics_.push_back(std::make_shared<const RecordedTopic>(std::move(topic)));
   return topics_.size() - 1;
@@ -71,6 +69,7 @@ Recorder::SharedTopic Recorder::topic_of(const RingMessage& message) {
 }
 
 void Recorder::take(RingMessage message, Share share) {
+  if (message.topic == kNoTopic) return;
   message.at = live_now();
   message.received = wall_now();
   ring_.push(std::move(message), share);

@@ -34,6 +34,10 @@ class Recorder {
   // Whoever is killed loses so much at most.
   static constexpr Duration kFlushes = std::chrono::seconds(1);
 
+  // So many at most, over all the time: the network decides how many there are.
+  static constexpr std::size_t kMostTopics = 10'000;
+  static constexpr std::size_t kNoTopic = SIZE_MAX;
+
   static constexpr const char* kEventsTopic = "/culprit/events";
   static constexpr const char* kGraphTopic = "/culprit/graph";
 
@@ -60,7 +64,7 @@ class Recorder {
   static std::size_t latched_share(std::size_t memory) { return memory / 10; }
 
   // Gives the number of the topic; the same for the same name, type and hash. What else is said of it replaces what was
-  // said before, but for recordings that know it already.
+  // said before, but for recordings that know it already. kNoTopic: there are too many; what is said of it is not kept.
   std::size_t add_topic(RecordedTopic topic);
   // `number`, `at` and `received` are filled in.
   void take(RingMessage message, Share share = Share::kSmall);

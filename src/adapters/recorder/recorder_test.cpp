@@ -172,6 +172,19 @@ TEST_F(Recorders, KeepWhatATypeLooksLikeAndMessagesOfWhichNobodyKnows) {
   EXPECT_EQ(library.with_parts("my_msgs/msg/Pose")->size(), 2);
 }
 
+TEST_F(Recorders, KnowNoMoreTopicsThanTheyMay) {
+  Recorder recorder(options());
+  std::size_t last = 0;
+  for (std::size_t i = 0; i <= Recorder::kMostTopics; ++i)
+    last = recorder.add_topic(topic_called(("/t" + std::to_string(i)).c_str()));
+  EXPECT_EQ(last, Recorder::kNoTopic);
+  recorder.take(text(last, "of nobody"));
+  const auto path = recorder.record_now("a person", 20s);
+  ASSERT_TRUE(path) << path.error();
+  ASSERT_TRUE(said.wait_for(1));
+  EXPECT_THAT(texts_in(*path), IsEmpty());
+}
+
 TEST_F(Recorders, SayOnceThatTheFolderIsLostAndTryAgain) {
   ASSERT_TRUE(write_text(own / "recordings", "a file is in the way"));
   Recorder recorder(options());

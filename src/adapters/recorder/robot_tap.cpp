@@ -154,6 +154,12 @@ void RobotTap::on_change(const ros2::GraphChange& change) {
 
 void RobotTap::on_endpoint(const std::string& node, const ros2::GraphEndpoint& endpoint) {
   if (endpoint.kind != EndpointKind::kPublisher || !options_.topics.includes(endpoint.name)) return;
+  if (topics_.size() >= kMostHeard && !topics_.contains(endpoint.name)) {
+    if (!std::exchange(are_too_many_, true))
+      options_.say("only " + std::to_string(kMostHeard) +
+                   " topics are recorded at a time; choose with --record-topics");
+    return;
+  }
   topics_[endpoint.name].publishers[node] = endpoint;
   hear(endpoint.name);
 }

@@ -27,6 +27,8 @@ namespace culprit::recorder {
 class RobotTap {
  public:
   static constexpr std::size_t kLarge = 64 * 1024;  // bytes
+  // So many are heard at a time: each costs memory, and the network decides how many there are.
+  static constexpr std::size_t kMostHeard = 2000;
 
   struct Options {
     ros2::ParticipantOptions participant;
@@ -75,6 +77,7 @@ class RobotTap {
   std::map<std::string, int> pids_;      // of the nodes that are there
   std::set<std::string> unknown_types_;  // that were told of
   bool is_graph_due_ = false;
+  bool are_too_many_ = false;  // topics, and that was said
 
   ros2::Executor executor_;
   std::unique_ptr<ros2::TaskGroup> tasks_;
