@@ -58,7 +58,7 @@ struct RobotTaps : testing::Test {
     return false;
   }
 
-  const ros2::TestDomain domain;
+  ros2::TestDomain domain;
   test::TestFolder own;
   ros2::EventLog<std::string> said;
   ros2::EventLog<std::string> written_down;
