@@ -60,7 +60,8 @@ std::vector<web::Route> local_routes(web::Hub& hub, const web::Metrics& metrics,
   return all;
 }
 
-std::vector<web::Route> page_routes(web::Hub& hub, web::RuleDesk& desk, live::RobotNames& names,
+std::vector<web::Route> page_routes(web::Hub& hub, const web::UsageHistory& usage,
+                                    web::RuleDesk& desk, live::RobotNames& names,
                                     const std::filesystem::path& journal, PlannerFactory planner) {
   const auto look = [&names](const LiveInterest& interest) { return names.look(interest); };
   const auto log_of = [&names](const std::string& node) { return names.log_of(node); };
@@ -72,7 +73,7 @@ std::vector<web::Route> page_routes(web::Hub& hub, web::RuleDesk& desk, live::Ro
   add(all, web::name_routes(look, desk.loader()));
   add(all, web::incident_routes(hub, journal));
   add(all, web::doctor_routes(web::examine_robot));
-  all.push_back(web::component_route(hub, look, log_of));
+  all.push_back(web::component_route(hub, usage, look, log_of));
   all.push_back(web::hindsight_route(journal_of));
   all.push_back(web::what_if_route(std::move(planner), desk.loader()));
   return all;
@@ -116,7 +117,8 @@ int run(const RunOptions& options) {
   web::Hub hub([&] { running->interrupt(); });
   web::Metrics metrics;
   web::HubObserver observer(hub, metrics);
-  std::vector<live::Observer*> onlookers{&observer};
+  web::UsageHistory usage;
+  std::vector<live::Observer*> onlookers{&observer, &usage};
   if (*alerts) onlookers.push_back(&(*alerts)->observer());
   live::Observers observers(std::move(onlookers));
   live::OrderKeeper keeper("the run has not begun");
@@ -141,9 +143,10 @@ int run(const RunOptions& options) {
   Expected<std::unique_ptr<web::Server>> server(nullptr);
   if (options.is_on_web) {
     std::vector<web::Route> routes = local_routes(hub, metrics, orders, live);
-    add(routes, page_routes(hub, desk, names, journal, options.planner.factory()));
+    add(routes, page_routes(hub, usage, desk, names, journal, options.planner.factory()));
     server = serve(options.web, std::move(routes), &hub, remarks);
     if (!server) return fail(server.error());
+    usage.start();
     who.page = (*server)->address();
     if (*alerts) (*alerts)->set_page(who.page);
   }
