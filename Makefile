@@ -29,7 +29,7 @@ test:
 
 # What takes longer than a test may, some four hours in all: a robot that is broken and healed for an hour, 500 kills of culprit,
 # 1,000 robots of a fleet, 100 random sequences of faults for each kind of owner, 40 changes of the core that its tests should notice, what `make test` runs under the
-# address sanitizer as users build, the laboratory under that sanitizer, each fuzzer for five minutes,
+# address sanitizer as users build, the laboratory and the commands under that sanitizer, each fuzzer for five minutes,
 # Debian packages that are installed, upgraded and removed.
 soak:
 	@scripts/install-dependencies --tests
@@ -43,8 +43,8 @@ soak:
 	CULPRIT_SEQUENCES=100 build/release/bin/owners_test --gtest_filter='AnySequenceOfFaults.*'
 	scripts/mutate
 	cmake --preset asan
-	cmake --build --preset asan-laboratory
-	ctest --preset asan-laboratory
+	cmake --build --preset asan-soak
+	ctest --preset asan-soak
 	scripts/fuzz --seconds 300
 	scripts/install-dependencies --packages
 	scripts/test-packages

@@ -49,6 +49,15 @@ endif()
 add_library(culprit_library_options INTERFACE)
 target_link_libraries(culprit_library_options INTERFACE culprit_options)
 
+# What nearly every file includes, parsed once where all is built as a whole. Elsewhere each file says what it includes, or does not compile.
+if(CMAKE_UNITY_BUILD)
+  add_library(culprit_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
+  target_precompile_headers(culprit_precompiled PRIVATE <algorithm> <atomic> <chrono> <condition_variable> <filesystem> <fstream>
+                                                        <functional> <map> <memory> <mutex> <optional> <set> <span> <sstream> <string>
+                                                        <thread> <unordered_map> <variant> <vector>)
+  target_link_libraries(culprit_precompiled PRIVATE culprit_library_options)
+endif()
+
 # Tests are compiled to be built soon: what they test is optimised as for users.
 add_library(culprit_test_options INTERFACE)
 target_link_libraries(culprit_test_options INTERFACE culprit_options)
@@ -57,7 +66,7 @@ target_compile_options(culprit_test_options INTERFACE -O0)
 # The main function of all tests, and what nearly every test includes, parsed once: a third of the time of a build.
 if(CULPRIT_TESTS)
   add_custom_target(offline_tests) # those of culprit itself that start no processes of a robot
-  add_custom_target(laboratory_tests) # those of the laboratory that start none
+  add_custom_target(soak_tests) # those of them that only `make soak` runs under the address sanitizer
   add_custom_target(unsanitized_tests) # all that the address sanitizer does not look at in `make test`
   add_custom_target(thread_tests) # those that the thread sanitizer is for
   add_library(culprit_test_main OBJECT ${CMAKE_CURRENT_LIST_DIR}/test_main.cpp)
@@ -82,7 +91,8 @@ endif()
 
 # culprit_library(<floor>/<folder> [USES <folder>...] [PACKAGES <target>...]
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL]
-#                 [TEST_LABELS <label>...] [TEST_CASES n] [TEST_UNSANITIZED <pattern>...]
+#                 [TEST_LABELS <label>...] [TEST_CASES n] [TEST_ALONE <pattern>...]
+#                 [TEST_UNSANITIZED <pattern>...]
 #                 [LIVE_TEST_USES <folder>...] [LIVE_PROCESSORS n])
 #
 # Builds the library <folder> of src/<floor>/<folder>/**.cpp, but for its tests and programs (*_main.cpp); the library
@@ -91,13 +101,14 @@ endif()
 # USES are other folders whose headers may appear in this one's; PACKAGES are targets from outside the project.
 # *_live_test.cpp make a program of their own, <folder>_live_test: they start the processes of a robot, so each has a
 # machine of its own (in_own_machine.sh) or runs alone, and carries the label "live". The label "threads" is for tests that the thread sanitizer repeats;
-# "laboratory", which all of lab/ has, for those that the address sanitizer repeats only in `make soak`. TEST_UNSANITIZED, as --gtest_filter= takes it, are
-# tests that no sanitizer runs: their results are statistics, or they need a process of their own, or all of its descriptors.
+# "soak", which all of lab/ has, for those that the address sanitizer repeats only in `make soak`. TEST_ALONE, as --gtest_filter= takes it, are tests that need a
+# process of their own where otherwise many share one (culprit_add_shards); TEST_UNSANITIZED, of the laboratory, those that no sanitizer runs: their results
+# are statistics.
 function(culprit_library path)
-  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES;TEST_UNSANITIZED;LIVE_TEST_USES;LIVE_PROCESSORS" ${ARGN})
+  cmake_parse_arguments(ARG "TEST_SERIAL" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES;TEST_ALONE;TEST_UNSANITIZED;LIVE_TEST_USES;LIVE_PROCESSORS" ${ARGN})
   get_filename_component(folder ${path} NAME)
   if(path MATCHES "^lab/")
-    list(APPEND ARG_TEST_LABELS laboratory)
+    list(APPEND ARG_TEST_LABELS soak)
   endif()
   set(dir ${PROJECT_SOURCE_DIR}/src/${path})
   culprit_check_floors(${path} ${ARG_USES})
@@ -129,6 +140,9 @@ function(culprit_library path)
   target_link_libraries(${folder} ${scope} ${ARG_USES} ${ARG_PACKAGES})
   if(sources)
     target_link_libraries(${folder} PRIVATE $<BUILD_INTERFACE:culprit_library_options>)
+    if(TARGET culprit_precompiled)
+      target_precompile_headers(${folder} REUSE_FROM culprit_precompiled)
+    endif()
   endif()
   if(path MATCHES "^(base$|core/)")
     culprit_install_library(${folder} ${dir})
@@ -152,7 +166,8 @@ function(culprit_library path)
       set(serial SERIAL)
     endif()
     culprit_test(${folder}_test SOURCES ${tests} USES ${with} PACKAGES ${ARG_TEST_PACKAGES}
-                 LABELS ${ARG_TEST_LABELS} CASES ${ARG_TEST_CASES} UNSANITIZED ${ARG_TEST_UNSANITIZED} ${serial})
+                 LABELS ${ARG_TEST_LABELS} CASES ${ARG_TEST_CASES} ALONE ${ARG_TEST_ALONE}
+                 UNSANITIZED ${ARG_TEST_UNSANITIZED} ${serial})
   endif()
   if(live_tests)
     culprit_test(${folder}_live_test SOURCES ${live_tests} USES ${with} ${ARG_LIVE_TEST_USES} PACKAGES ${ARG_TEST_PACKAGES}
@@ -229,12 +244,12 @@ function(culprit_program name source)
   install(TARGETS ${name} RUNTIME DESTINATION bin COMPONENT ${ARG_COMPONENT})
 endfunction()
 
-# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LIVE [PROCESSORS n]] [LABELS ...] [CASES n] [UNSANITIZED ...]): one CTest
+# culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [LIVE [PROCESSORS n]] [LABELS ...] [CASES n] [ALONE ...] [UNSANITIZED ...]): one CTest
 # test for each TEST. Where it is built as users build, what the address sanitizer looks at in `make test` has the label "sanitized". SERIAL tests run one after
 # the other, beside those of other programs. LIVE tests have a machine of their own (in_own_machine.sh), or run alone; most wait more than they
 # compute, so two of them may run where one of the others does: PROCESSORS says of how many of the four that two cores count for. Properties are tried on n random cases each instead of 100.
 function(culprit_test name)
-  cmake_parse_arguments(ARG "SERIAL;LIVE" "" "SOURCES;USES;PACKAGES;LABELS;CASES;UNSANITIZED;PROCESSORS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;LIVE" "" "SOURCES;USES;PACKAGES;LABELS;CASES;ALONE;UNSANITIZED;PROCESSORS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_precompile_headers(${name} REUSE_FROM culprit_test_main)
   culprit_compile_together(${name} 10 ${CMAKE_CURRENT_SOURCE_DIR} ${ARG_SOURCES})
@@ -260,14 +275,11 @@ function(culprit_test name)
   else()
     list(APPEND properties PROCESSORS 2)
   endif()
-  string(REPLACE ";" ":" unsanitized "${ARG_UNSANITIZED}")
   set(kinds offline sanitized)
   if(ARG_LIVE)
     set(kinds unsanitized)
-  elseif("laboratory" IN_LIST ARG_LABELS)
-    set(kinds laboratory unsanitized)
-  elseif(unsanitized)
-    list(APPEND kinds unsanitized)
+  elseif("soak" IN_LIST ARG_LABELS)
+    set(kinds soak unsanitized)
   endif()
   if("threads" IN_LIST ARG_LABELS)
     list(APPEND kinds thread)
@@ -287,34 +299,42 @@ function(culprit_test name)
     endif()
     list(LENGTH ARG_SOURCES files)
     math(EXPR shards "1 + ${files} / 8")
-    culprit_add_shards(${name} ${shards} "${unsanitized}" PROPERTIES ${properties} ENVIRONMENT ${environment})
+    culprit_add_shards(${name} ${shards} ALONE ${ARG_ALONE} UNSANITIZED ${ARG_UNSANITIZED}
+                       PROPERTIES ${properties} ENVIRONMENT ${environment})
     return()
   endif()
   if(environment)
     list(APPEND properties ENVIRONMENT "${environment}")
   endif()
-  set(discover WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
-  if(NOT "sanitized" IN_LIST kinds)
-    gtest_discover_tests(${name} ${discover} LABELS ${ARG_LABELS})
-    return()
+  if("sanitized" IN_LIST kinds)
+    set(ARG_LABELS sanitized)
   endif()
-  gtest_discover_tests(${name} TEST_FILTER "-${unsanitized}" ${discover} LABELS sanitized)
-  if(unsanitized)
-    gtest_discover_tests(${name} TEST_FILTER "${unsanitized}" TEST_LIST ${name}_UNSANITIZED ${discover})
-  endif()
+  gtest_discover_tests(${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
+                       PROPERTIES ${properties} LABELS ${ARG_LABELS})
 endfunction()
 
-# culprit_add_shards(<test program> <shards> <pattern> PROPERTIES ... ENVIRONMENT ...): its tests but those of the pattern in so many processes. A process with a sanitizer
-# takes longer to begin than most tests take. Each leaves what came of its tests in test-results/.
-function(culprit_add_shards name shards left_out)
-  cmake_parse_arguments(ARG "" "" "PROPERTIES;ENVIRONMENT" ${ARGN})
+# culprit_add_shards(<test program> <shards> ALONE <pattern>... UNSANITIZED <pattern>... PROPERTIES ... ENVIRONMENT ...): its tests in so many processes, and
+# in one for each pattern of ALONE. A process with a sanitizer takes longer to begin than most tests take. Each leaves what came of its tests in test-results/.
+function(culprit_add_shards name shards)
+  cmake_parse_arguments(ARG "" "" "ALONE;UNSANITIZED;PROPERTIES;ENVIRONMENT" ${ARGN})
+  set(left_out ${ARG_ALONE} ${ARG_UNSANITIZED})
+  list(JOIN left_out ":" left_out)
   math(EXPR last "${shards} - 1")
   foreach(shard RANGE ${last})
-    set(test ${name}.${shard})
-    add_test(NAME ${test} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-    set_tests_properties(${test} PROPERTIES ${ARG_PROPERTIES})
-    set_property(TEST ${test} PROPERTY TIMEOUT 1200) # of many tests
-    set_property(TEST ${test} PROPERTY ENVIRONMENT ${ARG_ENVIRONMENT} GTEST_FILTER=*-${left_out}
-      GTEST_TOTAL_SHARDS=${shards} GTEST_SHARD_INDEX=${shard} GTEST_OUTPUT=xml:${PROJECT_BINARY_DIR}/test-results/${test}.xml)
+    culprit_add_process(${name} ${shard} "*-${left_out}" GTEST_TOTAL_SHARDS=${shards} GTEST_SHARD_INDEX=${shard})
+  endforeach()
+  set(number ${shards})
+  foreach(pattern IN LISTS ARG_ALONE)
+    culprit_add_process(${name} ${number} "${pattern}")
+    math(EXPR number "${number} + 1")
   endforeach()
 endfunction()
+
+macro(culprit_add_process name number filter)
+  set(test ${name}.${number})
+  add_test(NAME ${test} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(${test} PROPERTIES ${ARG_PROPERTIES})
+  set_property(TEST ${test} PROPERTY TIMEOUT 1200) # of many tests
+  set_property(TEST ${test} PROPERTY ENVIRONMENT ${ARG_ENVIRONMENT} GTEST_FILTER=${filter}
+    GTEST_OUTPUT=xml:${PROJECT_BINARY_DIR}/test-results/${test}.xml ${ARGN})
+endmacro()

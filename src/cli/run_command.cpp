@@ -72,7 +72,8 @@ std::vector<web::Route> local_routes(web::Hub& hub, const web::Metrics& metrics,
   return all;
 }
 
-std::vector<web::Route> page_routes(web::Hub& hub, web::RuleDesk& desk, live::RobotNames& names,
+std::vector<web::Route> page_routes(web::Hub& hub, const web::UsageHistory& usage,
+                                    web::RuleDesk& desk, live::RobotNames& names,
                                     const std::filesystem::path& journal,
                                     const std::filesystem::path& recordings,
                                     PlannerFactory planner) {
@@ -86,7 +87,7 @@ std::vector<web::Route> page_routes(web::Hub& hub, web::RuleDesk& desk, live::Ro
   add(all, web::name_routes(look, desk.loader()));
   add(all, web::incident_routes(hub, journal, recordings));
   add(all, web::doctor_routes(web::examine_robot));
-  all.push_back(web::component_route(hub, look, log_of));
+  all.push_back(web::component_route(hub, usage, look, log_of));
   all.push_back(web::hindsight_route(journal_of));
   all.push_back(web::what_if_route(std::move(planner), desk.loader()));
   return all;
@@ -139,7 +140,8 @@ int run(const RunOptions& options) {
   web::Hub hub([&] { running->interrupt(); });
   web::Metrics metrics;
   web::HubObserver observer(hub, metrics);
-  std::vector<live::Observer*> onlookers{&observer};
+  web::UsageHistory usage;
+  std::vector<live::Observer*> onlookers{&observer, &usage};
   if (*alerts) onlookers.push_back(&(*alerts)->observer());
   const auto recording = open_recording(options, rules->rules.robot, *session);
   if (!recording) return fail(recording.error());
@@ -168,10 +170,11 @@ int run(const RunOptions& options) {
   if (options.is_on_web) {
     std::vector<web::Route> routes = local_routes(hub, metrics, orders, live, recording->get());
     add(routes,
-        page_routes(hub, desk, names, journal, options.recording.folder_in(options.state_path()),
-                    options.planner.factory()));
+        page_routes(hub, usage, desk, names, journal,
+                    options.recording.folder_in(options.state_path()), options.planner.factory()));
     server = serve(options.web, std::move(routes), &hub, remarks);
     if (!server) return fail(server.error());
+    usage.start();
     who.page = (*server)->address();
     if (*alerts) (*alerts)->set_page(who.page);
   }

@@ -39,6 +39,13 @@ std::string_view word_of_level(std::uint8_t level) {
                        : "debug";
 }
 
+Json to_json(const std::vector<UsageHistory::Usage>& usage) {
+  Json list = Json::array();
+  for (const UsageHistory::Usage& look : usage)
+    list.push_back({{"clock", look.clock}, {"processor", look.processor}, {"memory", look.memory}});
+  return list;
+}
+
 Json to_json(const std::vector<ros2::msg::Log>& lines) {
   Json list = Json::array();
   for (const ros2::msg::Log& line : lines)
@@ -48,21 +55,21 @@ Json to_json(const std::vector<ros2::msg::Log>& lines) {
   return list;
 }
 
-Answer answer(const Json& query, Hub& hub, const Look& look, const LogOf& log_of) {
+Answer answer(const Json& query, Hub& hub, const UsageHistory& usage, const Look& look,
+              const LogOf& log_of) {
   const auto name = text_of(query, "name");
   if (!name) return refuse(400, "say which: ?name=camera");
   const auto component = known(hub, *name);
   if (!component) return refuse(404, "the rules have no component '" + *name + "'");
   Json json{{"node", component->node},
             {"process", nullptr},
+            {"usage", to_json(usage.of(*name))},
             {"parameters", nullptr},
             {"log", Json::array()}};
   if (component->pid != 0) {
     if (const auto stat = process_stat(std::to_string(component->pid)))
-      json["process"] = {{"pid", component->pid},
-                         {"processor_s", stat->processor_seconds},
-                         {"memory", stat->resident_bytes},
-                         {"threads", stat->threads}};
+      json["process"] = {
+          {"pid", component->pid}, {"memory", stat->resident_bytes}, {"threads", stat->threads}};
   }
   if (component->node.empty()) return {200, json};
   const auto log = log_of(component->node);
@@ -79,10 +86,10 @@ Answer answer(const Json& query, Hub& hub, const Look& look, const LogOf& log_of
 
 }  // namespace
 
-Route component_route(Hub& hub, Look look, LogOf log_of) {
+Route component_route(Hub& hub, const UsageHistory& usage, Look look, LogOf log_of) {
   return {Method::kGet, "/api/component",
-          [&hub, look = std::move(look), log_of = std::move(log_of)](const Json& query) {
-            return answer(query, hub, look, log_of);
+          [&hub, &usage, look = std::move(look), log_of = std::move(log_of)](const Json& query) {
+            return answer(query, hub, usage, look, log_of);
           }};
 }
 

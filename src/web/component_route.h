@@ -1,5 +1,5 @@
-// The call about one component, beyond what the stream tells of all: what its process uses, its parameters, and what it
-// logged last. Asked again and again while somebody looks at it.
+// The call about one component, beyond what the stream tells of all: what its process uses and used, its parameters, and
+// what it logged last. Asked again and again while somebody looks at it.
 #pragma once
 
 #include <functional>
@@ -8,13 +8,14 @@
 #include "web/hub.h"
 #include "web/name_routes.h"
 #include "web/routes.h"
+#include "web/usage_history.h"
 
 namespace culprit::web {
 
 // The last lines that a node logged. Errors: the robot's network cannot be joined. Called from any thread.
 using LogOf = std::function<Expected<std::vector<ros2::msg::Log>>(const std::string& node)>;
 
-// `hub` must outlive the route.
-Route component_route(Hub& hub, Look look, LogOf log_of);
+// `hub` and `usage` must outlive the route.
+Route component_route(Hub& hub, const UsageHistory& usage, Look look, LogOf log_of);
 
 }  // namespace culprit::web

@@ -87,7 +87,7 @@ struct Routes : testing::Test {
     const auto log_of = [](const std::string& node) -> Expected<std::vector<ros2::msg::Log>> {
       return std::vector<ros2::msg::Log>{{{7, 500'000'000}, 30, node, "it is dark", "", "", 0}};
     };
-    all.push_back(component_route(hub, look, log_of));
+    all.push_back(component_route(hub, usage, look, log_of));
     all.push_back(hindsight_route([](const std::string&) -> Expected<std::filesystem::path> {
       return Error{"nothing is recorded here"};
     }));
@@ -119,6 +119,7 @@ struct Routes : testing::Test {
   Duration examined_for{};
   Hub hub;
   Metrics metrics;
+  UsageHistory usage;
   RuleDesk desk{path};
   const RuleSet rules = *check(Source("test", kRouteRules)).rules;
   live::OrderKeeper keeper{"this is a test"};
@@ -542,6 +543,7 @@ TEST_F(Routes, TellWhatAComponentUsesAndLogged) {
   const Json camera = ask("get /api/component", {{"name", "camera"}}).body;
   EXPECT_EQ(camera["process"]["pid"], getpid());
   EXPECT_GT(camera["process"]["memory"], 1'000'000);
+  EXPECT_EQ(camera["usage"], Json::array()) << "nobody has looked yet";
   EXPECT_EQ(camera["parameters"]["gain"], 0.5);
   EXPECT_EQ(camera["log"].dump(), R"([{"clock":7.5,"level":"warning","text":"it is dark"}])");
   EXPECT_THAT(looked_at.nodes, testing::ElementsAre("/camera"));

@@ -11,7 +11,6 @@ const kFindings = [
   { code: 'D020', severity: 'warning', who: 'battery', seen: 'its diagnostic status is STALE', matters: 'who reports it has stopped reporting', remedy: 'look at its values: ros2 topic echo /diagnostics' },
 ]
 let findings = kFindings
-let use = 0 // of the processor, by camera
 let rules = [] // in the form
 const kCalls = {
   'get /api/stream': () => [200, {}],
@@ -19,7 +18,7 @@ const kCalls = {
   'get /api/incidents': () => [200, { journal: '/var/lib/culprit/rover.journal', oldest: kIncidents[0].clock - 3600, incidents: kIncidents }],
   'get /api/incidents/events': ({ first }) => [200, { events: first === '10' ? kIncidentEvents : [] }],
   'get /api/incidents/recording': ({ name }) => [200, { name }],
-  'get /api/component': () => [200, { node: '/camera', process: { pid: 12, processor_s: (use += 0.5), memory: 123_000_000, threads: 7 }, parameters: { gain: 0.5, matrix: null }, log: [{ clock: kToday / 1000 - 13, level: 'warning', text: 'no frame for 200 ms' }] }],
+  'get /api/component': () => [200, { node: '/camera', process: { pid: 12, memory: 123_000_000, threads: 7 }, usage: [0.25, 0.5, 0.125].map((processor, look) => ({ clock: kToday / 1000 - 15 + 5 * look, processor, memory: 120_000_000 + 1_000_000 * look })), parameters: { gain: 0.5, matrix: null }, log: [{ clock: kToday / 1000 - 13, level: 'warning', text: 'no frame for 200 ms' }] }],
   'post /api/doctor': () => [200, { domain: 7, nodes: 5, findings }],
   'get /api/rules': () => [200, { path: 'rover.rules', text: '', version: '1', can_save: true }],
   'post /api/rules/json': () => [200, { version: 1, statements: rules }],
@@ -80,7 +79,8 @@ async function tellsOfAComponent(page, server, album) {
   const panel = page.getByRole('region', { name: 'About camera' })
   for (const text of ['/camera', 'gone', 'culprit, by its LAUNCH command', 'RGBDead.rgb_restart', 'redeploy camera', 'silent for 12 s', 'killed by signal 9', '123 MB', 'no frame for 200 ms'])
     await panel.getByText(text).first().waitFor()
-  await panel.getByText('% of a core').waitFor() // of two looks
+  await panel.getByText('12.5 % of a core').waitFor()
+  expect((await panel.getByRole('table', { name: 'process 12' }).locator('polyline').first().getAttribute('points')).split(' ').length === 3, 'what it used before is not drawn')
   await panel.getByText('Parameters (2)').click()
   await panel.getByRole('row', { name: 'gain 0.5' }).waitFor()
   await isAccessible(page)
@@ -114,6 +114,7 @@ async function keepsItsPlaces(page, server) {
   await page.evaluate(() => {
     const [[node, at], ...others] = JSON.parse(localStorage.getItem('culprit-places rover'))
     localStorage.setItem('culprit-places rover', JSON.stringify([[node, { ...at, x: at.x - 2000 }], ...others]))
+    Storage.prototype.setItem = () => {} // the page that is left says nothing more
   })
   await page.reload()
   await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'camera' }).waitFor()

@@ -13,6 +13,7 @@
 #include "demo/demo_setup.h"
 #include "demo/suave_demo_command.h"
 #include "demo/sunset_demo.h"
+#include "live/observers.h"
 #include "live/robot_names.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
@@ -143,9 +144,9 @@ web::Faults faults_of(SunsetDemo& demo) {
 }
 
 std::vector<web::Route> web_routes(SunsetDemo& demo, web::Hub& hub, const web::Metrics& metrics,
-                                   web::OrderDesk& orders, web::RuleDesk& desk,
-                                   web::StudyRunner& studies, live::RobotNames& names,
-                                   PlannerFactory planner) {
+                                   const web::UsageHistory& usage, web::OrderDesk& orders,
+                                   web::RuleDesk& desk, web::StudyRunner& studies,
+                                   live::RobotNames& names, PlannerFactory planner) {
   std::vector<web::Route> routes = web::live_routes(hub);
   for (web::Route& route : web::order_routes(orders, hub)) routes.push_back(std::move(route));
   for (web::Route& route : web::status_routes(hub, metrics)) routes.push_back(std::move(route));
@@ -156,7 +157,7 @@ std::vector<web::Route> web_routes(SunsetDemo& demo, web::Hub& hub, const web::M
   for (web::Route& route : web::doctor_routes(web::examine_robot))
     routes.push_back(std::move(route));
   routes.push_back(web::component_route(
-      hub, look, [&names](const std::string& node) { return names.log_of(node); }));
+      hub, usage, look, [&names](const std::string& node) { return names.log_of(node); }));
   routes.push_back(web::what_if_route(std::move(planner)));
   for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
   routes.push_back(web::single_run_route());
@@ -177,6 +178,8 @@ int demo_sunset(const DemoOptions& options) {
   web::Hub hub([&] { running->interrupt(); });
   web::Metrics metrics;
   web::HubObserver observer(hub, metrics);
+  web::UsageHistory usage;
+  live::Observers observers({&observer, &usage});
   SunsetDemo::Options setup;
   setup.speed = options.speed;
   setup.seed = options.seed;
@@ -186,7 +189,7 @@ int demo_sunset(const DemoOptions& options) {
     const std::string text = line(event, rules, start, colour);
     if (!text.empty()) say(stdout, "{}\n", text);
   };
-  setup.observer = &observer;
+  setup.observer = &observers;
   auto demo = SunsetDemo::start(std::move(setup), signals.stopped());
   if (!demo) {
     say(stderr, "culprit: {}\n", demo.error());
@@ -199,14 +202,15 @@ int demo_sunset(const DemoOptions& options) {
   live::RobotNames names;
   web::StudyRunner studies(default_state_folder() / "studies");
   orders.open((*demo)->rules(), [&](Order order) { (*demo)->submit(std::move(order)); });
-  const auto server = serve(
-      options.web,
-      web_routes(**demo, hub, metrics, orders, desk, studies, names, options.planner.factory()),
-      &hub);
+  const auto server = serve(options.web,
+                            web_routes(**demo, hub, metrics, usage, orders, desk, studies, names,
+                                       options.planner.factory()),
+                            &hub);
   if (!server) {
     say(stderr, "culprit: {}\n", server.error());
     return kUsage;
   }
+  usage.start();
   std::vector<web::Route> local = web::live_routes(hub);
   for (web::Route& route : web::order_routes(orders, hub)) local.push_back(std::move(route));
   const auto asked = serve_this_machine({"", (*demo)->rules().robot, "sunset.rules",

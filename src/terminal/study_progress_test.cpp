@@ -1,25 +1,26 @@
-// How far a campaign is, from what it prints.
-#include "web/study_runner.h"
-
+// The page reads how far a campaign is from what it prints.
 #include <gtest/gtest.h>
 
 #include "terminal/progress.h"
+#include "web/study_runner.h"
 
-namespace culprit::web {
+namespace culprit {
 namespace {
+
+using web::last_progress;
 
 using Pair = std::pair<std::uint64_t, std::uint64_t>;
 
-TEST(StudyRunner, ReadsTheNewestProgress) {
+TEST(StudyProgress, IsReadAtItsNewest) {
   const std::string log = progress_line(10, 1296, 0, std::chrono::seconds(1)) + "\n" +
                           progress_line(454, 1296, 0, std::chrono::seconds(2)) + "\n";
   EXPECT_EQ(last_progress(log), Pair(454, 1296));
 }
 
-TEST(StudyRunner, KnowsNoProgressOfACampaignThatTellsNone) {
+TEST(StudyProgress, OfACampaignThatTellsNoneIsUnknown) {
   for (const char* log : {"", "/", "culprit: no such file", "a/b", "1/", "/1"})
     EXPECT_FALSE(last_progress(log)) << log;
 }
 
 }  // namespace
-}  // namespace culprit::web
+}  // namespace culprit

@@ -1,0 +1,68 @@
+// What the process of each component used over the last quarter of an hour. A thread of its own looks every few seconds,
+// whoever looks on: so the page also shows what was before somebody looked.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/mutex.h"
+#include "live/observer.h"
+#include "web/process_stat.h"
+
+namespace culprit::web {
+
+class UsageHistory : public live::Observer {
+ public:
+  static constexpr std::chrono::seconds kPeriod{5};
+  static constexpr std::size_t kMost = 180;  // looks that are kept of a component
+
+  struct Usage {
+    double clock = 0;          // seconds since 1970
+    double processor = 0;      // of one core, since the look before
+    std::uint64_t memory = 0;  // bytes
+  };
+  using Stat = std::function<std::optional<ProcessStat>(int pid)>;
+
+  explicit UsageHistory(Stat stat = stat_of_pid) : stat_(std::move(stat)) {}
+  ~UsageHistory() override;
+
+  // Looks every kPeriod from now on, until this ends.
+  void start();
+  // One look, at `clock` (seconds since 1970). Processes of other computers are not seen.
+  void look(double clock);
+  // Oldest first. From any thread.
+  std::vector<Usage> of(const std::string& component) const;
+
+  void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) override;
+  void stepped(const Runtime::Step& step) override;
+  Time next_look() const override { return kNever; }
+  void announced(Time, const EventWords&, const std::string&) override {}
+
+ private:
+  struct Process {
+    int pid = 0;                   // 0: not known
+    double processor_seconds = 0;  // at the last look
+    double clock = 0;              // of the last look; 0: none yet
+    std::deque<Usage> usage;
+  };
+  static std::optional<ProcessStat> stat_of_pid(int pid);
+  static void add(Process& process, const std::optional<ProcessStat>& stat, double clock);
+  void take_pids();
+
+  const Stat stat_;
+  const Manager* manager_ = nullptr;  // null: none has begun
+  mutable Mutex mutex_;
+  ConditionVariable ends_;
+  bool is_over_ CULPRIT_GUARDED_BY(mutex_) = false;
+  std::map<std::string, Process> processes_ CULPRIT_GUARDED_BY(mutex_);  // by component
+  std::thread thread_;
+};
+
+}  // namespace culprit::web
