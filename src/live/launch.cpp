@@ -44,6 +44,8 @@ class Starting {
   }
 
   bool is_there(ComponentId component) const { return parts_[component.index].joined.has_value(); }
+  // Only of what is there.
+  Time joined(ComponentId component) const { return *parts_[component.index].joined; }
 
   void begin(ComponentId component, const StartComponent& start) {
     part(component).start = next_request();
@@ -313,11 +315,12 @@ Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start,
       listener.on_remark("culprit: " + rules[c].name + " was started and is not up: " + *trouble +
                          "\n");
     if (const auto how = starting.came_up(c))
-      launched.past.push_back({robot.now(), CameUp{c, *how}});
+      launched.past.push_back({starting.joined(c), CameUp{c, *how}});
     if (stop) continue;
     unfinished.erase(rules[c].name);
     keeper.keep(unfinished);
   }
+  std::ranges::stable_sort(launched.past, {}, &Event::at);
   launched.seen = std::move(starting).seen();
   return launched;
 }

@@ -131,8 +131,11 @@ void Monitor::remember(const History& past) {
   for (const Event& event : past) {
     if (const auto* intended = std::get_if<LifecycleIntended>(&event.what))
       write_.components[intended->component].intended_lifecycle = intended->state;
-    if (const auto* came_up = std::get_if<CameUp>(&event.what))
-      write_.components[came_up->component].coming_up = came_up->how;
+    if (const auto* came_up = std::get_if<CameUp>(&event.what)) {
+      ComponentState& state = write_.components[came_up->component];
+      state.coming_up = came_up->how;
+      if (came_up->how.driver == ComingUp::Driver::kCulprit) state.culprit_raised = event.at;
+    }
   }
 }
 
@@ -187,12 +190,12 @@ void Monitor::note_rise(ComponentId component, Lifecycle now, Time at) {
 // time the next time: as long as it lived.
 void Monitor::note_end_of_start(ComponentId component, Time at) {
   const ComponentState& state = knowledge_.components[component];
-  if (!state.in_graph || state.culprit_raised < state.node_seen ||
-      at > later(state.node_seen, kStart))
-    return;
+  // What came up before culprit watched (`run --launch`, an earlier culprit) is seen only afterwards.
+  const Time began = std::min(state.node_seen, state.culprit_raised);
+  if (!state.in_graph || began == kLongAgo || at > later(began, kStart)) return;
   ComingUp how = state.coming_up;
   how.driver = ComingUp::Driver::kOther;
-  how.rising = at - state.node_seen;
+  how.rising = at - began;
   write_.components.note_coming_up(component, how, at, write_.events);
 }
 
@@ -259,6 +262,7 @@ void Monitor::forget_process(ComponentId component, Time at) {
   state.in_graph = false;
   state.node_pid = 0;
   state.is_rising = false;
+  if (state.node_seen != kLongAgo) state.culprit_raised = kLongAgo;
   state.answers_probes = false;
   state.transition_patience = {};
   if (state.lifecycle != Lifecycle::kUnknown) state.took_place = true;

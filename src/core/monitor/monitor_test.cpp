@@ -483,6 +483,22 @@ TEST(Monitor, EndsOfANodeThatBeganAnewAreAwaitedForAWhile) {
   EXPECT_FALSE(depends()) << "it does not have that end any more";
 }
 
+// `run --launch` brings nodes up before the manager begins, which sees them only then.
+TEST(Monitor, ANodeThatCulpritBroughtUpBeforeAndThatCrashedIsLeftToItself) {
+  Watched watched(rule("!alive(c)"));
+  const auto& c = watched.knowledge.components[ComponentId(0)];
+  const ComingUp by_culprit{ComingUp::Driver::kCulprit, 300ms, 50ms};
+  watched.monitor.remember(History{{Time(3s), CameUp{ComponentId(0), by_culprit}}});
+  watched.observe(5s, NodeAppeared{"/c", 7});
+  watched.observe(5500ms, NodeVanished{"/c"});
+  EXPECT_EQ(c.coming_up.driver, ComingUp::Driver::kOther);
+  EXPECT_EQ(c.coming_up.rising, 2500ms) << "the next one is left more time than that";
+  watched.monitor.remember(History{{Time(6s), CameUp{ComponentId(0), by_culprit}}});
+  watched.observe(7s, NodeAppeared{"/c", 8});
+  watched.observe(8s, NodeVanished{"/c"});
+  EXPECT_EQ(c.coming_up.driver, ComingUp::Driver::kCulprit) << "that was another process";
+}
+
 TEST(Monitor, AManagedNodeHangsWhoseTransitionTakesMuchLongerThanEver) {
   Watched watched(rule("!alive(c) || lifecycle(c) != \"active\""));
   const auto& c = watched.knowledge.components[ComponentId(0)];
