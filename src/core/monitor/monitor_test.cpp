@@ -405,6 +405,26 @@ TEST(Monitor, ALocalNodeIsAtWorkThatPublishesOrPausesAsEver) {
   EXPECT_EQ(is_alive(), false);
 }
 
+// Real robots showed it: after an outage of its camera, a detector that hung was taken for busy for as long as that had been.
+TEST(Monitor, WhatALocalNodeWasSilentForWhileWhatItNeedsWasDownIsNoPauseOfItsOwn) {
+  Watched watched("COMPONENT d NODE /d\n" + rule(kHeard));
+  const auto probe = [&](Duration at, bool answers) {
+    watched.observe(at, Probed{ComponentId(1), answers});
+  };
+  watched.observe(1s, NodeAppeared{"/d", 8});
+  watched.observe(1s, EndpointAppeared{"/d", EndpointKind::kPublisher, "/in"});
+  watched.observe(1s, EndpointAppeared{"/c", EndpointKind::kSubscriber, "/in"});
+  work_until(watched, 5s);
+  probe(5s, true);
+  watched.observe(5s, NodeVanished{"/d"});
+  watched.observe(8s, NodeAppeared{"/d", 9});
+  watched.observe(8s, EndpointAppeared{"/d", EndpointKind::kPublisher, "/in"});
+  for (Duration at = 8200ms; at < 10s; at += 100ms)
+    watched.observe(at, SampleArrived{TopicId(0), 1});
+  for (const Duration at : {10400ms, 10800ms, 11200ms}) probe(at, false);
+  EXPECT_EQ(watched.knowledge.components[ComponentId(1)].alive, false);
+}
+
 TEST(Monitor, ALocalNodeIsNotAtWorkBecauseAnotherOnePublishes) {
   Watched watched(rule("!alive(c) || age(/t) > 1h || age(/u) > 1h || age(/v) > 1h"));
   work_until(watched, 5s);
