@@ -5,19 +5,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "language/check.h"
+#include "language/checker.h"
 #include "plan/bayes/bayes_planner.h"
 
 namespace culprit::web {
 namespace {
 
-constexpr std::string_view kUsedRules = R"(
-COMPONENT camera NODE "/camera" LAUNCH "camera_node"
-COMPONENT rover NODE "/rover" UNIT rover.service HOST user@rover2
-RULE NoImage FOR camera SEVERITY 0.5
-  TRIGGER age(/camera/image) > 500 ms
-  STRATEGY again PRIOR 0.9 redeploy(camera) IMPACT 1 s
-END
+constexpr const char* kUsedRules = R"(
+COMPONENT camera NODE /camera
+COMPONENT rover NODE /rover HOST user@rover2 UNIT rover.service
+RULE CameraGone
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY restart 50 10
+      ADAPTATION camera restart 3
 )";
 
 // A robot of which the kernel is asked as often as a test likes.
@@ -26,9 +27,8 @@ class UsedProcesses : public testing::Test {
   UsedProcesses() { usage.begins(manager, {}, Time()); }
 
   void see(std::size_t component, ProcessState state, int pid) {
-    const std::vector<Observation> seen{
-        {Time(), NodeAppeared{component == 0 ? "/camera" : "/rover"}},
-        {Time(), ProcessSeen{ComponentId(component), state, pid, ""}}};
+    std::vector<Observation> seen{{Time(), NodeAppeared{component == 0 ? "/camera" : "/rover"}},
+                                  {Time(), ProcessSeen{ComponentId(component), state, pid, ""}}};
     const auto commands = manager.step(Time(), seen);
     usage.stepped({Time(), {}, seen, commands, manager.events()});
   }
