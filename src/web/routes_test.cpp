@@ -521,8 +521,8 @@ TEST_F(Routes, TellWhichRecordingsAnIncidentHasAndGiveThemAndNoOtherFile) {
   std::filesystem::create_symlink(recordings / "secret",
                                   recordings / recorder::recording_name("rover", 0, "link"));
   for (const std::string& other :
-       {std::string("secret"), "../" + recordings.path().filename().string() + "/" + name, "./" + name,
-        recordings.path().string() + "/" + name, std::string("..%2f"),
+       {std::string("secret"), "../" + recordings.path().filename().string() + "/" + name,
+        "./" + name, recordings.path().string() + "/" + name, std::string("..%2f"),
         recorder::recording_name("rover", 0, "link"), std::string()})
     EXPECT_EQ(ask("get /api/incidents/recording", {{"name", other}}).status, 404) << other;
   EXPECT_EQ(ask("get /api/incidents/recording").status, 400);
