@@ -5,6 +5,7 @@
 #include <string>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -156,7 +157,7 @@ RULE CameraSilent
 // A day with an incident a minute, each of ten rows with reasons, among the rows of what was observed.
 void write_day(const std::filesystem::path& path, std::int64_t begin) {
   constexpr std::int64_t kSecond = 1'000'000'000;
-  auto writer = *journal::Writer::open(path, {});
+  auto writer = std::move(*journal::Writer::open(path, {}));
   journal::Session session;
   session.rules_text = kRulesOfADay;
   session.planner = journal::Json::object();
