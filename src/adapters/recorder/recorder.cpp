@@ -76,6 +76,7 @@ void Recorder::take(RingMessage message, Share share) {
 }
 
 void Recorder::take_latched(RingMessage message, const ros2::Guid& publisher, Share share) {
+  if (message.topic == kNoTopic) return;
   message.at = live_now();
   message.received = wall_now();
   ring_.latch(message, publisher);

@@ -179,6 +179,7 @@ TEST_F(Recorders, KnowNoMoreTopicsThanTheyMay) {
     last = recorder.add_topic(topic_called(("/t" + std::to_string(i)).c_str()));
   EXPECT_EQ(last, Recorder::kNoTopic);
   recorder.take(text(last, "of nobody"));
+  recorder.take_latched(text(last, "of nobody"), {}, Share::kSmall);
   const auto path = recorder.record_now("a person", 20s);
   ASSERT_TRUE(path) << path.error();
   ASSERT_TRUE(said.wait_for(1));
