@@ -29,7 +29,7 @@ test:
 
 # What takes longer than a test may, some four hours in all: a robot that is broken and healed for an hour, 500 kills of culprit,
 # 1,000 robots of a fleet, 100 random sequences of faults for each kind of owner, 40 changes of the core that its tests should notice, what `make test` runs under the
-# address sanitizer as users build, the laboratory and the commands under that sanitizer, each fuzzer for five minutes,
+# address sanitizer as users build, the laboratory and the commands under that sanitizer, all else under the thread sanitizer, each fuzzer for five minutes,
 # Debian packages that are installed, upgraded and removed.
 soak:
 	@scripts/install-dependencies --tests
@@ -45,6 +45,9 @@ soak:
 	cmake --preset asan
 	cmake --build --preset asan-soak
 	ctest --preset asan-soak
+	cmake --preset tsan
+	cmake --build --preset tsan-soak
+	ctest --preset tsan-soak
 	scripts/fuzz --seconds 300
 	scripts/install-dependencies --packages
 	scripts/test-packages

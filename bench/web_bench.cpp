@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "claims.h"
+#include "http/server.h"
 #include "journal/session.h"
 #include "journal/writer.h"
 #include "language/checker.h"
@@ -19,7 +20,6 @@
 #include "plan/paper_planner.h"
 #include "web/hub_observer.h"
 #include "web/incident_routes.h"
-#include "web/server.h"
 
 namespace culprit::bench {
 namespace {

@@ -68,7 +68,7 @@ if(CULPRIT_TESTS)
   add_custom_target(offline_tests) # those of culprit itself that start no processes of a robot
   add_custom_target(soak_tests) # those of them that only `make soak` runs under the address sanitizer
   add_custom_target(unsanitized_tests) # all that the address sanitizer does not look at in `make test`
-  add_custom_target(thread_tests) # those that the thread sanitizer is for
+  add_custom_target(thread_tests) # those that the thread sanitizer looks at in `make test`
   add_library(culprit_test_main OBJECT ${CMAKE_CURRENT_LIST_DIR}/test_main.cpp)
   if(CULPRIT_SANITIZE STREQUAL "thread")
     target_sources(culprit_test_main PRIVATE ${CMAKE_CURRENT_LIST_DIR}/tsan_clocklock.cpp)

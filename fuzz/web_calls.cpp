@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "http/hub.h"
 #include "language/checker.h"
-#include "web/hub.h"
 #include "web/order_routes.h"
 #include "web/rule_routes.h"
 

@@ -7,8 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "http/local_client.h"
 #include "live/local_socket.h"
-#include "web/local_client.h"
 
 namespace culprit::cli {
 

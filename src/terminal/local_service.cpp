@@ -4,6 +4,7 @@
 
 #include "live/local_socket.h"
 #include "terminal/console.h"
+#include "web/app.h"
 
 namespace culprit {
 
@@ -16,6 +17,7 @@ std::unique_ptr<web::Server> serve_this_machine(const WhoServes& who,
   if (socket) {
     web::Server::Options options;
     options.socket = socket->string();
+    options.openapi = web::openapi();
     options.about = {{"version", who.version}, {"robot", who.robot}, {"rules", who.rules},
                      {"domain", who.domain},   {"node", who.node},   {"process", getpid()},
                      {"page", who.page}};

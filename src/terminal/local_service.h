@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "web/server.h"
+#include "http/server.h"
 
 namespace culprit {
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "terminal/console.h"
+#include "web/app.h"
 
 namespace culprit {
 
@@ -63,6 +64,8 @@ Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
   if (!access) return Error{access.error()};
   web::Server::Options server{options.address, options.port.value_or(WebOptions::kUsualPort),
                               std::move(*access)};
+  server.app = web::app();
+  server.openapi = web::openapi();
   auto started = web::Server::start(server, routes, hub);
   if (!started && !options.port) {
     server.port = 0;

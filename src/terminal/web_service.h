@@ -8,7 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "web/server.h"
+#include "http/server.h"
 
 namespace culprit {
 

@@ -4,15 +4,14 @@
 #include <span>
 #include <string_view>
 
-namespace culprit::web {
+#include "http/server.h"
 
-struct Asset {
-  std::string_view path;  // "/app.js"
-  std::string_view type;  // "text/javascript; charset=utf-8"
-  std::string_view gzip;
-};
+namespace culprit::web {
 
 // Empty if the program was built where npm is not installed.
 std::span<const Asset> app();
+
+// The document that describes the API (OpenAPI 3.1, openapi.json).
+std::string_view openapi();
 
 }  // namespace culprit::web

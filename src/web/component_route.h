@@ -4,10 +4,10 @@
 
 #include <functional>
 
+#include "http/hub.h"
+#include "http/routes.h"
 #include "ros2/messages.h"
-#include "web/hub.h"
 #include "web/name_routes.h"
-#include "web/routes.h"
 #include "web/usage_history.h"
 
 namespace culprit::web {

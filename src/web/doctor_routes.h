@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "base/time.h"
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace culprit::web {
 

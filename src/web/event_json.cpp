@@ -64,8 +64,4 @@ Json to_json(const Event& event, const RuleSet& rules, Time start) {
   return json;
 }
 
-std::string to_line(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 }  // namespace culprit::web

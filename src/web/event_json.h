@@ -2,13 +2,10 @@
 // what the page needs to show it without a table of its own.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
+#include "http/json.h"
 #include "knowledge/event_words.h"
 
 namespace culprit::web {
-
-using Json = nlohmann::ordered_json;
 
 // Seconds since `start`, to the millisecond; null for kNever and kLongAgo.
 Json time_to_json(Time at, Time start);
@@ -23,8 +20,5 @@ Json names_of(const auto& ids, const RuleSet& rules) {
 Json to_json(const Event& event, const RuleSet& rules, Time start);
 // {"type": ..., "label": ..., "severity": ..., "tone": ...}
 Json to_json(const EventWords& words);
-
-// On one line; what is no UTF-8 is replaced, for robots name things as they like.
-std::string to_line(const Json& json);
 
 }  // namespace culprit::web

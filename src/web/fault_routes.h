@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/expected.h"
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace culprit::web {
 

@@ -8,10 +8,10 @@
 #include <functional>
 #include <string>
 
+#include "http/hub.h"
 #include "live/observer.h"
 #include "live/situation.h"
 #include "web/event_json.h"
-#include "web/hub.h"
 #include "web/metrics.h"
 
 namespace culprit::web {

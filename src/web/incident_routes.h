@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "web/hub.h"
-#include "web/routes.h"
+#include "http/hub.h"
+#include "http/routes.h"
 
 namespace culprit::web {
 

@@ -1,8 +1,8 @@
 // The calls about the robot that is watched: what the stream tells, for those who do not stay.
 #pragma once
 
-#include "web/hub.h"
-#include "web/routes.h"
+#include "http/hub.h"
+#include "http/routes.h"
 
 namespace culprit::web {
 

@@ -3,9 +3,9 @@
 
 #include <functional>
 
+#include "http/routes.h"
 #include "language/live_inventory.h"
 #include "language/reuse/expansion.h"
-#include "web/routes.h"
 
 namespace culprit::web {
 

@@ -4,11 +4,11 @@
 #include <functional>
 
 #include "base/mutex.h"
+#include "http/hub.h"
+#include "http/routes.h"
 #include "language/rule_set.h"
 #include "live/order_keeper.h"
 #include "robot/order.h"
-#include "web/hub.h"
-#include "web/routes.h"
 
 namespace culprit::web {
 

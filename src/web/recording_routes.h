@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace culprit::web {
 

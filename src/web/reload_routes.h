@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/expected.h"
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace culprit::web {
 

@@ -1,7 +1,7 @@
 // The calls about the rule file: read, check, ask the language server, change form, save.
 #pragma once
 
-#include "web/routes.h"
+#include "http/routes.h"
 #include "web/rule_desk.h"
 
 namespace culprit::web {

@@ -1,7 +1,7 @@
 // The call that plays one run of a study's campaign again, for the timeline: culprit-lab plays it.
 #pragma once
 
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace culprit::web {
 

@@ -1,9 +1,9 @@
 // What other programs ask of a service: whether it lives, whether it is ready, what it counts.
 #pragma once
 
-#include "web/hub.h"
+#include "http/hub.h"
+#include "http/routes.h"
 #include "web/metrics.h"
-#include "web/routes.h"
 
 namespace culprit::web {
 

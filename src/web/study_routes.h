@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/expected.h"
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace culprit::web {
 

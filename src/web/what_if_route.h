@@ -1,9 +1,9 @@
 // The call that asks what would be decided for a state of the robot (docs/plan.md).
 #pragma once
 
+#include "http/routes.h"
 #include "language/reuse/expansion.h"
 #include "plan/planner.h"
-#include "web/routes.h"
 
 namespace culprit::web {
 

@@ -1,11 +1,11 @@
-#include "web/hub.h"
+#include "http/hub.h"
 
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "web/event_stream.h"
+#include "http/event_stream.h"
 
 namespace culprit::web {
 namespace {

@@ -1,4 +1,4 @@
-#include "web/local_client.h"
+#include "http/local_client.h"
 
 #include <httplib.h>
 #include <optional>

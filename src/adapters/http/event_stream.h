@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "web/hub.h"
+#include "http/hub.h"
 
 namespace culprit::web {
 

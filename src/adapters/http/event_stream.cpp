@@ -1,4 +1,4 @@
-#include "web/event_stream.h"
+#include "http/event_stream.h"
 
 #include <charconv>
 

@@ -1,4 +1,4 @@
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace culprit::web {
 

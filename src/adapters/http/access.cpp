@@ -1,4 +1,4 @@
-#include "web/access.h"
+#include "http/access.h"
 
 #include <algorithm>
 #include <arpa/inet.h>

@@ -1,4 +1,4 @@
-#include "web/server.h"
+#include "http/server.h"
 
 #include <algorithm>
 #include <array>
@@ -14,12 +14,10 @@
 
 #include <fmt/core.h>
 
-#include "web/app.h"
-#include "web/budgeted_server.h"
-#include "web/connection_threads.h"
-#include "web/event_stream.h"
-#include "web/openapi.h"
-#include "web/rate_limit.h"
+#include "http/budgeted_server.h"
+#include "http/connection_threads.h"
+#include "http/event_stream.h"
+#include "http/rate_limit.h"
 
 namespace culprit::web {
 namespace {
@@ -193,8 +191,8 @@ class Server::Http {
     server_.Get("/api/about", [this](const httplib::Request& q, httplib::Response& r) {
       give(q, r, {200, about()});
     });
-    server_.Get("/api/openapi\\.json", [](const httplib::Request& q, httplib::Response& r) {
-      send(q, r, kOpenApi, kJson);
+    server_.Get("/api/openapi\\.json", [this](const httplib::Request& q, httplib::Response& r) {
+      send(q, r, std::string(options_.openapi), kJson);
     });
     if (hub_ != nullptr) {
       server_.Get("/api/stream",
@@ -283,7 +281,7 @@ class Server::Http {
   }
 
   void add_app() {
-    for (const Asset& asset : app()) {
+    for (const Asset& asset : options_.app) {
       server_.Get(exactly(std::string(asset.path)),
                   [asset](const httplib::Request& q, httplib::Response& r) {
                     r.set_header("Vary", "Accept-Encoding");

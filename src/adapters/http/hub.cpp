@@ -1,4 +1,4 @@
-#include "web/hub.h"
+#include "http/hub.h"
 
 #include <algorithm>
 #include <random>

@@ -1,4 +1,4 @@
-#include "web/connection_threads.h"
+#include "http/connection_threads.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-// Asks a running culprit of this machine, over its socket (live/local_socket.h): the calls of its API.
+// Asks a running culprit of this machine, over its socket (Server::Options): the calls of its API.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,8 @@
 #include <string_view>
 
 #include "base/expected.h"
-#include "web/routes.h"
+#include "base/time.h"
+#include "http/routes.h"
 
 namespace culprit::web {
 

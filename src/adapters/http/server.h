@@ -6,15 +6,24 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
-#include "web/access.h"
-#include "web/hub.h"
-#include "web/routes.h"
+#include "http/access.h"
+#include "http/hub.h"
+#include "http/routes.h"
 
 namespace culprit::web {
+
+// A file of the app that browsers are given. Its texts outlive the server.
+struct Asset {
+  std::string_view path;  // "/app.js"
+  std::string_view type;  // "text/javascript; charset=utf-8"
+  std::string_view gzip;
+};
 
 class Server {
  public:
@@ -30,10 +39,12 @@ class Server {
     std::string address = "127.0.0.1";
     int port = 0;  // 0: any that is free
     Access access;
-    // Where to listen instead: a unix socket (live/local_socket.h). Only processes of this user and of root
+    // Where to listen instead: a unix socket. Only processes of this user and of root
     // are served there, and need no token.
     std::string socket{};
     Json about = Json::object();  // whose server this is, to be told beside what it offers
+    std::span<const Asset> app{};
+    std::string_view openapi{};  // describes `routes`, at /api/openapi.json; outlives the server
   };
 
   // Serves from now on. `hub` may be null: nothing is streamed then. Both have to outlive the

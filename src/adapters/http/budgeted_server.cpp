@@ -1,4 +1,4 @@
-#include "web/budgeted_server.h"
+#include "http/budgeted_server.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "web/access.h"
+#include "http/access.h"
 
 #include <filesystem>
 #include <fstream>
@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "web/rate_limit.h"
+#include "http/rate_limit.h"
 
 namespace culprit::web {
 namespace {

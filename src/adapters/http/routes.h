@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "web/event_json.h"
+#include "http/json.h"
 
 namespace culprit::web {
 
