@@ -30,7 +30,7 @@ test:
 # What takes longer than a test may, some four hours in all: a robot that is broken and healed for an hour, 500 kills of culprit,
 # 1,000 robots of a fleet, 100 random sequences of faults for each kind of owner, 40 changes of the core that its tests should notice, what `make test` runs under the
 # address sanitizer as users build, the laboratory and the commands under that sanitizer, all else under the thread sanitizer, each fuzzer for five minutes,
-# Debian packages that are installed, upgraded and removed.
+# every figure in the documents that its command makes again, Debian packages that are installed, upgraded and removed.
 soak:
 	@scripts/install-dependencies --tests
 	cmake --preset release
@@ -49,6 +49,7 @@ soak:
 	cmake --build --preset tsan-soak
 	ctest --preset tsan-soak
 	scripts/fuzz --seconds 300
+	scripts/figures --check
 	scripts/install-dependencies --packages
 	scripts/test-packages
 

@@ -1,9 +1,12 @@
 // The main function of every test program: each process has a temporary folder of its own, so that
-// tests that run at the same time cannot meet in a file. The headers that all tests share are
-// precompiled with this file.
+// tests that run at the same time cannot meet in a file.
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
 
 namespace {
 
