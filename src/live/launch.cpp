@@ -54,6 +54,13 @@ class Starting {
     end_ = std::min(end_, later(robot_.now(), times_.patience));
   }
 
+  void remember(const History& past) {
+    for (const Event& event : past) {
+      const auto* came_up = std::get_if<CameUp>(&event.what);
+      if (came_up != nullptr) part(came_up->component).before = came_up->how;
+    }
+  }
+
   // Of what was started before. `was_asked`: and taken through its lifecycle, as far as that came.
   void resume(ComponentId component, bool was_asked) {
     part(component).is_left_halfway = was_asked;
@@ -104,6 +111,7 @@ class Starting {
     std::optional<Time> joined;
     bool has_lifecycle = false;
     bool has_ended = false;
+    ComingUp before{};             // how it came up last
     std::string trouble{};         // why it could not be started
     bool is_left_halfway = false;  // by a culprit before this one
     bool was_asked = false;        // to change its lifecycle
@@ -171,7 +179,12 @@ class Starting {
   bool moves(ComponentId component) {
     const Part& it = part(component);
     const Duration start = it.began ? *it.joined - *it.began : Duration::zero();
-    const Duration grace = std::max(times_.least_grace, start);
+    using Driver = ComingUp::Driver;
+    const bool is_ours = it.before.driver == Driver::kCulprit;
+    const Duration others =
+        it.before.driver == Driver::kOther ? 2 * it.before.rising : Duration::zero();
+    const Duration grace =
+        is_ours ? Duration::zero() : std::max({times_.least_grace, start, others});
     return observe_until(std::min(end_, later(*it.joined, grace)), [&] {
       return it.state != Lifecycle::kUnknown && it.state != Lifecycle::kUnconfigured;
     });
@@ -282,6 +295,7 @@ Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start,
     unfinished[rules[c].name] = true;
     keeper.keep(unfinished);
   });
+  starting.remember(keeper.past);
   starting.look();
   std::vector<ComponentId> missing;
   std::vector<ComponentId> started;

@@ -3,7 +3,8 @@
 // A lifecycle node that nobody drives stays unconfigured for ever: it is configured and activated,
 // in the order of the DEPENDENCY lines, and where they say nothing in that of the file. A node that
 // does it itself, or has somebody who does, is left alone: the file says so (LIFECYCLE), or it moved
-// within the time that its start took. Nothing is judged meanwhile: the manager begins afterwards,
+// within its time. That is twice as long as it took when somebody else brought it up before; none where
+// culprit did; and where nothing is known, as long as its start took. Nothing is judged meanwhile: the manager begins afterwards,
 // so that a start of many is no storm. What is RESPAWNED is for its launcher to start.
 //
 // What is not finished is kept on disk meanwhile: a culprit that comes after one that was killed brings
@@ -51,6 +52,7 @@ struct LaunchKeeper {
   // Whether culprit, or one before it, started the component, and it runs.
   std::function<bool(ComponentId)> runs = [](ComponentId) { return false; };
   std::function<void(const Unfinished&)> keep = [](const Unfinished&) {};
+  History past{};  // how components came up before (CameUp)
 };
 
 // For the manager to begin with.

@@ -172,6 +172,17 @@ TEST_F(Launching, LeavesANodeAloneThatActivatesItself) {
   EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
 }
 
+TEST_F(Launching, WaitsForWhoActivatedItselfBefore) {
+  const auto came_up = [](ComponentId c, ComingUp how) { return Event{Time{}, CameUp{c, how}}; };
+  keeper.past = {came_up(ComponentId(1u), {ComingUp::Driver::kOther, 2s, 4s}),
+                 came_up(ComponentId(0u), {ComingUp::Driver::kCulprit, 2s, 1s})};
+  robot.nodes["lidar"].activates_itself_after = 7s;
+  const Time begin = robot.now();
+  launch_all();
+  EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
+  EXPECT_LT(robot.now() - begin, 13s) << "the planner is culprit's, and nobody is waited for";
+}
+
 TEST_F(LaunchingDriven, LeavesANodeAloneThatTheFileGivesToOthers) {
   launch_all();
   EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));

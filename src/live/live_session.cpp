@@ -231,7 +231,7 @@ void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_r
   const bool is_held = beginning.orders.pause || beginning.orders.dry_run;
   const std::filesystem::path kept =
       frame_.options.no_journal.empty() ? launching_beside(frame_.options.journal) : "";
-  LaunchKeeper keeper{read_unfinished(kept), frame_.options.launches, {}, {}};
+  LaunchKeeper keeper{read_unfinished(kept), frame_.options.launches, {}, {}, beginning.past};
   if ((keeper.starts_missing || !keeper.left.empty()) && !frame_.advises && !is_held) {
     keeper.runs = [&](ComponentId c) { return robot_->supervisor().has_started(c); };
     keeper.keep = [&](const Unfinished& unfinished) {

@@ -336,7 +336,12 @@ void Supervisor::stop(CommandId command, ComponentId component, Ending ending, H
   const MutexLock lock(mutex_);
   if (auto why = why_not_end(component, ending))
     return answer(command, Outcome::kRefused, std::move(*why));
-  if (ending == Ending::kForGood || is_gone(component) || is_left_to_launcher(component)) {
+  const auto trial = std::ranges::find(trials_, component, &Trial::component);
+  if (trial != trials_.end()) {
+    trial->commands.push_back(command);
+    if (hangs == Hangs::kYes) trial->hangs = hangs;
+  } else if (ending == Ending::kForGood || is_gone(component) || is_left_to_launcher(component) ||
+             shutdown_of(component) != nullptr) {
     begin_shutdown(command, component, hangs);
   } else {
     const auto environment = environment_of(component);
@@ -348,7 +353,7 @@ void Supervisor::stop(CommandId command, ComponentId component, Ending ending, H
     if (!lock_of_start) return answer(command, Outcome::kRefused, lock_of_start.error());
     auto launch = Launch::begin(program_of(component), Until::kItCouldRun);
     if (!launch) return answer(command, Outcome::kRefused, launch.error());
-    trials_.push_back({command, component, std::move(*launch), later(live_now(), kTrial), hangs});
+    trials_.push_back({{command}, component, std::move(*launch), later(live_now(), kTrial), hangs});
   }
   wake();
 }
@@ -363,18 +368,40 @@ void Supervisor::finish_trials(Time now) {
                 : Expected<void>(Error{"its start was tried and hung for " +
                                        culprit::to_string(kTrial) +
                                        "; does the file system of its program answer?"});
-    if (could_run) {
-      begin_shutdown(trial.command, trial.component, trial.hangs);
-    } else {
-      answer(trial.command, Outcome::kRefused,
-             name + " is not ended, for it could not be started again: " + could_run.error());
+    for (const CommandId command : trial.commands) {
+      if (could_run) {
+        begin_shutdown(command, trial.component, trial.hangs);
+      } else {
+        answer(command, Outcome::kRefused,
+               name + " is not ended, for it could not be started again: " + could_run.error());
+      }
     }
     trial.until = kLongAgo;
   }
   std::erase_if(trials_, [](const Trial& t) { return t.until == kLongAgo; });
 }
 
+Supervisor::Shutdown* Supervisor::shutdown_of(ComponentId component) {
+  const auto found = std::ranges::find_if(shutdowns_, [&](const Shutdown& s) {
+    return s.component == component && !s.only_started && s.escalate != kNever;
+  });
+  return found == shutdowns_.end() ? nullptr : &*found;
+}
+
+// What hangs has no use for the rest of its time.
+void Supervisor::hurry(Shutdown& shutdown) {
+  if (shutdown.hangs == Hangs::kYes) return;
+  shutdown.hangs = Hangs::kYes;
+  if (shutdown.signal == SIGINT) shutdown.escalate -= kPolite - kHung;
+  if (shutdown.signal == SIGTERM) shutdown.escalate = live_now();
+}
+
 void Supervisor::begin_shutdown(CommandId command, ComponentId component, Hangs hangs) {
+  if (Shutdown* const present = shutdown_of(component)) {
+    if (hangs == Hangs::kYes) hurry(*present);
+    shutdowns_.push_back({command, component, hangs});
+    return;
+  }
   for (Member& member : members_) {
     if (member.component != component || member.process.relation() != Relation::kAdopted) continue;
     member.left = descendants_of(member.process.pid());

@@ -95,7 +95,8 @@ class Supervisor {
 
   // Ends all processes of the component that are watched, and no others, whatever their numbers;
   // replies when they are gone. Refuses if one of them is not proven to be the component's, or if
-  // it could not be started again: then none is ended.
+  // it could not be started again: then none is ended. Where that is under way already, it only waits
+  // for its end, and hurries it if it is known to hang by now.
   void stop(CommandId command, ComponentId component, Ending ending, Hangs hangs = Hangs::kNo);
 
   // Watches the process that had this number at `known` as the component's, for its node is there;
@@ -141,7 +142,7 @@ class Supervisor {
   };
   // A start that is tried before an end.
   struct Trial {
-    CommandId command;
+    std::vector<CommandId> commands;
     ComponentId component;
     Launch launch;
     Time until;
@@ -154,7 +155,7 @@ class Supervisor {
     Hangs hangs = Hangs::kNo;
     bool only_started = false;  // what others started goes on
     int signal = 0;             // sent last
-    Time escalate = kNever;     // when the next one is due
+    Time escalate = kNever;     // when the next one is due; kNever: another shutdown sees to that
   };
 
   // Who started a component that culprit did not start.
@@ -198,6 +199,8 @@ class Supervisor {
   bool was_started(const Member& member) const;
   bool is_meant(const Shutdown& shutdown, const Member& member) const;
   bool is_over(const Shutdown& shutdown) const CULPRIT_REQUIRES(mutex_);
+  Shutdown* shutdown_of(ComponentId component) CULPRIT_REQUIRES(mutex_);
+  static void hurry(Shutdown& shutdown);
   void begin_shutdown(CommandId command, ComponentId component, Hangs hangs)
       CULPRIT_REQUIRES(mutex_);
   void end_member(Member& member) CULPRIT_REQUIRES(mutex_);

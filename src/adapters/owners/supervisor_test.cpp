@@ -418,6 +418,26 @@ TEST(Supervisor, KillsWhatHangsSoon) {
   EXPECT_FALSE(exists(pid));
 }
 
+TEST(Supervisor, KillsSoonWhatIsKnownToHangOnlyWhileItIsEnded) {
+  Supervised c("sh -c 'trap \\\"\\\" INT TERM; echo ready; while true; do sleep 0.1; done'");
+  const int pid = c.start();
+  c.log_when("ready");
+  c.supervisor->stop({2}, ComponentId(0), Ending::kToStartAgain);
+  c.supervisor->stop({3}, ComponentId(0), Ending::kToStartAgain, Hangs::kYes);
+  EXPECT_EQ(c.state(ProcessState::kGone).remark, "killed by signal 9") << "not by SIGTERM";
+  EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kDone);
+  EXPECT_FALSE(exists(pid));
+}
+
+TEST(Supervisor, AnswersAllWhoWaitForOneEnd) {
+  Supervised c("sleep 1000");
+  c.start();
+  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  c.supervisor->stop({3}, ComponentId(0), Ending::kForGood, Hangs::kYes);
+  EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
+  EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kDone);
+}
+
 // As `ros2 run` starts a node: what works is a child.
 TEST(Supervisor, TellsThatWhatItStartedWorksUntilItsNodeIsThere) {
   Supervised c("sh -c 'while :; do :; done & wait'");

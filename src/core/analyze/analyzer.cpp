@@ -18,6 +18,24 @@ Duration pause_after(int rounds) {
   return std::min<Duration>(Analyzer::kFirstBackoff * (1 << doublings), Analyzer::kLongestBackoff);
 }
 
+// Whose value it is; of signals and diagnostics nobody knows.
+bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowledge) {
+  using Kind = Input::Kind;
+  switch (input.kind) {
+    case Kind::kRate:
+    case Kind::kAge:
+    case Kind::kPhi:
+      return knowledge.graph.publishes(component, knowledge.rules[input.topic].name);
+    case Kind::kAlive:
+    case Kind::kLifecycle:
+      return input.component == component;
+    case Kind::kParameter:
+      return knowledge.rules.parameters[input.parameter.index].component == component;
+    default:
+      return true;
+  }
+}
+
 }  // namespace
 
 Duration longest_detection(const RuleSet& rules) {
@@ -301,13 +319,36 @@ void Analyzer::judge(RuleId id, Time now) {
   if (attempt.deadline == kNever) attempt.is_ambiguous |= couplings_.is_echo(attempt);
   // Anew each time: how long a signal takes to show a change may have become known meanwhile.
   const Duration impact = duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
-  attempt.deadline = later(later(attempt.effective, impact), knowledge_.signals.latency(id));
+  const Time given = std::max(later(attempt.effective, impact), shows_from(attempt));
+  attempt.deadline = later(given, knowledge_.signals.latency(id));
   if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
   if (is_suspended || now < attempt.deadline || is_false(state.detection.trigger)) return;
   if (state.detection.trigger.known || now >= later(attempt.deadline, kLostAfter) ||
       holds_up_more_critical(attempt.strategy))
     fail(id, now);
+}
+
+// What was started has to find what it reads, and to be found by those who read it where the rule is
+// about them.
+Time Analyzer::shows_from(const Attempt& attempt) const {
+  const Strategy& strategy = knowledge_.rules[attempt.strategy];
+  const auto is_read = [&](ComponentId component) {
+    const auto& inputs = knowledge_.rules[strategy.rule].inputs;
+    return std::ranges::any_of(
+        inputs, [&](InputId id) { return may_be_of(component, knowledge_.rules[id], knowledge_); });
+  };
+  Time from = kLongAgo;
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    if (adaptation.type != AdaptationType::kRedeploy && adaptation.type != AdaptationType::kStart)
+      continue;
+    from = std::max(from, knowledge_.can_hear_from(adaptation.component));
+    const std::vector<ComponentId> readers = knowledge_.graph.downstream(adaptation.component);
+    for (const ComponentId reader : readers) {
+      if (is_read(reader)) from = std::max(from, knowledge_.can_hear_from(reader));
+    }
+  }
+  return std::min(from, later(attempt.effective, kInputs));
 }
 
 bool Analyzer::holds_up_more_critical(StrategyId strategy) const {
@@ -481,7 +522,8 @@ void Analyzer::schedule(RuleId id, Time now) {
   if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
     want(state.attempt->deadline);
     // Until nobody waits any longer; a more critical failure may come before.
-    if (!state.detection.trigger.known) want(later(now, knowledge_.rules.cycle));
+    if (!state.detection.trigger.known || shows_from(*state.attempt) > now)
+      want(later(now, knowledge_.rules.cycle));
   }
   if (state.attempt && state.attempt->stage == Attempt::Stage::kSuspended)
     want(later(now, knowledge_.rules.cycle));

@@ -14,7 +14,8 @@
 // A strategy under way succeeds when its failure is resolved, once its adaptations took effect. It
 // fails at its deadline: its impact in cycles after they took effect, plus the latency of what the
 // trigger reads. The latency of a signal is two of its periods, so that a fresh reading comes
-// first; five seconds while its period is not known.
+// first; five seconds while its period is not known. Of what began anew nothing is expected before its
+// middleware can have found what it reads, and who reads it (kInputs at most).
 //
 // A round of strategies is followed by a back-off that doubles each time. After ATTEMPTS strategies
 // (or as many rounds without any valid strategy) its LASTRESORT strategies follow, each once, and
@@ -51,6 +52,8 @@ class Analyzer {
   // A failing rule whose trigger is unknown for longer is no longer called failing: nobody can see
   // whether it is.
   static constexpr Duration kLostAfter = std::chrono::seconds(30);
+  // A verdict on what was started waits for its inputs so long, and not for ever.
+  static constexpr Duration kInputs = std::chrono::seconds(14);
   // A failure that is back within so long may be an effect that its cause brought back.
   static constexpr Duration kRecurs = std::chrono::seconds(5);
   // A failure that came so often, each time before it was proven gone, flaps.
@@ -125,6 +128,8 @@ class Analyzer {
   void watch_failing(RuleId id, Time now);
   void leave(RuleId id, Time now);
   void judge(RuleId id, Time now);
+  // Its effect cannot be seen before.
+  Time shows_from(const Attempt& attempt) const;
   void end_attempt(RuleId id, Time now);
   void succeed(RuleId id, Time now);
   void fail(RuleId id, Time now);

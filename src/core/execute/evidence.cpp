@@ -72,20 +72,23 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
   return std::nullopt;
 }
 
+bool owes_answer(const ComponentState& state, Time now) {
+  constexpr Duration kOverdue = std::chrono::milliseconds(450);  // it is asked every 400 ms
+  return state.answers_probes && later(state.answered, kOverdue) < now;
+}
+
 std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowledge& knowledge,
                                            Time now) {
-  // It is asked every 400 ms; that it hangs is told by two questions, or three, that were not answered within 500 ms (Monitor).
-  constexpr Duration kOverdue = std::chrono::milliseconds(450);
+  // That it hangs is told by two questions, or three, that were not answered within 500 ms (Monitor).
   constexpr Duration kVerdict = std::chrono::milliseconds(1900);
   if (strategy.is_last_resort) return std::nullopt;
   for (const Adaptation& adaptation : strategy.adaptations) {
     const bool disturbs =
         adaptation.type == AdaptationType::kRestart || adaptation.type == AdaptationType::kRedeploy;
     const ComponentState& state = knowledge.components[adaptation.component];
-    const bool is_asked =
-        state.answers_probes && is_at_work(state) && state.changes_until == kNever;
+    const bool is_asked = is_at_work(state) && state.changes_until == kNever;
     const Time until = later(state.answered, kVerdict);
-    if (disturbs && is_asked && later(state.answered, kOverdue) < now && now < until)
+    if (disturbs && is_asked && owes_answer(state, now) && now < until)
       return AnswerToCome{
           "it is seen whether " + knowledge.rules[adaptation.component].name + " still answers",
           until};

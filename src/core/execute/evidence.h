@@ -22,6 +22,9 @@ namespace culprit {
 std::optional<std::string> contradiction(const Strategy& strategy, const Knowledge& knowledge,
                                          Time now);
 
+// It is asked whether it is there, answered before, and its answer is overdue.
+bool owes_answer(const ComponentState& state, Time now);
+
 // Whether a component that the strategy ends, or takes through its lifecycle, hangs will be known soon: its
 // answer is overdue. What hangs is not asked politely, and for nothing else; what was ended politely
 // can hardly be told from it any more. Nothing: it answers, or is never asked. A last resort does not wait.

@@ -97,7 +97,7 @@ void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
   while (run.pursuit || (run.is_undoing ? next_undo(run, now) : next_goal(run, now))) {
     const bool had_changed = run.pursuit->has_changed_anything();
     if (run.pending == CommandId{} || run.pursuit->next_deadline() <= now ||
-        run.pursuit->is_lost(knowledge_)) {
+        run.pursuit->is_lost(knowledge_) || run.pursuit->must_insist(knowledge_)) {
       if (auto request = run.pursuit->advance(knowledge_, now)) {
         run.pending = {++last_command_};
         if (std::holds_alternative<StopProcess>(*request))

@@ -149,7 +149,7 @@ std::optional<Limits::Limit> Limits::quiet(ComponentId component, Time now) cons
   const auto producers = knowledge_.graph.upstream(component);
   // What is known to be dead waits for nobody.
   const bool is_dead = knowledge_.components[component].alive == false;
-  const bool finds_others = !is_dead && !producers.empty();
+  const bool finds_others = !is_dead && knowledge_.graph.reads_others(component);
   const Duration own_quiet = finds_others
                                  ? std::max(options_.quiet_after_launch, options_.quiet_downstream)
                                  : options_.quiet_after_launch;

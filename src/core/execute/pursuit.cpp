@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/value_list.h"
+#include "execute/evidence.h"
 
 namespace culprit::execute {
 
@@ -145,6 +146,18 @@ bool Pursuit::is_lost(const Knowledge& knowledge) const {
   return !is_of_process && state.alive == false;
 }
 
+// A node that ends politely answers nothing while it does so. Only one that had not answered before
+// is known to hang. systemd, engines and containers end what is theirs in their own way.
+bool Pursuit::must_insist(const Knowledge& knowledge) const {
+  const auto* stop = sent_.empty() ? nullptr : std::get_if<StopProcess>(&sent_.back());
+  if (stop == nullptr || stop->hangs || !owed_answer_ || !is_under_way()) return false;
+  const Component& component = knowledge.rules[component_];
+  const bool is_ended_by_others =
+      component.has_owner() || component.composed || is_container(component_, knowledge.rules);
+  const ComponentState& state = knowledge.components[component_];
+  return !is_ended_by_others && state.hangs() && (stop->pid == 0 || state.known_pid() == stop->pid);
+}
+
 std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Time now) {
   assert(is_under_way());
   if (is_lost(knowledge)) {
@@ -154,6 +167,10 @@ std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Tim
     if (state.in_graph) return give_up("its process is stopped");
     const std::string& how = state.process_remark;
     return give_up("it is not there any more" + (how.empty() ? "" : ": " + how));
+  }
+  if (must_insist(knowledge)) {
+    answer_.reset();
+    return change(StopProcess{std::get<StopProcess>(sent_.back()).pid, true}, now);
   }
   // An adapter that never answers must not hold a component for ever.
   if (wake_ <= now && (step_ == Step::kLooking || step_ == Step::kChanging)) {
@@ -295,8 +312,10 @@ std::optional<Pursuit::Request> Pursuit::pursue(const GoneGoal& goal, const Know
   // systemd knows it by its unit, also if it is another user's.
   if (state.in_graph && state.known_pid() == 0 && !knowledge.rules[component_].has_owner())
     return give_up("its process is not known; is it on another machine?");
-  if (!has_changed_anything())
+  if (!has_changed_anything()) {
+    owed_answer_ = owes_answer(state, now);
     return change(StopProcess{goal.pid != 0 ? goal.pid : state.known_pid(), state.hangs()}, now);
+  }
   const bool is_gone = !state.in_graph && state.process == ProcessState::kGone;
   // Where the operating system is asked, its word is needed too: a new process must not begin
   // beside the old one because of a wrong answer.

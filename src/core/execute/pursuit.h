@@ -1,7 +1,7 @@
 // The pursuit of one goal: which request comes next, and when it is reached or given up.
 //
-// A state machine without I/O. It sends at most one request at a time and each changing request at
-// most once.
+// A state machine without I/O. It waits for one request at a time, and sends each changing request
+// at most once; only a stop is sent anew, as a kill, where it is proven meanwhile that the node hangs.
 #pragma once
 
 #include <optional>
@@ -41,6 +41,9 @@ class Pursuit {
 
   // Its component is not there any more, or hangs, so that there is nothing to look at or to change.
   bool is_lost(const Knowledge& knowledge) const;
+
+  // Its node was asked to end politely, and is proven to hang since: it is to be killed.
+  bool must_insist(const Knowledge& knowledge) const;
 
   // Somebody else has changed, meanwhile, what it changes.
   bool met_driver() const { return driver_seen_; }
@@ -103,6 +106,7 @@ class Pursuit {
   std::string remark_;
   bool met_rival_ = false;
   bool took_too_long_ = false;
+  bool owed_answer_ = false;  // GoneGoal: its answer was overdue when it was asked to end
   Lifecycle last_ = Lifecycle::kUnknown;       // LifecycleGoal: the last primary state seen
   Lifecycle asked_for_ = Lifecycle::kUnknown;  // where the last transition leads
   bool driver_seen_ = false;

@@ -125,6 +125,47 @@ TEST(PursuitOfAProcess, SaysOfWhatHangsThatItDoes) {
   EXPECT_TRUE(std::get<StopProcess>(*request).hangs);
 }
 
+// A node that is asked to end at kStart, when it had not answered for so long; half a second later it is known to hang.
+struct Ended {
+  explicit Ended(Duration unanswered) {
+    one.runs(7, true);
+    one.state().alive = true;
+    one.state().answers_probes = true;
+    one.state().answered = kStart - unanswered;
+    const auto stop = pursuit.advance(one.knowledge, kStart);
+    EXPECT_TRUE(is<StopProcess>(stop));
+    EXPECT_FALSE(std::get<StopProcess>(*stop).hangs);
+  }
+  std::optional<Pursuit::Request> when_it_hangs() {
+    EXPECT_FALSE(pursuit.must_insist(one.knowledge));
+    one.state().alive = false;
+    return pursuit.advance(one.knowledge, kStart + 500ms);
+  }
+  One one;
+  Pursuit pursuit{GoneGoal{}, one.c, kStart};
+};
+
+TEST(PursuitOfAProcess, SaysOnceMoreWhatIsKnownToHangOnlyWhileItIsEnded) {
+  Ended ended(600ms);
+  const auto again = ended.when_it_hangs();
+  ASSERT_TRUE(is<StopProcess>(again));
+  EXPECT_TRUE(std::get<StopProcess>(*again).hangs);
+  EXPECT_EQ(std::get<StopProcess>(*again).pid, 7);
+  EXPECT_FALSE(ended.pursuit.must_insist(ended.one.knowledge)) << "that is said once";
+  EXPECT_FALSE(ended.pursuit.advance(ended.one.knowledge, kStart + 600ms));
+}
+
+TEST(PursuitOfAProcess, LetsOneEndInPeaceThatAnsweredWhenItWasAsked) {
+  Ended ended(200ms);
+  EXPECT_FALSE(ended.when_it_hangs()) << "who ends answers nothing any more";
+}
+
+TEST(PursuitOfAProcess, SaysNothingTwiceToSystemd) {
+  Ended ended(600ms);
+  ended.one.rules.components[0].unit = SystemdUnit{"c.service"};
+  EXPECT_FALSE(ended.when_it_hangs());
+}
+
 TEST(PursuitOfALifecycle, EndsWhenTheNodeHangs) {
   One one;
   one.runs(7, true);

@@ -239,6 +239,20 @@ const std::vector<ComponentId>& DependencyGraph::upstream(ComponentId component)
   return reach(component, Direction::kUpstream);
 }
 
+bool DependencyGraph::reads_others(ComponentId component) const {
+  const auto node = nodes_of_components_[component.index];
+  if (!node) return false;
+  const Node& own = nodes_[node->index];
+  return !own.declared_producers.empty() || std::ranges::any_of(own.consumes, [&](ChannelId id) {
+    const Channel& channel = channels_[id.index];
+    const auto end = std::ranges::find(channel.consumers, *node, &End::node);
+    return counts(*end, channel, false) &&
+           std::ranges::any_of(channel.producers, [&](const End& each) {
+             return each.node != *node && counts(each, channel, true);
+           });
+  });
+}
+
 const std::vector<ComponentId>& DependencyGraph::downstream(ComponentId component) const {
   return reach(component, Direction::kDownstream);
 }

@@ -65,6 +65,9 @@ class DependencyGraph {
   // Whether the component's node has all ends that count.
   bool has_all_ends(ComponentId component) const;
 
+  // Whether it depends on any node, of the rules or not.
+  bool reads_others(ComponentId component) const;
+
   // How many nodes publish `topic`, as far as was seen and is not ignored, and whether the
   // component is among them.
   std::size_t publisher_count(const std::string& topic) const;

@@ -25,4 +25,17 @@ Time Knowledge::began(ComponentId component) const {
   return last;
 }
 
+Time Knowledge::can_hear_from(ComponentId component) const {
+  if (!graph.reads_others(component)) return kLongAgo;
+  const auto has_ends = [](const ComponentState& state) {
+    return std::max({state.node_seen, state.ends_back, state.awaits_ends_until});
+  };
+  Time from = has_ends(components[component]);
+  for (const ComponentId upstream : graph.upstream(component)) {
+    if (components[upstream].alive == false) return kNever;
+    from = std::max(from, has_ends(components[upstream]));
+  }
+  return later(from, finding);
+}
+
 }  // namespace culprit

@@ -49,6 +49,7 @@ struct Knowledge {
         withheld(other.withheld),
         outcomes(other.outcomes),
         rivals(other.rivals),
+        finding(other.finding),
         now(other.now) {}
   Knowledge(const Knowledge&) = delete;
 
@@ -72,7 +73,8 @@ struct Knowledge {
   WithheldList withheld;
   PendingOutcomes outcomes;
   Rivals rivals;
-  Time now{};  // of the step under way
+  Duration finding{};  // how long a node that began anew may take to find what it reads
+  Time now{};          // of the step under way
   EventLog events;
 
   // What the run that comes next should know. Changes only with the graph's changes and the count
@@ -81,6 +83,11 @@ struct Knowledge {
 
   // When the component, or something that it depends on, last joined the graph.
   Time began(ComponentId component) const;
+
+  // When a message of what the component reads can have come at the latest, since it or what it depends
+  // on began anew: its middleware has to find them first, and they have to publish again. kNever: one of
+  // those is not there. kLongAgo: it reads nothing.
+  Time can_hear_from(ComponentId component) const;
 };
 
 }  // namespace culprit

@@ -320,6 +320,37 @@ TopicId rgb_of(TestRobot& robot) {
   return TopicId(static_cast<std::size_t>(rgb - topics.begin()));
 }
 
+// It pauses for 2 s when it is well, so that its silence proves nothing for 3 s; and by then it was asked to end.
+TEST(Evidence, ThatANodeHangsCountsAlsoWhileItIsAskedToEnd) {
+  TestRobot robot = one_camera(with_evidence(), R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Silent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 2300ms
+    STRATEGY again 90 10
+      ADAPTATION camera redeploy 5
+)");
+  TestRobot::Component& camera = robot["camera"];
+  camera.ends_only_if_killed = true;
+  const auto ask = [&](bool answers) {
+    robot.tell(Probed{ComponentId(0), answers});
+    robot.run_for(400ms);
+  };
+  robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/rgb"});
+  camera.fault = "it pauses";
+  for (int i = 0; i < 5; ++i) ask(true);
+  camera.fault.clear();
+  for (int i = 0; i < 3; ++i) ask(true);
+  camera.fault = "redeploy";
+  const Time began = robot.now;
+  while (robot.now < began + 2800ms) ask(false);
+  EXPECT_EQ(robot.count_asked("camera: stop process"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("camera is lost"), 0u) << transcript(robot);
+  while (robot.now < began + 4s) ask(false);
+  EXPECT_EQ(robot.count_asked("camera: stop process"), 2u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+}
+
 // What hangs is not asked politely, which would take seconds.
 TEST(Evidence, IsAwaitedWhereAnAnswerIsOverdue) {
   for (const bool hangs : {true, false}) {

@@ -63,6 +63,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
       held_back_(rules.rules.size()) {
   knowledge_.beliefs.set_forgetting(options.forgetting);
   knowledge_.couplings.set_forgetting(options.forgetting);
+  knowledge_.finding = options.governor.limits.quiet_downstream;
   knowledge_.outcomes.healthy = options.governor.limits.backoff.healthy;
 }
 

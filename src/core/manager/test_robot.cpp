@@ -184,7 +184,8 @@ void TestRobot::reply(const Command& command, Outcome outcome, decltype(Reply::v
 
 void TestRobot::serve(const Command& command) {
   Component& c = components_.at(rules_->components[command.component.index].name);
-  if (std::holds_alternative<StopProcess>(command.what)) {
+  if (const auto* stop = std::get_if<StopProcess>(&command.what)) {
+    if (c.ends_only_if_killed && !stop->hangs) return;
     if (c.end())
       observe(ProcessSeen{command.component, ProcessState::kGone, c.pid, "stopped", Cause::kWish});
     return reply(command, Outcome::kDone);

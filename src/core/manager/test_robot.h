@@ -44,6 +44,7 @@ class TestRobot {
     bool loses_replies = false;       // does it, and the answer is lost
     Duration lateness{};              // with which it is reported that no answer came
     bool dies_at_start = false;
+    bool ends_only_if_killed = false;
     Duration start_time = 300ms;
     Lifecycle state_at_start = Lifecycle::kActive;
     // A timer of its own activates it so long after its start. It ends if somebody was there first.

@@ -78,5 +78,88 @@ RULE Blurred
   EXPECT_EQ(robot.now, deadline + Analyzer::kLostAfter) << transcript(robot);
 }
 
+// ---- what was started has to find what it reads
+
+constexpr const char* kTwoInARow = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT detector NODE /detector LAUNCH "detector"
+RULE CameraSilent
+  POLICIES ERROR
+  TRIGGER age(/image) > 500ms
+    STRATEGY camera_again 90 10
+      ADAPTATION camera redeploy 5
+RULE DetectorSilent
+  POLICIES ERROR
+  TRIGGER age(/objects) > 500ms
+    STRATEGY detector_again 90 10
+      ADAPTATION detector redeploy 5
+)";
+
+Manager::Options finding_within(Duration time) {
+  Manager::Options options;
+  options.governor.limits.quiet_downstream = time;
+  return options;
+}
+
+// A pipeline on which this one stopped to publish.
+TestRobot two_in_a_row(const std::string& broken) {
+  TestRobot robot(kTwoInARow, std::make_unique<BayesPlanner>(), finding_within(3500ms));
+  robot.add("camera", {}, "/image");
+  robot.add("detector", {}, "/objects").hears = {"camera"};
+  robot.discover();
+  robot.run_for(3s);
+  robot[broken].fault = "nobody knows what";
+  return robot;
+}
+
+// From when it took effect to when it was said not to have helped.
+Duration verdict_of(const TestRobot& robot) {
+  Time done = kNever;
+  for (const Event& event : robot.events) {
+    if (std::holds_alternative<AdaptationDone>(event.what)) done = std::min(done, event.at);
+    if (std::holds_alternative<StrategyFailed>(event.what)) return event.at - done;
+  }
+  return Duration::zero();
+}
+
+TEST(Verdicts, OnWhatWasStartedWaitUntilItCanHaveHeardWhatItReads) {
+  TestRobot robot = two_in_a_row("detector");
+  robot.run_for(8s);
+  EXPECT_GE(verdict_of(robot), 3400ms) << transcript(robot);
+  EXPECT_LE(verdict_of(robot), 4s) << transcript(robot);
+}
+
+TEST(Verdicts, OnWhatWasStartedAndReadsNothingDoNot) {
+  TestRobot robot = two_in_a_row("camera");
+  robot.run_for(8s);
+  EXPECT_GE(verdict_of(robot), 1s) << transcript(robot);
+  EXPECT_LE(verdict_of(robot), 1500ms) << transcript(robot);
+}
+
+// As long as Fast DDS may take to match it.
+TEST(Verdicts, DoNotCountAWellNodeAsFailedThatFindsWhatItReadsLate) {
+  TestRobot robot = two_in_a_row("detector");
+  robot.run_for(1s);
+  ASSERT_EQ(robot.count("redeploy detector: done"), 1u) << transcript(robot);
+  robot.run_for(2500ms);
+  robot["detector"].fault.clear();
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("did not resolve"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("DetectorSilent resolved by detector_again"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("detector: start process"), 1u) << transcript(robot);
+}
+
+TEST(Verdicts, DoNotWaitForEverForWhatIsNotThere) {
+  TestRobot robot = two_in_a_row("detector");
+  robot["camera"].dies_at_start = true;
+  robot.run_for(1s);
+  ASSERT_EQ(robot.count("redeploy detector: done"), 1u) << transcript(robot);
+  robot.kill("camera");
+  robot.run_for(12s);
+  EXPECT_EQ(robot.count("detector_again did not resolve"), 0u) << transcript(robot);
+  robot.run_for(3s);
+  EXPECT_EQ(robot.count("detector_again did not resolve"), 1u) << transcript(robot);
+}
+
 }  // namespace
 }  // namespace culprit::test
