@@ -294,7 +294,7 @@ function(culprit_test name)
     if(ARG_PROCESSORS)
       list(APPEND properties PROCESSORS ${ARG_PROCESSORS})
     endif()
-  elseif(NOT ARG_WAITS)
+  elseif(NOT ARG_WAITS OR CULPRIT_SANITIZE STREQUAL "thread") # which makes them compute
     list(APPEND properties PROCESSORS 2)
   endif()
   set(kinds offline sanitized)
