@@ -268,8 +268,9 @@ endfunction()
 
 # culprit_test(<name> SOURCES ... USES ... [PACKAGES ...] [SERIAL] [WAITS] [LIVE [PROCESSORS n]] [LABELS ...] [CASES n] [ALONE ...] [UNSANITIZED ...]): one CTest
 # test for each TEST. Where it is built as users build, what the address sanitizer looks at in `make test` has the label "sanitized". SERIAL tests run one after
-# the other, beside those of other programs; those of WAITS wait more than they compute, so that two may run where one of the others does. LIVE tests have a machine of their own (in_own_machine.sh), or run alone; most wait more than they
-# compute, so two of them may run where one of the others does: PROCESSORS says of how many of the four that two cores count for. Properties are tried on n random cases each instead of 100.
+# the other, beside those of other programs. LIVE tests have a machine of their own (in_own_machine.sh), or run alone. They and those of WAITS wait more than
+# they compute, so two of them may run where one of the others does: PROCESSORS says of how many of the four that two cores count for. Properties are tried on n
+# random cases each instead of 100.
 function(culprit_test name)
   cmake_parse_arguments(ARG "SERIAL;WAITS;LIVE" "" "SOURCES;USES;PACKAGES;LABELS;CASES;ALONE;UNSANITIZED;PROCESSORS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
