@@ -175,6 +175,6 @@ std::optional<ComponentId> BagReading::node_seen(const std::string& node) {
   return nodes_[node] = binding_.bind(node);
 }
 
-void BagReading::put(decltype(Observation::what) what) { out_->push_back({now_, std::move(what)}); }
+void BagReading::put(ObservationWhat what) { out_->push_back({now_, std::move(what)}); }
 
 }  // namespace culprit::bag

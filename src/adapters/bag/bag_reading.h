@@ -49,7 +49,7 @@ class BagReading {
   void read_transition(const std::string& node, ros2::ByteView payload);
   void read_log(ros2::ByteView payload);
   std::optional<ComponentId> node_seen(const std::string& node);
-  void put(decltype(Observation::what) what);
+  void put(ObservationWhat what);
 
   const RuleSet& rules_;
   const BagContents& contents_;

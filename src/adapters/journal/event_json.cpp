@@ -10,7 +10,7 @@
 namespace culprit::journal {
 namespace {
 
-using What = decltype(Event::what);
+using What = EventWhat;
 
 constexpr std::string_view word_of(ComingUp::Driver driver) {
   switch (driver) {
@@ -238,14 +238,15 @@ class EventReader {
         component_(find_component(rules, text_of(json, "component"))) {}
 
   std::optional<What> read(EventKind kind) const {
-    return read(kind, std::make_index_sequence<std::variant_size_v<What>>());
+    return read(kind, std::make_index_sequence<std::variant_size_v<What::Variant>>());
   }
 
  private:
   template <std::size_t... kKinds>
   std::optional<What> read(EventKind kind, std::index_sequence<kKinds...>) const {
     std::optional<What> what;
-    (void)((kKinds == kind && (what = read<std::variant_alternative_t<kKinds, What>>(), true)) ||
+    (void)((kKinds == kind &&
+            (what = read<std::variant_alternative_t<kKinds, What::Variant>>(), true)) ||
            ...);
     return what;
   }

@@ -25,7 +25,7 @@ RULE R
       ADAPTATION camera redeploy 1
 )";
 
-std::vector<decltype(Event::what)> samples() {
+std::vector<EventWhat> samples() {
   const RuleId r(0);
   const StrategyId s(0);
   const ComponentId c(0);
@@ -100,7 +100,7 @@ TEST(EventJson, RowsAreAsTheyHaveAlwaysBeen) {
     seen.insert(events[i].index());
     EXPECT_EQ(to_text(to_json(Event{Time(7ns), events[i]}, rules)), rows[i]);
   }
-  EXPECT_EQ(seen.size(), std::variant_size_v<decltype(Event::what)>) << "each has a sample";
+  EXPECT_EQ(seen.size(), std::variant_size_v<EventWhat::Variant>) << "each has a sample";
 }
 
 TEST(EventJson, WhatIsReadBackIsWrittenAgainWithTheSameNames) {

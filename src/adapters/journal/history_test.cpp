@@ -18,7 +18,7 @@ RuleSet rules() {
               .rules;
 }
 
-Event at(Duration when, decltype(Event::what) what) { return {Time(when), std::move(what)}; }
+Event at(Duration when, EventWhat what) { return {Time(when), std::move(what)}; }
 
 template <class What>
 std::size_t count(const History& past) {

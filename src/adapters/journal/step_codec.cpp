@@ -307,7 +307,7 @@ class Decoder {
     return in_.is_good() ? Time(Duration(at)) : now;
   }
 
-  decltype(Observation::what) what(Tag tag) {
+  ObservationWhat what(Tag tag) {
     // One field after the other: the order in which the arguments of a call are evaluated is open.
     switch (tag) {
       case Tag::kNodeAppeared: {

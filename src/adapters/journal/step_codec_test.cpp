@@ -66,7 +66,7 @@ decltype(Order::what) any_order() {
   }
 }
 
-decltype(Observation::what) anything() {
+ObservationWhat anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
   switch (*rc::gen::inRange(0, 24)) {

@@ -293,17 +293,31 @@ struct PriorsAdopted {
   std::string source;
 };
 
+// One of these happened. To copy and to destroy a variant of so many is compiled once (event.cpp), not into every file that
+// touches an event.
+class EventWhat
+    : public std::variant<
+          FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
+          AdaptationDone, AdaptationFailed, StrategyFailed, StrategyResumed, Undone, RoundSpent,
+          RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble, OrderAccepted,
+          OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed, StrategyAbandoned,
+          OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached,
+          LifecycleIntended, CameUp, OutcomePending, OutcomeCounted, FailureFlaps,
+          JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen, PriorsAdopted> {
+ public:
+  using Variant = variant;
+  using variant::variant;
+  EventWhat();
+  EventWhat(const EventWhat& other);
+  EventWhat(EventWhat&& other) noexcept;
+  EventWhat& operator=(const EventWhat& other);
+  EventWhat& operator=(EventWhat&& other) noexcept;
+  ~EventWhat();
+};
+
 struct Event {
   Time at;
-  std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
-               AdaptationDone, AdaptationFailed, StrategyFailed, StrategyResumed, Undone,
-               RoundSpent, RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble,
-               OrderAccepted, OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed,
-               StrategyAbandoned, OrderCarriedOut, SilenceEnded, StormBegan, StormEnded,
-               LastResortReached, LifecycleIntended, CameUp, OutcomePending, OutcomeCounted,
-               FailureFlaps, JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen,
-               PriorsAdopted>
-      what;
+  EventWhat what;
 };
 
 }  // namespace culprit

@@ -5,7 +5,7 @@
 namespace culprit {
 namespace {
 
-constexpr std::size_t kKinds = std::variant_size_v<decltype(Event::what)>;
+constexpr std::size_t kKinds = std::variant_size_v<EventWhat::Variant>;
 
 struct Row {
   EventKind kind;

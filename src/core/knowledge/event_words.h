@@ -49,7 +49,7 @@ consteval EventKind place_in(std::type_identity<std::variant<All...>>) {
   return place;
 }
 template <class What>
-inline constexpr EventKind kKindOf = place_in<What>(std::type_identity<decltype(Event::what)>());
+inline constexpr EventKind kKindOf = place_in<What>(std::type_identity<EventWhat::Variant>());
 
 const EventWords& words_of(EventKind kind);
 inline const EventWords& words_of(const Event& event) { return words_of(event.what.index()); }

@@ -223,14 +223,27 @@ struct PriorsTold {
   std::string source;  // for people: who learned it; empty: nobody
 };
 
+// One of these was observed. Copied and destroyed in observation.cpp: see EventWhat (knowledge/event.h) for why.
+class ObservationWhat
+    : public std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished,
+                          SampleArrived, SignalRead, DiagnosticRead, ParameterRead, LifecycleRead,
+                          ProcessSeen, Probed, Reply, LinkTrouble, Order, NamesakesSeen,
+                          HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
+                          ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold> {
+ public:
+  using Variant = variant;
+  using variant::variant;
+  ObservationWhat();
+  ObservationWhat(const ObservationWhat& other);
+  ObservationWhat(ObservationWhat&& other) noexcept;
+  ObservationWhat& operator=(const ObservationWhat& other);
+  ObservationWhat& operator=(ObservationWhat&& other) noexcept;
+  ~ObservationWhat();
+};
+
 struct Observation {
   Time at;
-  std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived,
-               SignalRead, DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply,
-               LinkTrouble, Order, NamesakesSeen, HearingLost, HearingRegained, Overslept,
-               StatusHeard, ParametersListed, ProcessWorked, HostReached, EndsWith, LauncherSeen,
-               PriorsTold>
-      what;
+  ObservationWhat what;
 };
 
 }  // namespace culprit

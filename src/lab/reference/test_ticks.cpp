@@ -80,7 +80,7 @@ void Ticks::run(int ticks) {
   }
 }
 
-void Ticks::observe(decltype(Observation::what) what) { inbox_.push_back({now_, std::move(what)}); }
+void Ticks::observe(ObservationWhat what) { inbox_.push_back({now_, std::move(what)}); }
 
 void Ticks::step(Time now) {
   now_ = now;

@@ -47,7 +47,7 @@ class Ticks {
   std::vector<Event> events;
 
  private:
-  void observe(decltype(Observation::what) what);
+  void observe(ObservationWhat what);
   void step(Time now);
   std::string words(const Event& event) const;
 
