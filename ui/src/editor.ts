@@ -152,7 +152,8 @@ export function makeEditor(
         if (error instanceof Refusal && error.status === 0) return null
         throw error
       })
-      if (!reply) return []
+      // Answers may overtake one another: what is said of an older text is not said of this one.
+      if (!reply || !view.state.doc.eq(doc)) return []
       const list = reply.diagnostics.map((d): Diagnostic => {
         const from = offset(doc, d.range.start)
         return {

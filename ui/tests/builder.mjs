@@ -107,3 +107,36 @@ export async function losesNothingToASlowServer() {
     for (const entered of ['RULE Slow', 'segmentation_entropy > 0.06', '77']) expect(written.includes(entered), `without ${entered}:\n${written}`)
   })
 }
+
+// What the check says of an older text comes last: what it said of the newest stands.
+export async function showsWhatIsSaidOfTheNewestText() {
+  await session(['web', file('late.rules')], async (page) => {
+    const text = page.locator('.cm-content')
+    const status = page.locator('.bar [role="status"]').last()
+    await status.filter({ hasText: 'no errors' }).waitFor()
+    const held = []
+    await page.route('**/api/rules/ask', (route) => (route.request().postDataJSON().method ? route.continue() : held.push(route)))
+    // Gives the question whether what was written is right.
+    const write = async (all) => {
+      await text.click()
+      await page.keyboard.press('Control+A')
+      await page.keyboard.insertText(all)
+      const question = () => held.find((route) => route.request().postDataJSON().text === all)
+      await expectSoon(() => question() !== undefined, `${all} is not checked`)
+      return question()
+    }
+    const answer = async (route) => {
+      const answered = page.waitForResponse((response) => response.request() === route.request())
+      await route.continue()
+      await (await answered).finished()
+    }
+    const right = await write('ROBOT rover')
+    const wrong = await write('RULE')
+    await answer(wrong)
+    await status.filter({ hasText: /\d error/ }).waitFor()
+    await answer(right)
+    await page.evaluate(() => new Promise((resolve) => setTimeout(resolve)))
+    const said = await status.innerText()
+    expect(/\d error/.test(said), `of the newest text it says: ${said}`)
+  })
+}

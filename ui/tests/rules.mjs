@@ -1,5 +1,5 @@
 // Whoever writes rules in the browser, with and without knowing the language.
-import { buildsThePapersRule, losesNothingToASlowServer } from './builder.mjs'
+import { buildsThePapersRule, losesNothingToASlowServer, showsWhatIsSaidOfTheNewestText } from './builder.mjs'
 import { losesNothingThatWasWritten } from './drafts.mjs'
 import { writesEveryRow } from './grammar.mjs'
 import { mendsABrokenFile } from './repair.mjs'
@@ -9,6 +9,7 @@ import { writesThreeRules } from './task.mjs'
 await suite(async () => {
   await buildsThePapersRule()
   await losesNothingToASlowServer()
+  await showsWhatIsSaidOfTheNewestText()
   await mendsABrokenFile()
   await writesEveryRow()
   await writesThreeRules()
