@@ -6,6 +6,6 @@ function(run)
 endfunction()
 run(${CMAKE_COMMAND} --install ${BUILD} --component core --prefix ${prefix})
 run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${BUILD}/examples-installed -G Ninja -DCMAKE_PREFIX_PATH=${prefix}
-    -DCMAKE_BUILD_TYPE=Release)
+    -DCMAKE_BUILD_TYPE=Debug)
 run(${CMAKE_COMMAND} --build ${BUILD}/examples-installed --target t01_embed_the_manager)
 run(${BUILD}/examples-installed/t01_embed_the_manager)
