@@ -2,7 +2,8 @@
 // steps can be written and is the same then, and the manager can be stepped with it.
 //
 // The first line of the input is the kind of a row, the rest its body, which is read as the row
-// would be. If it is `file`, the rest is the whole database.
+// would be. If it is `file`, the rest is the whole database; if it is `inheritance`, what another
+// culprit tells.
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <string>
 #include <unistd.h>
 
+#include "journal/inheritance.h"
 #include "journal/recovery.h"
 #include "journal/requests.h"
 #include "journal/step_codec.h"
@@ -69,6 +71,23 @@ void read_row(const std::string& body) {
   }
 }
 
+// What another culprit tells who takes over. What is read can be told on, and a manager can begin
+// with it.
+void read_inheritance(const std::string& body) {
+  const Time now(std::chrono::hours(1));
+  const auto told = journal::inheritance_from_text(body, rules(), std::chrono::minutes(1), now);
+  if (!told) return;
+  const std::string again = journal::to_text(*told, rules(), body.size() * 2 + 4096);
+  if (!again.empty() && !journal::inheritance_from_text(again, rules(), {}, now)) __builtin_trap();
+  journal::Learned learned;
+  journal::inherit(learned, told->learned);
+  Manager manager(rules(), std::make_unique<BayesPlanner>(), {.start = now});
+  replay::restore(manager, learned, rules());
+  manager.remember(
+      journal::still_counting(journal::joined(told->past, told->past, rules()), now, rules()));
+  for (int i = 0; i < 20; ++i) manager.step(now + std::chrono::seconds(i), {});
+}
+
 // In a file with a name: SQLite opens no other.
 void read_file(const std::string& bytes) {
   const std::string path = (std::filesystem::temp_directory_path() / "culprit-fuzz-").string() +
@@ -95,6 +114,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     read_file(body);
   } else if (kind == journal::kind::kSteps) {
     read_steps(body);
+  } else if (kind == "inheritance") {
+    read_inheritance(body);
   } else {
     read_row(body);
   }

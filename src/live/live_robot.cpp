@@ -204,6 +204,14 @@ void LiveRobot::withdraw_doubles(const std::function<bool(ComponentId)>& may) {
 }
 
 void LiveRobot::start(CommandId command, ComponentId component, Duration patience) {
+  const auto cut_off = rules_[component].host().empty() ? link_->cut_off(component) : std::nullopt;
+  if (cut_off)
+    return inbox_.put(Reply{command,
+                            Outcome::kUnreachable,
+                            {},
+                            rules_[component].name + " ran on " + *cut_off +
+                                ", of which nothing is heard now: it may still run there, where "
+                                "another culprit looks after it. Nothing is started in its place"});
   if (composed_->is_responsible_for(component))
     return composed_->start(command, component, patience);
   start_process(command, component);

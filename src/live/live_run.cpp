@@ -26,6 +26,13 @@ std::optional<journal::StandingOrders> orders_for_successor(const RoleOfCulprit&
   return paused;
 }
 
+// What it had learned and tried.
+std::optional<Expected<journal::Inheritance>> inheritance_for_successor(
+    const RoleOfCulprit& role, const ros2::LeaseLink* lease, const RuleSet& rules, Time now) {
+  if (role.role() != Role::kManage) return std::nullopt;
+  return role.told_inheritance(lease, rules, now);
+}
+
 std::string name_of(const RuleSet& rules) {
   return rules.robot.empty() ? "the robot" : rules.robot;
 }
@@ -128,13 +135,20 @@ void LiveRun::look_at_neighbours() {
     session_->submit(std::move(order));
 }
 
-// Begins anew in another role, with the same rules.
+// Begins anew in another role, with the same rules. Who manages from now on has watched already.
 Expected<void> LiveRun::change_role(OrderTaker& desk, const std::atomic<bool>& stopped) {
   close(desk);
+  frame_.told_orders = orders_for_successor(role_, session_->lease());
+  frame_.told_inheritance =
+      inheritance_for_successor(role_, session_->lease(), session_->rules(), session_->now());
+  if (role_.role() == Role::kManage && take_over(stopped)) {
+    session_->announce(announcements::kRole, role_.reason());
+    open(desk);
+    return {};
+  }
   session_->say_lease();
   LoadedRules rules = session_->loaded_rules();
   const KnownRobot known = session_->known_robot();
-  frame_.told_orders = orders_for_successor(role_, session_->lease());
   session_->end(role_.role() == Role::kManage ? journal::Ending::kStopped
                                               : journal::Ending::kSteppedBack);
   session_.reset();
@@ -146,6 +160,19 @@ Expected<void> LiveRun::change_role(OrderTaker& desk, const std::atomic<bool>& s
   session_->announce(announcements::kRole, role_.reason());
   open(desk);
   return {};
+}
+
+// False: it has to begin anew.
+bool LiveRun::take_over(const std::atomic<bool>& stopped) {
+  if (options_.dry_run || !session_->can_take_over()) return false;
+  take_role();
+  frame_.manager_before = role_.manager_before();
+  const auto elsewhere = role_.managed_elsewhere(session_->adapted_nodes(), session_->lease());
+  const auto taken = session_->take_over(frame_, elsewhere, stopped);
+  frame_.manager_before.reset();
+  if (!taken)
+    frame_.listener.on_remark("culprit: it joins the domain anew: " + taken.error() + "\n");
+  return taken.has_value();
 }
 
 // Goes on with the old ones if the robot cannot be joined anew.
@@ -198,10 +225,12 @@ Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) 
     if (next && !has_to_wait) {
       change_rules(std::move(*next), desk);
       next.reset();
+      joined = session_->now();  // its link has to find the others first
     }
     constexpr Duration kLook = std::chrono::milliseconds(100);
     constexpr Duration kLookAtRole = std::chrono::milliseconds(500);
-    const Time until = later(session_->now(), has_to_wait ? kLook : kLookAtRole);
+    const bool is_waiting = has_to_wait || role_.role() == Role::kAdvise;
+    const Time until = later(session_->now(), is_waiting ? kLook : kLookAtRole);
     session_->run(session_->deaf_since() ? until : std::min(until, systemd_.next_feeding()));
     if (auto newest = take_next()) next = std::move(newest);
   }

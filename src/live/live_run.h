@@ -56,6 +56,7 @@ class LiveRun {
   void open(OrderTaker& desk);
   void close(OrderTaker& desk);
   Expected<void> change_role(OrderTaker& desk, const std::atomic<bool>& stopped);
+  bool take_over(const std::atomic<bool>& stopped);
   void change_rules(Next next, OrderTaker& desk);
   void look_at_neighbours();
   void watch_hearing(OrderTaker& desk);

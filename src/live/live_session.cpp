@@ -44,7 +44,7 @@ void add(KnownRobot& known, const KnownRobot& more) {
 // The manager and its journal begin from the same record, so that a replay begins from it too.
 journal::Session session_of(const LiveSession::Frame& frame, const std::string& rules_text,
                             const RuleSet& rules, int domain, Time start,
-                            const RunBeginning& beginning) {
+                            std::optional<Time> watched_since, const RunBeginning& beginning) {
   const LiveSession::Options& options = frame.options;
   journal::Session session;
   session.version = options.version;
@@ -58,6 +58,7 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   session.process = getpid();
   session.boot = journal::boot_id();
   session.start = start;
+  session.watched_since = watched_since;
   session.discovery = options.discovery;
   session.forgetting = options.forgetting;
   session.learned = beginning.learned;
@@ -221,13 +222,45 @@ void LiveSession::hold(RunBeginning& beginning) {
     beginning.past.push_back(std::move(silence));
 }
 
+// What the one that managed knows of itself counts for more than what our journal has of the time
+// before.
+void LiveSession::inherit(RunBeginning& beginning) {
+  const auto& told = frame_.told_inheritance;
+  if (!told) return;
+  if (!*told) {
+    beginning.findings.push_back(
+        "what the culprit that managed before had learned and tried is not known (" +
+        told->error() + "); limits count what this one knows of");
+    return;
+  }
+  journal::inherit(beginning.learned, (*told)->learned);
+  beginning.past = journal::still_counting(journal::joined(beginning.past, (*told)->past, rules_),
+                                           robot_->now(), rules_);
+  beginning.findings.push_back(
+      fmt::format("what the culprit that managed before had learned of {} strategies is known, and "
+                  "what it had tried",
+                  (*told)->learned.beliefs.size()));
+}
+
 void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_robot) {
+  begin(stop, known_robot, nullptr, {});
+}
+
+// `before`: what was seen until now, null: nothing. `orders`: with the first step.
+void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_robot,
+                        const SeenSoFar* before, std::vector<Order> orders) {
   RunBeginning beginning = look_back();
   add(beginning.known_robot, known_robot);
+  inherit(beginning);
   hold(beginning);
   for (const std::string& finding : beginning.findings)
     frame_.listener.on_remark("culprit: " + finding + "\n");
   std::vector<Observation> seen;
+  std::optional<Time> watched_since;
+  if (before != nullptr) {
+    seen = before->observations();
+    watched_since = std::max(before->since(), robot_->now() - frame_.options.discovery);
+  }
   const bool is_held = beginning.orders.pause || beginning.orders.dry_run;
   const std::filesystem::path kept =
       frame_.options.no_journal.empty() ? launching_beside(frame_.options.journal) : "";
@@ -254,7 +287,37 @@ void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_r
   if (beginning.orders.pause) go_on_with(*beginning.orders.pause, Pause{});
   if (beginning.orders.dry_run && !frame_.advises)
     go_on_with(*beginning.orders.dry_run, SetDryRun{true});
-  manage(std::move(beginning), std::move(seen), "");
+  for (Order& order : orders) seen.push_back({robot_->now(), std::move(order)});
+  manage(std::move(beginning), std::move(seen), "", watched_since);
+}
+
+// What is to be launched is found by a look of its own.
+bool LiveSession::can_take_over() const {
+  const bool has_to_launch = frame_.options.launches ||
+                             (frame_.options.no_journal.empty() &&
+                              !read_unfinished(launching_beside(frame_.options.journal)).empty());
+  return seen_ && seen_->is_whole() && lease() != nullptr && !has_to_launch;
+}
+
+Expected<void> LiveSession::take_over(const Frame& frame,
+                                      const std::map<std::string, std::string>& elsewhere,
+                                      const std::atomic<bool>& stop) {
+  if (auto announced = robot_->link().lease()->take_over(frame.lease->term); !announced)
+    return announced;
+  const KnownRobot known = known_robot();
+  const SeenSoFar before = *std::exchange(seen_, std::nullopt);
+  std::vector<Order> orders = to_leave_alone(elsewhere);
+  end();
+  runtime_.reset();
+  manager_.reset();
+  frame_.advises = frame.advises;
+  frame_.records = frame.records;
+  frame_.lease = frame.lease;
+  frame_.told_orders = frame.told_orders;
+  frame_.told_inheritance = frame.told_inheritance;
+  frame_.manager_before = frame.manager_before;
+  begin(stop, known, &before, std::move(orders));
+  return {};
 }
 
 void LiveSession::begin(Handover before) {
@@ -268,18 +331,25 @@ void LiveSession::begin(Handover before) {
 }
 
 void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
-                         std::string occasion) {
-  if (frame_.options.has_preflight)
+                         std::string occasion, std::optional<Time> watched_since) {
+  if (frame_.options.has_preflight && preflight_ == nullptr)
     preflight_ = std::make_unique<Preflight>(
         source_, frame_.options.message_path,
         [&listener = frame_.listener](const std::string& lines) { listener.on_remark(lines); });
-  journal::Session session =
-      session_of(frame_, std::string(source_.text()), rules_, domain_, robot_->now(), beginning);
+  journal::Session session = session_of(frame_, std::string(source_.text()), rules_, domain_,
+                                        robot_->now(), watched_since, beginning);
   session.occasion = std::move(occasion);
   const Autonomy autonomy = frame_.advises ? Autonomy::kAdvise : Autonomy::kAct;
   manager_ = replay::manager_for(session, rules_, frame_.options.planner(),
                                  {autonomy, frame_.options.governor});
   adopt_again(*robot_, beginning.past, manager_->knowledge().sightings);
+  bequest_.reset();
+  if (!frame_.advises && frame_.lease && !frame_.lease->key.empty()) {
+    bequest_.emplace(rules_);
+    for (const Event& event : beginning.past) bequest_->add(event);
+    is_bequest_new_ = true;
+  }
+  if (frame_.advises && frame_.lease) seen_.emplace(rules_, robot_->now());
   if (frame_.records) {
     journal::Recorder::Options recorder;
     recorder.path = frame_.options.journal;
@@ -296,6 +366,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   }
   // The recorder takes the observations.
   runtime_->on_step = [this](const Runtime::Step& step) {
+    if (seen_) seen_->note(step.observations);
     if (frame_.observer != nullptr) frame_.observer->stepped(step);
     if (recorder_ != nullptr)
       recorder_->stepped(step.now, step.observations, step.commands, step.events);
@@ -309,6 +380,20 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   }
   join_fleet();
   runtime_->step(seen);
+  bequeath();
+}
+
+// Tells who may take over what was learned and tried, as far as it is new, and not for each step of
+// many.
+void LiveSession::bequeath() {
+  ros2::LeaseLink* lease = robot_->link().lease();
+  if (!bequest_ || lease == nullptr) return;
+  const Time now = robot_->now();
+  if (!is_bequest_new_ || now < later(bequeathed_, ros2::ManagerLease::kPeriod)) return;
+  is_bequest_new_ = false;
+  bequeathed_ = now;
+  lease->tell_state(
+      bequest_->text(learned_by(manager_->knowledge()), ros2::ManagerLease::kLongestState));
 }
 
 // Whoever only advises learns nothing, and writes nothing down.
@@ -337,13 +422,16 @@ void LiveSession::withdraw_doubles() {
 }
 
 void LiveSession::tell(std::span<const Event> events) {
+  is_bequest_new_ |= !events.empty();
   for (const Event& event : events) {
+    if (bequest_) bequest_->add(event);
     frame_.listener.on_event(event, rules_, frame_.start);
     const std::string text = describe(event, rules_);
     if (!text.empty()) robot_->link().log(severity_in_rosout(severity_of(event, rules_)), text);
   }
   robot_->link().publish(health(manager_->knowledge()));
   if (is_in_fleet_) frame_.fleet->happened();
+  bequeath();
 }
 
 void LiveSession::announce(const EventWords& words, const std::string& text) {
@@ -364,7 +452,14 @@ std::set<std::string> LiveSession::adapted_nodes() const {
 }
 
 void LiveSession::leave_alone(const std::map<std::string, std::string>& nodes) {
+  for (Order& order : to_leave_alone(nodes)) submit(std::move(order));
+}
+
+// What is not ordered already.
+std::vector<Order> LiveSession::to_leave_alone(
+    const std::map<std::string, std::string>& nodes) const {
   constexpr const char* kAuthor = "another culprit";
+  std::vector<Order> orders;
   const auto& silences = manager_->governor().silences();
   for (const ComponentId c : adapted_components(rules_)) {
     const std::string& seen = manager_->knowledge().graph.node_name(c);
@@ -375,18 +470,20 @@ void LiveSession::leave_alone(const std::map<std::string, std::string>& nodes) {
     const bool is_silent = silence != silences.end();
     const bool is_ours = is_silent && silence->author == kAuthor;
     if (found == nodes.end()) {
-      if (is_ours) submit({0, kAuthor, "it is gone", LiftSilence{c}});
+      if (is_ours) orders.push_back({0, kAuthor, "it is gone", LiftSilence{c}});
       continue;
     }
     const std::string why = "it manages " + found->first + ": " + found->second;
     if (!is_silent || (is_ours && silence->reason != why))
-      submit({0, kAuthor, why, Silence{c, {}}});
+      orders.push_back({0, kAuthor, why, Silence{c, {}}});
   }
+  return orders;
 }
 
 void LiveSession::run(Time until) {
   runtime_->run(is_left_, until);
   is_left_ = false;
+  bequeath();
 }
 
 void LiveSession::leave() {

@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "journal/inheritance.h"
 #include "journal/session.h"
 #include "live/fleet.h"
 #include "live/listener.h"
@@ -18,6 +19,7 @@
 #include "live/preflight.h"
 #include "live/rule_file.h"
 #include "live/run_journal.h"
+#include "live/seen_so_far.h"
 #include "plan/planner.h"
 
 namespace culprit::live {
@@ -55,6 +57,8 @@ class LiveSession {
     // What people had ordered of the culprit on another machine that managed before; nothing: none
     // did.
     std::optional<journal::StandingOrders> told_orders{};
+    // What that one had learned and tried; nothing: likewise. Error: it is not known, and why.
+    std::optional<Expected<journal::Inheritance>> told_inheritance{};
     // The process of the other culprit that managed until now (RoleOfCulprit::manager_before()).
     std::optional<int> manager_before{};
   };
@@ -77,6 +81,14 @@ class LiveSession {
   void begin(const std::atomic<bool>& stop, const KnownRobot& known_robot = {});
   // Takes over from another session, which has ended.
   void begin(Handover before);
+  // This session only looked on, since another culprit managed the robot. Now it manages, with what
+  // it has seen, as the frame says: its manager and its journal begin anew, its link goes on in this
+  // term. Whether it can is asked before.
+  bool can_take_over() const;
+  // `elsewhere`: as leave_alone()'s, from the first step on. Errors: others cannot be told that it
+  // manages; nothing has changed then. @pre can_take_over()
+  Expected<void> take_over(const Frame& frame, const std::map<std::string, std::string>& elsewhere,
+                           const std::atomic<bool>& stop);
 
   // Manages until `until`, or leave() was called since.
   void run(Time until);
@@ -122,13 +134,19 @@ class LiveSession {
 
   RunBeginning look_back();
   void hold(RunBeginning& beginning);
-  void manage(RunBeginning beginning, std::vector<Observation> seen, std::string occasion);
+  void inherit(RunBeginning& beginning);
+  void begin(const std::atomic<bool>& stop, const KnownRobot& known_robot, const SeenSoFar* before,
+             std::vector<Order> orders);
+  std::vector<Order> to_leave_alone(const std::map<std::string, std::string>& nodes) const;
+  void manage(RunBeginning beginning, std::vector<Observation> seen, std::string occasion,
+              std::optional<Time> watched_since = {});
+  void bequeath();
   void join_fleet();
   void leave_fleet();
   void withdraw_doubles();
   void tell(std::span<const Event> events);
 
-  const Frame frame_;
+  Frame frame_;
   const RuleSet rules_;
   const Source source_;  // of the rules
   int domain_ = 0;
@@ -137,6 +155,10 @@ class LiveSession {
   std::unique_ptr<journal::Recorder> recorder_;
   std::unique_ptr<Runtime> runtime_;
   std::unique_ptr<Preflight> preflight_;
+  std::optional<SeenSoFar> seen_;            // while another culprit manages
+  std::optional<journal::Bequest> bequest_;  // while this one manages
+  bool is_bequest_new_ = false;
+  Time bequeathed_ = kLongAgo;
   std::atomic<bool> is_left_ = false;
   bool is_in_fleet_ = false;
 };

@@ -49,6 +49,14 @@ Expected<std::optional<journal::StandingOrders>> RoleOfCulprit::told_orders(
   return Told(*orders);
 }
 
+std::optional<Expected<journal::Inheritance>> RoleOfCulprit::told_inheritance(
+    const ros2::LeaseLink* lease, const RuleSet& rules, Time now) const {
+  const auto told = lease != nullptr ? lease->told_state() : std::nullopt;
+  if (told) return journal::inheritance_from_text(told->text, rules, told->shift, now);
+  if (!had_elder_) return std::nullopt;
+  return Error{"it was not heard"};
+}
+
 std::string RoleOfCulprit::name_of_claim(const std::string& what) const {
   return "manages-" + std::to_string(domain_) + "-" + what;
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/time.h"
+#include "journal/inheritance.h"
 #include "journal/standing_orders.h"
 #include "language/rule_set.h"
 #include "link/lease_link.h"
@@ -47,6 +48,12 @@ class RoleOfCulprit {
   // What people have ordered of the robot, as told by the latest other culprit that managed it;
   // nothing: there was none. Error: there was one, and it could not be told what.
   Expected<std::optional<journal::StandingOrders>> told_orders(const ros2::LeaseLink* lease) const;
+
+  // What that one had learned and tried, as of `now`; nothing: there was none. Error: it is not
+  // known, and why.
+  std::optional<Expected<journal::Inheritance>> told_inheritance(const ros2::LeaseLink* lease,
+                                                                 const RuleSet& rules,
+                                                                 Time now) const;
 
   // Which of these nodes another culprit manages, and who that is. Looks anew; nodes that are no
   // longer among them are given up.

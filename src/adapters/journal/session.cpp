@@ -66,31 +66,35 @@ Expected<Learned> learned_from_json(const Json& json) {
 }
 
 Json to_json(const Session& session) {
-  return {{"version", session.version},
-          {"robot", session.robot},
-          {"domain", session.domain},
-          {"process", session.process},
-          {"boot", session.boot},
-          {"start", session.start.time_since_epoch().count()},
-          {"settling", session.discovery.count()},
-          {"forgetting", session.forgetting},
-          {"advises", session.advises},
-          {"planner", session.planner},
-          {"governor", session.governor},
-          {"learned", to_json(session.learned)},
-          {"interrupted", session.interrupted},
-          {"past", session.past},
-          {"known_robot", session.known_robot},
-          {"paused", session.is_paused},
-          {"dry_run", session.is_dry_run},
-          {"orders_kept", session.orders_kept},
-          {"fleet", session.fleet_context ? Json{{"context", *session.fleet_context}} : Json()},
-          {"rules_path", session.rules_path},
-          {"rules_text", session.rules_text},
-          {"occasion", session.occasion},
-          {"text", "culprit " + session.version + " began to manage with " + session.rules_path +
-                       (session.occasion.empty() ? "" : ", " + session.occasion) +
-                       (session.advises ? " (only advising)" : "")}};
+  Json json = {
+      {"version", session.version},
+      {"robot", session.robot},
+      {"domain", session.domain},
+      {"process", session.process},
+      {"boot", session.boot},
+      {"start", session.start.time_since_epoch().count()},
+      {"settling", session.discovery.count()},
+      {"forgetting", session.forgetting},
+      {"advises", session.advises},
+      {"planner", session.planner},
+      {"governor", session.governor},
+      {"learned", to_json(session.learned)},
+      {"interrupted", session.interrupted},
+      {"past", session.past},
+      {"known_robot", session.known_robot},
+      {"paused", session.is_paused},
+      {"dry_run", session.is_dry_run},
+      {"orders_kept", session.orders_kept},
+      {"fleet", session.fleet_context ? Json{{"context", *session.fleet_context}} : Json()},
+      {"rules_path", session.rules_path},
+      {"rules_text", session.rules_text},
+      {"occasion", session.occasion},
+      {"text", "culprit " + session.version + " began to manage with " + session.rules_path +
+                   (session.occasion.empty() ? "" : ", " + session.occasion) +
+                   (session.advises ? " (only advising)" : "")}};
+  if (session.watched_since)
+    json["watched_since"] = session.watched_since->time_since_epoch().count();
+  return json;
 }
 
 Expected<Session> session_from_json(const Json& json) {
@@ -111,6 +115,8 @@ Expected<Session> session_from_json(const Json& json) {
   session.process = static_cast<int>(integer_of(json, "process"));
   session.boot = text_of(json, "boot");
   session.start = Time(Duration(integer_of(json, "start")));
+  if (json.contains("watched_since"))
+    session.watched_since = Time(Duration(integer_of(json, "watched_since")));
   session.discovery = Duration(integer_of(json, "settling"));
   session.forgetting = number_of(json, "forgetting", 1);
   session.learned = *learned;

@@ -25,6 +25,9 @@ struct Session {
   int process = 0;         // culprit's, on its machine; 0: an older culprit did not say
   std::string boot;        // which start of the machine: the robot's clock counts from there
   Time start{};
+  // The manager began with what this process had seen while another culprit managed, and so as if it
+  // had watched since then; nothing: since `start`.
+  std::optional<Time> watched_since;
   Duration discovery{};
   double forgetting = 1;
   Learned learned;                   // what was known at the start

@@ -44,7 +44,11 @@ bool is_on_this_machine(const ParticipantInfo& info) {
 Expected<std::unique_ptr<LeaseLink>> LeaseLink::open(Context& context, const Hearing& hearing,
                                                      Executor& executor, Options options) {
   std::unique_ptr<LeaseLink> link(new LeaseLink(context, hearing, std::move(options)));
-  if (auto announced = link->announce(); !announced) return Error{announced.error()};
+  const std::vector<std::string> announcements =
+      ManagerLease(link->options_.claim, context.participant().guid().prefix()).announcements();
+  auto announced = link->announce(announcements);
+  if (!announced) return Error{announced.error()};
+  link->writers_ = std::move(*announced);
   if (auto listening = link->listen(); !listening) return Error{listening.error()};
   context.on_discovery(
       [link = link.get()](const DiscoveryEvent& event) { link->on_discovery(event); });
@@ -57,23 +61,38 @@ LeaseLink::LeaseLink(Context& context, const Hearing& hearing, Options options)
     : options_(std::move(options)),
       context_(context),
       hearing_(hearing),
-      lease_(options_.claim, context.participant().guid().prefix()) {}
+      lease_(options_.claim, context.participant().guid().prefix()),
+      manages_(options_.manages) {}
 
-Expected<void> LeaseLink::announce() {
-  std::vector<std::string> announcements;
-  {
-    const MutexLock lock(mutex_);
-    announcements = lease_.announcements();
-  }
-  for (std::string& announcement : announcements) {
+Expected<std::vector<std::unique_ptr<Writer>>> LeaseLink::announce(
+    const std::vector<std::string>& announcements) {
+  std::vector<std::unique_ptr<Writer>> writers;
+  for (const std::string& announcement : announcements) {
     auto writer = context_.participant().create_writer({.topic = ManagerLease::kTopic,
                                                         .type = ManagerLease::kType,
                                                         .qos = kLeaseQos,
-                                                        .user_data = std::move(announcement),
+                                                        .user_data = announcement,
                                                         .on_match = {}});
     if (!writer) return Error{writer.error()};
-    writers_.push_back(std::move(*writer));
+    writers.push_back(std::move(*writer));
   }
+  return writers;
+}
+
+// Of the claims of one participant the one that goes first counts.
+Expected<void> LeaseLink::take_over(std::int64_t term) {
+  LeaseClaim claim = options_.claim;
+  claim.term = term;
+  auto announced = announce(
+      ManagerLease(std::move(claim), context_.participant().guid().prefix()).announcements());
+  if (!announced) return Error{announced.error()};
+  of_new_term_ = std::move(*announced);
+  {
+    const MutexLock lock(mutex_);
+    lease_.take_over(term);
+    manages_ = true;
+  }
+  say();
   return {};
 }
 
@@ -104,6 +123,13 @@ void LeaseLink::on_discovery(const DiscoveryEvent& event) {
     neighbours_[prefix] = {printable(info->host), is_on_this_machine(*info)};
   } else if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
     neighbours_.erase(gone->guid.prefix());
+  } else if (const auto* endpoint = std::get_if<EndpointInfo>(&event)) {
+    constexpr std::size_t kMostHosts = 100;
+    const auto found = neighbours_.find(endpoint->guid.prefix());
+    if (found == neighbours_.end() || !lease_.is_friend(found->first)) return;
+    const Neighbour& neighbour = found->second;
+    if (!neighbour.is_here && !neighbour.host.empty() && hosts_of_others_.size() < kMostHosts)
+      hosts_of_others_.insert(neighbour.host);
   }
 }
 
@@ -140,6 +166,26 @@ std::optional<std::string> LeaseLink::elder_at(const std::string& node) const {
   return elder ? std::optional(host_of(*elder)) : std::nullopt;
 }
 
+std::set<std::string> LeaseLink::hosts_of_others() const {
+  const MutexLock lock(mutex_);
+  return hosts_of_others_;
+}
+
+bool LeaseLink::is_silent(const std::string& host) const {
+  std::vector<GuidPrefix> there;
+  {
+    const MutexLock lock(mutex_);
+    if (!hosts_of_others_.contains(host)) return false;
+    for (const auto& [prefix, neighbour] : neighbours_) {
+      if (neighbour.host == host && !neighbour.is_here) there.push_back(prefix);
+    }
+  }
+  const Time now = live_now();
+  return std::none_of(there.begin(), there.end(), [&](const GuidPrefix& each) {
+    return now < later(context_.participant().heard_last(each), kHostPatience);
+  });
+}
+
 std::vector<std::string> LeaseLink::strangers() const {
   const MutexLock lock(mutex_);
   std::vector<std::string> hosts;
@@ -152,6 +198,16 @@ std::vector<std::string> LeaseLink::strangers() const {
 std::optional<std::string> LeaseLink::told_orders() const {
   const MutexLock lock(mutex_);
   return lease_.told_orders();
+}
+
+std::optional<ManagerLease::ToldState> LeaseLink::told_state() const {
+  const MutexLock lock(mutex_);
+  return lease_.told_state();
+}
+
+void LeaseLink::tell_state(std::string state) {
+  const MutexLock lock(mutex_);
+  lease_.tell_state(std::move(state));
 }
 
 std::int64_t LeaseLink::highest_term() const {
@@ -169,15 +225,20 @@ Time LeaseLink::sure_until(Time now) const {
 void LeaseLink::say() {
   const bool hears = hearing_.doubtful() > live_now();
   const std::string orders = options_.told_orders ? options_.told_orders() : "";
-  std::optional<std::string> beat;
+  std::vector<std::string> messages;
   {
     const MutexLock lock(mutex_);
-    beat = lease_.beat(live_now(), hears, options_.manages, orders);
+    const Time now = live_now();
+    if (auto beat = lease_.beat(now, hears, manages_, orders)) {
+      messages = lease_.state_parts(now);
+      messages.insert(messages.begin(), std::move(*beat));
+    }
   }
-  if (!beat) return;
-  CdrWriter message;
-  message.write_string(*beat);
-  writers_.front()->write(message.take());
+  for (const std::string& each : messages) {
+    CdrWriter message;
+    message.write_string(each);
+    writers_.front()->write(message.take());
+  }
 }
 
 }  // namespace culprit::ros2

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ namespace culprit::ros2 {
 
 class LeaseLink {
  public:
+  // Participants announce themselves every 3 s, and culprit asks nodes every 400 ms.
+  static constexpr Duration kHostPatience = std::chrono::seconds(4);
+
   struct Options {
     LeaseClaim claim;
     bool manages = false;  // now
@@ -40,18 +44,33 @@ class LeaseLink {
   // there is none.
   std::optional<std::string> elder() const;
   std::optional<std::string> elder_at(const std::string& node) const;
+  // Other computers where a culprit runs, or ran, that has proven itself: it looks after what is
+  // there. Names of hosts, as far as participants say them.
+  std::set<std::string> hosts_of_others() const;
+  // Whether nothing at all comes from this computer: it is down, or cut off. Of one where no such
+  // culprit ran: false.
+  bool is_silent(const std::string& host) const;
   // Where those run that claim the same and do not prove it.
   std::vector<std::string> strangers() const;
   // What the last one that managed this robot, on another machine or here, said of orders; empty:
   // it did not say. Nothing: there was none.
   std::optional<std::string> told_orders() const;
+  // What that one told of all else that who takes over has to know, and by what our clock is ahead of
+  // its. Nothing: it told nothing, or not all of it came.
+  std::optional<ManagerLease::ToldState> told_state() const;
   std::int64_t highest_term() const;
+  // Of this one, from now on.
+  void tell_state(std::string state);
   // Tells who takes over, now and not with the next beat: the last word of who steps back or ends.
   void say();
+  // This one, which did not manage, does from now on, in this term, and announces it beside what it
+  // had announced. By one thread. Errors: the middleware refuses; then nothing has changed.
+  Expected<void> take_over(std::int64_t term);
 
  private:
   LeaseLink(Context& context, const Hearing& hearing, Options options);
-  Expected<void> announce();
+  Expected<std::vector<std::unique_ptr<Writer>>> announce(
+      const std::vector<std::string>& announcements);
   Expected<void> listen();
 
   bool is_here(const GuidPrefix& participant) const CULPRIT_REQUIRES(mutex_);
@@ -63,7 +82,8 @@ class LeaseLink {
   const Options options_;
   Context& context_;
   const Hearing& hearing_;
-  std::vector<std::unique_ptr<Writer>> writers_;  // the first says the beats
+  std::vector<std::unique_ptr<Writer>> writers_;      // the first says the beats
+  std::vector<std::unique_ptr<Writer>> of_new_term_;  // after take_over()
 
   mutable Mutex mutex_;  // the middleware is not called under it
   struct Neighbour {
@@ -71,8 +91,11 @@ class LeaseLink {
     bool is_here = false;  // on this machine
   };
   ManagerLease lease_ CULPRIT_GUARDED_BY(mutex_);
+  bool manages_ CULPRIT_GUARDED_BY(mutex_) = false;
   std::map<GuidPrefix, Neighbour> neighbours_
       CULPRIT_GUARDED_BY(mutex_);  // of those that can be discovered
+
+  std::set<std::string> hosts_of_others_ CULPRIT_GUARDED_BY(mutex_);
 
   std::unique_ptr<Reader> reader_;
   std::unique_ptr<Timer> timer_;

@@ -155,6 +155,7 @@ Expected<void> Link::start() {
     publish_again();
     tell_of_refused();
     remind();
+    tell_of_silent_hosts();
   });
   auto hearing = Hearing::begin(context_->participant(), executor_);
   if (!hearing) return Error{hearing.error()};
@@ -226,7 +227,7 @@ void Link::on_change(const GraphChange& change) {
   if (const auto* joined = std::get_if<NodeJoined>(&change)) {
     on_joined(joined->node);
   } else if (const auto* left = std::get_if<NodeLeft>(&change)) {
-    on_left(left->node);
+    on_left(left->node, left->was_lost);
   } else if (const auto* endpoint = std::get_if<EndpointJoined>(&change)) {
     on_endpoint(endpoint->node, endpoint->endpoint);
   } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
@@ -276,6 +277,39 @@ std::map<std::string, std::string> Link::contested() const {
   return all;
 }
 
+std::optional<std::string> Link::cut_off(ComponentId component) const {
+  std::string host;
+  {
+    const MutexLock lock(mutex_);
+    const auto found = elsewhere_.find(component);
+    if (found == elsewhere_.end()) return std::nullopt;
+    host = found->second;
+  }
+  return lease_ && lease_->is_silent(host) ? std::optional(host) : std::nullopt;
+}
+
+// One cause for all that is missed there, told once.
+void Link::tell_of_silent_hosts() {
+  if (!lease_) return;
+  for (const std::string& host : lease_->hosts_of_others()) {
+    std::string missed;
+    for (std::size_t c = 0; c < rules_.components.size(); ++c) {
+      const MutexLock lock(mutex_);
+      const auto found = elsewhere_.find(ComponentId(c));
+      if (found != elsewhere_.end() && found->second == host)
+        missed += (missed.empty() ? "" : ", ") + rules_.components[c].name;
+    }
+    if (!lease_->is_silent(host)) {
+      if (silent_hosts_.erase(host) > 0) inbox_.put(LinkTrouble{host + " is heard again"});
+    } else if (!missed.empty() && silent_hosts_.insert(host).second) {
+      inbox_.put(
+          LinkTrouble{"nothing is heard of " + host + ", where " + missed +
+                      " ran: it is down, or cut off. Nothing is started in their place until "
+                      "it is heard again"});
+    }
+  }
+}
+
 // Only a person can end that, and who comes late must hear of it too.
 void Link::remind() {
   const Time now = live_now();
@@ -303,6 +337,11 @@ void Link::on_joined(const GraphNode& node) {
   const auto component = binding_.bind(node.name);
   if (!component) return;
   make_link(*component, node.name)->lives_in(node.pid);
+  {
+    const MutexLock lock(mutex_);
+    elsewhere_.erase(*component);
+    if (node.pid == 0 && !node.host.empty()) elsewhere_[*component] = printable(node.host);
+  }
   if (node.pid == 0 || needs_of(*component, rules_).is_to_answer) {
     probed_[node.name] = {*component, node.pid};
   } else {
@@ -310,7 +349,11 @@ void Link::on_joined(const GraphNode& node) {
   }
 }
 
-void Link::on_left(const std::string& node) {
+void Link::on_left(const std::string& node, bool was_lost) {
+  if (const auto component = was_lost ? std::nullopt : binding_.bind(node)) {
+    const MutexLock lock(mutex_);
+    elsewhere_.erase(*component);
+  }
   probed_.erase(node);
   pids_.erase(node);
   const auto managed = systems_.extract(node);

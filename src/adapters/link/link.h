@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -74,6 +75,11 @@ class Link {
   // machine, or not proven. From any thread.
   std::map<std::string, std::vector<int>> doubled() const;
 
+  // The computer where the component ran when it was seen last, if it is one that another culprit
+  // looks after and of which nothing is heard now: nobody knows whether it still runs there. From
+  // any thread.
+  std::optional<std::string> cut_off(ComponentId component) const;
+
   // Our own node, for clients of what is no component. It goes with the link.
   NodeEntry& entry() { return node_->entry(); }
 
@@ -101,7 +107,7 @@ class Link {
 
   void on_change(const GraphChange& change);
   void on_joined(const GraphNode& node);
-  void on_left(const std::string& node);
+  void on_left(const std::string& node, bool was_lost);
   void on_system(const std::string& manager, const GraphEndpoint& service);
   void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
   void find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch);
@@ -111,6 +117,7 @@ class Link {
   void tell_of_refused();
   void on_namesakes(const NodeNamesakes& seen);
   void remind();
+  void tell_of_silent_hosts();
 
   ComponentLink* link_of(ComponentId component);
   Time sure_to_hear(Time now) const;
@@ -143,6 +150,7 @@ class Link {
   std::unique_ptr<Hearing> hearing_;
   std::uint64_t refused_ = 0;  // datagrams that were told of
   std::unique_ptr<LeaseLink> lease_;
+  std::set<std::string> silent_hosts_;  // that were told of
 
   mutable Mutex mutex_;
   // A component's node that others have the name of.
@@ -152,6 +160,8 @@ class Link {
   };
   std::map<std::string, Contest> contested_ CULPRIT_GUARDED_BY(mutex_);         // by node
   std::map<std::string, std::vector<int>> doubled_ CULPRIT_GUARDED_BY(mutex_);  // by node
+  std::map<ComponentId, std::string> elsewhere_
+      CULPRIT_GUARDED_BY(mutex_);  // the other computer where it ran last, if it said no good-bye
   std::vector<Health> health_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<ComponentLink>> links_
       CULPRIT_GUARDED_BY(mutex_);  // by component; one that is made stays

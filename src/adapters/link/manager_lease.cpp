@@ -61,6 +61,18 @@ std::string proof_of(const char* kind, std::string_view text, const GuidPrefix& 
 
 constexpr const char* kClaim = "lease";
 constexpr const char* kBeat = "beat";
+constexpr const char* kState = "state";
+constexpr std::int64_t kStateVersion = 1;
+
+// Takes "key value;" from the beginning of `rest`; empty, and nothing taken, if it does not begin so.
+std::string_view take(std::string_view key, std::string_view& rest) {
+  if (!rest.starts_with(key)) return {};
+  const std::size_t end = rest.find(';');
+  if (end == std::string_view::npos) return {};
+  const std::string_view value = rest.substr(key.size(), end - key.size());
+  rest.remove_prefix(end + 1);
+  return value;
+}
 
 bool are_same(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
@@ -130,6 +142,7 @@ void ManagerLease::apply(const DiscoveryEvent& event, Time now) {
     std::erase_if(others_,
                   [&](const auto& other) { return other.first.prefix() == left->guid.prefix(); });
     lives_.erase(left->guid.prefix());
+    rounds_.erase(left->guid.prefix());
   }
 }
 
@@ -147,22 +160,92 @@ std::optional<std::string> ManagerLease::beat(Time now, bool hears, bool manages
   return "proof=" + proof_of(kBeat, text, self_, own_.key) + ";" + text;
 }
 
+void ManagerLease::take_over(std::int64_t term) {
+  own_.term = term;
+  told_orders_.reset();
+  told_state_.reset();
+  rounds_.clear();
+}
+
+// ---- what a successor has to know
+
+void ManagerLease::tell_state(std::string state) {
+  if (state.size() > kLongestState) state.clear();
+  if (state == state_) return;
+  state_ = std::move(state);
+  is_state_new_ = true;
+}
+
+// A round that has begun is told to its end, however often there is something new.
+std::vector<std::string> ManagerLease::state_parts(Time now) {
+  std::vector<std::string> parts;
+  if (own_.key.empty() || !manages_ || !has_friends_) return parts;
+  if (next_part_ == parts_) {
+    const bool is_due = is_state_new_ || now >= later(round_began_, kStatePeriod);
+    if (!is_due || state_.empty()) return parts;
+    is_state_new_ = false;
+    round_state_ = state_;
+    round_began_ = now;
+    ++round_;
+    next_part_ = 0;
+    parts_ = (round_state_.size() + kLongestPart - 1) / kLongestPart;
+  }
+  for (; next_part_ < parts_ && parts.size() < kPartsAtOnce; ++next_part_) {
+    std::string text = "state=" + std::to_string(kStateVersion) +
+                       ";round=" + std::to_string(round_) + ";part=" + std::to_string(next_part_) +
+                       ";of=" + std::to_string(parts_) +
+                       ";clock=" + std::to_string(now.time_since_epoch().count()) + ";";
+    text += round_state_.substr(next_part_ * kLongestPart, kLongestPart);
+    parts.push_back("proof=" + proof_of(kState, text, self_, own_.key) + ";" + text);
+  }
+  return parts;
+}
+
+// `part`: what follows the proof. Its clock is of when it was written, so that the way here is all
+// that the shift is wrong by.
+void ManagerLease::hear_state(const GuidPrefix& participant, std::string_view proof,
+                              std::string_view part, Time now) {
+  if (!are_same(proof, proof_of(kState, part, participant, own_.key))) return;
+  std::string_view rest = part;
+  const auto version = number_in(take("state=", rest));
+  const auto number = number_in(take("round=", rest));
+  const auto place = number_in(take("part=", rest));
+  const auto count = number_in(take("of=", rest));
+  const auto clock = number_in(take("clock=", rest));
+  const auto most = static_cast<std::int64_t>(kMostParts);
+  if (version != kStateVersion || !number || !place || !count || !clock) return;
+  if (*number <= 0 || *count < 1 || *count > most || *place < 0 || *place >= *count) return;
+  std::int64_t shift = 0;
+  if (__builtin_sub_overflow(now.time_since_epoch().count(), *clock, &shift)) return;
+  Round& round = rounds_[participant];
+  if (static_cast<std::uint64_t>(*number) < round.number) return;
+  if (static_cast<std::uint64_t>(*number) > round.number) {
+    round.number = static_cast<std::uint64_t>(*number);
+    round.parts.assign(static_cast<std::size_t>(*count), std::nullopt);
+  }
+  if (round.parts.size() != static_cast<std::size_t>(*count)) return;
+  round.parts[static_cast<std::size_t>(*place)] = std::string(rest);
+  std::string text;
+  for (const auto& each : round.parts) {
+    if (!each) return;
+    text += *each;
+  }
+  told_state_ = {std::move(text), Duration(shift)};
+  round.parts.clear();  // heard
+}
+
 void ManagerLease::hear(const GuidPrefix& participant, std::string_view beat, Time now) {
   const auto life = lives_.find(participant);
   const auto other = std::find_if(others_.begin(), others_.end(), [&](const auto& each) {
     return each.first.prefix() == participant && each.second.is_proven;
   });
   if (life == lives_.end() || other == others_.end() || beat.size() > kLongestBeat) return;
-  const auto take = [&](std::string_view key, std::string_view& rest) {
-    if (!rest.starts_with(key)) return std::string_view();
-    const std::size_t end = rest.find(';');
-    if (end == std::string_view::npos) return std::string_view();
-    const std::string_view value = rest.substr(key.size(), end - key.size());
-    rest.remove_prefix(end + 1);
-    return value;
-  };
   std::string_view rest = beat;
   const std::string_view proof = take("proof=", rest);
+  if (rest.starts_with("state=")) {
+    if (other->second.robot == own_.robot) hear_state(participant, proof, rest, now);
+    return;
+  }
   if (!are_same(proof, proof_of(kBeat, rest, participant, own_.key))) return;
   const auto count = number_in(take("count=", rest));
   const bool manages = take("manages=", rest) == "1";

@@ -14,6 +14,15 @@
 // listens for kListen before it goes on, and steps back if another has taken over. With the beat
 // goes what people have ordered of the robot, for who takes over.
 //
+// Beside the beats a manager tells what else a successor has to know (what it learned and tried;
+// opaque here), in parts of one datagram each, with what its clock shows:
+//
+//     proof=...;state=1;round=7;part=0;of=2;clock=81234567890;<bytes>
+//
+// All parts of a round are of one state. A round begins when there is something new to tell, and
+// every kStatePeriod. A culprit that does not know these messages takes them for beats without a
+// proof, and ignores them; so does this one with those of another version.
+//
 // Anybody in the domain could announce so. A claim or a beat counts if it carries a proof that its
 // participant knows the key that both were given (HMAC-SHA-256 over it and the participant's GUID
 // prefix); beats are numbered, so that an old one is not taken for a new one. What has no proof is
@@ -56,6 +65,11 @@ class ManagerLease {
   // Longer than it takes to take over, and to hear of it.
   static constexpr Duration kListen = std::chrono::milliseconds(3000);
   static constexpr std::size_t kLongestBeat = 48 * 1024;  // one UDP datagram
+  static constexpr Duration kStatePeriod = std::chrono::seconds(1);
+  static constexpr std::size_t kLongestPart = 40 * 1024;
+  static constexpr std::size_t kMostParts = 16;
+  static constexpr std::size_t kPartsAtOnce = 4;  // with one beat
+  static constexpr std::size_t kLongestState = kMostParts * kLongestPart;
 
   // `self` is the participant that announces it.
   ManagerLease(LeaseClaim own, GuidPrefix self) : own_(std::move(own)), self_(self) {}
@@ -68,6 +82,19 @@ class ManagerLease {
   // written; nothing if nobody would believe it, or nobody should rely on this one now. `orders`:
   // what people have ordered; told only if it manages, and left out if it is too long.
   std::optional<std::string> beat(Time now, bool hears, bool manages, const std::string& orders);
+  // What a successor is to be told from now on; longer than kLongestState: nothing.
+  void tell_state(std::string state);
+  // To be called after each beat that was given. Gives the parts to be written with it.
+  std::vector<std::string> state_parts(Time now);
+  // What the last one that managed this robot told so, whole.
+  struct ToldState {
+    std::string text;
+    Duration shift;  // what our clock showed when it came, minus what theirs showed
+  };
+  const std::optional<ToldState>& told_state() const { return told_state_; }
+  // This one manages from now on, in this term: announcements() say so, and what others said of
+  // orders and state is over. Nothing is announced by it.
+  void take_over(std::int64_t term);
   // What a writer of this participant wrote.
   void hear(const GuidPrefix& participant, std::string_view beat, Time now);
   // Until when it is sure that nobody has taken over from this manager unless we heard of it. Not
@@ -76,6 +103,8 @@ class ManagerLease {
   // What the latest beat of another one that manages this robot says of orders; empty: they were
   // not told. Nothing: no such beat was heard.
   const std::optional<std::string>& told_orders() const { return told_orders_; }
+  // Whether it has proven that it knows the key, and is there.
+  bool is_friend(const GuidPrefix& participant) const { return lives_.contains(participant); }
   // The highest term that was proven.
   std::int64_t highest_term() const { return highest_term_; }
 
@@ -110,6 +139,14 @@ class ManagerLease {
     std::uint64_t beats = 0;
   };
 
+  // A round of another one's state, as far as it came.
+  struct Round {
+    std::uint64_t number = 0;
+    std::vector<std::optional<std::string>> parts;
+  };
+
+  void hear_state(const GuidPrefix& participant, std::string_view proof, std::string_view part,
+                  Time now);
   Age own_age() const { return {own_.since, own_.id}; }
   bool concerns_us(const Other& other) const;
   bool is_alive(const GuidPrefix& participant, Time now) const;
@@ -123,6 +160,15 @@ class ManagerLease {
   std::map<GuidPrefix, Life> lives_;  // of those that are proven
   std::int64_t highest_term_ = 0;
   std::optional<std::string> told_orders_;
+  std::map<GuidPrefix, Round> rounds_;  // of those that are proven
+  std::optional<ToldState> told_state_;
+  std::string state_;          // that we tell
+  bool is_state_new_ = false;  // and did not begin to
+  std::string round_state_;    // that the present round tells
+  std::uint64_t round_ = 0;    // its number; 0: there was none
+  std::size_t next_part_ = 0;  // of it
+  std::size_t parts_ = 0;      // it has
+  Time round_began_ = kLongAgo;
   std::uint64_t beats_ = 0;   // that we said
   std::optional<Time> said_;  // the latest of them
   bool has_friends_ = false;  // some were proven

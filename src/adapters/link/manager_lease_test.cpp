@@ -281,6 +281,101 @@ TEST_F(TwoMachines, GiveUpTheLeaseWhenTheyAreDeaf) {
   EXPECT_FALSE(is_sure());
 }
 
+TEST_F(TwoMachines, TakeOverAsTheSameParticipantAndGoBeforeTheOneThatWasSlow) {
+  first.orders = "pause";
+  pass(5s);
+  pass(2s, false);
+  ASSERT_FALSE(is_led_by_first());
+  second.lease.take_over(second.lease.highest_term() + 1);
+  second.manages = true;
+  EXPECT_FALSE(second.lease.told_orders()) << "what the dead one was ordered is in force by now";
+  // Its new claim stands beside the one that it had.
+  EndpointInfo anew = second.announcement();
+  anew.guid.bytes[14] = 7;
+  first.lease.apply(anew, now);
+  pass(1s);
+  EXPECT_EQ(first.lease.elder(now), second.prefix);
+  EXPECT_FALSE(second.lease.elder(now));
+  EXPECT_GT(second.lease.sure_until(now), now);
+}
+
+// A third one that only waits, too.
+TEST_F(TwoMachines, OfSeveralThatWaitOneTakesOver) {
+  Machine third{3, 300};
+  third.manages = false;
+  for (Machine* each : {&first, &second}) {
+    each->lease.apply(third.announcement(), now);
+    third.lease.apply(each->announcement(), now);
+  }
+  for (const Time end = now + 10s; now < end; now += ManagerLease::kPeriod) {
+    const bool is_dead = now > end - 5s;
+    if (!is_dead) first.ticks(now, &second);
+    if (!is_dead) first.ticks(now, &third);
+    second.ticks(now, &third);
+    third.ticks(now, &second);
+  }
+  EXPECT_FALSE(second.lease.elder(now));
+  EXPECT_EQ(third.lease.elder(now), second.prefix);
+}
+
+TEST_F(TwoMachines, LearnWhatASuccessorHasToKnowHoweverLongItIs) {
+  std::string state;
+  for (int i = 0; state.size() < 3 * ManagerLease::kLongestPart; ++i) state += std::to_string(i);
+  first.lease.tell_state(state);
+  pass(1s);
+  for (const std::string& part : first.lease.state_parts(now)) {
+    EXPECT_LT(part.size(), ManagerLease::kLongestBeat);
+    second.lease.hear(first.prefix, part, now + 40s);
+  }
+  ASSERT_TRUE(second.lease.told_state());
+  EXPECT_EQ(second.lease.told_state()->text, state);
+  EXPECT_EQ(second.lease.told_state()->shift, 40s);
+  EXPECT_THAT(first.lease.state_parts(now), IsEmpty()) << "it was told";
+  now += ManagerLease::kStatePeriod;
+  EXPECT_FALSE(first.lease.state_parts(now).empty()) << "who comes late has to hear it";
+  EXPECT_THAT(second.lease.state_parts(now), IsEmpty()) << "it does not manage";
+}
+
+TEST_F(TwoMachines, TakeNoPartsOfTwoStatesForOne) {
+  pass(1s);
+  first.lease.tell_state(std::string(ManagerLease::kLongestPart + 1, 'a'));
+  const auto a = first.lease.state_parts(now);
+  first.lease.tell_state(std::string(ManagerLease::kLongestPart + 1, 'b'));
+  const auto b = first.lease.state_parts(now);
+  ASSERT_EQ(a.size(), 2u);
+  ASSERT_EQ(b.size(), 2u);
+  second.lease.hear(first.prefix, a[0], now);
+  second.lease.hear(first.prefix, b[1], now);
+  EXPECT_FALSE(second.lease.told_state());
+  second.lease.hear(first.prefix, a[1], now);
+  EXPECT_FALSE(second.lease.told_state()) << "an old one";
+  second.lease.hear(first.prefix, b[0], now);
+  ASSERT_TRUE(second.lease.told_state());
+  EXPECT_EQ(second.lease.told_state()->text, std::string(ManagerLease::kLongestPart + 1, 'b'));
+}
+
+TEST_F(TwoMachines, BelieveNoStateOfAStrangerAndTellNoneThatIsTooLong) {
+  pass(1s);
+  first.lease.tell_state("the truth");
+  const auto parts = first.lease.state_parts(now);
+  ASSERT_EQ(parts.size(), 1u);
+  std::string forged = parts[0];
+  forged.replace(forged.find("truth"), 5, "lies!");
+  second.lease.hear(first.prefix, forged, now);
+  second.lease.hear(second.prefix, parts[0], now);
+  for (const char* nonsense : {"proof=;state=1;", "proof=00;state=1;round=1;part=0;of=1;clock=0;x"})
+    second.lease.hear(first.prefix, nonsense, now);
+  EXPECT_FALSE(second.lease.told_state());
+  // An older culprit takes it for a beat without a proof: it is none of a newer one either.
+  std::string beat = parts[0];
+  beat.replace(beat.find("state=1;"), 8, "count=9;manages=1;");
+  second.lease.hear(first.prefix, beat, now);
+  EXPECT_FALSE(second.lease.told_state());
+  first.lease.tell_state(std::string(ManagerLease::kLongestState + 1, 'x'));
+  now += ManagerLease::kStatePeriod;
+  EXPECT_THAT(first.lease.state_parts(now), IsEmpty());
+}
+
 TEST_F(TwoMachines, BelieveNoBeatOfAStrangerAndNoOldOne) {
   first.orders = "pause";
   const auto old = first.lease.beat(now, true, true, "resume");

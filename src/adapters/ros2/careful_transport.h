@@ -73,7 +73,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
                const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
                const eprosima::fastrtps::rtps::Locator_t& local,
                const eprosima::fastrtps::rtps::Locator_t& remote) override {
-    reception_.sources->heard({bytes, size}, address_of(remote));
+    reception_.sources->heard({bytes, size}, address_of(remote), live_now());
     std::unique_lock lock(one_at_a_time_, std::defer_lock);
     if (is_secured_) lock.lock();
     thread_local Bytes scratch;

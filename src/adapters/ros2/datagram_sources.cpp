@@ -44,17 +44,19 @@ void find_sources(std::span<const std::uint8_t> datagram, Found found) CULPRIT_N
 
 }  // namespace
 
-void DatagramSources::heard(std::span<const std::uint8_t> datagram, const UdpAddress& from) {
+void DatagramSources::heard(std::span<const std::uint8_t> datagram, const UdpAddress& from,
+                            Time now) {
   if (datagram.size() < rtps::kHeader || std::memcmp(datagram.data(), "RTPS", 4) != 0) return;
   const MutexLock lock(mutex_);
-  note(prefix_at(datagram, kPrefixInHeader), from);
+  note(prefix_at(datagram, kPrefixInHeader), from, now);
   find_sources(datagram, [&](const GuidPrefix& participant)
-                             CULPRIT_REQUIRES(mutex_) { note(participant, from); });
+                             CULPRIT_REQUIRES(mutex_) { note(participant, from, now); });
 }
 
-void DatagramSources::note(const GuidPrefix& participant, const UdpAddress& from) {
+void DatagramSources::note(const GuidPrefix& participant, const UdpAddress& from, Time now) {
   const auto [found, is_new] = entries_.try_emplace(participant);
   Entry& entry = found->second;
+  entry.last = now;
   if (is_new) entry.place = others_.insert(others_.end(), participant);
   const auto& known = entry.addresses;
   if (std::find(known.begin(), known.end(), from) == known.end()) {
@@ -116,6 +118,12 @@ Time DatagramSources::own_came_through() const {
   Time oldest = kNever;
   for (const auto& [port, at] : ports_) oldest = std::min(oldest, at);
   return oldest;
+}
+
+Time DatagramSources::last_of(const GuidPrefix& participant) const {
+  const MutexLock lock(mutex_);
+  const auto found = entries_.find(participant);
+  return found == entries_.end() ? kLongAgo : found->second.last;
 }
 
 DatagramSources::Origin DatagramSources::of(const GuidPrefix& participant) const {

@@ -46,13 +46,15 @@ class DatagramSources {
     bool is_complete = false;           // false: nothing was heard, or from more than these
   };
 
-  void heard(std::span<const std::uint8_t> datagram, const UdpAddress& from);
+  void heard(std::span<const std::uint8_t> datagram, const UdpAddress& from, Time now);
 
   // It was discovered: it is kept until it is forgotten.
   void keep(const GuidPrefix& participant);
   void forget(const GuidPrefix& participant);
 
   Origin of(const GuidPrefix& participant) const;
+  // When the last one came; kLongAgo: nothing was heard, or it is not kept any more.
+  Time last_of(const GuidPrefix& participant) const;
 
   // The participant that receives.
   void begin(const GuidPrefix& self);
@@ -69,10 +71,12 @@ class DatagramSources {
     std::vector<UdpAddress> addresses;
     bool has_more = false;
     bool is_kept = false;
+    Time last = kLongAgo;
     std::list<GuidPrefix>::iterator place;  // in others_, unless it is kept
   };
 
-  void note(const GuidPrefix& participant, const UdpAddress& from) CULPRIT_REQUIRES(mutex_);
+  void note(const GuidPrefix& participant, const UdpAddress& from, Time now)
+      CULPRIT_REQUIRES(mutex_);
 
   mutable Mutex mutex_;
   std::unordered_map<GuidPrefix, Entry> entries_ CULPRIT_GUARDED_BY(mutex_);

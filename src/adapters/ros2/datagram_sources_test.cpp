@@ -39,11 +39,23 @@ void add_info_source(Datagram& datagram, const GuidPrefix& sender) {
   add(datagram, 0x0c, 20, body);
 }
 
+constexpr Time kNow{std::chrono::hours(1)};
+
+TEST(DatagramSources, KnowWhenEachWasHeardLast) {
+  DatagramSources sources;
+  sources.heard(from(prefix(1)), kHere, kNow);
+  sources.heard(from(prefix(1)), kThere, kNow + std::chrono::seconds(1));
+  EXPECT_EQ(sources.last_of(prefix(1)), kNow + std::chrono::seconds(1));
+  EXPECT_EQ(sources.last_of(prefix(2)), kLongAgo);
+  sources.forget(prefix(1));
+  EXPECT_EQ(sources.last_of(prefix(1)), kLongAgo);
+}
+
 TEST(DatagramSources, AreKnownByTheHeader) {
   DatagramSources sources;
-  sources.heard(from(prefix(1)), kHere);
-  sources.heard(from(prefix(1)), kHere);
-  sources.heard(from(prefix(1)), kThere);
+  sources.heard(from(prefix(1)), kHere, kNow);
+  sources.heard(from(prefix(1)), kHere, kNow);
+  sources.heard(from(prefix(1)), kThere, kNow);
   EXPECT_THAT(sources.of(prefix(1)).addresses, ElementsAre(kHere, kThere));
   EXPECT_TRUE(sources.of(prefix(1)).is_complete);
   EXPECT_FALSE(sources.of(prefix(2)).is_complete) << "nothing was heard of it";
@@ -54,7 +66,7 @@ TEST(DatagramSources, WhoSpeaksInAnothersNameIsWrittenDownThere) {
   Datagram datagram = from(prefix(1));
   add(datagram, 0x09, 8, Datagram(8));
   add_info_source(datagram, prefix(2));
-  sources.heard(datagram, kThere);
+  sources.heard(datagram, kThere, kNow);
   EXPECT_THAT(sources.of(prefix(1)).addresses, ElementsAre(kThere));
   EXPECT_THAT(sources.of(prefix(2)).addresses, ElementsAre(kThere));
 }
@@ -65,7 +77,7 @@ TEST(DatagramSources, AnOddLengthHidesNothing) {
     Datagram datagram = from(prefix(1));
     add(datagram, 0x80, 5, Datagram(5 + padding));
     add_info_source(datagram, prefix(2));
-    sources.heard(datagram, kThere);
+    sources.heard(datagram, kThere, kNow);
     EXPECT_THAT(sources.of(prefix(2)).addresses, ElementsAre(kThere)) << padding;
   }
 }
@@ -73,10 +85,10 @@ TEST(DatagramSources, AnOddLengthHidesNothing) {
 TEST(DatagramSources, WhatIsNoDatagramOfRtpsSaysNothing) {
   DatagramSources sources;
   Datagram datagram = from(prefix(1));
-  sources.heard({datagram.data(), 19}, kHere);
+  sources.heard({datagram.data(), 19}, kHere, kNow);
   datagram[0] = 'X';
-  sources.heard(datagram, kHere);
-  sources.heard({}, kHere);
+  sources.heard(datagram, kHere, kNow);
+  sources.heard({}, kHere, kNow);
   EXPECT_THAT(sources.of(prefix(1)).addresses, IsEmpty());
 }
 
@@ -86,20 +98,20 @@ TEST(DatagramSources, EveryCutOfADatagramIsRead) {
   add_info_source(datagram, prefix(2));
   for (std::size_t size = 0; size <= datagram.size(); ++size) {
     const Datagram cut(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(size));
-    DatagramSources().heard(cut, kHere);
+    DatagramSources().heard(cut, kHere, kNow);
   }
 }
 
 TEST(DatagramSources, StrangersDoNotWashOutWhoIsThere) {
   DatagramSources sources;
-  sources.heard(from(prefix(1)), kThere);
+  sources.heard(from(prefix(1)), kThere, kNow);
   sources.keep(prefix(1));
   for (std::size_t i = 2; i < 3 * DatagramSources::kMostOthers; ++i)
-    sources.heard(from(prefix(i)), kHere);
+    sources.heard(from(prefix(i)), kHere, kNow);
   EXPECT_THAT(sources.of(prefix(1)).addresses, ElementsAre(kThere));
   EXPECT_THAT(sources.of(prefix(2)).addresses, IsEmpty()) << "the oldest makes room";
   sources.keep(prefix(2));
-  sources.heard(from(prefix(2)), kHere);
+  sources.heard(from(prefix(2)), kHere, kNow);
   EXPECT_FALSE(sources.of(prefix(2)).is_complete) << "nobody knows what was lost of it";
   sources.forget(prefix(1));
   EXPECT_THAT(sources.of(prefix(1)).addresses, IsEmpty());
@@ -108,7 +120,7 @@ TEST(DatagramSources, StrangersDoNotWashOutWhoIsThere) {
 TEST(DatagramSources, TooManyAddressesAreKnownToBeTooMany) {
   DatagramSources sources;
   for (std::uint16_t port = 1; port <= DatagramSources::kMostAddresses + 1; ++port)
-    sources.heard(from(prefix(1)), {{127, 0, 0, 1}, port});
+    sources.heard(from(prefix(1)), {{127, 0, 0, 1}, port}, kNow);
   EXPECT_EQ(sources.of(prefix(1)).addresses.size(), DatagramSources::kMostAddresses);
   EXPECT_FALSE(sources.of(prefix(1)).is_complete);
 }

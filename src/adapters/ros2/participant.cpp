@@ -384,6 +384,9 @@ const Guid& Participant::guid() const { return impl_->guid(); }
 DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) const {
   return impl_->sources().of(participant);
 }
+Time Participant::heard_last(const GuidPrefix& participant) const {
+  return impl_->sources().last_of(participant);
+}
 Time Participant::own_came_through() const { return impl_->sources().own_came_through(); }
 void Participant::look_at_receivers(Time now) { impl_->watch().look(now); }
 Time Participant::receivers_attended() const { return impl_->watch().attended(); }

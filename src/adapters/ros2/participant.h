@@ -163,6 +163,8 @@ class Participant {
 
   // Where the datagrams of another participant came from so far.
   DatagramSources::Origin origin_of(const GuidPrefix& participant) const;
+  // When its last one came; kLongAgo: it is not there.
+  Time heard_last(const GuidPrefix& participant) const;
   // Since when nothing of its own came through one of the threads that receive (DatagramSources).
   // Every second something should.
   Time own_came_through() const;

@@ -98,7 +98,7 @@ std::unique_ptr<Manager> manager_for(const journal::Session& session, const Rule
   Manager::Options options;
   options.autonomy = freedom.autonomy;
   options.governor = freedom.governor;
-  options.start = session.start;
+  options.start = session.watched_since.value_or(session.start);
   options.discovery = session.discovery;
   options.forgetting = session.forgetting;
   auto manager = std::make_unique<Manager>(rules, std::move(planner), options);
@@ -168,7 +168,10 @@ Expected<std::vector<std::string>> advise(Recording& recording, const RuleSet& r
   for (; more && *more && step.now < stretch.from; more = recording.next(step))
     prelude.add(step.observations);
   const bool is_whole = session.start >= stretch.from;
-  if (!is_whole) session.start = stretch.from;
+  if (!is_whole) {
+    session.start = stretch.from;
+    session.watched_since.reset();
+  }
   const auto manager = manager_for(session, rules, std::move(planner), {Autonomy::kAdvise, {}});
   const auto tell = [&] {
     for (const Event& event : manager->events()) sink(event, rules);
