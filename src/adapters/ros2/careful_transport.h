@@ -76,9 +76,9 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     reception_.sources->heard({bytes, size}, address_of(remote));
     std::unique_lock lock(one_at_a_time_, std::defer_lock);
     if (is_secured_) lock.lock();
-    thread_local Bytes scratch;
-    const ByteView passed =
-        reception_.filter->pass({bytes, size}, scratch, DatagramFilter::Clock::now());
+    // The buffer is the receiving thread's, which is here.
+    const std::span<std::uint8_t> datagram{const_cast<std::uint8_t*>(bytes), size};
+    const ByteView passed = reception_.filter->pass(datagram, DatagramFilter::Clock::now());
     if (passed.empty()) return;
     next->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local, remote);
     // Not what comes by multicast: it goes away with a network interface, and nothing is wrong.

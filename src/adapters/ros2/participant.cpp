@@ -104,15 +104,22 @@ class HeardWriters {
                         : nullptr) {}
   ~HeardWriters() {
     gate_->close();
-    for (const Guid& writer : writers_) filter_.end_hearing(writer, how_);
+    end();
   }
   HeardWriters(const HeardWriters&) = delete;
 
-  void note(const Guid& writer, Match match) {
+  // `reader` is always the same.
+  void note(const Guid& writer, const Guid& reader, Match match) {
     const MutexLock lock(mutex_);
+    reader_ = reader;
     if (match == Match::kMade && writers_.insert(writer).second)
-      filter_.begin_hearing(writer, how_, on_unheard_);
-    if (match == Match::kLost && writers_.erase(writer) > 0) filter_.end_hearing(writer, how_);
+      filter_.begin_hearing(writer, reader, how_, on_unheard_);
+    if (match == Match::kLost && writers_.erase(writer) > 0) filter_.end_hearing(writer, reader);
+  }
+  void end() {
+    const MutexLock lock(mutex_);
+    for (const Guid& writer : writers_) filter_.end_hearing(writer, reader_);
+    writers_.clear();
   }
   void delivered(const Guid& writer) {
     if (on_unheard_) filter_.delivered(writer);
@@ -124,6 +131,7 @@ class HeardWriters {
   const std::shared_ptr<Gate> gate_ = std::make_shared<Gate>();
   const DatagramFilter::OnUnheard on_unheard_;
   Mutex mutex_;
+  Guid reader_ CULPRIT_GUARDED_BY(mutex_);
   std::set<Guid> writers_ CULPRIT_GUARDED_BY(mutex_);
 };
 
@@ -147,6 +155,7 @@ class Reader::Impl final : public dds::DataReaderListener {
        SampleCallback on_sample)
       : subscriber_(subscriber),
         topics_(topics),
+        filter_(filter),
         heard_(filter, options.qos, options.on_unheard),
         options_(std::move(options)),
         on_sample_(std::move(on_sample)) {
@@ -159,6 +168,7 @@ class Reader::Impl final : public dds::DataReaderListener {
     if (!topic) return Error{topic.error()};
     has_topic_ = true;
     // With the listener from the start: known writers match, and may send, before this returns.
+    const DatagramFilter::Change change(filter_);
     reader_ = subscriber_.create_datareader(
         *topic, fast_dds::reader_qos(options_.qos, options_.user_data), this,
         dds::StatusMask::data_available() << dds::StatusMask::subscription_matched());
@@ -172,8 +182,10 @@ class Reader::Impl final : public dds::DataReaderListener {
   ~Impl() override {
     gate_.close();
     if (reader_ != nullptr) {
+      const DatagramFilter::Change change(filter_);
       reader_->set_listener(nullptr);
       subscriber_.delete_datareader(reader_);
+      heard_.end();
     }
     if (has_topic_) topics_.release(options_.topic);
   }
@@ -187,11 +199,11 @@ class Reader::Impl final : public dds::DataReaderListener {
     });
   }
 
-  void on_subscription_matched(dds::DataReader*,
+  void on_subscription_matched(dds::DataReader* reader,
                                const dds::SubscriptionMatchedStatus& status) noexcept override {
     const Guid writer =
         fast_dds::to_guid(fast_dds::rtps::iHandle2GUID(status.last_publication_handle));
-    heard_.note(writer, match_of(status));
+    heard_.note(writer, fast_dds::to_guid(reader->guid()), match_of(status));
     if (!options_.on_match) return;
     gate_.pass([&] { options_.on_match(writer, match_of(status)); });
   }
@@ -212,6 +224,7 @@ class Reader::Impl final : public dds::DataReaderListener {
 
   dds::Subscriber& subscriber_;
   Topics& topics_;
+  DatagramFilter& filter_;
   HeardWriters heard_;  // outlives the middleware's reader
   const ReaderOptions options_;
   const SampleCallback on_sample_;
@@ -331,6 +344,7 @@ class Participant::Impl {
                         : "; is there a network interface, and a free UDP port for it?")};
     }
     *reception_.listens = true;
+    if (!options.security) reception_.filter->begin_to_address();
     likely_refusal_ = likely_refusal(options.security);
     guid_ = fast_dds::to_guid(participant_->guid());
     reception_.sources->begin(guid_.prefix());
