@@ -7,6 +7,7 @@
 #include "base/mutex.h"
 #include "ros2/fast_dds.h"
 #include "ros2/names.h"
+#include "ros2/receive_watch.h"
 
 namespace culprit::ros2 {
 
@@ -151,11 +152,12 @@ Match match_of(const Status& status) {
 
 class Reader::Impl final : public dds::DataReaderListener {
  public:
-  Impl(dds::Subscriber& subscriber, Topics& topics, DatagramFilter& filter, ReaderOptions options,
-       SampleCallback on_sample)
+  Impl(dds::Subscriber& subscriber, Topics& topics, DatagramFilter& filter,
+       std::uint16_t patient_port, ReaderOptions options, SampleCallback on_sample)
       : subscriber_(subscriber),
         topics_(topics),
         filter_(filter),
+        port_(options.payload == PayloadUse::kHeader ? patient_port : std::uint16_t{0}),
         heard_(filter, options.qos, options.on_unheard),
         options_(std::move(options)),
         on_sample_(std::move(on_sample)) {
@@ -170,7 +172,7 @@ class Reader::Impl final : public dds::DataReaderListener {
     // With the listener from the start: known writers match, and may send, before this returns.
     const DatagramFilter::Change change(filter_);
     reader_ = subscriber_.create_datareader(
-        *topic, fast_dds::reader_qos(options_.qos, options_.user_data), this,
+        *topic, fast_dds::reader_qos(options_.qos, options_.user_data, port_), this,
         dds::StatusMask::data_available() << dds::StatusMask::subscription_matched());
     if (reader_ == nullptr)
       return Error{"no reader of " + printable(options_.topic) + " can be created" +
@@ -225,6 +227,7 @@ class Reader::Impl final : public dds::DataReaderListener {
   dds::Subscriber& subscriber_;
   Topics& topics_;
   DatagramFilter& filter_;
+  const std::uint16_t port_;
   HeardWriters heard_;  // outlives the middleware's reader
   const ReaderOptions options_;
   const SampleCallback on_sample_;
@@ -364,7 +367,8 @@ class Participant::Impl {
 
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample) {
     auto reader = std::make_unique<Reader::Impl>(*subscriber_, *topics_, *reception_.filter,
-                                                 std::move(options), std::move(on_sample));
+                                                 *reception_.patient_port, std::move(options),
+                                                 std::move(on_sample));
     if (auto opened = reader->open(likely_refusal_); !opened) return Error{opened.error()};
     return std::make_unique<Reader>(std::move(reader));
   }
@@ -378,11 +382,16 @@ class Participant::Impl {
   const Guid& guid() const { return guid_; }
   const DatagramSources& sources() const { return *reception_.sources; }
   const DatagramFilter& filter() const { return *reception_.filter; }
-  ReceiveWatch& watch() const { return *reception_.watch; }
+  void look_at_receivers(Time now) {
+    reception_.thread->look_at_sockets(
+        [&](std::span<const int> sockets) { watch_.look(sockets, now); });
+  }
+  Time receivers_attended() const { return watch_.attended(); }
 
  private:
   Gate gate_;
   const fast_dds::Reception reception_;
+  ReceiveWatch watch_;
   fast_dds::DiscoveryListener listener_;
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;
@@ -399,8 +408,8 @@ DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) co
   return impl_->sources().of(participant);
 }
 Time Participant::own_came_through() const { return impl_->sources().own_came_through(); }
-void Participant::look_at_receivers(Time now) { impl_->watch().look(now); }
-Time Participant::receivers_attended() const { return impl_->watch().attended(); }
+void Participant::look_at_receivers(Time now) { impl_->look_at_receivers(now); }
+Time Participant::receivers_attended() const { return impl_->receivers_attended(); }
 DatagramFilter::Refused Participant::refused() const { return impl_->filter().refused(); }
 
 Expected<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,
