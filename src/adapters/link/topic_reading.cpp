@@ -21,8 +21,10 @@ std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::str
     }
   }
   reading->since_ = live_now();
+  // Not kHeader, which has time: rhythms are measured.
   auto listener = TopicListener::open(
-      self, topic, type, keys, reading->readers_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
+      self, topic, type, keys,
+      reading->readers_.empty() ? PayloadUse::kBeginning : PayloadUse::kWhole,
       {.on_arrival = [raw = reading.get()](const Sample&) { raw->on_arrival(); },
        .on_message = [raw = reading.get()](const Sample& sample) { raw->on_message(sample); },
        .on_unheard = {}});

@@ -4,13 +4,17 @@
 #include <charconv>
 #include <cstring>
 #include <ctime>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <string_view>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
+
+#include "owners/file_descriptor.h"
 
 namespace culprit::owners {
 namespace {
@@ -132,9 +136,18 @@ Duration now_on(clockid_t clock) {
 
 }  // namespace
 
+// Five times a second for each process that is watched. The file of the first thread says the same,
+// and the kernel does not add up all threads for it.
 std::optional<char> state_letter(int pid) {
-  const std::string rest = stat_after_command(pid);
-  return rest.empty() ? std::nullopt : std::optional(rest.front());
+  const std::string process = std::to_string(pid);
+  const FileDescriptor file(
+      open(("/proc/" + process + "/task/" + process + "/stat").c_str(), O_RDONLY | O_CLOEXEC));
+  std::array<char, 512> text{};  // a command has 64 bytes at most
+  const ssize_t size = read(file.get(), text.data(), text.size());
+  if (size <= 0) return std::nullopt;
+  const std::string_view line(text.data(), static_cast<std::size_t>(size));
+  const auto end = line.rfind(')');
+  return end == line.npos || end + 2 >= line.size() ? std::nullopt : std::optional(line[end + 2]);
 }
 
 std::optional<int> status_of_zombie(int pid) {

@@ -73,10 +73,13 @@ void Supervisor::take_over(ComponentId component) {
 
 // ---- starting
 
+std::filesystem::path Supervisor::log_of(ComponentId component) const {
+  return options_.log_folder / (rules_[component].name + ".log");
+}
+
 Program Supervisor::program_of(ComponentId component) const {
   const Component& what = rules_[component];
-  Program program{
-      what.launch, options_.search_first, options_.log_folder / (what.name + ".log"), {}, {}};
+  Program program{what.launch, options_.search_first, log_of(component), {}, {}};
   program.lifetime = options_.lifetime;
   program.folder = what.folder;
   if (const auto environment = environment_of(component)) program.environment = *environment;
@@ -96,7 +99,7 @@ Expected<std::vector<std::string>> Supervisor::environment_of(ComponentId compon
 // From the decision to start until the program runs, and carries the mark, it is nobody else's to
 // start. The kernel lets go of it when the last one that holds it has ended or runs the program.
 Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const {
-  const std::filesystem::path log = program_of(component).log;
+  const std::filesystem::path log = log_of(component);
   std::error_code error;
   std::filesystem::create_directories(log.parent_path(), error);
   FileDescriptor lock(
@@ -538,6 +541,7 @@ void Supervisor::wake() {
 void Supervisor::run() {
   MutexLock lock(mutex_);
   Time next_look = live_now();
+  Time next_look_at_logs = next_look;
   std::vector<std::filesystem::path> logs;
   while (!is_ending_) {
     std::vector<pollfd> watched{{wake_.get(), POLLIN, 0}};
@@ -572,7 +576,9 @@ void Supervisor::run() {
     look(now);
     if (now < next_look) continue;
     next_look = later(now, kStatePeriod);
-    for (const Member& member : members_) logs.push_back(program_of(member.component).log);
+    if (now < next_look_at_logs) continue;
+    next_look_at_logs = later(now, kLogPeriod);
+    for (const Member& member : members_) logs.push_back(log_of(member.component));
   }
 }
 

@@ -65,6 +65,8 @@ class Supervisor {
   static constexpr Duration kComingUp = std::chrono::minutes(5);
   // How often it is looked whether a process was stopped; its end is known at once.
   static constexpr Duration kStatePeriod = std::chrono::milliseconds(200);
+  // How often it is looked whether a log has become too long.
+  static constexpr Duration kLogPeriod = std::chrono::seconds(1);
   // What stands for less may be part of a stop that is on its way through a launch.
   static constexpr Duration kStopSettles = std::chrono::milliseconds(50);
   // A launcher that ends within this time after what it started ended because of that.
@@ -168,6 +170,7 @@ class Supervisor {
   };
 
   std::string marked_as(ComponentId component) const;
+  std::filesystem::path log_of(ComponentId component) const;
   Program program_of(ComponentId component) const;
   Expected<std::vector<std::string>> environment_of(ComponentId component) const;
   Expected<FileDescriptor> lock_start_of(ComponentId component) const;

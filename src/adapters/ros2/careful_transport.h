@@ -6,29 +6,38 @@
 // void, and repeats itself only when a heartbeat comes round, 1 to 3 s later. So nothing is sent
 // before create_participant() has returned; the announcements that follow are the first ones heard.
 //
-// It passes on only what the filter lets through (datagram_filter.h), and tells on which ports
-// threads receive (receive_watch.h).
+// It receives in a thread of its own (receive_thread.h), the same for all ports, so that what it hears
+// is handed on one datagram at a time. Fast DDS has a thread for each port, and in a secured domain it
+// then frees twice what it knows of whoever leaves: a goodbye comes to a unicast and to a multicast
+// port (2.9, SecurityManager::remove_participant).
 //
-// In a secured domain it hears one datagram at a time. A goodbye goes to a participant's unicast
-// and multicast ports, each of which has a thread; Fast DDS 2.9 frees what it knows of whoever
-// leaves under a lock that both may hold (SecurityManager::remove_participant), and so frees it
-// twice.
+// It passes on only what the filter lets through (datagram_filter.h).
+//
+// Readers that have time (Haste::kSoon) have a port of their own. It is taken from the upper end of
+// those that RTPS 2.3 §9.6.1 gives to the domain's participants, where the last ones of many on one
+// machine would be.
 #pragma once
 
+#include <arpa/inet.h>
 #include <atomic>
 #include <cstring>
+#include <ifaddrs.h>
 #include <memory>
-#include <mutex>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fastdds/rtps/network/SenderResource.h>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <net/if.h>
 
 #include "base/live_clock.h"
 #include "ros2/datagram_filter.h"
 #include "ros2/datagram_sources.h"
-#include "ros2/receive_watch.h"
+#include "ros2/receive_thread.h"
 
 namespace culprit::ros2::fast_dds {
 
@@ -40,25 +49,73 @@ struct Reception {
   Listens listens = std::make_shared<std::atomic<bool>>(false);
   std::shared_ptr<DatagramSources> sources = std::make_shared<DatagramSources>();
   std::shared_ptr<DatagramFilter> filter = std::make_shared<DatagramFilter>();
-  std::shared_ptr<ReceiveWatch> watch = std::make_shared<ReceiveWatch>();
+  std::shared_ptr<ReceiveThread> thread = std::make_shared<ReceiveThread>();
+  // Where readers that have time are sent to; 0: there is no such port.
+  std::shared_ptr<std::atomic<std::uint16_t>> patient_port =
+      std::make_shared<std::atomic<std::uint16_t>>(std::uint16_t{0});
 };
 
 class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport {
+  using Locator = eprosima::fastrtps::rtps::Locator_t;
+  using IpLocator = eprosima::fastrtps::rtps::IPLocator;
+  using Receiver = eprosima::fastdds::rtps::TransportReceiverInterface;
+
  public:
   CarefulTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
-                   Reception reception, bool is_secured)
-      : ChainingTransport(descriptor), reception_(std::move(reception)), is_secured_(is_secured) {}
+                   Reception reception, std::uint32_t domain)
+      : ChainingTransport(descriptor), reception_(std::move(reception)), domain_(domain) {}
+  // Whatever of it the middleware left open.
+  ~CarefulTransport() override {
+    for (const std::uint16_t port : ports_) reception_.thread->close(port);
+  }
 
   eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override {
     return low_level_transport_->get_configuration();
   }
 
-  bool OpenInputChannel(const eprosima::fastrtps::rtps::Locator_t& locator,
-                        eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
-                        std::uint32_t largest) override {
-    if (!ChainingTransport::OpenInputChannel(locator, receiver, largest)) return false;
-    reception_.watch->opened(static_cast<std::uint16_t>(locator.port));
+  bool init(const eprosima::fastrtps::rtps::PropertyPolicy* properties) override {
+    if (!ChainingTransport::init(properties)) return false;
+    open_for_patient();
     return true;
+  }
+
+  bool IsInputChannelOpen(const Locator& locator) const override {
+    const std::uint16_t port = IpLocator::getPhysicalPort(locator);
+    if (port == *reception_.patient_port) return patient_ != nullptr;
+    return IsLocatorSupported(locator) && reception_.thread->is_open(port);
+  }
+
+  // As UDPv4Transport does, whose sockets would have threads of their own.
+  bool OpenInputChannel(const Locator& locator, Receiver* receiver,
+                        std::uint32_t largest) override {
+    if (!is_locator_allowed(locator)) return false;
+    const std::uint16_t port = IpLocator::getPhysicalPort(locator);
+    const bool is_multicast = IpLocator::isMulticast(locator);
+    const bool is_new = !IsInputChannelOpen(locator);
+    if (is_new && port == *reception_.patient_port) {
+      patient_locator_ = locator;
+      patient_ = receiver;
+      return true;
+    }
+    if (is_new && !open(locator, receiver, largest)) return false;
+    if (is_multicast) {
+      groups_.push_back(locator);
+      join(locator);
+    }
+    return is_new;
+  }
+
+  bool CloseInputChannel(const Locator& locator) override {
+    if (!IsInputChannelOpen(locator)) return false;
+    const std::uint16_t port = IpLocator::getPhysicalPort(locator);
+    if (port == *reception_.patient_port) patient_ = nullptr;
+    reception_.thread->close(port);
+    return true;
+  }
+
+  void update_network_interfaces() override {
+    ChainingTransport::update_network_interfaces();
+    for (const Locator& group : groups_) join(group);
   }
 
   bool send(eprosima::fastrtps::rtps::SenderResource* sender,
@@ -69,51 +126,136 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return !*reception_.listens || sender->send(bytes, size, begin, end, timeout);
   }
 
-  void receive(eprosima::fastdds::rtps::TransportReceiverInterface* next,
-               const eprosima::fastrtps::rtps::octet* bytes, std::uint32_t size,
-               const eprosima::fastrtps::rtps::Locator_t& local,
-               const eprosima::fastrtps::rtps::Locator_t& remote) override {
-    reception_.sources->heard({bytes, size}, address_of(remote), live_now());
-    std::unique_lock lock(one_at_a_time_, std::defer_lock);
-    if (is_secured_) lock.lock();
-    thread_local Bytes scratch;
-    const ByteView passed =
-        reception_.filter->pass({bytes, size}, scratch, DatagramFilter::Clock::now());
+  // The thread is our own: nothing comes this way.
+  void receive(Receiver*, const eprosima::fastrtps::rtps::octet*, std::uint32_t, const Locator&,
+               const Locator&) override {}
+
+ private:
+  const eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp() const {
+    return *static_cast<const eprosima::fastdds::rtps::UDPv4TransportDescriptor*>(
+        low_level_transport_->get_configuration());
+  }
+
+  // Where sockets are bound.
+  std::vector<in_addr> own_addresses() const {
+    std::vector<in_addr> all;
+    for (const std::string& each : udp().interfaceWhiteList) {
+      in_addr address{};
+      if (inet_pton(AF_INET, each.c_str(), &address) == 1) all.push_back(address);
+    }
+    if (all.empty()) all.push_back({htonl(INADDR_ANY)});
+    return all;
+  }
+
+  bool open(const Locator& locator, Receiver* receiver, std::uint32_t largest) {
+    const bool is_multicast = IpLocator::isMulticast(locator);
+    std::vector<in_addr> addresses = own_addresses();
+    // A socket that is bound to one interface's address does not get what is sent to a group.
+    if (is_multicast && !udp().interfaceWhiteList.empty()) addresses.push_back(address_of(locator));
+    const std::uint16_t port = IpLocator::getPhysicalPort(locator);
+    ports_.push_back(port);
+    for (const in_addr& address : addresses) {
+      const ReceiveThread::Place place{address, port, is_multicast, udp().receiveBufferSize,
+                                       largest};
+      const auto opened = reception_.thread->open(
+          place,
+          [this, receiver, locator](std::span<std::uint8_t> datagram, const UdpAddress& from) {
+            came(*receiver, datagram, locator, from, Haste::kNow);
+          });
+      if (opened) continue;
+      reception_.thread->close(port);
+      return false;
+    }
+    return true;
+  }
+
+  // Before there is a reader for it, so that nobody else can take the port until then.
+  void open_for_patient() {
+    constexpr std::uint32_t kFirst = 60;
+    constexpr std::uint32_t kLast = 119;
+    for (std::uint32_t participant = kLast; participant >= kFirst; --participant) {
+      const std::uint32_t port = 7400 + 250 * domain_ + 11 + 2 * participant;
+      if (port > 65'535) continue;
+      const ReceiveThread::Place place{
+          own_addresses().front(), static_cast<std::uint16_t>(port), false,
+          udp().receiveBufferSize, max_recv_buffer_size(),           Haste::kSoon};
+      const auto opened = reception_.thread->open(
+          place, [this](std::span<std::uint8_t> datagram, const UdpAddress& from) {
+            if (Receiver* receiver = patient_)
+              came(*receiver, datagram, patient_locator_, from, Haste::kSoon);
+          });
+      if (!opened) continue;
+      *reception_.patient_port = place.port;
+      ports_.push_back(place.port);
+      return;
+    }
+  }
+
+  // Of each interface that is there.
+  void join(const Locator& group) const {
+    const std::uint16_t port = IpLocator::getPhysicalPort(group);
+    if (!udp().interfaceWhiteList.empty()) {
+      for (const in_addr& address : own_addresses())
+        reception_.thread->join(port, address_of(group), address);
+      return;
+    }
+    ifaddrs* all = nullptr;
+    if (getifaddrs(&all) != 0) return;
+    const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(all, &freeifaddrs);
+    for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
+      if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
+      if ((each->ifa_flags & IFF_UP) == 0) continue;
+      reception_.thread->join(port, address_of(group),
+                              reinterpret_cast<const sockaddr_in*>(each->ifa_addr)->sin_addr);
+    }
+  }
+
+  void came(Receiver& receiver, std::span<std::uint8_t> datagram, const Locator& local,
+            const UdpAddress& from, Haste haste) const {
+    reception_.sources->heard(datagram, from, live_now());
+    const ByteView passed = reception_.filter->pass(datagram, DatagramFilter::Clock::now());
     if (passed.empty()) return;
-    next->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local, remote);
-    // Not what comes by multicast: it goes away with a network interface, and nothing is wrong.
-    const bool is_multicast = local.address[12] >= 224 && local.address[12] < 240;
-    if (!is_multicast)
+    Locator remote;
+    remote.kind = LOCATOR_KIND_UDPv4;
+    std::memcpy(remote.address + 12, from.ip.data(), from.ip.size());
+    remote.port = from.port;
+    receiver.OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local,
+                            remote);
+    // Not what comes by multicast: it goes away with a network interface, and nothing is wrong. Not
+    // where it depends on what is read whether anything of our own comes.
+    if (!IpLocator::isMulticast(local) && haste == Haste::kNow)
       reception_.sources->came_through(passed, static_cast<std::uint16_t>(local.port), live_now());
   }
 
- private:
-  static UdpAddress address_of(const eprosima::fastrtps::rtps::Locator_t& locator) {
-    UdpAddress address;
-    std::memcpy(address.ip.data(), locator.address + 12, address.ip.size());
-    address.port = static_cast<std::uint16_t>(locator.port);
+  static in_addr address_of(const Locator& locator) {
+    in_addr address{};
+    std::memcpy(&address, locator.address + 12, sizeof address);
     return address;
   }
 
   const Reception reception_;
-  const bool is_secured_;
-  std::mutex one_at_a_time_;
+  const std::uint32_t domain_;
+  std::vector<std::uint16_t> ports_;  // that were opened
+  std::vector<Locator> groups_;       // that were joined
+  // Of the port for those that have time; written before the receiver.
+  Locator patient_locator_;
+  std::atomic<Receiver*> patient_ = nullptr;
 };
 
 struct CarefulTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   CarefulTransportDescriptor(
       std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> transport,
-      Reception shared, bool secured)
+      Reception shared, std::uint32_t in_domain)
       : ChainingTransportDescriptor(std::move(transport)),
         reception(std::move(shared)),
-        is_secured(secured) {}
+        domain(in_domain) {}
 
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override {
-    return new CarefulTransport(*this, reception, is_secured);
+    return new CarefulTransport(*this, reception, domain);
   }
 
   const Reception reception;
-  const bool is_secured;
+  const std::uint32_t domain;
 };
 
 }  // namespace culprit::ros2::fast_dds

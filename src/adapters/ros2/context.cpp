@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "base/live_clock.h"
+
 namespace culprit::ros2 {
 namespace {
 
@@ -32,11 +34,27 @@ Graph::Options Context::with_context(Graph::Options options) {
   };
   if (options.find_process) {
     options.find_process = [this, find = std::move(options.find_process)](ParticipantInfo info) {
-      info.origin = participant_->origin_of(info.guid.prefix());
-      return find(info);
+      return this->find_process(find, std::move(info));
     };
   }
   return options;
+}
+
+// To look through the sockets and processes of a machine takes a millisecond or more. A socket changes
+// its process only with the participant's end.
+FoundProcess Context::find_process(const Graph::FindProcess& find, ParticipantInfo info) {
+  constexpr Duration kLasts = std::chrono::seconds(1);
+  const Time now = live_now();
+  info.origin = participant_->origin_of(info.guid.prefix());
+  std::erase_if(proofs_, [&](const auto& each) { return each.second.until <= now; });
+  const auto known = proofs_.find(info.guid.prefix());
+  if (known != proofs_.end() && known->second.of.metatraffic == info.metatraffic &&
+      known->second.of.origin == info.origin)
+    return known->second.found;
+  FoundProcess found = find(info);
+  if (found.pid != 0)
+    proofs_.insert_or_assign(info.guid.prefix(), Proof{std::move(info), found, later(now, kLasts)});
+  return found;
 }
 
 Expected<void> Context::open(const ParticipantOptions& options) {

@@ -72,6 +72,7 @@ class Context {
 
   Context(Executor& executor, Graph::Options graph);
   Graph::Options with_context(Graph::Options options);
+  FoundProcess find_process(const Graph::FindProcess& find, ParticipantInfo info);
   Expected<void> open(const ParticipantOptions& options);
 
   // On the executor's thread.
@@ -89,6 +90,13 @@ class Context {
   std::optional<GidSize> gid_size_;
   bool is_deciding_ = false;
   DiscoveryCallback discovery_listener_;  // may be empty
+  // What was proven a moment ago. A process of many nodes is found once, not for each of them.
+  struct Proof {
+    ParticipantInfo of;
+    FoundProcess found;
+    Time until;
+  };
+  std::map<GuidPrefix, Proof> proofs_;
 
   Mutex mutex_;
   bool is_open_ CULPRIT_GUARDED_BY(mutex_) =

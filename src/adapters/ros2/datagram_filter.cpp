@@ -18,6 +18,8 @@ bool is_header(ByteView datagram) {
 }
 
 bool is_builtin(const Guid& writer) { return (writer.bytes[15] & 0xc0) == 0xc0; }
+// What a program made, and no middleware for itself (RTPS 2.3 §9.3.1.2).
+bool is_of_user(const Guid& writer) { return (writer.bytes[15] & 0xc0) == 0; }
 
 }  // namespace
 
@@ -91,29 +93,31 @@ class DatagramFilter::Submessage {
   bool is_ok_ = true;
 };
 
-ByteView DatagramFilter::pass(ByteView datagram, Bytes& scratch, Clock::time_point now) {
+ByteView DatagramFilter::pass(std::span<std::uint8_t> datagram, Clock::time_point now) {
   std::vector<OnUnheard> unheard;
   ByteView passed;
   {
     const MutexLock lock(mutex_);
-    passed = look_at(datagram, scratch, now);
+    passed = look_at(datagram, now);
     unheard.swap(unheard_);
   }
   for (const OnUnheard& each : unheard) (*each)();
   return passed;
 }
 
-ByteView DatagramFilter::look_at(ByteView datagram, Bytes& scratch, Clock::time_point now) {
+ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_point now) {
   if (!is_header(datagram)) {
     refused_ = {refused_.count + 1, "it is no RTPS message"};
     return {};
   }
   GuidPrefix source;
   std::copy_n(datagram.data() + 8, source.bytes.size(), source.bytes.begin());
-  bool is_changed = false;
+  const bool addresses = addresses_ && changes_ == 0;
+  bool is_for_nobody = false;  // something of it
+  bool is_for_somebody = false;
   std::size_t end = datagram.size();
   for (std::size_t at = rtps::kHeader; at < end;) {
-    const ByteView rest = datagram.subspan(at, end - at);
+    const std::span<std::uint8_t> rest = datagram.subspan(at, end - at);
     const char* objection = nullptr;
     std::size_t length = 0;
     bool is_last = false;
@@ -134,21 +138,53 @@ ByteView DatagramFilter::look_at(ByteView datagram, Bytes& scratch, Clock::time_
           std::copy_n(body.data() + 8, source.bytes.size(), source.bytes.begin());
       }
     }
-    if (objection != nullptr) {
-      refused_ = {refused_.count + 1, objection};
+    if (objection != nullptr) refused_ = {refused_.count + 1, objection};
+    const bool is_passed =
+        objection == nullptr &&
+        (!addresses || address(rest.first(rtps::kSubmessageHeader + length), source));
+    is_for_somebody = is_for_somebody || (is_passed && !rtps::is_about_others(rest[0]));
+    is_for_nobody = is_for_nobody || (objection == nullptr && !is_passed);
+    if (!is_passed) {
       // What has no length of its own, or a false one, is cut off; the rest becomes padding.
       if (is_last) {
         end = at;
         break;
       }
-      if (!is_changed) scratch.assign(datagram.begin(), datagram.end());
-      is_changed = true;
-      scratch[at] = rtps::kPad;
+      rest[0] = rtps::kPad;
     }
     at += rtps::kSubmessageHeader + ((length + 3) & ~std::size_t{3});
   }
   if (end <= rtps::kHeader && datagram.size() > rtps::kHeader) return {};
-  return is_changed ? ByteView(scratch).first(end) : datagram.first(end);
+  if (is_for_nobody && !is_for_somebody) return {};
+  return datagram.first(end);
+}
+
+// To the one reader that hears its writer, if it is addressed to all. Gives whether there is a reader.
+bool DatagramFilter::address(std::span<std::uint8_t> submessage, const GuidPrefix& source) {
+  const std::uint8_t kind = submessage[0];
+  const bool is_sample = kind == rtps::kData || kind == rtps::kDataFragment;
+  const bool is_of_writer = is_sample || kind == rtps::kHeartbeat || kind == rtps::kGap ||
+                            kind == rtps::kHeartbeatFragment;
+  if (!is_of_writer) return true;
+  // Nothing was objected to it: it is long enough.
+  const std::span<std::uint8_t, 4> to{
+      submessage.data() + rtps::kSubmessageHeader + (is_sample ? 4 : 0), 4};
+  if (std::ranges::any_of(to, [](std::uint8_t byte) { return byte != 0; })) return true;
+  Guid writer;
+  std::ranges::copy(source.bytes, writer.bytes.begin());
+  std::copy_n(to.data() + 4, 4, writer.bytes.begin() + 12);
+  if (!is_of_user(writer)) return true;
+  const auto found = readers_.find(writer);
+  if (found == readers_.end()) return false;
+  const Readers::Reader* only = nullptr;
+  for (const Readers::Reader& each : found->second.all) {
+    if (!is_sample && each.how == Reading::kBestEffort) continue;  // to which they mean nothing
+    if (only != nullptr) return true;
+    only = &each;
+  }
+  if (only == nullptr) return false;
+  std::copy_n(only->guid.bytes.begin() + 12, 4, to.begin());
+  return true;
 }
 
 const char* DatagramFilter::objection(const Submessage& submessage, Clock::time_point now) {
@@ -325,7 +361,7 @@ bool DatagramFilter::is_heard(const Guid& writer) const {
 bool DatagramFilter::is_reliable(const Guid& writer) const {
   if (is_builtin(writer)) return true;
   const auto readers = readers_.find(writer);
-  return readers != readers_.end() && readers->second.reliable > 0;
+  return readers != readers_.end() && readers->second.is_reliable();
 }
 
 bool DatagramFilter::is_far(const Guid& guid, std::int64_t sequence, Clock::time_point now) const {
@@ -377,27 +413,33 @@ void DatagramFilter::drop(const Guid& guid) {
   writers_.erase(known);
 }
 
-void DatagramFilter::begin_hearing(const Guid& writer, Reading how, OnUnheard on_unheard) {
+void DatagramFilter::begin_hearing(const Guid& writer, const Guid& reader, Reading how,
+                                   OnUnheard on_unheard) {
   const MutexLock lock(mutex_);
   if (how == Reading::kReliable && !is_reliable(writer)) drop(writer);
   Readers& readers = readers_[writer];
-  ++(how == Reading::kReliable ? readers.reliable : readers.best_effort);
+  readers.all.push_back({reader, how});
   if (on_unheard) readers.on_unheard = std::move(on_unheard);
 }
 
-void DatagramFilter::end_hearing(const Guid& writer, Reading how) {
+void DatagramFilter::end_hearing(const Guid& writer, const Guid& reader) {
   const MutexLock lock(mutex_);
   const auto found = readers_.find(writer);
   if (found == readers_.end()) return;
   Readers readers = found->second;
-  --(how == Reading::kReliable ? readers.reliable : readers.best_effort);
-  const bool is_last = readers.reliable <= 0 && readers.best_effort <= 0;
-  if (is_last || (how == Reading::kReliable && readers.reliable == 0)) drop(writer);
-  if (is_last) {
+  std::erase_if(readers.all, [&](const Readers::Reader& each) { return each.guid == reader; });
+  // What was reserved was counted as what it was then.
+  if (readers.all.empty() || readers.is_reliable() != found->second.is_reliable()) drop(writer);
+  if (readers.all.empty()) {
     readers_.erase(found);
   } else {
-    found->second = readers;
+    found->second = std::move(readers);
   }
+}
+
+void DatagramFilter::begin_to_address() {
+  const MutexLock lock(mutex_);
+  addresses_ = true;
 }
 
 void DatagramFilter::know(const GuidPrefix& participant) {

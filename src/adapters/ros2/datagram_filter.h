@@ -15,13 +15,20 @@
 //                     was said of the same sample before
 //
 // What secured submessages contain cannot be seen here; they are proven by their signatures.
+//
+// And it saves Fast DDS work. Writers address what they say to all readers that hear them, and Fast
+// DDS asks each reader of the participant whether that is it. Here it is known who hears whom: what
+// one reader hears is addressed to that reader, and what no reader here hears is taken out.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -51,19 +58,32 @@ class DatagramFilter {
   static constexpr std::size_t kLargest = 32u << 20;
   static constexpr std::size_t kLargestOfAll = 32u << 20;
 
-  // What may be passed on: `datagram` itself, or `scratch`, which it uses if something had to be
-  // taken out; empty if nothing may. `now` never goes back by much.
-  ByteView pass(ByteView datagram, Bytes& scratch, Clock::time_point now);
+  // What may be passed on of `datagram`, in which it takes out or addresses what has to be; empty if
+  // nothing may. `now` never goes back by much.
+  ByteView pass(std::span<std::uint8_t> datagram, Clock::time_point now);
 
-  // A reader of this participant begins to hear the writer, or ends. Of a writer that no reader
-  // hears nothing is known, and nothing has to be: the middleware passes over what it says.
+  // `reader`, of this participant, begins to hear the writer, or ends. Of a writer that no reader
+  // hears nothing is known, and nothing has to be.
   using OnUnheard = std::shared_ptr<const std::function<void()>>;
   static constexpr int kUnheard = 3;
   enum class Reading : std::uint8_t { kBestEffort, kReliable };
   // Best effort: `on_unheard` is called from pass(), without locks, for each further sample of
   // which something came by after kUnheard others of which none was delivered. So the writer lives.
-  void begin_hearing(const Guid& writer, Reading how, OnUnheard on_unheard = {});
-  void end_hearing(const Guid& writer, Reading how);
+  void begin_hearing(const Guid& writer, const Guid& reader, Reading how,
+                     OnUnheard on_unheard = {});
+  void end_hearing(const Guid& writer, const Guid& reader);
+  // From now on it addresses; not before, for in a secured domain it is not clear who hears whom. While
+  // readers are being made or unmade, it is not clear either: then everything stays as it is.
+  void begin_to_address();
+  class Change {
+   public:
+    explicit Change(DatagramFilter& filter) : filter_(filter) { ++filter_.changes_; }
+    ~Change() { --filter_.changes_; }
+    Change(const Change&) = delete;
+
+   private:
+    DatagramFilter& filter_;
+  };
   // A sample of the writer reached its reader.
   void delivered(const Guid& writer);
   // The participant is there: its discovery is heard. Or it is gone, and what it took is free
@@ -93,7 +113,9 @@ class DatagramFilter {
   };
   class Submessage;
 
-  ByteView look_at(ByteView datagram, Bytes& scratch, Clock::time_point now)
+  ByteView look_at(std::span<std::uint8_t> datagram, Clock::time_point now)
+      CULPRIT_REQUIRES(mutex_);
+  bool address(std::span<std::uint8_t> submessage, const GuidPrefix& source)
       CULPRIT_REQUIRES(mutex_);
   const char* objection(const Submessage& submessage, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
@@ -108,9 +130,16 @@ class DatagramFilter {
   const char* reserve(const Guid& guid, std::int64_t sequence, const Assembly& wanted,
                       std::uint32_t first, std::uint32_t count) CULPRIT_REQUIRES(mutex_);
 
+  // Of this participant, which hear one writer.
   struct Readers {
-    int best_effort = 0;
-    int reliable = 0;
+    struct Reader {
+      Guid guid;
+      Reading how;
+    };
+    std::vector<Reader> all{};
+    bool is_reliable() const {
+      return std::ranges::any_of(all, [](const Reader& r) { return r.how == Reading::kReliable; });
+    }
     OnUnheard on_unheard{};
     std::int64_t sample = 0;  // of which something came by last
     int unheard = 0;          // so many in a row were not delivered
@@ -135,6 +164,8 @@ class DatagramFilter {
   std::size_t reserved_reliable_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::size_t reserved_best_effort_ CULPRIT_GUARDED_BY(mutex_) = 0;
   Refused refused_ CULPRIT_GUARDED_BY(mutex_);
+  bool addresses_ CULPRIT_GUARDED_BY(mutex_) = false;
+  std::atomic<int> changes_ = 0;  // that are under way
   std::vector<OnUnheard> unheard_
       CULPRIT_GUARDED_BY(mutex_);  // to be called when this datagram was looked at
 };

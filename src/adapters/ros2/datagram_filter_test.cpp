@@ -23,19 +23,37 @@ const Guid kCamera = writer(0x03);
 const Guid kDiscovery = writer(0xc2);
 const Guid kService = writer(0x03, 2);
 
+// One of ours.
+Guid reader(std::uint8_t number) {
+  Guid guid;
+  guid.bytes[0] = 9;
+  guid.bytes[14] = number;
+  guid.bytes[15] = 0x04;
+  return guid;
+}
+const Guid kPictures = reader(1);
+const Guid kReplies = reader(2);
+
 class Filter : public testing::Test {
  protected:
   Filter() {
-    filter.begin_hearing(kCamera, DatagramFilter::Reading::kBestEffort);
-    filter.begin_hearing(kService, DatagramFilter::Reading::kReliable);
+    filter.begin_hearing(kCamera, kPictures, DatagramFilter::Reading::kBestEffort);
+    filter.begin_hearing(kService, kReplies, DatagramFilter::Reading::kReliable);
     filter.know(kDiscovery.prefix());
   }
 
   TestDatagram from(const Guid& guid) const { return TestDatagram(guid.prefix()); }
   // How many bytes of it are passed on; 0: none.
-  std::size_t pass(const TestDatagram& datagram) {
-    passed = filter.pass(datagram.bytes(), scratch, now);
+  std::size_t pass(const TestDatagram& datagram) { return pass(datagram.bytes()); }
+  std::size_t pass(Bytes bytes) {
+    buffer = std::move(bytes);
+    passed = filter.pass(buffer, now);
     return passed.size();
+  }
+  // To whom the submessage at `position` of what was passed on is addressed: an entity's number.
+  int addressee(std::size_t position) const {
+    const bool is_sample = passed[position] == 0x15 || passed[position] == 0x16;
+    return passed[position + 4 + (is_sample ? 4 : 0) + 2];
   }
   // Whether it is passed on as it is.
   bool passes(const TestDatagram& datagram) {
@@ -45,7 +63,7 @@ class Filter : public testing::Test {
 
   DatagramFilter filter;
   DatagramFilter::Clock::time_point now{};
-  Bytes scratch;
+  Bytes buffer;
   ByteView passed;
 };
 
@@ -60,9 +78,9 @@ TEST_F(Filter, PassesOnWhatParticipantsSend) {
 }
 
 TEST_F(Filter, DropsWhatIsNoMessage) {
-  EXPECT_TRUE(filter.pass(Bytes{}, scratch, now).empty());
-  EXPECT_TRUE(filter.pass(Bytes(19, 'R'), scratch, now).empty());
-  EXPECT_TRUE(filter.pass(Bytes(100, 'R'), scratch, now).empty());
+  EXPECT_TRUE(pass(Bytes{}) == 0);
+  EXPECT_TRUE(pass(Bytes(19, 'R')) == 0);
+  EXPECT_TRUE(pass(Bytes(100, 'R')) == 0);
   EXPECT_EQ(filter.refused().count, 3u);
 }
 
@@ -112,8 +130,8 @@ TEST_F(Filter, RefusesDamagedSubmessages) {
     EXPECT_FALSE(passes(datagram)) << kind;
   }
   const Bytes whole = from(kCamera).data(kCamera, 1).bytes();
-  for (std::size_t length = 21; length < whole.size(); ++length) {
-    EXPECT_TRUE(filter.pass(ByteView(whole).first(length), scratch, now).empty()) << length;
+  for (std::ptrdiff_t length = 21; length < std::ssize(whole); ++length) {
+    EXPECT_EQ(pass(Bytes(whole.begin(), whole.begin() + length)), 0u) << length;
   }
 }
 
@@ -151,7 +169,7 @@ TEST_F(Filter, WhatIsCompleteOrGivenUpIsFreeAgain) {
   EXPECT_TRUE(passes(from(kService).fragment(kService, 201, 1, 50'000, 3'000'000)));
   EXPECT_FALSE(passes(from(kService).fragment(kService, 202, 1, 50'000, 3'000'000)));
   filter.forget(kService.prefix());
-  filter.begin_hearing(kService, DatagramFilter::Reading::kReliable);
+  filter.begin_hearing(kService, kReplies, DatagramFilter::Reading::kReliable);
   EXPECT_TRUE(passes(from(kService).fragment(kService, 1, 1, 50'000, 3'000'000)));
 }
 
@@ -167,7 +185,7 @@ TEST_F(Filter, AllCamerasTogetherAreBounded) {
   int came = 0;
   for (std::uint8_t participant = 3; participant < 100; ++participant) {
     const Guid camera = writer(0x03, participant);
-    filter.begin_hearing(camera, DatagramFilter::Reading::kBestEffort);
+    filter.begin_hearing(camera, kPictures, DatagramFilter::Reading::kBestEffort);
     came += passes(from(camera).fragment(camera, 1, 1, 60'000, 6'000'000)) ? 1 : 0;
   }
   EXPECT_EQ(came, 5);
@@ -177,7 +195,7 @@ TEST_F(Filter, AllCamerasTogetherAreBounded) {
 TEST_F(Filter, AWriterWhoseSamplesAreNotDeliveredIsNotSilent) {
   int signs = 0;
   const Guid lidar = writer(0x03, 9);
-  filter.begin_hearing(lidar, DatagramFilter::Reading::kBestEffort,
+  filter.begin_hearing(lidar, kPictures, DatagramFilter::Reading::kBestEffort,
                        std::make_shared<const std::function<void()>>([&] { ++signs; }));
   for (std::int64_t sequence = 1; sequence <= 10; ++sequence) {
     pass(from(lidar).data(lidar, sequence));
@@ -205,11 +223,11 @@ TEST_F(Filter, AWriterThatIsHeardNoMoreFreesWhatItTook) {
   const Guid other = writer(0x03, 9);
   for (int i = 0; i < 10; ++i) {
     EXPECT_TRUE(passes(from(kCamera).fragment(kCamera, 1, 1, 60'000, 30'000'000)));
-    filter.end_hearing(kCamera, DatagramFilter::Reading::kBestEffort);
-    filter.begin_hearing(other, DatagramFilter::Reading::kBestEffort);
+    filter.end_hearing(kCamera, kPictures);
+    filter.begin_hearing(other, kPictures, DatagramFilter::Reading::kBestEffort);
     EXPECT_TRUE(passes(from(other).fragment(other, 1, 1, 60'000, 30'000'000)));
-    filter.end_hearing(other, DatagramFilter::Reading::kBestEffort);
-    filter.begin_hearing(kCamera, DatagramFilter::Reading::kBestEffort);
+    filter.end_hearing(other, kPictures);
+    filter.begin_hearing(kCamera, kPictures, DatagramFilter::Reading::kBestEffort);
   }
 }
 
@@ -230,6 +248,82 @@ TEST_F(Filter, WritersAreKnownByTheirSource) {
   // The second sample is another participant's.
   const auto datagram = from(kCamera).submessage(0x0c, 0, source).data(kService, 1000);
   EXPECT_TRUE(passes(datagram));
+}
+
+// ---- who hears what
+
+TEST_F(Filter, WhatOneReaderHearsIsAddressedToIt) {
+  filter.begin_to_address();
+  EXPECT_TRUE(passes(from(kCamera).data(kCamera, 1)));
+  EXPECT_EQ(addressee(20), 1);
+  EXPECT_TRUE(passes(from(kCamera).fragment(kCamera, 2, 1, 1000, 1500)));
+  EXPECT_EQ(addressee(20), 1);
+  EXPECT_TRUE(passes(from(kService).heartbeat(kService, 1, 1).gap(kService, 1, 2)));
+  EXPECT_EQ(addressee(20), 2);
+  EXPECT_EQ(addressee(20 + 32), 2);
+}
+
+TEST_F(Filter, WhatSeveralReadersHearIsAddressedToAll) {
+  filter.begin_to_address();
+  filter.begin_hearing(kCamera, kReplies, DatagramFilter::Reading::kReliable);
+  EXPECT_TRUE(passes(from(kCamera).data(kCamera, 1).heartbeat(kCamera, 1, 1)));
+  EXPECT_EQ(addressee(20), 0);
+  EXPECT_EQ(addressee(20 + 32), 2) << "heartbeats are for those that are reliable";
+  filter.end_hearing(kCamera, kPictures);
+  EXPECT_TRUE(passes(from(kCamera).data(kCamera, 2)));
+  EXPECT_EQ(addressee(20), 2);
+}
+
+TEST_F(Filter, WhatNobodyHearsIsTakenOut) {
+  filter.begin_to_address();
+  const Guid stranger = writer(0x03, 9);
+  EXPECT_EQ(pass(from(stranger).data(stranger, 1).heartbeat(stranger, 1, 1)), 0u);
+  EXPECT_EQ(pass(from(kCamera).heartbeat(kCamera, 1, 1)), 0u) << "its reader is best effort";
+  EXPECT_EQ(filter.refused().count, 0u) << "nothing is wrong with it";
+  Bytes source(20);
+  std::copy_n(kCamera.bytes.begin(), 12, source.begin() + 8);
+  const auto mixed =
+      from(stranger).data(stranger, 1).submessage(0x0c, 0, source).data(kCamera, 2).bytes();
+  EXPECT_EQ(pass(mixed), mixed.size());
+  EXPECT_EQ(passed[20], 0x01) << "padding";
+  EXPECT_EQ(addressee(20 + 32 + 24), 1);
+}
+
+TEST_F(Filter, WhatIsAddressedToSomebodyStays) {
+  filter.begin_to_address();
+  Bytes bytes = from(kCamera).data(kCamera, 1).bytes();
+  bytes[20 + 8 + 2] = 7;
+  EXPECT_EQ(pass(bytes), bytes.size());
+  EXPECT_EQ(addressee(20), 7);
+}
+
+TEST_F(Filter, DiscoveryIsHeardByTheMiddleware) {
+  filter.begin_to_address();
+  for (const Guid& guid : {kDiscovery, writer(0xc2, 9), writer(0x43, 9)}) {
+    EXPECT_TRUE(passes(from(guid).data(guid, 1).heartbeat(guid, 1, 1)));
+    EXPECT_EQ(addressee(20), 0);
+  }
+}
+
+TEST_F(Filter, NothingIsAddressedWhileReadersChange) {
+  const Guid stranger = writer(0x03, 9);
+  EXPECT_TRUE(passes(from(stranger).data(stranger, 1))) << "not yet";
+  filter.begin_to_address();
+  {
+    const DatagramFilter::Change change(filter);
+    EXPECT_TRUE(passes(from(stranger).data(stranger, 1)));
+    EXPECT_TRUE(passes(from(kCamera).data(kCamera, 1)));
+    EXPECT_EQ(addressee(20), 0);
+  }
+  EXPECT_EQ(pass(from(stranger).data(stranger, 2)), 0u);
+}
+
+// A last submessage may have no length of its own: what is before it is passed on.
+TEST_F(Filter, TheLastSubmessageCanBeForNobody) {
+  filter.begin_to_address();
+  Bytes bytes = from(kCamera).data(kCamera, 1).heartbeat(kCamera, 1, 1).bytes();
+  bytes[20 + 32 + 2] = 0;
+  EXPECT_EQ(pass(bytes), 20u + 32u);
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ class DatagramSources {
   struct Origin {
     std::vector<UdpAddress> addresses;  // in the order of their first datagrams
     bool is_complete = false;           // false: nothing was heard, or from more than these
+    bool operator==(const Origin&) const = default;
   };
 
   void heard(std::span<const std::uint8_t> datagram, const UdpAddress& from, Time now);

@@ -209,9 +209,20 @@ void apply(EntityQos& entity, const Qos& qos, const std::string& user_data) {
   entity.user_data().setValue({user_data.begin(), user_data.end()});
 }
 
-inline dds::DataReaderQos reader_qos(const Qos& qos, const std::string& user_data) {
+inline rtps::Locator_t locator(const std::string& ip, std::uint32_t port) {
+  rtps::Locator_t out;
+  out.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(out, ip);
+  out.port = port;
+  return out;
+}
+
+// `port`: where it receives, at all addresses of this machine; 0: where its participant does.
+inline dds::DataReaderQos reader_qos(const Qos& qos, const std::string& user_data,
+                                     std::uint16_t port) {
   dds::DataReaderQos out;
   apply(out, qos, user_data);
+  if (port != 0) out.endpoint().unicast_locator_list.push_back(locator("0.0.0.0", port));
   // How often a reader that has not heard of a writer's history asks for it; 70 ms by default.
   out.reliable_reader_qos().times.initialAcknackDelay = {0, 10'000'000};
   return out;
@@ -226,14 +237,6 @@ inline dds::DataWriterQos writer_qos(const Qos& qos, const std::string& user_dat
   out.reliable_writer_qos().times.heartbeatPeriod = {0, 20'000'000};
   if (qos.liveliness_lease != kInfinite)
     out.liveliness().announcement_period = to_duration(qos.liveliness_lease * 2 / 3);
-  return out;
-}
-
-inline rtps::Locator_t locator(const std::string& ip, std::uint32_t port) {
-  rtps::Locator_t out;
-  out.kind = LOCATOR_KIND_UDPv4;
-  rtps::IPLocator::setIPv4(out, ip);
-  out.port = port;
   return out;
 }
 
@@ -297,8 +300,8 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
   udp->maxInitialPeersRange =
       32;  // participants of one machine that are announced to, as ROS 2 Iron and newer
   out.transport().use_builtin_transports = false;
-  out.transport().user_transports.push_back(std::make_shared<CarefulTransportDescriptor>(
-      std::move(udp), reception, options.security.has_value()));
+  out.transport().user_transports.push_back(
+      std::make_shared<CarefulTransportDescriptor>(std::move(udp), reception, options.domain));
   return out;
 }
 
@@ -371,7 +374,8 @@ EndpointInfo to_info(const ProxyData& data) {
   return out;
 }
 
-// Translates the callbacks of a DomainParticipant. Two receive threads can be in here at once.
+// Translates the callbacks of a DomainParticipant. The receive thread and the one that lets leases
+// run out can be in here at once.
 class DiscoveryListener final : public dds::DomainParticipantListener {
  public:
   explicit DiscoveryListener(DiscoveryCallback callback) : callback_(std::move(callback)) {}

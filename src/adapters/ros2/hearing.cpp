@@ -47,7 +47,7 @@ Expected<std::unique_ptr<Hearing>> Hearing::begin(Participant& participant, Exec
 
 const char* Hearing::doubt(Time now) const {
   const bool hangs = later(participant_.receivers_attended(), kReceivePatience) <= now;
-  return hangs ? "datagrams lie unread, since a thread that receives them hangs"
+  return hangs ? "datagrams lie unread, since the thread that receives them hangs"
                : "what culprit says to itself over the network does not come back";
 }
 

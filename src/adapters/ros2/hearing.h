@@ -1,11 +1,12 @@
 // A witness of our own hearing: what we say to ourselves, through sockets like everything that the
 // robot says, and when it came back last.
 //
-// It is said on the executor's thread and heard on a receive thread, so that it also tells of these
-// threads, and of the network interfaces. Discovery has a port and a thread of its own: what the
-// participant announces of itself has to come through there. What comes by multicast is no witness,
-// since it goes away with a network interface; of every thread that receives it is seen whether
-// datagrams lie unread (receive_watch.h).
+// It is said on the executor's thread and heard on the receive thread, so that it also tells of these
+// threads, and of the network interfaces. Discovery has a port of its own: what the participant
+// announces of itself has to come through there. What comes by multicast is no witness, since it goes
+// away with a network interface; of every socket it is seen whether datagrams lie unread
+// (receive_watch.h). What readers that have time were sent before it is heard before it
+// (receive_thread.h).
 #pragma once
 
 #include <algorithm>

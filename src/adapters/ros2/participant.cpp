@@ -7,6 +7,7 @@
 #include "base/mutex.h"
 #include "ros2/fast_dds.h"
 #include "ros2/names.h"
+#include "ros2/receive_watch.h"
 
 namespace culprit::ros2 {
 
@@ -104,15 +105,22 @@ class HeardWriters {
                         : nullptr) {}
   ~HeardWriters() {
     gate_->close();
-    for (const Guid& writer : writers_) filter_.end_hearing(writer, how_);
+    end();
   }
   HeardWriters(const HeardWriters&) = delete;
 
-  void note(const Guid& writer, Match match) {
+  // `reader` is always the same.
+  void note(const Guid& writer, const Guid& reader, Match match) {
     const MutexLock lock(mutex_);
+    reader_ = reader;
     if (match == Match::kMade && writers_.insert(writer).second)
-      filter_.begin_hearing(writer, how_, on_unheard_);
-    if (match == Match::kLost && writers_.erase(writer) > 0) filter_.end_hearing(writer, how_);
+      filter_.begin_hearing(writer, reader, how_, on_unheard_);
+    if (match == Match::kLost && writers_.erase(writer) > 0) filter_.end_hearing(writer, reader);
+  }
+  void end() {
+    const MutexLock lock(mutex_);
+    for (const Guid& writer : writers_) filter_.end_hearing(writer, reader_);
+    writers_.clear();
   }
   void delivered(const Guid& writer) {
     if (on_unheard_) filter_.delivered(writer);
@@ -124,6 +132,7 @@ class HeardWriters {
   const std::shared_ptr<Gate> gate_ = std::make_shared<Gate>();
   const DatagramFilter::OnUnheard on_unheard_;
   Mutex mutex_;
+  Guid reader_ CULPRIT_GUARDED_BY(mutex_);
   std::set<Guid> writers_ CULPRIT_GUARDED_BY(mutex_);
 };
 
@@ -143,10 +152,12 @@ Match match_of(const Status& status) {
 
 class Reader::Impl final : public dds::DataReaderListener {
  public:
-  Impl(dds::Subscriber& subscriber, Topics& topics, DatagramFilter& filter, ReaderOptions options,
-       SampleCallback on_sample)
+  Impl(dds::Subscriber& subscriber, Topics& topics, DatagramFilter& filter,
+       std::uint16_t patient_port, ReaderOptions options, SampleCallback on_sample)
       : subscriber_(subscriber),
         topics_(topics),
+        filter_(filter),
+        port_(options.payload == PayloadUse::kHeader ? patient_port : std::uint16_t{0}),
         heard_(filter, options.qos, options.on_unheard),
         options_(std::move(options)),
         on_sample_(std::move(on_sample)) {
@@ -159,8 +170,9 @@ class Reader::Impl final : public dds::DataReaderListener {
     if (!topic) return Error{topic.error()};
     has_topic_ = true;
     // With the listener from the start: known writers match, and may send, before this returns.
+    const DatagramFilter::Change change(filter_);
     reader_ = subscriber_.create_datareader(
-        *topic, fast_dds::reader_qos(options_.qos, options_.user_data), this,
+        *topic, fast_dds::reader_qos(options_.qos, options_.user_data, port_), this,
         dds::StatusMask::data_available() << dds::StatusMask::subscription_matched());
     if (reader_ == nullptr)
       return Error{"no reader of " + printable(options_.topic) + " can be created" +
@@ -172,8 +184,10 @@ class Reader::Impl final : public dds::DataReaderListener {
   ~Impl() override {
     gate_.close();
     if (reader_ != nullptr) {
+      const DatagramFilter::Change change(filter_);
       reader_->set_listener(nullptr);
       subscriber_.delete_datareader(reader_);
+      heard_.end();
     }
     if (has_topic_) topics_.release(options_.topic);
   }
@@ -187,11 +201,11 @@ class Reader::Impl final : public dds::DataReaderListener {
     });
   }
 
-  void on_subscription_matched(dds::DataReader*,
+  void on_subscription_matched(dds::DataReader* reader,
                                const dds::SubscriptionMatchedStatus& status) noexcept override {
     const Guid writer =
         fast_dds::to_guid(fast_dds::rtps::iHandle2GUID(status.last_publication_handle));
-    heard_.note(writer, match_of(status));
+    heard_.note(writer, fast_dds::to_guid(reader->guid()), match_of(status));
     if (!options_.on_match) return;
     gate_.pass([&] { options_.on_match(writer, match_of(status)); });
   }
@@ -212,6 +226,8 @@ class Reader::Impl final : public dds::DataReaderListener {
 
   dds::Subscriber& subscriber_;
   Topics& topics_;
+  DatagramFilter& filter_;
+  const std::uint16_t port_;
   HeardWriters heard_;  // outlives the middleware's reader
   const ReaderOptions options_;
   const SampleCallback on_sample_;
@@ -331,6 +347,7 @@ class Participant::Impl {
                         : "; is there a network interface, and a free UDP port for it?")};
     }
     *reception_.listens = true;
+    if (!options.security) reception_.filter->begin_to_address();
     likely_refusal_ = likely_refusal(options.security);
     guid_ = fast_dds::to_guid(participant_->guid());
     reception_.sources->begin(guid_.prefix());
@@ -350,7 +367,8 @@ class Participant::Impl {
 
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample) {
     auto reader = std::make_unique<Reader::Impl>(*subscriber_, *topics_, *reception_.filter,
-                                                 std::move(options), std::move(on_sample));
+                                                 *reception_.patient_port, std::move(options),
+                                                 std::move(on_sample));
     if (auto opened = reader->open(likely_refusal_); !opened) return Error{opened.error()};
     return std::make_unique<Reader>(std::move(reader));
   }
@@ -364,11 +382,16 @@ class Participant::Impl {
   const Guid& guid() const { return guid_; }
   const DatagramSources& sources() const { return *reception_.sources; }
   const DatagramFilter& filter() const { return *reception_.filter; }
-  ReceiveWatch& watch() const { return *reception_.watch; }
+  void look_at_receivers(Time now) {
+    reception_.thread->look_at_sockets(
+        [&](std::span<const int> sockets) { watch_.look(sockets, now); });
+  }
+  Time receivers_attended() const { return watch_.attended(); }
 
  private:
   Gate gate_;
   const fast_dds::Reception reception_;
+  ReceiveWatch watch_;
   fast_dds::DiscoveryListener listener_;
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher* publisher_ = nullptr;
@@ -388,8 +411,8 @@ Time Participant::heard_last(const GuidPrefix& participant) const {
   return impl_->sources().last_of(participant);
 }
 Time Participant::own_came_through() const { return impl_->sources().own_came_through(); }
-void Participant::look_at_receivers(Time now) { impl_->watch().look(now); }
-Time Participant::receivers_attended() const { return impl_->watch().attended(); }
+void Participant::look_at_receivers(Time now) { impl_->look_at_receivers(now); }
+Time Participant::receivers_attended() const { return impl_->receivers_attended(); }
 DatagramFilter::Refused Participant::refused() const { return impl_->filter().refused(); }
 
 Expected<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,

@@ -1,8 +1,8 @@
 // A participant on DDS: it discovers the others, reads and writes payloads as bytes, and knows
 // nothing of ROS but its quality of service. context.h makes a ROS 2 participant of it.
 //
-// Threads. Callbacks run on receive threads of the middleware, with its locks held, one at a time
-// for each reader, writer or participant. They copy what they need and leave: they must not create
+// Threads. Callbacks run on the thread that receives and on one of the middleware, with its locks
+// held, one at a time for each reader, writer or participant. They copy what they need and leave: they must not create
 // or destroy readers and writers, write, or wait. Everything else here may be called from any
 // thread. Destroying a reader, writer or participant waits for its running callback; so do not do
 // it while holding a mutex which that callback takes, nor from the callback.
@@ -89,9 +89,11 @@ using SampleCallback = std::function<void(const Sample&)>;
 enum class Match : std::uint8_t { kMade, kLost };
 using MatchCallback = std::function<void(const Guid& remote, Match)>;
 
-// kHeader: for topics whose rate matters and whose size hurts; no payload is copied. kBeginning: of
-// each payload only so much that a std_msgs/Header at its beginning is whole, unless its frame has
-// an absurd name.
+// kHeader: for topics whose rate matters and whose size hurts; no payload is copied. Who does not read
+// what is said has time: samples may come by ReceiveThread::kSoon late, for to wake a thread for each
+// is most of what hearing a topic costs. They come before whatever was said later to others.
+// kBeginning: of each payload only so much that a std_msgs/Header at its beginning is whole, unless its
+// frame has an absurd name.
 enum class PayloadUse : std::uint8_t { kWhole, kHeader, kBeginning };
 inline constexpr std::size_t kBeginningSize = 512;  // bytes
 
@@ -168,7 +170,7 @@ class Participant {
   // Since when nothing of its own came through one of the threads that receive (DatagramSources).
   // Every second something should.
   Time own_came_through() const;
-  // Whether the threads that receive are at work (ReceiveWatch): looks, and until when they were.
+  // Whether the thread that receives is at work (ReceiveWatch): looks, and until when it was.
   void look_at_receivers(Time now);
   Time receivers_attended() const;
   // What came and was kept from the middleware.

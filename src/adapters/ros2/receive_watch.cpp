@@ -1,49 +1,12 @@
 #include "ros2/receive_watch.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <ctime>
-#include <filesystem>
-#include <netinet/in.h>
-#include <optional>
-#include <string>
 #include <sys/socket.h>
-#include <system_error>
 #include <utility>
 
 namespace culprit::ros2 {
-namespace {
-
-// The port of this process's UDP socket; nothing for whatever else the descriptor is.
-std::optional<std::uint16_t> udp_port_of(int descriptor) {
-  int type = 0;
-  socklen_t size = sizeof type;
-  if (getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &size) != 0 || type != SOCK_DGRAM)
-    return std::nullopt;
-  sockaddr_in address{};
-  size = sizeof address;
-  if (getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) != 0 ||
-      address.sin_family != AF_INET)
-    return std::nullopt;
-  return ntohs(address.sin_port);
-}
-
-std::vector<int> descriptors() {
-  std::vector<int> all;
-  std::error_code failed;
-  for (std::filesystem::directory_iterator each("/proc/self/fd", failed), end;
-       !failed && each != end; each.increment(failed)) {
-    const std::string name = each->path().filename().string();
-    int descriptor = -1;
-    std::from_chars(name.data(), name.data() + name.size(), descriptor);
-    all.push_back(descriptor);
-  }
-  return all;
-}
-
-}  // namespace
-
 // The kernel stamps each datagram once; when that is, does not matter, only that they differ.
 ReceiveWatch::Arrival ReceiveWatch::first_unread(int descriptor) {
   const int wanted = 1;
@@ -67,17 +30,10 @@ ReceiveWatch::Arrival ReceiveWatch::first_unread(int descriptor) {
   return {};
 }
 
-void ReceiveWatch::opened(std::uint16_t port) {
-  const MutexLock lock(mutex_);
-  ports_.insert(port);
-}
-
-void ReceiveWatch::look(Time now) {
+void ReceiveWatch::look(std::span<const int> sockets, Time now) {
   const MutexLock lock(mutex_);
   const std::vector<Socket> before = std::exchange(sockets_, {});
-  for (const int descriptor : descriptors()) {
-    const auto port = udp_port_of(descriptor);
-    if (!port || !ports_.contains(*port)) continue;
+  for (const int descriptor : sockets) {
     Socket socket{descriptor, first_unread(descriptor), now};
     const auto same = std::find_if(before.begin(), before.end(), [&](const Socket& each) {
       return each.descriptor == descriptor && each.unread == socket.unread;

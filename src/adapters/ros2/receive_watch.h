@@ -1,13 +1,13 @@
-// Whether the threads that receive are at work: whether a datagram lies unread in their sockets.
+// Whether the thread that receives is at work: whether a datagram lies unread in its sockets.
 //
-// What a participant says to itself (hearing.h) does not pass every thread: what comes by multicast
+// What a participant says to itself (hearing.h) does not pass every socket: what comes by multicast
 // goes away with a network interface, and nothing is wrong. So each socket is looked at: one whose
-// first datagram is still the same has a thread that hangs. Others would seem to be gone for no
-// other reason than that: their announcements come there.
+// first datagram is still the same is not read. Others would seem to be gone for no other reason than
+// that: their announcements come there.
 #pragma once
 
 #include <cstdint>
-#include <set>
+#include <span>
 #include <vector>
 
 #include "base/mutex.h"
@@ -18,12 +18,10 @@ namespace culprit::ros2 {
 // All members may be called from any thread.
 class ReceiveWatch {
  public:
-  // The middleware receives on this UDP port of this process, with whatever number of sockets.
-  void opened(std::uint16_t port);
-
-  // Looks at the sockets, some 50 microseconds long. Call it again and again.
-  void look(Time now);
-  // Until when each thread was known to be at work. kNever: nobody looked yet.
+  // Looks at these UDP sockets, which are open until it returns, a microsecond each. Call it again
+  // and again.
+  void look(std::span<const int> sockets, Time now);
+  // Until when each was known to be read. kNever: nobody looked yet.
   Time attended() const;
 
  private:
@@ -41,7 +39,6 @@ class ReceiveWatch {
   static Arrival first_unread(int descriptor);
 
   mutable Mutex mutex_;
-  std::set<std::uint16_t> ports_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<Socket> sockets_ CULPRIT_GUARDED_BY(mutex_);
 };
 

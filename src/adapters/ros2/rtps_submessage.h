@@ -17,11 +17,18 @@ enum Kind : std::uint8_t {
   kGap = 0x08,
   kInfoTime = 0x09,
   kInfoSource = 0x0c,
+  kInfoReplyIp4 = 0x0d,
   kInfoDestination = 0x0e,
+  kInfoReply = 0x0f,
   kNackFragment = 0x12,
   kHeartbeatFragment = 0x13,
   kData = 0x15,
   kDataFragment = 0x16
 };
+
+// It only says how to understand those that follow.
+inline bool is_about_others(std::uint8_t kind) {
+  return kind == kPad || kind == kInfoTime || (kind >= kInfoSource && kind <= kInfoReply);
+}
 
 }  // namespace culprit::ros2::rtps

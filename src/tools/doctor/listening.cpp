@@ -41,9 +41,9 @@ class Listening::Ear {
                         .keys = topic.keys}
             : ros2::Qos{
                   .reliability = ros2::Reliability::kBestEffort, .depth = 1, .keys = topic.keys};
+    // Not kHeader, which has time: pauses are compared with deadlines.
     auto subscription = ros2::RawSubscription::create(
-        self, topic.name, topic.type, qos,
-        topic.is_stamped ? ros2::PayloadUse::kBeginning : ros2::PayloadUse::kHeader,
+        self, topic.name, topic.type, qos, ros2::PayloadUse::kBeginning,
         [raw = ear.get()](const ros2::Sample& sample) { raw->on_sample(sample); });
     if (!subscription) return nullptr;
     ear->subscription_ = std::move(*subscription);

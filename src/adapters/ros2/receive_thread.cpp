@@ -1,0 +1,253 @@
+#include "ros2/receive_thread.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+#include <utility>
+
+namespace culprit::ros2 {
+namespace {
+
+constexpr std::uint32_t kReadable = EPOLLIN;
+constexpr std::uint64_t kToEnd = ~std::uint64_t{0};
+// Of one socket that has time, in one turn: a flood must not keep the others waiting for good.
+constexpr int kMostBatches = 64;
+// More datagrams than this woke the thread within kWatched: it looks every kSoon instead, for so long.
+constexpr std::chrono::milliseconds kWatched{200};
+constexpr int kMany = 10;
+constexpr std::chrono::seconds kLooks{5};
+
+Error refused(const char* what) { return Error{std::string(what) + ": " + std::strerror(errno)}; }
+
+}  // namespace
+
+struct ReceiveThread::Socket {
+  Socket(int fd, const Place& place, OnDatagram callback)
+      : descriptor(fd),
+        port(place.port),
+        largest(std::min(place.largest, kLargest)),
+        haste(place.haste),
+        on_datagram(std::move(callback)) {}
+  ~Socket() { ::close(descriptor); }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+
+  const int descriptor;
+  const std::uint16_t port;
+  const std::uint32_t largest;
+  const Haste haste;
+  const OnDatagram on_datagram;
+};
+
+// What was taken from a socket at once. Its memory is touched only as far as datagrams reach.
+class ReceiveThread::Batch {
+ public:
+  Batch() : bytes_(std::make_unique_for_overwrite<std::uint8_t[]>(kBatch * kLargest)) {
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      places_[i] = {bytes_.get() + i * kLargest, kLargest};
+      messages_[i].msg_hdr = {};
+      messages_[i].msg_hdr.msg_iov = &places_[i];
+      messages_[i].msg_hdr.msg_iovlen = 1;
+      messages_[i].msg_hdr.msg_name = &senders_[i];
+    }
+  }
+
+  // Gives whether there may be more.
+  bool take(const Socket& socket) {
+    for (std::size_t i = 0; i < kBatch; ++i) {
+      places_[i].iov_len = socket.largest;
+      messages_[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);
+    }
+    const int count = recvmmsg(socket.descriptor, messages_.data(), kBatch, MSG_DONTWAIT, nullptr);
+    count_ = count < 0 ? 0 : static_cast<std::size_t>(count);
+    return count_ == kBatch;
+  }
+  void hand_to(const Socket& socket) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      UdpAddress from;
+      std::memcpy(from.ip.data(), &senders_[i].sin_addr, from.ip.size());
+      from.port = ntohs(senders_[i].sin_port);
+      socket.on_datagram({bytes_.get() + i * kLargest, messages_[i].msg_len}, from);
+    }
+  }
+
+ private:
+  const std::unique_ptr<std::uint8_t[]> bytes_;
+  std::array<sockaddr_in, kBatch> senders_{};
+  std::array<iovec, kBatch> places_{};
+  std::array<mmsghdr, kBatch> messages_{};
+  std::size_t count_ = 0;
+};
+
+ReceiveThread::ReceiveThread()
+    : wait_fd_(epoll_create1(EPOLL_CLOEXEC)), wake_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  epoll_event event{};
+  event.events = kReadable;
+  event.data.u64 = kToEnd;
+  epoll_ctl(wait_fd_, EPOLL_CTL_ADD, wake_fd_, &event);
+}
+
+ReceiveThread::~ReceiveThread() {
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const auto written = write(wake_fd_, &one, sizeof one);
+  if (thread_.joinable()) thread_.join();
+  ::close(wait_fd_);
+  ::close(wake_fd_);
+}
+
+Expected<void> ReceiveThread::open(const Place& place, OnDatagram on_datagram) {
+  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0) return refused("no socket");
+  auto made = std::make_shared<Socket>(descriptor, place, std::move(on_datagram));
+  const int wanted = 1;
+  const int buffer = static_cast<int>(place.buffer);
+  if (buffer > 0) setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
+  if (place.is_shared) setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &wanted, sizeof wanted);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr = place.ip;
+  address.sin_port = htons(place.port);
+  if (bind(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0)
+    return refused("cannot listen there");
+  const MutexLock lock(mutex_);
+  epoll_event event{};
+  event.events = place.haste == Haste::kNow || is_armed_ ? kReadable : 0;
+  event.data.u64 = static_cast<std::uint64_t>(descriptor);
+  if (epoll_ctl(wait_fd_, EPOLL_CTL_ADD, descriptor, &event) != 0)
+    return refused("cannot wait for what comes there");
+  sockets_.push_back(std::move(made));
+  if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+  return {};
+}
+
+void ReceiveThread::close(std::uint16_t port) {
+  Sockets closed;  // for good, when no round uses them any more
+  MutexLock lock(mutex_);
+  for (auto& each : sockets_) {
+    if (each->port != port) continue;
+    epoll_ctl(wait_fd_, EPOLL_CTL_DEL, each->descriptor, nullptr);
+    closed.push_back(std::move(each));
+  }
+  std::erase(sockets_, nullptr);
+  const std::uint64_t round = rounds_;
+  if (round % 2 == 1)
+    round_ended_.wait(lock, [&]() CULPRIT_REQUIRES(mutex_) { return rounds_ != round; });
+}
+
+bool ReceiveThread::is_open(std::uint16_t port) const {
+  const MutexLock lock(mutex_);
+  return std::ranges::any_of(sockets_, [&](const auto& each) { return each->port == port; });
+}
+
+void ReceiveThread::join(std::uint16_t port, in_addr group, in_addr interface) {
+  const MutexLock lock(mutex_);
+  for (const auto& each : sockets_) {
+    const ip_mreq wanted{group, interface};
+    if (each->port == port)
+      setsockopt(each->descriptor, IPPROTO_IP, IP_ADD_MEMBERSHIP, &wanted, sizeof wanted);
+  }
+}
+
+void ReceiveThread::look_at_sockets(
+    const std::function<void(std::span<const int> descriptors)>& look) const {
+  const MutexLock lock(mutex_);
+  std::vector<int> descriptors;
+  for (const auto& each : sockets_) descriptors.push_back(each->descriptor);
+  look(descriptors);
+}
+
+// ---- the thread
+
+void ReceiveThread::run() {
+  Batch batch;
+  Batch patient_batch;
+  std::array<epoll_event, 16> events{};
+  Clock::time_point watched{};  // since then
+  int woken = 0;                // by sockets that have time, since then
+  Clock::time_point looks_until{};
+  while (true) {
+    bool looks = false;
+    {
+      const MutexLock lock(mutex_);
+      looks = !is_armed_;
+    }
+    const int count = epoll_wait(wait_fd_, events.data(), static_cast<int>(events.size()),
+                                 looks ? static_cast<int>(kSoon.count()) : -1);
+    const Clock::time_point now = Clock::now();
+    Sockets urgent;
+    Sockets patient;
+    bool is_woken_by_patient = false;
+    {
+      const MutexLock lock(mutex_);
+      for (int i = 0; i < count; ++i) {
+        const std::uint64_t which = events[static_cast<std::size_t>(i)].data.u64;
+        if (which == kToEnd) return;
+        const auto ready = std::ranges::find_if(sockets_, [&](const auto& each) {
+          return static_cast<std::uint64_t>(each->descriptor) == which;
+        });
+        if (ready == sockets_.end()) continue;
+        if ((*ready)->haste == Haste::kNow) urgent.push_back(*ready);
+        is_woken_by_patient = is_woken_by_patient || (*ready)->haste == Haste::kSoon;
+      }
+      std::ranges::copy_if(sockets_, std::back_inserter(patient),
+                           [](const auto& each) { return each->haste == Haste::kSoon; });
+      if (now - watched > kWatched) {
+        watched = now;
+        woken = 0;
+      }
+      woken += is_woken_by_patient && urgent.empty() ? 1 : 0;
+      if (is_armed_ && woken > kMany) {
+        looks_until = now + kLooks;
+        arm(false);
+      } else if (!is_armed_ && now >= looks_until) {
+        watched = now;
+        woken = 0;
+        arm(true);
+      }
+      ++rounds_;
+    }
+    if (urgent.empty()) take_patient(patient, patient_batch);
+    for (const auto& each : urgent) {
+      batch.take(*each);
+      take_patient(patient, patient_batch);
+      batch.hand_to(*each);
+    }
+    urgent.clear();
+    patient.clear();
+    {
+      const MutexLock lock(mutex_);
+      ++rounds_;
+    }
+    round_ended_.notify_all();
+  }
+}
+
+// All that came to them so far.
+void ReceiveThread::take_patient(const Sockets& patient, Batch& batch) {
+  for (const auto& each : patient) {
+    bool has_more = true;
+    for (int i = 0; has_more && i < kMostBatches; ++i) {
+      has_more = batch.take(*each);
+      batch.hand_to(*each);
+    }
+  }
+}
+
+void ReceiveThread::arm(bool is_armed) {
+  is_armed_ = is_armed;
+  for (const auto& each : sockets_) {
+    if (each->haste == Haste::kNow) continue;
+    epoll_event event{};
+    event.events = is_armed ? kReadable : 0;
+    event.data.u64 = static_cast<std::uint64_t>(each->descriptor);
+    epoll_ctl(wait_fd_, EPOLL_CTL_MOD, each->descriptor, &event);
+  }
+}
+
+}  // namespace culprit::ros2

@@ -1,0 +1,87 @@
+// One thread that receives from all UDP sockets of a participant.
+//
+// Fast DDS has a thread for each socket, and a system call for each datagram. Here one thread waits
+// for all of them, and takes what lies in a socket together, up to kBatch datagrams.
+//
+// What costs most is to wake it. So some sockets have time (Haste::kSoon): they are read whenever the
+// thread is awake anyway, and if so much comes that this would be cheaper, every kSoon instead of with
+// each datagram. What lies in them is always handed on before what came to the other sockets after
+// it: who hears something there has heard all that was said before.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <netinet/in.h>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "base/expected.h"
+#include "base/mutex.h"
+#include "ros2/datagram_sources.h"
+
+namespace culprit::ros2 {
+
+enum class Haste : std::uint8_t { kNow, kSoon };
+
+// All members may be called from any thread but the one that receives.
+class ReceiveThread {
+ public:
+  static constexpr std::size_t kBatch = 8;
+  static constexpr std::uint32_t kLargest = 65'536;  // bytes; UDP carries less
+  static constexpr std::chrono::milliseconds kSoon{20};
+
+  // Called on the thread that receives, one at a time. It may write into `datagram`, which is gone
+  // when it returns.
+  using OnDatagram = std::function<void(std::span<std::uint8_t> datagram, const UdpAddress& from)>;
+
+  ReceiveThread();
+  ~ReceiveThread();
+  ReceiveThread(const ReceiveThread&) = delete;
+  ReceiveThread& operator=(const ReceiveThread&) = delete;
+
+  struct Place {
+    in_addr ip{};
+    std::uint16_t port = 0;
+    bool is_shared = false;    // with other sockets of this machine, as ports for multicast are
+    std::uint32_t buffer = 0;  // bytes, which net.core.rmem_max caps; 0: the system's
+    std::uint32_t largest = kLargest;  // bytes of a datagram; what is longer is cut
+    Haste haste = Haste::kNow;
+  };
+  // Errors: the place is taken, or the system refuses. The thread begins with the first socket.
+  Expected<void> open(const Place& place, OnDatagram on_datagram);
+  // The sockets at the port are closed when it returns, and none of their callbacks runs.
+  void close(std::uint16_t port);
+  bool is_open(std::uint16_t port) const;
+
+  // What is sent to the group by way of the interface with this address comes to the sockets at the
+  // port, too. Once is enough; what is refused is passed over: interfaces come and go.
+  void join(std::uint16_t port, in_addr group, in_addr interface);
+
+  // Calls `look` with all sockets, which stay open meanwhile. It must be short.
+  void look_at_sockets(const std::function<void(std::span<const int> descriptors)>& look) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Socket;
+  using Sockets = std::vector<std::shared_ptr<Socket>>;
+  class Batch;
+
+  void run();
+  void take_patient(const Sockets& patient, Batch& batch);
+  void arm(bool is_armed) CULPRIT_REQUIRES(mutex_);
+
+  const int wait_fd_;  // of epoll
+  const int wake_fd_;  // to end
+
+  mutable Mutex mutex_;
+  ConditionVariable round_ended_;
+  Sockets sockets_ CULPRIT_GUARDED_BY(mutex_);
+  std::uint64_t rounds_ CULPRIT_GUARDED_BY(mutex_) = 0;  // odd: one is under way
+  bool is_armed_ CULPRIT_GUARDED_BY(mutex_) = true;      // patient sockets wake the thread
+  std::thread thread_;                                   // begun under the mutex, joined without it
+};
+
+}  // namespace culprit::ros2

@@ -1,0 +1,190 @@
+#include "ros2/receive_thread.h"
+
+#include <arpa/inet.h>
+#include <string>
+#include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "ros2/live_test.h"
+
+namespace culprit::ros2 {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::SizeIs;
+
+const in_addr kThisMachine{htonl(INADDR_LOOPBACK)};
+
+// Sends from a port of its own.
+class Voice {
+ public:
+  Voice() {
+    address_.sin_family = AF_INET;
+    address_.sin_addr = kThisMachine;
+    socklen_t size = sizeof address_;
+    EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&address_), size), 0);
+    EXPECT_EQ(getsockname(socket_, reinterpret_cast<sockaddr*>(&address_), &size), 0);
+  }
+  ~Voice() { close(socket_); }
+  Voice(const Voice&) = delete;
+
+  void say(std::uint16_t port, const std::string& text) const {
+    sockaddr_in to = address_;
+    to.sin_port = htons(port);
+    sendto(socket_, text.data(), text.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+  }
+  std::uint16_t port() const { return ntohs(address_.sin_port); }
+
+ private:
+  const int socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address_{};
+};
+
+// Ports that were free a moment ago.
+std::uint16_t unused_port() { return Voice().port(); }
+
+struct Listener {
+  // Opens a port and notes what comes there, with that name before it.
+  std::uint16_t open(const std::string& name, Haste haste = Haste::kNow) {
+    while (true) {
+      const std::uint16_t port = unused_port();
+      if (thread.open({.ip = kThisMachine, .port = port, .haste = haste},
+                      [this, name](std::span<std::uint8_t> datagram, const UdpAddress& from) {
+                        sender = from.port;
+                        heard.add(name + std::string(datagram.begin(), datagram.end()));
+                      }))
+        return port;
+    }
+  }
+
+  EventLog<std::string> heard;
+  std::atomic<std::uint16_t> sender = 0;
+  ReceiveThread thread;
+};
+
+TEST(ReceiveThread, HearsAllItsSocketsInTheOrderOfEach) {
+  Listener ears;
+  const Voice speaker;
+  const std::uint16_t one = ears.open("one ");
+  const std::uint16_t other = ears.open("other ");
+  for (int i = 0; i < 20; ++i) speaker.say(one, std::to_string(i));
+  ASSERT_TRUE(ears.heard.wait_for_count(20));
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(ears.heard.all()[i], "one " + std::to_string(i));
+  speaker.say(other, "x");
+  EXPECT_TRUE(ears.heard.wait_for_one([](const auto& text) { return text == "other x"; }));
+  EXPECT_EQ(ears.sender, speaker.port());
+}
+
+TEST(ReceiveThread, APortIsTakenOnce) {
+  Listener ears;
+  const std::uint16_t port = ears.open("");
+  EXPECT_TRUE(ears.thread.is_open(port));
+  EXPECT_FALSE(ears.thread.open({.ip = kThisMachine, .port = port}, [](auto, const auto&) {}));
+  ears.thread.close(port);
+  EXPECT_FALSE(ears.thread.is_open(port));
+  EXPECT_TRUE(ears.thread.open({.ip = kThisMachine, .port = port}, [](auto, const auto&) {}));
+}
+
+TEST(ReceiveThread, NothingIsHeardOfAPortThatWasClosed) {
+  Listener ears;
+  const Voice speaker;
+  for (int round = 0; round < 50; ++round) {
+    auto alive = std::make_shared<std::atomic<bool>>(true);
+    const std::uint16_t port = unused_port();
+    if (!ears.thread.open({.ip = kThisMachine, .port = port},
+                          [alive](auto, const auto&) { EXPECT_TRUE(*alive); }))
+      continue;
+    for (int i = 0; i < 20; ++i) speaker.say(port, "x");
+    ears.thread.close(port);
+    *alive = false;
+  }
+}
+
+// Whoever hears something has heard all that was said before to those that have time.
+TEST(ReceiveThread, WhatHasTimeIsHandedOnBeforeWhatWasSaidLater) {
+  Listener ears;
+  const Voice speaker;
+  const std::uint16_t patient = ears.open("patient ", Haste::kSoon);
+  const std::uint16_t urgent = ears.open("urgent ");
+  for (int i = 0; i < 200; ++i) {
+    speaker.say(patient, std::to_string(i));
+    speaker.say(urgent, std::to_string(i));
+    ASSERT_TRUE(ears.heard.wait_for_one(
+        [&](const auto& text) { return text == "urgent " + std::to_string(i); }));
+    const auto all = ears.heard.all();
+    const auto place = [&](const std::string& text) { return std::ranges::find(all, text); };
+    ASSERT_LT(place("patient " + std::to_string(i)), place("urgent " + std::to_string(i)));
+  }
+}
+
+TEST(ReceiveThread, WhatHasTimeComesByItself) {
+  Listener ears;
+  const Voice speaker;
+  const std::uint16_t patient = ears.open("", Haste::kSoon);
+  // So many that it stops being woken by each.
+  for (std::size_t i = 1; i <= 100; ++i) {
+    speaker.say(patient, "x");
+    if (i % 2 == 0) ASSERT_TRUE(ears.heard.wait_for_count(i));
+  }
+  EXPECT_THAT(ears.heard.all(), SizeIs(100));
+}
+
+TEST(ReceiveThread, OnePortMayFloodAndAnotherIsHeard) {
+  Listener ears;
+  const Voice speaker;
+  const std::uint16_t flooded = unused_port();
+  std::atomic<int> flood = 0;
+  ASSERT_TRUE(ears.thread.open({.ip = kThisMachine, .port = flooded, .haste = Haste::kSoon},
+                               [&](auto, const auto&) { ++flood; }));
+  const std::uint16_t urgent = ears.open("");
+  std::atomic<bool> stop = false;
+  std::thread flooder([&] {
+    const Voice other;
+    while (!stop) other.say(flooded, "x");
+  });
+  while (flood < 100) std::this_thread::yield();
+  speaker.say(urgent, "x");
+  EXPECT_TRUE(ears.heard.wait_for_count(1));
+  stop = true;
+  flooder.join();
+}
+
+TEST(ReceiveThread, WhatIsTooLongIsCut) {
+  Listener ears;
+  const Voice speaker;
+  const std::uint16_t port = unused_port();
+  EventLog<std::size_t> sizes;
+  ASSERT_TRUE(ears.thread.open(
+      {.ip = kThisMachine, .port = port, .largest = 100},
+      [&](std::span<std::uint8_t> datagram, const UdpAddress&) { sizes.add(datagram.size()); }));
+  for (const std::size_t size : {99u, 100u, 60'000u}) speaker.say(port, std::string(size, 'x'));
+  ASSERT_TRUE(sizes.wait_for_count(3));
+  EXPECT_THAT(sizes.all(), ElementsAre(99, 100, 100));
+}
+
+TEST(ReceiveThread, GroupsAreHeard) {
+  Listener ears;
+  const Voice speaker;
+  in_addr group{};
+  inet_pton(AF_INET, "239.255.0.77", &group);
+  const std::uint16_t port = unused_port();
+  ASSERT_TRUE(ears.thread.open({.ip = group, .port = port, .is_shared = true},
+                               [&](auto, const auto&) { ears.heard.add("x"); }));
+  for (int twice = 0; twice < 2; ++twice) ears.thread.join(port, group, kThisMachine);
+  const int descriptor = socket(AF_INET, SOCK_DGRAM, 0);
+  setsockopt(descriptor, IPPROTO_IP, IP_MULTICAST_IF, &kThisMachine, sizeof kThisMachine);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_addr = group;
+  to.sin_port = htons(port);
+  sendto(descriptor, "x", 1, 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
+  EXPECT_TRUE(ears.heard.wait_for_count(1));
+  close(descriptor);
+}
+
+}  // namespace
+}  // namespace culprit::ros2
