@@ -47,7 +47,7 @@ struct File {
   }
   ~File() { remove(); }
   void remove() const {
-    for (const char* part : {"", "-wal", "-shm", "-lock"})
+    for (const char* part : {"", "-wal", "-shm", "-lock", "-learned", "-intents"})
       std::filesystem::remove(path.string() + part);
   }
 };
@@ -190,7 +190,7 @@ void recovery(benchmark::State& state) {
     const auto begin = Clock::now();
     auto writer = journal::Writer::open(file.path, {});
     const auto reader = journal::Reader::open(file.path);
-    benchmark::DoNotOptimize(journal::recover(*reader, rules, {}));
+    benchmark::DoNotOptimize(journal::recover(*reader, {}, rules, {}));
     times.push_back(std::chrono::duration<double>(Clock::now() - begin).count());
   }
   claim("recovery with a journal of 1 GB, slowest", quantile(times, 1), 1, "s");

@@ -95,7 +95,7 @@ void read_file(const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
   if (const auto journal = journal::Reader::open(path)) {
     (void)journal::verify(*journal);
-    (void)journal::recover(*journal, rules(), {Time(std::chrono::hours(1)), 1});
+    (void)journal::recover(*journal, {}, rules(), {Time(std::chrono::hours(1)), 1});
     if (auto recording = replay::Recording::open(*journal))
       (void)replay::repeat(*recording, *journal, std::make_unique<BayesPlanner>(), {});
   }

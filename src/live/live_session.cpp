@@ -354,6 +354,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
     journal::Recorder::Options recorder;
     recorder.path = frame_.options.journal;
     recorder.wall_clock = wall_now;
+    recorder.unwritten = std::move(beginning.unwritten);
     recorder.on_trouble = [this](const std::string& what) { robot_->report(what); };
     recorder_ = std::make_unique<journal::Recorder>(
         std::move(beginning.writer), std::move(recorder), session, manager_->knowledge());

@@ -73,11 +73,15 @@ void find_orders(const std::filesystem::path& path, Rows rows, const Recovery& r
   beginning.orders = orders_of(recovery, rules);
 }
 
-std::optional<Recovery> take_over(const journal::Reader& reader, const RuleSet& rules,
+std::optional<Recovery> take_over(const journal::Reader& reader,
+                                  const std::filesystem::path& intents, const RuleSet& rules,
                                   const journal::Moment& now, std::optional<int> manager_before,
                                   RunBeginning& beginning) {
   const auto learned = reader.learned();
-  const auto recovery = journal::recover(reader, rules, now, manager_before);
+  journal::Unwritten unwritten = journal::unwritten_rows(intents, reader);
+  if (!unwritten.remark.empty()) beginning.findings.push_back(unwritten.remark);
+  const auto recovery = journal::recover(reader, unwritten, rules, now, manager_before);
+  beginning.unwritten = std::move(unwritten.rows);
   if (learned) beginning.learned = *learned;
   if (!learned || !recovery) {
     beginning.findings.push_back("the journal cannot be read whole: " +
@@ -133,10 +137,13 @@ RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rul
   }
   std::optional<Recovery> recovery;
   if (const auto reader = journal::Reader::open(rows)) {
-    recovery = take_over(*reader, rules, now, manager_before, beginning);
+    recovery =
+        take_over(*reader, journal::intents_beside(path), rules, now, manager_before, beginning);
     // A row that cannot be read now can never be dropped either.
     if (!recovery && beginning.writer && rows == path) (void)open({.is_damaged = true});
   }
+  // The other one lives, and writes it itself.
+  if (beginning.is_of_another) beginning.unwritten.clear();
   // Of a file that was set aside, what was learned is known better.
   if (const auto learned = beginning.writer ? beginning.writer->learned() : Error{}; learned)
     beginning.learned = *learned;

@@ -15,6 +15,8 @@ std::filesystem::path default_journal(const std::filesystem::path& state_folder,
 // What is known when a run begins.
 struct RunBeginning {
   std::optional<journal::Writer> writer;  // nothing: it cannot be written now
+  // What the last run could not write any more, to be written before this one begins.
+  std::vector<journal::Entry> unwritten;
   journal::Learned learned;
   journal::Json interrupted = journal::Json::array();
   History past;  // without silences

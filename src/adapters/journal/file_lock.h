@@ -17,6 +17,9 @@ class FileLock {
   FileLock& operator=(FileLock&& other) noexcept;
   ~FileLock();
 
+  // Its descriptor, for whoever also reads or writes the file.
+  int file() const { return file_; }
+
  private:
   explicit FileLock(int file) : file_(file) {}
   int file_;  // -1 after a move

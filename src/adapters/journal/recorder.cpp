@@ -5,11 +5,10 @@
 #include "journal/event_json.h"
 #include "journal/recovery.h"
 #include "journal/requests.h"
+#include "journal/settled_here.h"
 
 namespace culprit::journal {
 namespace {
-
-bool changes_something(const Command& command) { return !is_read(command); }
 
 // A person was told that it holds.
 bool is_order(const Event& event) { return std::holds_alternative<OrderAccepted>(event.what); }
@@ -66,14 +65,18 @@ Recorder::Recorder(std::optional<Writer> writer, Options options, const Session&
     couplings_.emplace_back(all.begin(), all.end());
   }
   is_failing_ = !writer_;
+  for (Entry& row : options_.unwritten) add(std::move(row));
+  options_.unwritten.clear();
   add(kind::kSession, options_.wall_clock(), session_);
-  (void)write(true);
+  owes_sync_ = true;
+  if (write()) open_intents();
   thread_ = std::thread([this] { run(); });
 }
 
 Recorder::~Recorder() { finish(); }
 
 Expected<void> Recorder::end(Ending ending) {
+  date_kept();
   hand_over(Urgency::kNone);
   {
     const MutexLock lock(mutex_);
@@ -89,6 +92,7 @@ Expected<void> Recorder::end(Ending ending) {
 
 void Recorder::finish() {
   if (!thread_.joinable()) return;
+  date_kept();
   hand_over(Urgency::kNone);
   {
     const MutexLock lock(mutex_);
@@ -96,6 +100,7 @@ void Recorder::finish() {
   }
   work_.notify_one();
   thread_.join();
+  if (!last_error_) empty_intents();
 }
 
 Recorder::Pending& Recorder::Queue::next() {
@@ -116,28 +121,66 @@ void Recorder::Queue::clear() {
 
 void Recorder::hand_over(Pending& step, std::span<const Command> commands,
                          std::span<const Event> events) {
-  bool wait = false;
+  date_kept();
   const bool decides = !commands.empty() || !events.empty();
+  if (decides) decide(step, commands, events);
+  bool has_to_wait = false;
+  bool asks = false;
   if (decides) {
-    step.decided = decision_of(commands, events);
-    wait = !is_nothing(step.decided->learned) ||
-           std::any_of(commands.begin(), commands.end(), changes_something) ||
-           std::any_of(events.begin(), events.end(), is_order);
+    has_to_wait =
+        !is_nothing(step.decided->learned) || std::any_of(events.begin(), events.end(), is_order);
+    for (const Command& command : commands) {
+      if (is_read(command)) continue;
+      asks = true;
+      has_to_wait = has_to_wait || !is_settled_here(command, knowledge_);
+    }
   }
-  if (auto robot = newly_known(step.now)) {
-    if (step.decided == nullptr) step.decided = std::make_unique<Decided>();
-    step.decided->robot = std::move(robot);
+  if (asks && !has_to_wait) has_to_wait = !is_with_the_kernel(*step.decided, step.now);
+  if (auto robot = newly_known(step.now)) decided(step).robot = std::move(robot);
+  hand_over(has_to_wait               ? Urgency::kNow
+            : asks                    ? Urgency::kSynced
+            : step.decided != nullptr ? Urgency::kSoon
+                                      : Urgency::kNone);
+  if (has_to_wait) wait_until_written();
+}
+
+// All that is kept happened by now; what it came of has its rows.
+void Recorder::date_kept() {
+  if (kept_ == 0) return;
+  const auto kept = std::span(places_).first(kept_);
+  const std::int64_t wall_offset =
+      options_.wall_clock() - kept.back().now.time_since_epoch().count();
+  for (Pending& step : kept) {
+    step.wall = step.now.time_since_epoch().count() + wall_offset;
+    if (!asked_.empty()) take_outcomes(step);
   }
-  hand_over(wait ? Urgency::kNow : step.decided != nullptr ? Urgency::kSoon : Urgency::kNone);
-  if (wait) wait_until_written();
+}
+
+void Recorder::take_outcomes(Pending& step) {
+  for (const Observation& observation : step.observations) {
+    const auto* reply = std::get_if<Reply>(&observation.what);
+    if (reply == nullptr) continue;
+    const auto asked = asked_.find(reply->command.number);
+    if (asked == asked_.end()) continue;
+    const std::string_view outcome = to_string(reply->outcome);
+    const Json body = {{"command", reply->command.number},
+                       {"outcome", outcome},
+                       {"reason", reply->text},
+                       {"text", asked->second + ": " + std::string(outcome) +
+                                    (reply->text.empty() ? "" : ", " + reply->text)}};
+    decided(step).rows.push_back({0, step.wall, std::string(kind::kOutcome), to_text(body)});
+    asked_.erase(asked);
+  }
+  if (step.decided != nullptr && step.decided->number == 0) {
+    step.decided->number = ++decisions_;
+    remember_rows(*step.decided);
+  }
 }
 
 void Recorder::hand_over(Urgency urgency) {
   constexpr std::size_t kMaxQueued = 1 << 17;
   if (kept_ == 0) return;
   const auto kept = std::span(places_).first(std::exchange(kept_, 0));
-  const std::int64_t wall_offset =
-      options_.wall_clock() - kept.back().now.time_since_epoch().count();
   const MutexLock lock(mutex_);
   if (queue_.used == 0) first_queued_ = kept.front().now;
   for (Pending& step : kept) {
@@ -146,7 +189,6 @@ void Recorder::hand_over(Urgency urgency) {
       step.observations.clear();
       continue;
     }
-    step.wall = step.now.time_since_epoch().count() + wall_offset;
     queued_observations_ += step.observations.size();
     now_of_queue_ = step.now;
     std::swap(queue_.next(), step);
@@ -154,16 +196,98 @@ void Recorder::hand_over(Urgency urgency) {
   }
   const bool is_due = now_of_queue_ - first_queued_ >= kPeriod || queued_observations_ >= kMany;
   urgency_ = std::max({urgency_, urgency, is_due ? Urgency::kSoon : Urgency::kNone});
-  if (urgency_ == Urgency::kSoon) work_.notify_one();
+  // Whoever waits wakes it.
+  if (urgency_ == Urgency::kSoon || urgency_ == Urgency::kSynced) work_.notify_one();
 }
 
-std::unique_ptr<Recorder::Decided> Recorder::decision_of(std::span<const Command> commands,
-                                                         std::span<const Event> events) {
-  auto decision = std::make_unique<Decided>();
-  decision->commands.assign(commands.begin(), commands.end());
-  decision->events.assign(events.begin(), events.end());
-  if (!events.empty()) decision->learned = changes();
-  return decision;
+Recorder::Decided& Recorder::decided(Pending& step) {
+  if (step.decided == nullptr) step.decided = std::make_unique<Decided>();
+  return *step.decided;
+}
+
+void Recorder::decide(Pending& step, std::span<const Command> commands,
+                      std::span<const Event> events) {
+  Decided& decision = decided(step);
+  decision.commands.assign(commands.begin(), commands.end());
+  decision.events.assign(events.begin(), events.end());
+  if (!events.empty()) decision.learned = changes();
+  const auto add_row = [&](std::string_view kind, const Json& body) {
+    decision.rows.push_back({0, step.wall, std::string(kind), to_text(body)});
+  };
+  for (const Event& event : events) add_row(kind::kEvent, to_json(event, rules_));
+  for (const Command& command : commands) {
+    if (is_read(command)) continue;
+    const Json body = to_json(command, rules_);
+    asked_[command.id.number] = text_of(body, "text");
+    add_row(kind::kIntent, body);
+  }
+  if (decision.rows.empty()) return;
+  // What of it was known before is among them.
+  if (decision.number == 0) decision.number = ++decisions_;
+  remember_rows(decision);
+}
+
+// In case an intent follows before the journal has them.
+void Recorder::remember_rows(const Decided& decision) {
+  constexpr std::size_t kMaxRecent = IntentFile::kMaxBytes / 2;
+  if (recent_.empty() || recent_.back().decision != decision.number)
+    recent_.push_back({decision.number, {}});
+  std::string& rows = recent_.back().rows;
+  recent_bytes_ -= rows.size();
+  rows.clear();
+  for (const Entry& row : decision.rows) append_row(row, rows);
+  recent_bytes_ += rows.size();
+  if (recent_bytes_ <= kMaxRecent) return;
+  std::uint64_t saved = 0;
+  {
+    const MutexLock lock(mutex_);
+    saved = saved_;
+  }
+  forget_recent(saved);
+  if (recent_bytes_ <= kMaxRecent) return;
+  forgotten_ = decision.number;
+  forget_recent(decision.number);
+}
+
+void Recorder::forget_recent(std::uint64_t upto) {
+  while (!recent_.empty() && recent_.front().decision <= upto) {
+    recent_bytes_ -= recent_.front().rows.size();
+    recent_.pop_front();
+  }
+}
+
+// Writes what an intent of `decision` follows from, and the intent itself, to the intent file. False:
+// it is not there, so the journal has to be waited for.
+bool Recorder::is_with_the_kernel(const Decided& decision, Time now) {
+  std::uint64_t saved = 0;
+  Link newest;
+  {
+    const MutexLock lock(mutex_);
+    const bool is_stalled =
+        writing_since_ && std::chrono::steady_clock::now() - *writing_since_ > kStalled;
+    if (is_failing_ || is_stalled) return false;
+    if (new_intents_) {
+      intents_ = std::move(new_intents_);
+      new_intents_.reset();
+      in_file_ = 0;
+    }
+    saved = saved_;
+    newest = newest_row_;
+  }
+  if (!intents_ || forgotten_ > saved) return false;
+  forget_recent(saved);
+  if (in_file_ <= saved) intents_->begin_after(newest);
+  std::string rows;
+  for (const Recent& each : recent_) rows += each.rows;
+  if (const auto written = intents_->append(now, rows); !written) {
+    const MutexLock lock(mutex_);
+    intents_.reset();
+    wants_intents_ = true;
+    return false;
+  }
+  in_file_ = decision.number;
+  forget_recent(decision.number);
+  return true;
 }
 
 std::optional<KnownRobot> Recorder::newly_known(Time now) {
@@ -234,27 +358,33 @@ void Recorder::run() {
     std::swap(taken, queue_);
     queued_observations_ = 0;
     const std::uint64_t upto = handed_over_;
-    const bool is_durable = std::exchange(urgency_, Urgency::kNone) == Urgency::kNow;
+    owes_sync_ = std::exchange(urgency_, Urgency::kNone) >= Urgency::kSynced || owes_sync_;
+    const bool wants_intents = wants_intents_;
     if (taken.used > 0) now_ = now_of_queue_;
     gap_steps_ += std::exchange(lost_steps_, 0);
     const bool is_last = is_ending_;
+    owes_sync_ = owes_sync_ || is_last;
+    writing_since_ = std::chrono::steady_clock::now();
     lock.unlock();
 
     for (std::size_t i = 0; i < taken.used; ++i) make_rows(taken.places[i]);
     taken.clear();
     close_steps();
-    const auto written = write(is_durable || is_last);
+    const auto written = write();
     last_error_ = written ? std::nullopt : std::optional(Error{written.error()});
+    if (written && wants_intents && !is_last) open_intents();
+    tell_of_intents();
     written_at = std::chrono::steady_clock::now();
 
     lock.lock();
     written_ = upto;
+    writing_since_.reset();
     done_.notify_all();
     if (is_last && queue_.used == 0) return;
   }
 }
 
-void Recorder::make_rows(const Pending& pending) {
+void Recorder::make_rows(Pending& pending) {
   if (pending.end) {
     close_steps();
     if (*pending.end == Ending::kStopped)
@@ -270,36 +400,14 @@ void Recorder::make_rows(const Pending& pending) {
     digest = digest_of(pending.decided->commands, pending.decided->events, rules_, hasher_);
   encode(pending.now, pending.observations, digest, bytes);
 
-  for (const Observation& observation : pending.observations) {
-    if (const auto* reply = std::get_if<Reply>(&observation.what))
-      make_outcome(pending.wall, *reply);
-  }
   if (pending.decided != nullptr) make_decision(pending.wall, *pending.decided);
   constexpr std::size_t kLongRow = 1 << 16;
   if (steps_.size() > kLongRow) close_steps();
 }
 
-void Recorder::make_outcome(std::int64_t wall, const Reply& reply) {
-  const auto asked = asked_.find(reply.command.number);
-  if (asked == asked_.end()) return;
-  const std::string_view outcome = to_string(reply.outcome);
-  add(kind::kOutcome, wall,
-      {{"command", reply.command.number},
-       {"outcome", outcome},
-       {"reason", reply.text},
-       {"text", asked->second + ": " + std::string(outcome) +
-                    (reply.text.empty() ? "" : ", " + reply.text)}});
-  asked_.erase(asked);
-}
-
-void Recorder::make_decision(std::int64_t wall, const Decided& decision) {
-  for (const Event& event : decision.events) add(kind::kEvent, wall, to_json(event, rules_));
-  for (const Command& command : decision.commands) {
-    if (is_read(command)) continue;
-    const Json body = to_json(command, rules_);
-    asked_[command.id.number] = text_of(body, "text");
-    add(kind::kIntent, wall, body);
-  }
+void Recorder::make_decision(std::int64_t wall, Decided& decision) {
+  for (Entry& row : decision.rows) add(std::move(row));
+  unsaved_to_ = std::max(unsaved_to_, decision.number);
   if (decision.robot) {
     robot_ = robot_row(*decision.robot, where_);
     add(kind::kRobot, wall, robot_);
@@ -315,11 +423,15 @@ void Recorder::close_steps() {
   steps_.clear();
 }
 
-// What a step led to stands behind the row that the step is in.
 void Recorder::add(std::string_view kind, std::int64_t at, const Json& body) {
+  add({0, at, std::string(kind), to_text(body)});
+}
+
+// What a step led to stands behind the row that the step is in.
+void Recorder::add(Entry row) {
   close_steps();
-  unsaved_.entries.push_back({0, at, std::string(kind), to_text(body)});
-  unsaved_bytes_ += unsaved_.entries.back().body.size();
+  unsaved_bytes_ += row.body.size();
+  unsaved_.entries.push_back(std::move(row));
 }
 
 // In a file that takes the place of one that was removed or damaged, the run goes on.
@@ -345,7 +457,7 @@ void Recorder::begin_session_anew(const std::filesystem::path& rows) {
   const std::int64_t wall = options_.wall_clock();
   std::optional<Recovery> known;
   if (const auto reader = rows.empty() ? Expected<Reader>(Error{}) : Reader::open(rows)) {
-    if (auto recovery = recover(*reader, rules_, {now_, wall, where_.domain}))
+    if (auto recovery = recover(*reader, {}, rules_, {now_, wall, where_.domain}))
       known = std::move(*recovery);
   }
   // Without them nobody knows what is under way by now; what was at the beginning is not.
@@ -367,7 +479,7 @@ void Recorder::begin_session_anew(const std::filesystem::path& rows) {
                           {0, wall, std::string(kind::kSession), to_text(session_)});
 }
 
-Expected<void> Recorder::write(bool is_durable) {
+Expected<void> Recorder::write() {
   if (!writer_) {
     if (const auto opened = open_anew(); !opened) return failed({opened.error()});
   }
@@ -385,15 +497,18 @@ Expected<void> Recorder::write(bool is_durable) {
   }
   if (unsaved_.entries.empty() && is_nothing(unsaved_.learned)) return {};
   const auto written = writer_->append(
-      unsaved_, now, is_durable ? Durability::kPowerFailure : Durability::kProcessEnd);
+      unsaved_, now, owes_sync_ ? Durability::kPowerFailure : Durability::kProcessEnd);
   if (!written) return failed({written.error()});
   is_begun_ = true;
   unsaved_ = {};
   unsaved_bytes_ = 0;
+  owes_sync_ = false;
   bool was_failing = false;
   {
     const MutexLock lock(mutex_);
     was_failing = std::exchange(is_failing_, false);
+    saved_ = unsaved_to_;
+    newest_row_ = writer_->newest();
   }
   if (was_failing && options_.on_trouble) options_.on_trouble("the journal is written again");
   tell_of_copy();
@@ -410,6 +525,39 @@ void Recorder::tell_of_copy() {
                           : "what was learned stands in the journal alone, its second copy cannot "
                             "be written: " +
                                 copy_trouble_);
+}
+
+// Only once the journal has all that such a file may have: it is emptied.
+void Recorder::open_intents() {
+  auto opened = IntentFile::open(options_.path);
+  const MutexLock lock(mutex_);
+  wants_intents_ = !opened;
+  intents_trouble_ = opened ? "" : opened.error();
+  if (opened) new_intents_ = std::move(*opened);
+}
+
+// Each change once.
+void Recorder::tell_of_intents() {
+  std::string trouble;
+  {
+    const MutexLock lock(mutex_);
+    trouble = intents_trouble_;
+  }
+  if (told_of_intents_ == trouble) return;
+  told_of_intents_ = trouble;
+  if (!options_.on_trouble) return;
+  options_.on_trouble(trouble.empty()
+                          ? "what is asked for stands beside the journal again before it goes out"
+                          : "what is asked for waits for the journal each time, which is slower: " +
+                                trouble);
+}
+
+// The journal has all.
+void Recorder::empty_intents() {
+  const MutexLock lock(mutex_);
+  if (intents_) intents_->empty();
+  intents_.reset();
+  new_intents_.reset();
 }
 
 Expected<void> Recorder::failed(Error error) {

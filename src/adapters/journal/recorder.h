@@ -3,9 +3,10 @@
 // The manager's thread keeps the steps that decide nothing, hands them over several at a time and
 // goes on; a thread of the recorder's own turns them into rows. Steps that decide nothing wait for
 // others, because each write costs whole pages of the disk, however little it is about; what was
-// said or asked is written soon. Only a step that asks for changes on the robot, that learned
-// something or took an order is waited for: its rows are on the disk before anything is asked for
-// or said.
+// said or asked is written soon. Only a step that learned something, took an order or asks for
+// changes that nobody could look up later is waited for: its rows are on the disk before anything is
+// asked for or said. What is settled by reading back (settled_here.h) waits for one write to the
+// intent file only, and is on the disk soon.
 //
 // If the file cannot be written, nothing waits for it: the robot is managed all the same. Rows are
 // kept and written as soon as it is possible again. If they become too many, the oldest `steps` go
@@ -13,6 +14,8 @@
 #pragma once
 
 #include <array>
+#include <chrono>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,6 +24,7 @@
 #include <unordered_map>
 
 #include "base/mutex.h"
+#include "journal/intent_file.h"
 #include "journal/known_robot.h"
 #include "journal/session.h"
 #include "journal/step_codec.h"
@@ -56,11 +60,16 @@ class Recorder {
   // How long an action waits for a disk that does not answer.
   static constexpr Duration kPatience = std::chrono::seconds(2);
   static constexpr std::size_t kMaxUnsaved = 16u << 20;  // bytes of rows, and of steps not yet rows
+  // A disk that has not answered for so long may keep whoever writes to it: then an action waits for
+  // the journal, and no longer than kPatience.
+  static constexpr Duration kStalled = std::chrono::milliseconds(100);
 
   struct Options {
     std::filesystem::path path;
     Writer::Options writer;
     std::function<std::int64_t()> wall_clock;  // nanoseconds since 1970
+    // What the last run could not write any more (unwritten.h); comes before the first row.
+    std::vector<Entry> unwritten{};
     // Called when writing begins to fail, and when it goes on; from the recorder's thread.
     std::function<void(const std::string&)> on_trouble;
   };
@@ -92,8 +101,10 @@ class Recorder {
  private:
   // What few steps have beside observations.
   struct Decided {
+    std::uint64_t number = 0;  // counted from 1; 0: it has no rows
     std::vector<Command> commands;
     std::vector<Event> events;
+    std::vector<Entry> rows;  // about outcomes, events and intents
     Learned learned;
     std::optional<KnownRobot> robot;
   };
@@ -116,26 +127,35 @@ class Recorder {
 
   // What is kept, the last of which is `step`.
   void hand_over(Pending& step, std::span<const Command> commands, std::span<const Event> events);
-  enum class Urgency : std::uint8_t { kNone, kSoon, kNow };
+  // kSynced: soon, and on the disk then.
+  enum class Urgency : std::uint8_t { kNone, kSoon, kSynced, kNow };
   void hand_over(Urgency urgency);
-  std::unique_ptr<Decided> decision_of(std::span<const Command> commands,
-                                       std::span<const Event> events);
+  void date_kept();
+  void take_outcomes(Pending& step);
+  void decide(Pending& step, std::span<const Command> commands, std::span<const Event> events);
+  Decided& decided(Pending& step);
+  void remember_rows(const Decided& decision);
+  void forget_recent(std::uint64_t upto);
+  bool is_with_the_kernel(const Decided& decision, Time now);
   void wait_until_written();
   Learned changes();
   // Nothing if it was written.
   std::optional<KnownRobot> newly_known(Time now);
   void run();
-  void make_rows(const Pending& pending);
-  void make_decision(std::int64_t wall, const Decided& decision);
-  void make_outcome(std::int64_t wall, const Reply& reply);
+  void make_rows(Pending& pending);
+  void make_decision(std::int64_t wall, Decided& decision);
   void close_steps();
+  void add(Entry row);
   void add(std::string_view kind, std::int64_t at, const Json& body);
-  Expected<void> write(bool is_durable);
+  Expected<void> write();
   Expected<void> open_anew();
   void begin_session_anew(const std::filesystem::path& rows);
   void finish();
   Expected<void> failed(Error error);
   void tell_of_copy();
+  void open_intents();
+  void tell_of_intents();
+  void empty_intents();
   void bound_unsaved();
 
   Options options_;
@@ -145,6 +165,19 @@ class Recorder {
   // Of the manager's thread.
   std::vector<Belief> beliefs_;  // as written last
   std::vector<std::vector<Couplings::Learned>> couplings_;
+
+  std::unordered_map<std::uint64_t, std::string> asked_;  // changes that wait for their outcome
+  std::uint64_t decisions_ = 0;
+  std::optional<IntentFile> intents_;  // nothing: what is asked for waits for the journal
+  std::uint64_t in_file_ = 0;          // the newest decision that it has
+  // The rows of decisions that are in no file yet, as far as is known: what an intent follows from.
+  struct Recent {
+    std::uint64_t decision;
+    std::string rows;
+  };
+  std::deque<Recent> recent_;
+  std::size_t recent_bytes_ = 0;
+  std::uint64_t forgotten_ = 0;  // the newest decision whose rows were too many to be kept here
 
   KnownRobot known_robot_;  // as written last
   std::uint64_t robot_changes_ = 0;
@@ -166,6 +199,13 @@ class Recorder {
   std::uint64_t handed_over_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::uint64_t lost_steps_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::uint64_t written_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::uint64_t saved_ CULPRIT_GUARDED_BY(mutex_) = 0;  // the newest decision in the journal
+  Link newest_row_ CULPRIT_GUARDED_BY(mutex_);          // of the journal then
+  std::optional<std::chrono::steady_clock::time_point> writing_since_ CULPRIT_GUARDED_BY(mutex_);
+  // One for the manager's thread, which has none, and whether it wants one.
+  std::optional<IntentFile> new_intents_ CULPRIT_GUARDED_BY(mutex_);
+  bool wants_intents_ CULPRIT_GUARDED_BY(mutex_) = true;
+  std::string intents_trouble_ CULPRIT_GUARDED_BY(mutex_);
   ConditionVariable work_;
   ConditionVariable done_;
   bool is_failing_ CULPRIT_GUARDED_BY(mutex_) = false;
@@ -175,14 +215,16 @@ class Recorder {
   std::optional<Writer> writer_;
   bool is_damaged_ = false;   // the file, which cannot be written any more
   std::string copy_trouble_;  // that was told
-  Time now_{};                // of the newest step
+  std::string told_of_intents_;
+  Time now_{};                    // of the newest step
+  std::uint64_t unsaved_to_ = 0;  // the newest decision in `unsaved_`, or before it
+  bool owes_sync_ = false;        // something of it has to be on the disk
   Batch unsaved_;
   std::size_t unsaved_bytes_ = 0;
   std::string steps_;  // of the row that is being made
   std::int64_t steps_at_ = 0;
   std::uint64_t gap_steps_ = 0;
   std::uint64_t gap_rows_ = 0;
-  std::unordered_map<std::uint64_t, std::string> asked_;  // changes that wait for their outcome
   Whereabouts where_;
   Json session_;
   Json robot_;             // its row

@@ -36,13 +36,15 @@ class Trail {
     }
   }
 
+  void lived_at(Time step) { latest_ = std::max(latest_, step); }
+
   void follow(const Entry& entry) {
-    if (entry.kind == kind::kSteps) latest_ = std::max(latest_, Time(Duration(first_step(entry))));
+    if (entry.kind == kind::kSteps) lived_at(Time(Duration(first_step(entry))));
     const Json body = from_text(entry.body);
     if (!body.is_object()) return;
     if (entry.kind == kind::kEnd && flag_of(body, "stepped_back")) open_.clear();
     if (entry.kind == kind::kEvent) {
-      latest_ = std::max(latest_, Time(Duration(integer_of(body, "time"))));
+      lived_at(Time(Duration(integer_of(body, "time"))));
       event(body);
     }
     if (entry.kind == kind::kIntent) intent(body);
@@ -195,8 +197,8 @@ Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& 
 
 }  // namespace
 
-Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Moment& now,
-                           std::optional<int> manager_before) {
+Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, const RuleSet& rules,
+                           const Moment& now, std::optional<int> manager_before) {
   Recovery recovery;
   const auto last = journal.newest(kind::kSession);
   if (!last) return Error{last.error()};
@@ -232,6 +234,8 @@ Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Mo
     if (is_good()) trail.follow(entry);
   }
   if (!row) return Error{row.error()};
+  for (const Entry& each : unwritten.rows) trail.follow(each);
+  trail.lived_at(unwritten.latest);
   recovery.is_paused = trail.is_paused();
   recovery.is_dry_run = trail.is_dry_run();
   const Time robot_then = Time(Duration(integer_of(begin, "start")));

@@ -1,4 +1,5 @@
-// What the last run of culprit left behind: told from its intents, and from what it said since.
+// What the last run of culprit left behind: told from its intents, and from what it said since. The
+// newest of both may stand beside the journal only (unwritten.h).
 //
 // A strategy was under way if it was chosen or resumed, at least one change for it was about to be
 // asked for, and neither its success nor the end of its undoing is on record. It is not gone on with
@@ -13,6 +14,7 @@
 #include "journal/known_robot.h"
 #include "journal/reader.h"
 #include "journal/session.h"
+#include "journal/unwritten.h"
 #include "knowledge/interrupted.h"
 
 namespace culprit::journal {
@@ -43,9 +45,10 @@ struct Moment {
   int domain = 0;
 };
 
-// `manager_before`: the process of the culprit that was seen to manage the robot until now, 0 for
-// one on another machine; nothing: none was. Errors: the file cannot be read.
-Expected<Recovery> recover(const Reader& journal, const RuleSet& rules, const Moment& now,
-                           std::optional<int> manager_before = {});
+// `unwritten`: what comes after the rows of `journal`. `manager_before`: the process of the culprit
+// that was seen to manage the robot until now, 0 for one on another machine; nothing: none was.
+// Errors: the file cannot be read.
+Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, const RuleSet& rules,
+                           const Moment& now, std::optional<int> manager_before = {});
 
 }  // namespace culprit::journal

@@ -43,7 +43,7 @@ struct JournalRecovery : testing::Test {
   }
   Recovery recovered() {
     const Reader reader = value_of(Reader::open(path));
-    return value_of(recover(reader, rules, {Time(), kRecoveredAt}));
+    return value_of(recover(reader, {}, rules, {Time(), kRecoveredAt}));
   }
   static std::vector<int> processes(const History& past) {
     std::vector<int> pids;

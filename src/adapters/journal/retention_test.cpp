@@ -66,7 +66,7 @@ struct Recovered : testing::Test {
   std::uint64_t random() { return state = state * 6364136223846793005u + 1442695040888963407u; }
   Recovery recovered() {
     const auto reader = Reader::open(path);
-    const auto recovery = recover(*reader, rules, {now, clock});
+    const auto recovery = recover(*reader, {}, rules, {now, clock});
     EXPECT_TRUE(recovery) << recovery.error();
     return *recovery;
   }

@@ -67,6 +67,7 @@ class Writer {
   Expected<Learned> learned() const { return read_learned(database_); }
   const Database& database() const { return database_; }
   std::int64_t last_id() const { return newest_.id; }
+  const Link& newest() const { return newest_; }
 
  private:
   Writer(std::filesystem::path path, Options options, FileLock lock, Database database);

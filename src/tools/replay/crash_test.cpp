@@ -1,5 +1,5 @@
 // Culprit is killed after each of its steps that matters, once each, with its last requests sent or
-// not. Another process takes over with nothing but the journal: the robot must end healthy, nothing
+// not, and with its journal written or behind. Another process takes over with nothing but the journal: the robot must end healthy, nothing
 // may be asked for twice that does harm then, and what was learned must be the sum of the outcomes
 // on record.
 #include <gmock/gmock.h>
@@ -49,9 +49,11 @@ void expect_beliefs_as_recorded(const fs::path& path, const std::string& what) {
 }
 
 // Gives false if the story ended before it could die.
-bool live_die_and_go_on(const Story& story, int steps, bool sends) {
+bool live_die_and_go_on(const Story& story, int steps, bool sends, Life::Journal journal,
+                        int& behind) {
   const std::string what = std::string(story.name) + " killed after " + std::to_string(steps) +
-                           " steps, its requests " + (sends ? "sent" : "not sent");
+                           " steps, its requests " + (sends ? "sent" : "not sent") +
+                           (journal == Life::Journal::kBehind ? ", its journal behind" : "");
   const TestFolder folder;
   TestRobot robot(story.rules);
   robot.add("camera", {}, "/rgb").parameters["gain"] = 1.0;
@@ -60,9 +62,10 @@ bool live_die_and_go_on(const Story& story, int steps, bool sends) {
   robot.run_for(6s);
   first.wait_until_known();
   robot["camera"].fault = story.fault;
-  first.die_after(steps, sends);
+  first.die_after(steps, sends, journal);
   for (int i = 0; i < 3000 && !first.is_dead(); ++i) robot.run_for(10ms);
   if (!first.is_dead()) return false;
+  behind += first.is_behind() ? 1 : 0;
 
   robot.run_for(1500ms);  // nobody manages it
   Life second(first.remains(), robot, story.rules);
@@ -78,11 +81,18 @@ class Crash : public testing::TestWithParam<Story> {};
 
 TEST_P(Crash, AfterAnyStepLeavesNothingHalfDone) {
   int deaths = 0;
-  for (int steps = 0; live_die_and_go_on(GetParam(), steps, true) && steps < 60; ++steps) {
-    live_die_and_go_on(GetParam(), steps, false);
+  int behind = 0;
+  const auto lives = [&behind](int steps, bool sends, Life::Journal journal) {
+    return live_die_and_go_on(GetParam(), steps, sends, journal, behind);
+  };
+  for (int steps = 0; lives(steps, true, Life::Journal::kHasIt) && steps < 60; ++steps) {
+    lives(steps, false, Life::Journal::kHasIt);
+    lives(steps, true, Life::Journal::kBehind);
+    lives(steps, false, Life::Journal::kBehind);
     ++deaths;
   }
   EXPECT_GE(deaths, 5) << "chosen, asked for, done, resolved";
+  EXPECT_EQ(behind > 0, GetParam().name != std::string("increase")) << "that is on the disk first";
 }
 
 INSTANTIATE_TEST_SUITE_P(Stories, Crash,
@@ -144,7 +154,7 @@ journal::Recovery left_behind(Duration later, std::optional<journal::Ending> end
   const journal::Reader reader = value_of(journal::Reader::open(folder / "first.journal"));
   journal::Moment now = moment(robot);
   now.robot += later;
-  return value_of(journal::recover(reader, robot.rules(), now, manager_before));
+  return value_of(journal::recover(reader, {}, robot.rules(), now, manager_before));
 }
 
 bool has_verdict_on_its_strategy(const History& past) {
@@ -211,7 +221,7 @@ RULE Silent
   life.die_after(0, true);
   while (!life.is_dead()) robot.run_for(10ms);
   const journal::Reader reader = value_of(journal::Reader::open(life.remains()));
-  const auto recovery = value_of(journal::recover(reader, robot.rules(), moment(robot)));
+  const auto recovery = test::recovered(life.remains(), robot);
   ASSERT_EQ(recovery.interrupted.size(), 1u);
   const Interrupted& interrupted = recovery.interrupted.front();
   ASSERT_EQ(interrupted.requests.size(), 2u) << "stop, start";

@@ -224,14 +224,14 @@ TEST_F(Memory, OfWhatWasSeenIsOfOneDomain) {
   life.reset();
   const journal::Reader reader = value_of(journal::Reader::open(folder / "a.journal"));
   journal::Moment now = test::moment(robot);
-  const auto here = value_of(journal::recover(reader, robot.rules(), now));
+  const auto here = value_of(journal::recover(reader, {}, robot.rules(), now));
   ASSERT_EQ(here.known_robot.parts.size(), 1u);
   EXPECT_EQ(here.known_robot.parts[0].node, "/camera");
   EXPECT_EQ(here.known_robot.topics, std::vector<std::string>{"/rgb"});
   EXPECT_FALSE(here.is_other_robot());
   EXPECT_FALSE(here.past.empty());
   now.domain = 7;
-  const auto elsewhere = value_of(journal::recover(reader, robot.rules(), now));
+  const auto elsewhere = value_of(journal::recover(reader, {}, robot.rules(), now));
   EXPECT_EQ(elsewhere.known_robot, KnownRobot());
   EXPECT_TRUE(elsewhere.is_other_robot());
   EXPECT_TRUE(elsewhere.past.empty());

@@ -1,0 +1,215 @@
+#include "journal/intent_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "journal/bytes.h"
+
+namespace culprit::journal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kIntentMark = "culprit-intents1";
+constexpr std::size_t kSizeBytes = 4;
+constexpr std::size_t kIntentHead = kIntentMark.size() + 8 + sizeof(Hash);
+
+void append_fixed(std::string& out, std::uint64_t number, std::size_t bytes) {
+  for (std::size_t i = 0; i < bytes; ++i) out += static_cast<char>(number >> (8 * i));
+}
+
+std::uint64_t fixed_number(std::string_view bytes) {
+  std::uint64_t number = 0;
+  for (std::size_t i = bytes.size(); i > 0; --i)
+    number = number << 8 | static_cast<unsigned char>(bytes[i - 1]);
+  return number;
+}
+
+std::string_view view_of(const Hash& hash) {
+  return {reinterpret_cast<const char*>(hash.data()), hash.size()};
+}
+
+Hash hash_of_part(const Hash& before, std::string_view payload, Hasher& hasher) {
+  std::string all(view_of(before));
+  all += payload;
+  return hasher.of(all);
+}
+
+std::string head_after(const Link& row) {
+  std::string head(kIntentMark);
+  append_fixed(head, static_cast<std::uint64_t>(row.id), 8);
+  head += view_of(row.hash);
+  return head;
+}
+
+bool may_stand_here(std::string_view kind) {
+  return kind == kind::kEvent || kind == kind::kIntent || kind == kind::kOutcome;
+}
+
+// False: it is not what culprit writes, whatever its checksum.
+bool decode_part(std::string_view payload, SavedIntents& saved) {
+  ByteReader in(payload);
+  const Time step = Time(Duration(in.integer()));
+  std::vector<Entry> rows;
+  while (in.is_good() && !in.is_at_end()) {
+    Entry row;
+    row.at = in.integer();
+    row.kind = in.text();
+    row.body = in.text();
+    if (!in.is_good() || !may_stand_here(row.kind)) return false;
+    rows.push_back(std::move(row));
+  }
+  if (!in.is_good()) return false;
+  saved.latest = std::max(saved.latest, step);
+  for (Entry& row : rows) saved.rows.push_back(std::move(row));
+  return true;
+}
+
+Error cannot_write_intents(const fs::path& path, const std::string& why) {
+  return {"cannot write '" + path.string() + "': " + why};
+}
+
+// As the journal's, as SQLite gives them to its own files beside it.
+Expected<void> share_permissions(int file, const fs::path& path, const fs::path& journal) {
+  struct stat there {};
+  struct stat here {};
+  if (stat(journal.c_str(), &there) != 0 || fstat(file, &here) != 0)
+    return cannot_write_intents(path, std::strerror(errno));
+  const mode_t mode = there.st_mode & 0777;
+  if ((here.st_mode & 0777) != mode && fchmod(file, mode) != 0)
+    return cannot_write_intents(path, std::strerror(errno));
+  const bool is_anothers = here.st_uid != there.st_uid || here.st_gid != there.st_gid;
+  if (is_anothers && geteuid() == 0 && fchown(file, there.st_uid, there.st_gid) != 0)
+    return cannot_write_intents(path, std::strerror(errno));
+  return {};
+}
+
+}  // namespace
+
+fs::path intents_beside(const fs::path& journal) { return journal.string() + "-intents"; }
+
+void append_row(const Entry& row, std::string& rows) {
+  ByteWriter out(rows);
+  out.integer(row.at);
+  out.text(row.kind);
+  out.text(row.body);
+}
+
+Expected<IntentFile> IntentFile::open(const fs::path& journal) {
+  const fs::path path = intents_beside(journal);
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+    return cannot_write_intents(path, "it is none of culprit's files");
+  auto lock = FileLock::take(path);
+  if (!lock) return cannot_write_intents(path, lock.error());
+  if (!*lock) return cannot_write_intents(path, "another process has it");
+  const int file = (*lock)->file();
+  if (const auto shared = share_permissions(file, path, journal); !shared)
+    return Error{shared.error()};
+  if (fstat(file, &status) != 0 || ftruncate(file, 0) != 0)
+    return cannot_write_intents(path, std::strerror(errno));
+  return IntentFile(path, std::move(**lock), status.st_ino);
+}
+
+void IntentFile::begin_after(const Link& newest) {
+  head_ = head_after(newest);
+  before_ = hasher_.of(head_);
+  end_ = 0;
+}
+
+Expected<void> IntentFile::append(Time step, std::string_view rows) {
+  std::string payload;
+  ByteWriter(payload).integer(step.time_since_epoch().count());
+  payload += rows;
+  const Hash hash = hash_of_part(before_, payload, hasher_);
+  bytes_ = end_ == 0 ? head_ : "";
+  append_fixed(bytes_, payload.size(), kSizeBytes);
+  bytes_ += view_of(hash);
+  bytes_ += payload;
+  append_fixed(bytes_, 0, kSizeBytes);
+  if (end_ + bytes_.size() > kMaxBytes)
+    return cannot_write_intents(path_, "the journal does not keep up");
+  // What goes to a file that somebody removed or replaced would be lost in silence.
+  struct stat status {};
+  if (stat(path_.c_str(), &status) != 0 || status.st_ino != inode_)
+    return cannot_write_intents(path_, "it was removed or replaced");
+  const ssize_t written =
+      pwrite(file_.file(), bytes_.data(), bytes_.size(), static_cast<off_t>(end_));
+  if (written < 0) return cannot_write_intents(path_, std::strerror(errno));
+  if (static_cast<std::size_t>(written) != bytes_.size())
+    return cannot_write_intents(path_, "the disk is full");
+  end_ += bytes_.size() - kSizeBytes;
+  before_ = hash;
+  return {};
+}
+
+void IntentFile::empty() {
+  // What stays is known to stand in the journal when it is read.
+  if (ftruncate(file_.file(), 0) != 0) return;
+  end_ = 0;
+}
+
+SavedIntents decode_intents(std::string_view bytes) {
+  SavedIntents saved;
+  if (bytes.empty()) return saved;
+  if (bytes.size() < kIntentHead || !bytes.starts_with(kIntentMark)) {
+    saved.damage = "its beginning is damaged";
+    return saved;
+  }
+  saved.after.id = static_cast<std::int64_t>(fixed_number(bytes.substr(kIntentMark.size(), 8)));
+  const auto hash = hash_from(bytes.substr(kIntentMark.size() + 8, sizeof(Hash)));
+  saved.after.hash = hash.value_or(Hash{});
+  Hasher hasher;
+  Hash before = hasher.of(bytes.substr(0, kIntentHead));
+  std::size_t at = kIntentHead;
+  while (true) {
+    saved.damage = "it is damaged after byte " + std::to_string(at);
+    const std::string_view rest = bytes.substr(at);
+    if (rest.size() < kSizeBytes) return saved;
+    const std::uint64_t size = fixed_number(rest.substr(0, kSizeBytes));
+    if (size == 0) break;
+    constexpr std::size_t kPayload = kSizeBytes + sizeof(Hash);
+    if (size > IntentFile::kMaxBytes || rest.size() < kPayload + size) return saved;
+    const std::string_view payload = rest.substr(kPayload, size);
+    const Hash expected = hash_of_part(before, payload, hasher);
+    if (rest.substr(kSizeBytes, sizeof(Hash)) != view_of(expected)) return saved;
+    if (!decode_part(payload, saved)) return saved;
+    before = expected;
+    at += kPayload + size;
+  }
+  saved.damage.clear();
+  return saved;
+}
+
+Expected<SavedIntents> read_intents(const fs::path& path) {
+  const auto failure = [&](const std::string& why) {
+    return Error{"cannot read '" + path.string() + "': " + why};
+  };
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) {
+    if (errno == ENOENT || errno == ENOTDIR) return SavedIntents{};
+    return failure(std::strerror(errno));
+  }
+  std::string bytes(IntentFile::kMaxBytes, '\0');
+  std::size_t size = 0;
+  struct stat status {};
+  const bool is_file = fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+  ssize_t n = is_file ? 1 : 0;
+  while (n > 0 && size < bytes.size()) {
+    n = read(file, bytes.data() + size, bytes.size() - size);
+    if (n > 0) size += static_cast<std::size_t>(n);
+    if (n < 0 && errno == EINTR) n = 1;
+  }
+  const int reason = errno;
+  close(file);
+  if (!is_file) return failure("it is none of culprit's files");
+  if (n < 0) return failure(std::strerror(reason));
+  bytes.resize(size);
+  return decode_intents(bytes);
+}
+
+}  // namespace culprit::journal

@@ -1,0 +1,85 @@
+// What was decided and is asked for, until it stands in the journal: "a.journal-intents".
+//
+// Before a request goes out that needs no disk (settled_here.h) its rows are here, by one write().
+// From then on they are with the kernel, and outlive culprit however it ends; the journal follows
+// within moments, and on the disk. Nothing here is ever synced: what a power cut leaves of this
+// file is read as far as it is whole, and nothing is gone on with after one.
+//
+//     "culprit-intents1"  number (8 bytes) and hash (32 bytes) of a row of the journal: all below
+//                         comes after it
+//     part:  size (4 bytes)  SHA-256(hash of the part before | payload) (32 bytes)  payload
+//            payload: time of the step (integer), then rows: at (integer), kind (text), body (text)
+//     ...
+//     0 (4 bytes): the end
+//
+// Sizes and numbers lowest byte first; the others as in bytes.h. The first part follows the hash of
+// the 56 bytes before it. Once all parts stand in the journal the next one is written over the
+// first, after a later row; what then remains behind the end was written before it.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/expected.h"
+#include "base/time.h"
+#include "journal/entry.h"
+#include "journal/file_lock.h"
+#include "journal/tables.h"
+
+namespace culprit::journal {
+
+std::filesystem::path intents_beside(const std::filesystem::path& journal);
+
+// Rows as parts hold them.
+void append_row(const Entry& row, std::string& rows);
+
+class IntentFile {
+ public:
+  static constexpr std::size_t kMaxBytes = std::size_t{256} << 10;
+
+  // Makes or empties the file beside `journal`, which exists, and gives it the journal's owner and
+  // permissions. Whatever it had must stand in the journal. Errors say why, with the path.
+  static Expected<IntentFile> open(const std::filesystem::path& journal);
+
+  // All parts stand in the journal, `newest` is a row of it: the next part is the first one.
+  void begin_after(const Link& newest);
+
+  // One more part, whole with the kernel when this returns. After an error it is not there, and the
+  // parts before it are. @pre begin_after() was called
+  Expected<void> append(Time step, std::string_view rows);
+
+  // All parts stand in the journal, and no more follow for now.
+  void empty();
+
+ private:
+  IntentFile(std::filesystem::path path, FileLock file, std::uint64_t inode)
+      : path_(std::move(path)), file_(std::move(file)), inode_(inode) {}
+
+  std::filesystem::path path_;
+  FileLock file_;
+  std::uint64_t inode_;
+  Hasher hasher_;
+  Hash before_{};        // of the part before the next, or of the head
+  std::size_t end_ = 0;  // where the next part comes
+  std::string head_;     // to be written with the first part
+  std::string bytes_;    // memory that is used again
+};
+
+// What such a file says.
+struct SavedIntents {
+  Link after;               // the row of the journal that all of it comes after
+  std::vector<Entry> rows;  // without `id`
+  Time latest = kLongAgo;   // of the steps
+  std::string damage;       // why there may have been more; empty: there was not
+};
+
+// Reads as far as it is whole; trusts nothing. Only events, intents and outcomes are rows here.
+SavedIntents decode_intents(std::string_view bytes);
+
+// Nothing is saved where there is no such file. Errors: it cannot be read, or is no such file.
+Expected<SavedIntents> read_intents(const std::filesystem::path& path);
+
+}  // namespace culprit::journal
