@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "base/closest.h"
 #include "base/live_clock.h"
+#include "base/name_grammar.h"
 #include "robot/standing.h"
 
 namespace culprit::web {
@@ -42,9 +44,45 @@ std::optional<Silenceable> find_silenceable(const Json& body, const RuleSet& rul
   return std::nullopt;
 }
 
+// "there is no component 'camra'; did you mean 'camera'?"; empty if no name was given.
+std::string no_such(const char* kind, const std::optional<std::string>& name,
+                    const std::vector<std::string_view>& known) {
+  if (!name || name->empty()) return "";
+  std::string text = "there is no " + std::string(kind) + " '" + printable(*name) + "'";
+  const std::string near = closest(*name, known);
+  return near.empty() ? text : text + "; did you mean '" + near + "'?";
+}
+
+std::vector<std::string_view> names_of_all(const auto& things) {
+  std::vector<std::string_view> names;
+  for (const auto& each : things) names.push_back(each.name);
+  return names;
+}
+
+// What was meant instead, and what to name.
+Error unknown_strategy(const Json& body, const RuleSet& rules) {
+  const std::string remedy = "name a 'rule' and one of its strategies as 'strategy'";
+  const auto rule = find<RuleId>(rules.rules, text_of(body, "rule"));
+  std::string what = no_such("rule", text_of(body, "rule"), names_of_all(rules.rules));
+  if (rule) {
+    std::vector<std::string_view> names;
+    for (const StrategyId id : rules[*rule].strategies) names.push_back(rules[id].name);
+    what = no_such(("strategy of " + rules[*rule].name).c_str(), text_of(body, "strategy"), names);
+  }
+  return Error{what.empty() ? remedy : what + " (" + remedy + ")"};
+}
+
+Error unknown_silenceable(const Json& body, const RuleSet& rules) {
+  const std::string remedy = "name a 'component' or a 'rule' of the rules";
+  std::string what =
+      no_such("component", text_of(body, "component"), names_of_all(rules.components));
+  if (what.empty()) what = no_such("rule", text_of(body, "rule"), names_of_all(rules.rules));
+  return Error{what.empty() ? remedy : what + " (" + remedy + ")"};
+}
+
 Expected<What> about_strategy(const std::string& word, const Json& body, const RuleSet& rules) {
   const auto strategy = find_strategy(body, rules);
-  if (!strategy) return Error{"name a 'rule' and one of its strategies as 'strategy'"};
+  if (!strategy) return unknown_strategy(body, rules);
   if (word == "approve") return What(Approve{*strategy});
   if (word == "refuse") return What(Refuse{*strategy});
   return What(RunStrategy{*strategy});
@@ -52,7 +90,7 @@ Expected<What> about_strategy(const std::string& word, const Json& body, const R
 
 Expected<What> about_silence(const std::string& word, const Json& body, const RuleSet& rules) {
   const auto what = find_silenceable(body, rules);
-  if (!what) return Error{"name a 'component' or a 'rule' of the rules"};
+  if (!what) return unknown_silenceable(body, rules);
   if (word == "lift") return What(LiftSilence{*what});
   const auto seconds = body.find("seconds");
   if (seconds == body.end()) return What(Silence{*what});
@@ -126,21 +164,6 @@ std::optional<Json> word_on(std::uint64_t number, Hub& hub, std::uint64_t after,
   }
 }
 
-Answer take_and_wait(OrderDesk& desk, Hub& hub, const Json& body) {
-  const std::uint64_t before = hub.last();
-  Answer answer = desk.take(body);
-  const auto wait = body.is_object() ? body.find("wait_s") : body.end();
-  if (answer.status != 202 || wait == body.end() || !wait->is_number()) return answer;
-  const double patience = std::clamp(wait->get<double>(), 0.0, kLongestWait);
-  const auto word = word_on(answer.body["number"], hub, before, patience);
-  if (!word) return answer;
-  if (word->value("type", "") == "order_refused")
-    return refuse(409, word->value("refused_because", "it is refused"));
-  answer.status = 200;
-  answer.body["order"] = word->value("text", "");
-  return answer;
-}
-
 const RuleSet& no_rules() {
   static const RuleSet rules;
   return rules;
@@ -203,9 +226,24 @@ Answer OrderDesk::keep(const live::KeepOrder& keep, const Json& body, std::uint6
            {"text", kept.is_kept ? "kept" : "in force, not kept: " + kept.why_not}}};
 }
 
+Answer give_order(OrderDesk& desk, Hub& hub, const Json& body) {
+  const std::uint64_t before = hub.last();
+  Answer answer = desk.take(body);
+  const auto wait = body.is_object() ? body.find("wait_s") : body.end();
+  if (answer.status != 202 || wait == body.end() || !wait->is_number()) return answer;
+  const double patience = std::clamp(wait->get<double>(), 0.0, kLongestWait);
+  const auto word = word_on(answer.body["number"], hub, before, patience);
+  if (!word) return answer;
+  if (word->value("type", "") == "order_refused")
+    return refuse(409, word->value("refused_because", "it is refused"));
+  answer.status = 200;
+  answer.body["order"] = word->value("text", "");
+  return answer;
+}
+
 std::vector<Route> order_routes(OrderDesk& desk, Hub& hub) {
   return {{Method::kPost, "/api/orders",
-           [&desk, &hub](const Json& body) { return take_and_wait(desk, hub, body); }}};
+           [&desk, &hub](const Json& body) { return give_order(desk, hub, body); }}};
 }
 
 }  // namespace culprit::web

@@ -39,8 +39,11 @@ class OrderDesk : public live::OrderTaker {
   std::uint64_t last_ CULPRIT_GUARDED_BY(mutex_) = 0;        // number of the last order
 };
 
-// Both must outlive the routes. Whoever says for how long (`wait_s`) is answered with the manager's own
-// word, as `hub` tells it: 200 or, if it refuses the order, 409.
+// Gives an order as /api/orders does: whoever says for how long it waits (`wait_s`) is answered with the manager's own
+// word, as `hub` tells it: 200 or, if it refuses the order, 409. Blocks so long.
+Answer give_order(OrderDesk& desk, Hub& hub, const Json& body);
+
+// Both must outlive the routes.
 std::vector<Route> order_routes(OrderDesk& desk, Hub& hub);
 
 }  // namespace culprit::web

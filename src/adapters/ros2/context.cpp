@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/live_clock.h"
+#include "ros2/type_description.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -148,8 +149,10 @@ void Context::discovered(const DiscoveryEvent& event) {
   if (discovery_listener_) discovery_listener_(event);
   const auto* endpoint = std::get_if<EndpointInfo>(&event);
   if (endpoint == nullptr || gid_size_) return;
-  // Iron and newer put the hash of the type into the user data of every endpoint.
-  if (endpoint->user_data.find("typehash=") != std::string::npos)
+  // Iron and newer put the hash of the type into the user data of every endpoint. So does a culprit,
+  // whatever the robot is.
+  if (endpoint->user_data.find("typehash=") != std::string::npos &&
+      !is_of_culprit(endpoint->user_data))
     return decide(GidSize::kIronAndNewer);
   if (endpoint->topic != kDiscoveryInfoTopic || std::exchange(is_deciding_, true)) return;
   tasks_.post_at(Executor::Clock::now() + kPatience, [this] {

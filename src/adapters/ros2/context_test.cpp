@@ -11,6 +11,7 @@
 #include "ros2/process_finder.h"
 #include "ros2/publisher.h"
 #include "ros2/subscription.h"
+#include "ros2/type_description.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -134,6 +135,21 @@ TEST(Context, TakesATypeHashForASignOfNewerPeers) {
   ASSERT_TRUE(hashed);
   ASSERT_TRUE(stranger.heard().wait_for_count(1));
   EXPECT_EQ(gid_size_of(stranger.heard().all().back()), GidSize::kIronAndNewer);
+}
+
+// It announces hashes wherever it is.
+TEST(Context, TakesATypeHashOfACulpritForNoSign) {
+  const TestDomain domain;
+  ParticipantOptions options = domain.options();
+  options.gid_size.reset();
+  LiveContext context(options);
+  const NodeEntry node(*context, {"/", "a"});
+  Stranger culprit(domain);
+  const auto hashed = culprit.participant().create_writer(
+      {"rt/t", "T", {}, type_user_data("RIHS01_00", "RIHS01_01"), {}});
+  ASSERT_TRUE(hashed);
+  ASSERT_TRUE(culprit.heard().wait_for_count(1));
+  EXPECT_EQ(gid_size_of(culprit.heard().all().front()), GidSize::kHumbleAndOlder);
 }
 
 TEST(Context, SpeaksAsHumbleDoesWhenPeersAreSilent) {

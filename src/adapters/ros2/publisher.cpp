@@ -1,11 +1,13 @@
 #include "ros2/publisher.h"
 
+#include "ros2/type_description.h"
+
 namespace culprit::ros2 {
 
 Expected<std::unique_ptr<RawPublisher>> RawPublisher::create(NodeEntry& node,
                                                              std::string_view topic,
-                                                             std::string_view type,
-                                                             const Qos& qos) {
+                                                             std::string_view type, const Qos& qos,
+                                                             std::string_view type_hash) {
   const auto name = resolve_name(topic, node.name());
   if (!name) return Error{name.error()};
   if (!is_valid_type_name(type))
@@ -14,7 +16,7 @@ Expected<std::unique_ptr<RawPublisher>> RawPublisher::create(NodeEntry& node,
       node.context().participant().create_writer({.topic = mangle_topic(Channel::kTopic, *name),
                                                   .type = mangle_type(Channel::kTopic, type),
                                                   .qos = qos,
-                                                  .user_data = {},
+                                                  .user_data = type_user_data(type_hash),
                                                   .on_match = {}});
   if (!writer) return Error{writer.error()};
   return std::make_unique<RawPublisher>(node, std::move(*writer));

@@ -16,9 +16,10 @@ namespace culprit::ros2 {
 class RawPublisher {
  public:
   // `topic` as resolve_name takes it; `type` is "package/msg/Type". The node entry outlives the
-  // publisher.
+  // publisher. `type_hash` is announced (type_description.h), unless it is empty.
   static Expected<std::unique_ptr<RawPublisher>> create(NodeEntry& node, std::string_view topic,
-                                                        std::string_view type, const Qos& qos);
+                                                        std::string_view type, const Qos& qos,
+                                                        std::string_view type_hash = {});
   RawPublisher(NodeEntry& node, std::unique_ptr<Writer> writer);
   ~RawPublisher();
   RawPublisher(const RawPublisher&) = delete;

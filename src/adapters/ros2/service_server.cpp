@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ros2/names.h"
+#include "ros2/type_description.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -22,27 +23,51 @@ constexpr auto kBetweenLooks = 1ms;
 Expected<std::unique_ptr<ServiceServer>> ServiceServer::create(NodeEntry& node,
                                                                const ServiceName& service,
                                                                const Qos& qos, Handler handler) {
+  return create_any(node, service, qos, std::move(handler), {});
+}
+
+Expected<std::unique_ptr<ServiceServer>> ServiceServer::create_slow(NodeEntry& node,
+                                                                    const ServiceName& service,
+                                                                    const Qos& qos,
+                                                                    SlowHandler handler,
+                                                                    const ServiceHashes& hashes) {
+  return create_any(node, service, qos, std::move(handler), hashes);
+}
+
+Expected<std::unique_ptr<ServiceServer>> ServiceServer::create_any(NodeEntry& node,
+                                                                   const ServiceName& service,
+                                                                   const Qos& qos,
+                                                                   AnyHandler handler,
+                                                                   const ServiceHashes& hashes) {
   std::unique_ptr<ServiceServer> server(new ServiceServer(node, std::move(handler), qos.depth));
-  if (auto opened = server->open(service, qos); !opened) return Error{opened.error()};
+  if (auto opened = server->open(service, qos, hashes); !opened) return Error{opened.error()};
   return server;
 }
 
-ServiceServer::ServiceServer(NodeEntry& node, Handler handler, std::size_t depth)
-    : node_(node), handler_(std::move(handler)), depth_(depth), tasks_(node.context().executor()) {}
+ServiceServer::ServiceServer(NodeEntry& node, AnyHandler handler, std::size_t depth)
+    : node_(node),
+      handler_(std::move(handler)),
+      late_(std::make_shared<Late>()),
+      depth_(depth),
+      tasks_(node.context().executor()) {
+  const MutexLock lock(late_->mutex);
+  late_->server = this;
+}
 
-Expected<void> ServiceServer::open(const ServiceName& service, const Qos& qos) {
+Expected<void> ServiceServer::open(const ServiceName& service, const Qos& qos,
+                                   const ServiceHashes& hashes) {
   if (!is_valid_topic_name(service.name))
     return Error{"'" + printable(service.name) + "' is not the name of a service"};
   if (!is_valid_type_name(service.type))
     return Error{"'" + printable(service.type) + "' is not the type of a service"};
   Participant& participant = node_.context().participant();
-  const std::string user_data = "serviceid=" + node_.context().unique_id() + ";";
+  const std::string id = "serviceid=" + node_.context().unique_id() + ";";
 
   auto writer =
       participant.create_writer({.topic = mangle_topic(Channel::kReply, service.name),
                                  .type = mangle_type(Channel::kReply, service.type),
                                  .qos = qos,
-                                 .user_data = user_data,
+                                 .user_data = id + type_user_data(hashes.response, hashes.service),
                                  .on_match = [this](const Guid& reader, Match match) {
                                    tasks_.post([this, reader, match] { on_match(reader, match); });
                                  }});
@@ -54,7 +79,7 @@ Expected<void> ServiceServer::open(const ServiceName& service, const Qos& qos) {
       {.topic = mangle_topic(Channel::kRequest, service.name),
        .type = mangle_type(Channel::kRequest, service.type),
        .qos = qos,
-       .user_data = user_data,
+       .user_data = id + type_user_data(hashes.request, hashes.service),
        .on_match = {}},
       [this](const Sample& sample) {
         {
@@ -72,6 +97,10 @@ Expected<void> ServiceServer::open(const ServiceName& service, const Qos& qos) {
 }
 
 ServiceServer::~ServiceServer() {
+  {
+    const MutexLock lock(late_->mutex);
+    late_->server = nullptr;
+  }
   tasks_.close();
   if (request_reader_) node_.remove(request_reader_->guid());
   if (reply_writer_) node_.remove(reply_writer_->guid());
@@ -88,8 +117,27 @@ void ServiceServer::handle_next() {
     requests_.pop_front();
   }
   const auto* client = node_.context().graph().participant(request.identity.writer.prefix());
-  Reply reply =
-      mapping_of(client) == Mapping::kHeader ? answer_header(request) : answer_inline(request);
+  auto call = mapping_of(client) == Mapping::kHeader ? read_header(request) : read_inline(request);
+  if (!call) return;
+  if (const auto* handler = std::get_if<Handler>(&handler_)) {
+    call->reply.payload = (*handler)(call->request);
+    return deliver(std::move(call->reply));
+  }
+  std::get<SlowHandler>(handler_)(call->request, answer_to(std::move(call->reply)));
+}
+
+ServiceServer::Answer ServiceServer::answer_to(Reply reply) {
+  return [late = late_, reply = std::move(reply)](Bytes payload) {
+    const MutexLock lock(late->mutex);
+    ServiceServer* const server = late->server;
+    if (server == nullptr) return;
+    Reply whole = reply;
+    whole.payload = std::move(payload);
+    server->tasks_.post([server, whole = std::move(whole)] { server->deliver(whole); });
+  };
+}
+
+void ServiceServer::deliver(Reply reply) {
   if (reply.payload.empty()) return;
   if (is_expected(reply) && has_greeted(reply)) return send(reply);
   const std::uint64_t number = next_waiting_++;
@@ -98,26 +146,25 @@ void ServiceServer::handle_next() {
   tasks_.post_at(Executor::Clock::now() + kLongestWait, [this, number] { waiting_.erase(number); });
 }
 
-ServiceServer::Reply ServiceServer::answer_inline(const Request& request) const {
-  Reply reply{.payload = handler_(request.payload), .related = {}, .header = {}, .reader = {}};
+std::optional<ServiceServer::Call> ServiceServer::read_inline(const Request& request) const {
+  Reply reply;
   const bool names_reader = request.related.writer != Guid{};
   const Guid client = names_reader ? request.related.writer : request.identity.writer;
   reply.related = {client, request.identity.sequence};
   if (client.is_reader()) reply.reader = client;
-  return reply;
+  return Call{request.payload, std::move(reply)};
 }
 
-ServiceServer::Reply ServiceServer::answer_header(const Request& request) const {
+std::optional<ServiceServer::Call> ServiceServer::read_header(const Request& request) const {
+  auto split = split_header(request.payload);
+  if (!split) return std::nullopt;
   Reply reply;
-  const auto split = split_header(request.payload);
-  if (!split) return reply;
-  reply.payload = handler_(split->payload);
   reply.header = split->header;
   const EndpointInfo* writer = node_.context().graph().endpoint(request.identity.writer);
   const auto id =
       writer == nullptr ? std::string_view() : user_data_value(writer->user_data, "clientid");
   if (!id.empty()) reply.reader = std::string(id);
-  return reply;
+  return Call{std::move(split->payload), std::move(reply)};
 }
 
 // Whether the reader that the reply is for has matched, as far as the client said which one that

@@ -26,16 +26,31 @@
 
 namespace culprit::ros2 {
 
+// By which the types of a service are known (type_description.h); empty: not announced.
+struct ServiceHashes {
+  std::string request{};
+  std::string response{};
+  std::string service{};
+};
+
 class ServiceServer {
  public:
   // Request payload to reply payload, both with their encapsulation. An empty reply is none: the
   // request was malformed.
   using Handler = std::function<Bytes(ByteView request)>;
+  // For who needs time: the answer is given when it is there, once, from any thread. It may come
+  // when the server is gone, and goes nowhere then.
+  using Answer = std::function<void(Bytes reply)>;
+  using SlowHandler = std::function<void(ByteView request, Answer answer)>;
 
   // The node entry outlives the server.
   static Expected<std::unique_ptr<ServiceServer>> create(NodeEntry& node,
                                                          const ServiceName& service, const Qos& qos,
                                                          Handler handler);
+  static Expected<std::unique_ptr<ServiceServer>> create_slow(NodeEntry& node,
+                                                              const ServiceName& service,
+                                                              const Qos& qos, SlowHandler handler,
+                                                              const ServiceHashes& hashes = {});
   ~ServiceServer();
 
  private:
@@ -53,13 +68,32 @@ class ServiceServer {
     std::variant<std::monostate, Guid, std::string> reader;
   };
 
-  ServiceServer(NodeEntry& node, Handler handler, std::size_t depth);
-  Expected<void> open(const ServiceName& service, const Qos& qos);
+  // A request, apart from how it came, and a reply to it without a payload.
+  struct Call {
+    Bytes request;
+    Reply reply;
+  };
+  // The server as those see it who answer late.
+  struct Late {
+    Mutex mutex;
+    ServiceServer* server CULPRIT_GUARDED_BY(mutex) = nullptr;  // null: it is gone
+  };
+
+  using AnyHandler = std::variant<Handler, SlowHandler>;
+
+  ServiceServer(NodeEntry& node, AnyHandler handler, std::size_t depth);
+  Expected<void> open(const ServiceName& service, const Qos& qos, const ServiceHashes& hashes);
+  static Expected<std::unique_ptr<ServiceServer>> create_any(NodeEntry& node,
+                                                             const ServiceName& service,
+                                                             const Qos& qos, AnyHandler handler,
+                                                             const ServiceHashes& hashes);
 
   // On the executor's thread.
   void handle_next();
-  Reply answer_inline(const Request& request) const;
-  Reply answer_header(const Request& request) const;
+  std::optional<Call> read_inline(const Request& request) const;
+  std::optional<Call> read_header(const Request& request) const;
+  Answer answer_to(Reply reply);
+  void deliver(Reply reply);
   bool is_expected(const Reply& reply) const;
   bool has_greeted(const Reply& reply);
   void look_at_greeting();
@@ -68,7 +102,8 @@ class ServiceServer {
   void on_match(const Guid& reader, Match match);
 
   NodeEntry& node_;
-  const Handler handler_;
+  const AnyHandler handler_;
+  const std::shared_ptr<Late> late_;
   const std::size_t depth_;
 
   // Of the executor's thread.

@@ -153,6 +153,57 @@ TEST(Service, EveryClientGetsItsOwnAnswers) {
   }
 }
 
+TEST(Service, AnAnswerMayTakeItsTimeAndHoldsNobodyUp) {
+  const TestDomain domain;
+  Side robot(domain, "robot"), manager(domain, "manager");
+  EventLog<ServiceServer::Answer> asked;
+  const auto server = std::move(*ServiceServer::create_slow(
+      robot.node, kEcho, qos::kServices,
+      [&](ByteView, const ServiceServer::Answer& answer) { asked.add(answer); }));
+  Echo echo(robot.node, kProbe);
+  const auto slow = client_of(manager);
+  const auto quick = client_of(manager, kProbe);
+  const auto late = call(*slow, "hello", Repeat::kUntilAnswered);
+  ASSERT_TRUE(asked.wait_for_count(1));
+  const auto soon = call(*quick, "", Repeat::kUntilAnswered);
+  ASSERT_TRUE(soon->wait_for_count(1)) << "while the other one waits";
+  EXPECT_TRUE(late->all().empty());
+  std::thread([&] { asked.all()[0](request("at last")); }).join();
+  ASSERT_TRUE(late->wait_for_count(1));
+  EXPECT_EQ(late->all()[0].reply, request("at last"));
+}
+
+TEST(Service, AnAnswerThatComesWhenItsServerIsGoneGoesNowhere) {
+  const TestDomain domain;
+  Side robot(domain, "robot"), manager(domain, "manager");
+  EventLog<ServiceServer::Answer> asked;
+  auto server = std::move(*ServiceServer::create_slow(
+      robot.node, kEcho, qos::kServices,
+      [&](ByteView, const ServiceServer::Answer& answer) { asked.add(answer); }));
+  const auto client = client_of(manager);
+  const auto answers = call(*client, "hello", Repeat::kUntilAnswered);
+  ASSERT_TRUE(asked.wait_for_count(1));
+  server.reset();
+  asked.all()[0](request("too late"));
+  Echo next(robot.node);
+  ASSERT_TRUE(answers->wait_for_count(1)) << "who comes next answers";
+  EXPECT_EQ(answers->all()[0].reply, request("hello"));
+}
+
+TEST(Service, ItsTypesAreAnnouncedByTheirHashes) {
+  const TestDomain domain;
+  Side robot(domain, "robot"), manager(domain, "manager");
+  const auto server = std::move(*ServiceServer::create_slow(
+      robot.node, kEcho, qos::kServices, [](ByteView, const ServiceServer::Answer&) {},
+      {"RIHS01_aa", "RIHS01_bb", "RIHS01_cc"}));
+  EXPECT_TRUE(manager.context.changes().wait_for_one([](const GraphChange& change) {
+    const auto* joined = std::get_if<EndpointJoined>(&change);
+    return joined != nullptr && joined->endpoint.kind == EndpointKind::kServer &&
+           joined->endpoint.type_hash == "RIHS01_aa" &&
+           joined->endpoint.service_hash == "RIHS01_cc";
+  }));
+}
+
 TEST(Service, MayBeCalledFromAnyThread) {
   const TestDomain domain;
   Side robot(domain, "robot"), manager(domain, "manager");

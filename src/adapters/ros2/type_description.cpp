@@ -14,6 +14,8 @@
 namespace culprit::ros2 {
 namespace {
 
+constexpr std::string_view kCulpritsMark = "culprit=1;";
+
 // type_description_interfaces/msg/FieldType. An array of a type has its number and 48, a bounded
 // sequence 96, an unbounded one 144.
 constexpr int kNested = 1;
@@ -158,6 +160,17 @@ Expected<MessageDefinitions> to_definitions(const msg::TypeDescription& descript
     out.emplace(each->type_name, std::move(*definition));
   }
   return out;
+}
+
+std::string type_user_data(std::string_view hash, std::string_view service_hash) {
+  std::string text;
+  if (!hash.empty()) text.append("typehash=").append(hash).append(";");
+  if (!service_hash.empty()) text.append("sertypehash=").append(service_hash).append(";");
+  return text.empty() ? text : text.append(kCulpritsMark);
+}
+
+bool is_of_culprit(std::string_view user_data) {
+  return user_data.find(kCulpritsMark) != std::string_view::npos;
 }
 
 std::string type_hash(std::string_view type, const MessageDefinitions& definitions) {

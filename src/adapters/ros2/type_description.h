@@ -16,6 +16,13 @@ namespace culprit::ros2 {
 // @pre `type` is among them
 std::string type_hash(std::string_view type, const MessageDefinitions& definitions);
 
+// What tells others of these hashes in an endpoint's user data, as Iron and newer read it; of a message,
+// and of the service that it belongs to (from Lyrical on). Nothing for those that are empty. Other culprits
+// know it as ours: that we say so is no sign of what the robot's nodes are (context.h).
+std::string type_user_data(std::string_view hash, std::string_view service_hash = {});
+// Whether that is a culprit's.
+bool is_of_culprit(std::string_view user_data);
+
 // What a node said of a type and of all types in it. Errors: it says what no definition could.
 Expected<MessageDefinitions> to_definitions(const msg::TypeDescription& description);
 // The reverse, with the same precondition as type_hash().
