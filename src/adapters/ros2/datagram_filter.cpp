@@ -141,7 +141,7 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
     if (objection != nullptr) refused_ = {refused_.count + 1, objection};
     const bool is_passed =
         objection == nullptr &&
-        (!addresses || address(rest.first(rtps::kSubmessageHeader + length), source));
+        (!addresses || address(rest.first(rtps::kSubmessageHeader + length), source, now));
     is_for_somebody = is_for_somebody || (is_passed && !rtps::is_about_others(rest[0]));
     is_for_nobody = is_for_nobody || (objection == nullptr && !is_passed);
     if (!is_passed) {
@@ -160,7 +160,8 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
 }
 
 // To the one reader that hears its writer, if it is addressed to all. Gives whether there is a reader.
-bool DatagramFilter::address(std::span<std::uint8_t> submessage, const GuidPrefix& source) {
+bool DatagramFilter::address(std::span<std::uint8_t> submessage, const GuidPrefix& source,
+                             Clock::time_point now) {
   const std::uint8_t kind = submessage[0];
   const bool is_sample = kind == rtps::kData || kind == rtps::kDataFragment;
   const bool is_of_writer = is_sample || kind == rtps::kHeartbeat || kind == rtps::kGap ||
@@ -175,7 +176,7 @@ bool DatagramFilter::address(std::span<std::uint8_t> submessage, const GuidPrefi
   std::copy_n(to.data() + 4, 4, writer.bytes.begin() + 12);
   if (!is_of_user(writer)) return true;
   const auto found = readers_.find(writer);
-  if (found == readers_.end()) return false;
+  if (found == readers_.end()) return tries(writer, now);
   const Readers::Reader* only = nullptr;
   for (const Readers::Reader& each : found->second.all) {
     if (!is_sample && each.how == Reading::kBestEffort) continue;  // to which they mean nothing
@@ -185,6 +186,14 @@ bool DatagramFilter::address(std::span<std::uint8_t> submessage, const GuidPrefi
   if (only == nullptr) return false;
   std::copy_n(only->guid.bytes.begin() + 12, 4, to.begin());
   return true;
+}
+
+bool DatagramFilter::tries(const Guid& stranger, Clock::time_point now) {
+  constexpr std::size_t kMost = 1024;  // the network decides how many there are
+  if (strangers_.size() >= kMost && !strangers_.contains(stranger)) strangers_.clear();
+  Stranger& known = strangers_[stranger];
+  if (now - known.since >= std::chrono::seconds(1)) known = {now, 0};
+  return known.tries++ < kTries;
 }
 
 const char* DatagramFilter::objection(const Submessage& submessage, Clock::time_point now) {
@@ -419,6 +428,7 @@ void DatagramFilter::begin_hearing(const Guid& writer, const Guid& reader, Readi
   if (how == Reading::kReliable && !is_reliable(writer)) drop(writer);
   Readers& readers = readers_[writer];
   readers.all.push_back({reader, how});
+  strangers_.erase(writer);
   if (on_unheard) readers.on_unheard = std::move(on_unheard);
 }
 

@@ -17,8 +17,9 @@
 // What secured submessages contain cannot be seen here; they are proven by their signatures.
 //
 // And it saves Fast DDS work. Writers address what they say to all readers that hear them, and Fast
-// DDS asks each reader of the participant whether that is it. Here it is known who hears whom: what
-// one reader hears is addressed to that reader, and what no reader here hears is taken out.
+// DDS asks each reader of the participant whether that is it. Here it is known who hears whom: what one
+// reader hears is addressed to that reader. Of a writer that no reader is known to hear most is taken
+// out; a little is passed on, for what is delivered all the same shows who hears it.
 #pragma once
 
 #include <algorithm>
@@ -66,6 +67,8 @@ class DatagramFilter {
   // hears nothing is known, and nothing has to be.
   using OnUnheard = std::shared_ptr<const std::function<void()>>;
   static constexpr int kUnheard = 3;
+  // So much is passed on in a second of a writer that no reader is known to hear.
+  static constexpr int kTries = 8;
   enum class Reading : std::uint8_t { kBestEffort, kReliable };
   // Best effort: `on_unheard` is called from pass(), without locks, for each further sample of
   // which something came by after kUnheard others of which none was delivered. So the writer lives.
@@ -115,8 +118,9 @@ class DatagramFilter {
 
   ByteView look_at(std::span<std::uint8_t> datagram, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
-  bool address(std::span<std::uint8_t> submessage, const GuidPrefix& source)
+  bool address(std::span<std::uint8_t> submessage, const GuidPrefix& source, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
+  bool tries(const Guid& stranger, Clock::time_point now) CULPRIT_REQUIRES(mutex_);
   const char* objection(const Submessage& submessage, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
   const char* objection_to_data(const Submessage& submessage, Clock::time_point now)
@@ -164,6 +168,12 @@ class DatagramFilter {
   std::size_t reserved_reliable_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::size_t reserved_best_effort_ CULPRIT_GUARDED_BY(mutex_) = 0;
   Refused refused_ CULPRIT_GUARDED_BY(mutex_);
+  // Writers that no reader is known to hear: what was passed on of them in this second.
+  struct Stranger {
+    Clock::time_point since;
+    int tries = 0;
+  };
+  std::unordered_map<Guid, Stranger> strangers_ CULPRIT_GUARDED_BY(mutex_);
   bool addresses_ CULPRIT_GUARDED_BY(mutex_) = false;
   std::atomic<int> changes_ = 0;  // that are under way
   std::vector<OnUnheard> unheard_

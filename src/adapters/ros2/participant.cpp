@@ -109,24 +109,40 @@ class HeardWriters {
   }
   HeardWriters(const HeardWriters&) = delete;
 
+  // Matches of two threads at once are told as if they were one (Fast DDS 2.9,
+  // DataReaderImpl::update_subscription_matched_status): then it is not clear any more who is heard.
   // `reader` is always the same.
-  void note(const Guid& writer, const Guid& reader, Match match) {
+  void note(const Guid& writer, const Guid& reader, int change) {
     const MutexLock lock(mutex_);
     reader_ = reader;
-    if (match == Match::kMade && writers_.insert(writer).second)
-      filter_.begin_hearing(writer, reader, how_, on_unheard_);
-    if (match == Match::kLost && writers_.erase(writer) > 0) filter_.end_hearing(writer, reader);
+    if (change == 1) {
+      begin(writer);
+    } else if (change == -1) {
+      if (writers_.erase(writer) > 0) filter_.end_hearing(writer, reader);
+    } else if (!unclear_) {
+      unclear_.emplace(filter_);
+    }
   }
   void end() {
     const MutexLock lock(mutex_);
     for (const Guid& writer : writers_) filter_.end_hearing(writer, reader_);
     writers_.clear();
   }
-  void delivered(const Guid& writer) {
+  // Who is delivered is heard, whether that was told or not.
+  void delivered(const Guid& writer, const Guid& reader) {
+    {
+      const MutexLock lock(mutex_);
+      reader_ = reader;
+      begin(writer);
+    }
     if (on_unheard_) filter_.delivered(writer);
   }
 
  private:
+  void begin(const Guid& writer) CULPRIT_REQUIRES(mutex_) {
+    if (writers_.insert(writer).second) filter_.begin_hearing(writer, reader_, how_, on_unheard_);
+  }
+
   DatagramFilter& filter_;
   const DatagramFilter::Reading how_;
   const std::shared_ptr<Gate> gate_ = std::make_shared<Gate>();
@@ -134,6 +150,7 @@ class HeardWriters {
   Mutex mutex_;
   Guid reader_ CULPRIT_GUARDED_BY(mutex_);
   std::set<Guid> writers_ CULPRIT_GUARDED_BY(mutex_);
+  std::optional<DatagramFilter::Change> unclear_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 // Why the middleware may refuse a reader or writer, as far as one can tell.
@@ -196,7 +213,7 @@ class Reader::Impl final : public dds::DataReaderListener {
     gate_.pass([&] {
       dds::SampleInfo info;
       while (fast_dds::ok(reader->take_next_sample(&incoming_, &info))) {
-        if (info.valid_data) deliver(info);
+        if (info.valid_data) deliver(info, fast_dds::to_guid(reader->guid()));
       }
     });
   }
@@ -205,7 +222,7 @@ class Reader::Impl final : public dds::DataReaderListener {
                                const dds::SubscriptionMatchedStatus& status) noexcept override {
     const Guid writer =
         fast_dds::to_guid(fast_dds::rtps::iHandle2GUID(status.last_publication_handle));
-    heard_.note(writer, fast_dds::to_guid(reader->guid()), match_of(status));
+    heard_.note(writer, fast_dds::to_guid(reader->guid()), status.current_count_change);
     if (!options_.on_match) return;
     gate_.pass([&] { options_.on_match(writer, match_of(status)); });
   }
@@ -213,8 +230,8 @@ class Reader::Impl final : public dds::DataReaderListener {
   const Guid& guid() const { return guid_; }
 
  private:
-  void deliver(const dds::SampleInfo& info) {
-    heard_.delivered(fast_dds::to_identity(info.sample_identity).writer);
+  void deliver(const dds::SampleInfo& info, const Guid& guid) {
+    heard_.delivered(fast_dds::to_identity(info.sample_identity).writer, guid);
     on_sample_({.payload = options_.payload == PayloadUse::kHeader ? ByteView()
                                                                    : ByteView(incoming_.bytes),
                 .size = incoming_.size,
