@@ -74,8 +74,9 @@ IncidentWatch::Followed& IncidentWatch::followed(const live::Incident& incident,
              !roots.contains(each.message["rule"].get<std::string>());
     });
   if (found == all_.end()) {
-    const WallTime since =
-        wall - std::chrono::duration_cast<WallTime::duration>(now - incident.since);
+    // A strategy that a person ordered has no failure, and so none that began.
+    const Duration lasts = incident.since > now ? Duration() : now - incident.since;
+    const WallTime since = wall - std::chrono::duration_cast<WallTime::duration>(lasts);
     all_.push_back({id_of(root, since), since, {}, Json::object(), nullptr});
     found = all_.end() - 1;
   }

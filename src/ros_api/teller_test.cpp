@@ -299,6 +299,16 @@ TEST(IncidentWatch, KnowsAnIncidentAgainByItsCause) {
   EXPECT_EQ(gone[0]["state"], told.constant("Incident", "STATE_LOST"));
 }
 
+TEST(IncidentWatch, WhatIsDoneByOrderBeginsWhenItIsSeen) {
+  const ToldRobot told;
+  IncidentWatch watch(told.types);
+  const WallTime wall(std::chrono::hours(1));
+  const auto news =
+      watch.look({{.root = RuleId(0)}}, told.robot->rules(), Time(Duration(3s)), wall);
+  ASSERT_THAT(news, SizeIs(1));
+  EXPECT_EQ(news[0]["since"], stamp_of(wall));
+}
+
 TEST(Teller, ShowsWhoElseHasTheNameOfANode) {
   ToldRobot told;
   told.remarks["/fusion"] = "kill 12 or 13";
