@@ -11,6 +11,7 @@
 #include "live/observers.h"
 #include "live/robot_names.h"
 #include "live/rule_trust.h"
+#include "ros_api/ros_api.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
 #include "terminal/local_service.h"
@@ -102,6 +103,19 @@ Expected<std::unique_ptr<RunRecording>> open_recording(const RunOptions& options
                              session.robot.link.participant, session.robot.link.types});
 }
 
+// On a domain with keys whoever speaks is somebody that its owner vouches for. Empty: no orders are taken.
+ros_api::OrderServices::Give orders_over_dds(const RunOptions& options,
+                                             const live::LiveSession::Options& session,
+                                             web::OrderDesk& desk, web::Hub& hub,
+                                             std::FILE* remarks) {
+  const bool has_keys = session.robot.link.participant.security.has_value();
+  if (!has_keys && !options.takes_orders_from_anyone) return {};
+  if (!has_keys)
+    say(remarks,
+        "culprit: takes orders over DDS from whoever is on this domain (--orders-from-anyone)\n");
+  return [&desk, &hub](const web::Json& order) { return web::give_order(desk, hub, order); };
+}
+
 // After Ctrl-C. The middleware can hang with its locks held.
 constexpr Duration kEndsWithin = std::chrono::seconds(8);
 
@@ -141,14 +155,19 @@ int run(const RunOptions& options) {
   web::Metrics metrics;
   web::HubObserver observer(hub, metrics);
   web::UsageHistory usage;
-  std::vector<live::Observer*> onlookers{&observer, &usage};
+  live::OrderKeeper keeper("the run has not begun");
+  web::OrderDesk orders(keeper.keeping());
+  ros_api::RosApi ros_api({options.version,
+                           orders_over_dds(options, *session, orders, hub, remarks),
+                           [&listener](const std::string& trouble) {
+                             listener->on_remark("culprit: " + trouble + "\n");
+                           }});
+  std::vector<live::Observer*> onlookers{&observer, &usage, &ros_api};
   if (*alerts) onlookers.push_back(&(*alerts)->observer());
   const auto recording = open_recording(options, rules->rules.robot, *session);
   if (!recording) return fail(recording.error());
   if (*recording) onlookers.push_back(&(*recording)->observer());
   live::Observers observers(std::move(onlookers));
-  live::OrderKeeper keeper("the run has not begun");
-  web::OrderDesk orders(keeper.keeping());
   live::LiveRun live({std::move(*session), options.dry_run, options.improvise, fleet->get()},
                      std::move(*role), keeper, *listener, &observers);
   running = &live;

@@ -89,6 +89,10 @@ void RunOptions::add_to(CLI::App& command) {
       ->check([](const std::string& name) {
         return is_valid_node_name(name) ? std::string() : "'" + name + "' is no name of a node";
       });
+  command.add_flag("--orders-from-anyone", takes_orders_from_anyone,
+                   "Take orders over DDS (~/pause, ~/run_strategy ...) on a domain without keys, "
+                   "too: whoever is on "
+                   "it can stop culprit, and have it restart nodes (docs/ros2-packages.md)");
   command
       .add_option("--forgetting", forgetting,
                   "What was learned n outcomes ago weighs this to the n-th power; 1: nothing is "

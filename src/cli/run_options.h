@@ -33,7 +33,8 @@ struct RunOptions {
   bool use_sim_time = false;
   bool json = false;
   std::string node_name;  // empty: the first that no other culprit of this machine has
-  std::string alerts;     // a file; empty: nobody is alerted
+  bool takes_orders_from_anyone = false;  // over DDS, on a domain without keys
+  std::string alerts;                     // a file; empty: nobody is alerted
   RecordingOptions recording;
   bool is_on_web = false;
   WebOptions web;

@@ -180,6 +180,11 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
   return session;
 }
 
+LiveSession::~LiveSession() {
+  leave_fleet();
+  if (is_observed_) frame_.observer->leaves();
+}
+
 RunBeginning LiveSession::look_back() {
   const std::filesystem::path& path = frame_.options.journal;
   if (frame_.records)
@@ -290,6 +295,8 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   }
   runtime_ = std::make_unique<Runtime>(*manager_, *robot_);
   if (Observer* observer = frame_.observer; observer != nullptr) {
+    is_observed_ = true;
+    observer->joined(robot_->link().entry());
     observer->begins(
         *manager_, [this] { return robot_->link().contested(); }, frame_.start);
     runtime_->next_look = [observer] { return observer->next_look(); };

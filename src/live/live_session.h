@@ -67,7 +67,7 @@ class LiveSession {
     std::string occasion;             // why there is a next one
   };
 
-  ~LiveSession() { leave_fleet(); }
+  ~LiveSession();
 
   // Joins the robot's DDS domain. From then on what it shows is kept until the session begins.
   static Expected<std::unique_ptr<LiveSession>> open(const Frame& frame, LoadedRules rules);
@@ -139,6 +139,7 @@ class LiveSession {
   std::unique_ptr<Preflight> preflight_;
   std::atomic<bool> is_left_ = false;
   bool is_in_fleet_ = false;
+  bool is_observed_ = false;
 };
 
 }  // namespace culprit::live

@@ -9,6 +9,10 @@
 #include "manager/manager.h"
 #include "manager/runtime.h"
 
+namespace culprit::ros2 {
+class NodeEntry;
+}
+
 namespace culprit::live {
 
 // All members are called on the thread that manages, and must not block it. One observer sees the
@@ -20,6 +24,9 @@ class Observer {
   // What people should know of nodes beyond what the manager knows, by full name.
   using Remarks = std::map<std::string, std::string>;
 
+  // Culprit's own node is there, for who tells something over DDS, until leaves() is called.
+  virtual void joined(ros2::NodeEntry& /*node*/) {}
+  virtual void leaves() {}
   // A manager begins. Both are there until the last step that is told of. People count times from
   // `start`, which is the same for all sessions of a run.
   virtual void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) = 0;

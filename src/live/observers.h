@@ -13,6 +13,12 @@ class Observers : public Observer {
   // All must outlive this.
   explicit Observers(std::vector<Observer*> all) : all_(std::move(all)) {}
 
+  void joined(ros2::NodeEntry& node) override {
+    for (Observer* each : all_) each->joined(node);
+  }
+  void leaves() override {
+    for (Observer* each : all_) each->leaves();
+  }
   void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) override {
     for (Observer* each : all_) each->begins(manager, remarks, start);
   }

@@ -88,6 +88,12 @@ Rights rights_of(const RuleSet& rules, const NodeName& self) {
   const auto lease = demangle_topic(ManagerLease::kTopic);
   const auto hearing = demangle_topic(Hearing::kTopic);
   rights.publishes = {"/diagnostics", "/parameter_events", "/rosout", lease->name, hearing->name};
+  // Of ros_api/: what is told, and the orders that are taken.
+  for (const char* topic : {"status", "incidents", "decisions"})
+    rights.publishes.push_back(self.full() + "/" + topic);
+  for (const char* service :
+       {"get_type_description", "pause", "resume", "approve", "silence", "run_strategy"})
+    rights.offers.push_back(self.full() + "/" + service);
   rights.subscribes = {lease->name, hearing->name};
   for (const char* service : {"describe_parameters", "get_parameter_types", "get_parameters",
                               "list_parameters", "set_parameters", "set_parameters_atomically"})

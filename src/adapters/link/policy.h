@@ -2,7 +2,7 @@
 //
 // rights_of() says it in names of ROS 2. It is written as a policy of SROS2, whose tools make
 // permissions of it and sign them, or as the permissions themselves, which openssl signs. What
-// link.h, component_link.h and node.h open on DDS must be among the rights; a test runs them so.
+// link.h, component_link.h, node.h and ros_api.h open on DDS must be among the rights; a test runs them so.
 //
 // Sources: sros2's policy.xsd (version 0.2.0); DDS Security 1.1, 9.4.1.3 (permissions); names.h.
 #pragma once

@@ -1,0 +1,78 @@
+// Orders over DDS: services of culprit_msgs, which give what is asked to the call that HTTP and the unix socket
+// give theirs to (web/order_routes.h), and answer with what it answers.
+//
+// Each service has a thread of its own, for an order may wait for the disk or for the manager, and a pause is not
+// to wait behind another order. What comes while kMostWaiting wait is refused at once.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/mutex.h"
+#include "http/routes.h"
+#include "ros2/service_server.h"
+#include "ros_api/message_codec.h"
+
+namespace culprit::ros_api {
+
+// "pause" -> "culprit_msgs/srv/Pause": below culprit's own node.
+struct OrderService {
+  std::string_view name;
+  std::string_view type;
+};
+std::span<const OrderService> order_services();
+
+// The document that web::OrderDesk takes, of a request of that type. Error: it names too much.
+Expected<Json> to_order(std::string_view service_type, const Json& request);
+
+class OrderServices {
+ public:
+  static constexpr std::size_t kMostWaiting = 8;                  // of each service
+  static constexpr Duration kPatience = std::chrono::seconds(3);  // with the manager
+
+  // Called on threads of this, and may block as long as an order does.
+  using Give = std::function<web::Answer(const Json& order)>;
+
+  // `types` outlive it.
+  OrderServices(const CulpritTypes& types, Give give);
+  ~OrderServices();
+
+  // Offers them at this node, which outlives that, until close() is called. Gives what could not be offered,
+  // and why, a line each.
+  std::vector<std::string> open(ros2::NodeEntry& node);
+  void close() { servers_.clear(); }
+
+ private:
+  // What waits at one service, and the thread that does it.
+  class Line {
+   public:
+    Line();
+    ~Line();
+    // False: too much waits.
+    bool put(std::function<void()> task);
+
+   private:
+    void work();
+
+    Mutex mutex_;
+    ConditionVariable something_came_;
+    std::deque<std::function<void()>> tasks_ CULPRIT_GUARDED_BY(mutex_);
+    bool is_over_ CULPRIT_GUARDED_BY(mutex_) = false;
+    std::thread thread_;
+  };
+
+  void take(const ServiceType& type, Line& line, ros2::ByteView request,
+            const ros2::ServiceServer::Answer& answer);
+  Json obey(const ServiceType& type, const Json& request) const;
+
+  const CulpritTypes& types_;
+  const Give give_;
+  std::vector<std::unique_ptr<Line>> lines_;  // by service
+  std::vector<std::unique_ptr<ros2::ServiceServer>> servers_;
+};
+
+}  // namespace culprit::ros_api

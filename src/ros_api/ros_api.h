@@ -1,0 +1,63 @@
+// What culprit tells nodes of ROS 2, and the orders that it takes from them: topics and services of
+// culprit_msgs (ros/culprit_msgs) at culprit's own node.
+//
+//     ~/status         culprit_msgs/msg/Status    reliable, transient local, depth 1
+//     ~/incidents      culprit_msgs/msg/Incident  reliable
+//     ~/decisions      culprit_msgs/msg/Decision  reliable
+//     ~/pause, ~/resume, ~/approve, ~/silence, ~/run_strategy      if orders are taken
+//     ~/get_type_description    what these types look like, as each node of Jazzy and newer says it
+//
+// Whoever looks on sees the sessions of a run one after the other; each has a node of its own.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "ros2/publisher.h"
+#include "ros_api/order_services.h"
+#include "ros_api/teller.h"
+
+namespace culprit::ros_api {
+
+class RosApi : public live::Observer {
+ public:
+  struct Options {
+    std::string version;  // of culprit
+    // Takes orders; empty: none are taken.
+    OrderServices::Give give{};
+    // Told, once for each node, what could not be offered, for permissions are missing, say. Nothing else
+    // depends on it.
+    std::function<void(const std::string& trouble)> on_trouble = [](const std::string&) {};
+  };
+
+  explicit RosApi(Options options);
+
+  void joined(ros2::NodeEntry& node) override;
+  void leaves() override;
+  void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) override {
+    teller_.begins(manager, std::move(remarks), start);
+  }
+  void stepped(const Runtime::Step& step) override { teller_.stepped(step); }
+  Time next_look() const override { return teller_.next_look(); }
+  void announced(Time, const EventWords&, const std::string&) override {}
+
+ private:
+  struct Told {
+    const MessageType* type = nullptr;
+    std::unique_ptr<ros2::RawPublisher> publisher{};  // null: there is no node now, or it may not
+  };
+
+  Expected<void> offer(ros2::NodeEntry& node, Topic topic, std::string_view name,
+                       const ros2::Qos& qos);
+  Expected<void> describe_types(ros2::NodeEntry& node);
+  void tell(Topic topic, const Json& message);
+
+  const Options options_;
+  const CulpritTypes types_;
+  std::array<Told, 3> told_;  // by topic
+  std::unique_ptr<ros2::ServiceServer> descriptions_;
+  std::optional<OrderServices> orders_;
+  Teller teller_;
+};
+
+}  // namespace culprit::ros_api

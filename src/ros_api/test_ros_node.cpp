@@ -1,0 +1,67 @@
+#include "ros_api/test_ros_node.h"
+
+namespace culprit::ros_api {
+
+ros2::EventLog<Json>& TestRosNode::hear(const std::string& topic, const std::string& type,
+                                        ros2::Durability durability) {
+  auto& log = *logs_.emplace_back(std::make_unique<ros2::EventLog<Json>>());
+  auto subscription =
+      ros2::Subscription::create(node_, topic, type, {.durability = durability, .depth = 100},
+                                 [this, &log, type](ros2::ByteView payload) {
+                                   const auto message = decode(payload, types.message(type));
+                                   if (message) {
+                                     log.add(*message);
+                                   } else {
+                                     ADD_FAILURE() << message.error();
+                                   }
+                                 });
+  if (!subscription) throw std::runtime_error(subscription.error());
+  subscriptions_.push_back(std::move(*subscription));
+  return log;
+}
+
+// Discovery data comes in order: who answers a client knows what was made before it.
+bool TestRosNode::is_known_to(const std::string& node) {
+  const auto client = ros2::ServiceClient::create(
+      node_, {node + "/get_type_description", std::string(ros2::srv::GetTypeDescription::kType)});
+  if (!client) throw std::runtime_error(client.error());
+  ros2::EventLog<bool> answers;
+  (*client)->call(ros2::encode(ros2::srv::GetTypeDescription::Request{}),
+                  ros2::Repeat::kUntilAnswered, ros2::kPatience,
+                  [&](const ros2::CallResult& result) {
+                    answers.add(result.outcome == ros2::CallOutcome::kAnswered);
+                  });
+  return answers.wait_for_count(1) && answers.all()[0];
+}
+
+Json TestRosNode::call(const std::string& service, const std::string& type, const Json& request,
+                       Duration patience) {
+  const auto payload = encode(request, types.service(type).request);
+  if (!payload) throw std::runtime_error(payload.error());
+  return call_with(service, type, *payload, patience);
+}
+
+Json TestRosNode::call_with(const std::string& service, const std::string& type,
+                            const ros2::Bytes& request, Duration patience) {
+  const auto client = client_of(service, type);
+  ros2::EventLog<ros2::Bytes> answers;
+  client->call(request, ros2::Repeat::kNever, patience, [&](const ros2::CallResult& result) {
+    answers.add({result.reply.begin(), result.reply.end()});
+  });
+  if (!answers.wait_for_count(1) || answers.all()[0].empty()) return nullptr;
+  const auto read = decode(answers.all()[0], types.service(type).response);
+  return read ? *read : Json(read.error());
+}
+
+std::unique_ptr<ros2::ServiceClient> TestRosNode::client_of(const std::string& service,
+                                                            const std::string& type) {
+  const std::string node = service.substr(0, service.rfind('/'));
+  auto client = ros2::ServiceClient::create(
+      node_, {service, type}, ros2::qos::kServices,
+      {{node + "/get_type_description", std::string(ros2::srv::GetTypeDescription::kType)},
+       ros2::encode(ros2::srv::GetTypeDescription::Request{})});
+  if (!client) throw std::runtime_error(client.error());
+  return std::move(*client);
+}
+
+}  // namespace culprit::ros_api
