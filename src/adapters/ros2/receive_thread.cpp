@@ -122,7 +122,10 @@ Expected<void> ReceiveThread::open(const Place& place, OnDatagram on_datagram) {
   if (epoll_ctl(wait_fd_, EPOLL_CTL_ADD, descriptor, &event) != 0)
     return refused("cannot wait for what comes there");
   sockets_.push_back(std::move(made));
-  if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+  if (!thread_.joinable()) {
+    thread_ = std::thread([this] { run(); });
+    pthread_setname_np(thread_.native_handle(), kName);
+  }
   return {};
 }
 

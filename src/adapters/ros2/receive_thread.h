@@ -32,6 +32,7 @@ class ReceiveThread {
   static constexpr std::size_t kBatch = 8;
   static constexpr std::uint32_t kLargest = 65'536;  // bytes; UDP carries less
   static constexpr std::chrono::milliseconds kSoon{20};
+  static constexpr const char* kName = "culprit-receive";  // of the thread, as `top -H` shows it
 
   // Called on the thread that receives, one at a time. It may write into `datagram`, which is gone
   // when it returns.
