@@ -331,7 +331,7 @@ TEST_F(Attack, ThatMakesItDeafDoesNotKeepItFromEnding) {
 }
 
 // One thread receives all: discovery, what is said to this process about endpoints, and samples.
-TEST_F(Attack, ThatHoldsTheThreadThatReceivesIsNoticedAndWhatIsUnreadIsReadThen) {
+TEST_F(Attack, ThatHoldsTheThreadThatReceivesIsNoticedAndItsEndToo) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   const TestProgram run = culprit();
   // The look before has a participant of its own, and is over then.

@@ -7,7 +7,7 @@
 // those that INFO_SRC submessages put in its place (§8.3.7.9). Whoever forges a datagram leaves his
 // own address here before it has any effect.
 //
-// It is also the witness of the threads that receive: what this participant sends to ports of its
+// It is also the witness of the thread that receives: what this participant sends to ports of its
 // own has to come through each of them again and again.
 //
 // Bounded: participants that were discovered are kept while they are there, of the others the ones

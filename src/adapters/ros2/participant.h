@@ -167,7 +167,7 @@ class Participant {
   DatagramSources::Origin origin_of(const GuidPrefix& participant) const;
   // When its last one came; kLongAgo: it is not there.
   Time heard_last(const GuidPrefix& participant) const;
-  // Since when nothing of its own came through one of the threads that receive (DatagramSources).
+  // Since when nothing of its own came through one of its ports (DatagramSources).
   // Every second something should.
   Time own_came_through() const;
   // Whether the thread that receives is at work (ReceiveWatch): looks, and until when it was.
