@@ -141,18 +141,25 @@ class Deafness {
   // By the system, as that of a container may.
   bool is_refused() const { return is_refused_; }
 
+  // The threads on which datagrams arrive: one for each participant.
+  static std::vector<int> receivers_of(int pid) {
+    std::vector<int> threads;
+    const std::string tasks = "/proc/" + std::to_string(pid) + "/task";
+    for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+      std::string name;
+      std::ifstream(task.path() / "comm") >> name;
+      if (name == ros2::ReceiveThread::kName) threads.push_back(std::stoi(task.path().filename()));
+    }
+    return threads;
+  }
+
  private:
   void wait_for_holder() {
     eventually([this] { return is_holding_.load(); });
   }
   void hold_all(int pid) {
     std::vector<int> threads;
-    const std::string tasks = "/proc/" + std::to_string(pid) + "/task";
-    for (const auto& task : std::filesystem::directory_iterator(tasks)) {
-      std::string name;
-      std::ifstream(task.path() / "comm") >> name;
-      if (name == ros2::ReceiveThread::kName) hold(std::stoi(task.path().filename()), threads);
-    }
+    for (const int thread : receivers_of(pid)) hold(thread, threads);
     keep(threads);
   }
   void hold(int thread, std::vector<int>& held) {
@@ -336,6 +343,7 @@ TEST_F(Attack, ThatHoldsTheThreadThatReceivesIsNoticedAndItsEndToo) {
   const TestProgram run = culprit();
   // The look before has a participant of its own, and is over then.
   ASSERT_TRUE(run.prints("/managed_subsystem/rgb_camera from")) << run.output();
+  ASSERT_TRUE(eventually([&] { return Deafness::receivers_of(run.pid()).size() == 1; }));
   {
     const Deafness deafness(run.pid());
     if (deafness.is_refused()) GTEST_SKIP() << "threads of another process cannot be held here";
