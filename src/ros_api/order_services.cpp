@@ -71,7 +71,8 @@ Expected<Json> to_order(std::string_view service_type, const Json& request) {
 
 OrderServices::OrderServices(const CulpritTypes& types, Give give)
     : types_(types), give_(std::move(give)) {
-  for (std::size_t s = 0; s < kServices.size(); ++s) lines_.push_back(std::make_unique<Line>());
+  for (std::size_t s = 0; s < kServices.size(); ++s)
+    workers_.push_back(std::make_unique<ros2::WorkerThread>(kMostWaiting));
 }
 
 OrderServices::~OrderServices() { close(); }
@@ -84,9 +85,9 @@ std::vector<std::string> OrderServices::open(ros2::NodeEntry& node) {
     const auto name = ros2::resolve_name("~/" + std::string(kServices[s].name), node.name());
     auto server = ros2::ServiceServer::create_slow(
         node, {*name, type.name}, ros2::qos::kServices,
-        [this, &type, &line = *lines_[s]](ros2::ByteView request,
-                                          const ros2::ServiceServer::Answer& answer) {
-          take(type, line, request, answer);
+        [this, &type, &worker = *workers_[s]](ros2::ByteView request,
+                                              const ros2::ServiceServer::Answer& answer) {
+          take(type, worker, request, answer);
         },
         {type.request.hash, type.response.hash, type.hash});
     if (server) {
@@ -99,8 +100,8 @@ std::vector<std::string> OrderServices::open(ros2::NodeEntry& node) {
 }
 
 // Nobody waits for an answer that does not come, whatever was sent.
-void OrderServices::take(const ServiceType& type, Line& line, ros2::ByteView request,
-                         const ros2::ServiceServer::Answer& answer) {
+void OrderServices::take(const ServiceType& type, ros2::WorkerThread& worker,
+                         ros2::ByteView request, const ros2::ServiceServer::Answer& answer) {
   const auto say = [&type, answer](const Json& said) {
     auto reply = encode(said, type.response);
     if (reply) answer(std::move(*reply));
@@ -108,7 +109,7 @@ void OrderServices::take(const ServiceType& type, Line& line, ros2::ByteView req
   auto read = decode(request, type.request);
   if (!read) return say(response(false, read.error()));
   const bool is_taken =
-      line.put([this, &type, say, read = std::move(*read)] { say(obey(type, read)); });
+      worker.put([this, &type, say, read = std::move(*read)] { say(obey(type, read)); });
   if (!is_taken) say(response(false, "too many orders wait already; ask again"));
 }
 
@@ -127,40 +128,6 @@ Json OrderServices::obey(const ServiceType& type, const Json& request) const {
   const std::string word = web::text_of(answer.body, "order").value_or("");
   const std::string kept = web::text_of(answer.body, "text").value_or("");
   return response(true, kept.empty() ? word : word + "; " + kept);
-}
-
-OrderServices::Line::Line() : thread_([this] { work(); }) {}
-
-OrderServices::Line::~Line() {
-  {
-    const MutexLock lock(mutex_);
-    is_over_ = true;
-    something_came_.notify_all();
-  }
-  thread_.join();
-}
-
-bool OrderServices::Line::put(std::function<void()> task) {
-  const MutexLock lock(mutex_);
-  if (tasks_.size() >= kMostWaiting) return false;
-  tasks_.push_back(std::move(task));
-  something_came_.notify_all();
-  return true;
-}
-
-void OrderServices::Line::work() {
-  while (true) {
-    std::function<void()> task;
-    {
-      MutexLock lock(mutex_);
-      something_came_.wait(
-          lock, [this]() CULPRIT_REQUIRES(mutex_) { return is_over_ || !tasks_.empty(); });
-      if (is_over_) return;
-      task = std::move(tasks_.front());
-      tasks_.pop_front();
-    }
-    task();
-  }
 }
 
 }  // namespace culprit::ros_api

@@ -5,16 +5,14 @@
 // to wait behind another order. What comes while kMostWaiting wait is refused at once.
 #pragma once
 
-#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "base/mutex.h"
 #include "http/routes.h"
 #include "ros2/service_server.h"
+#include "ros2/worker_thread.h"
 #include "ros_api/message_codec.h"
 
 namespace culprit::ros_api {
@@ -47,31 +45,13 @@ class OrderServices {
   void close() { servers_.clear(); }
 
  private:
-  // What waits at one service, and the thread that does it.
-  class Line {
-   public:
-    Line();
-    ~Line();
-    // False: too much waits.
-    bool put(std::function<void()> task);
-
-   private:
-    void work();
-
-    Mutex mutex_;
-    ConditionVariable something_came_;
-    std::deque<std::function<void()>> tasks_ CULPRIT_GUARDED_BY(mutex_);
-    bool is_over_ CULPRIT_GUARDED_BY(mutex_) = false;
-    std::thread thread_;
-  };
-
-  void take(const ServiceType& type, Line& line, ros2::ByteView request,
+  void take(const ServiceType& type, ros2::WorkerThread& worker, ros2::ByteView request,
             const ros2::ServiceServer::Answer& answer);
   Json obey(const ServiceType& type, const Json& request) const;
 
   const CulpritTypes& types_;
   const Give give_;
-  std::vector<std::unique_ptr<Line>> lines_;  // by service
+  std::vector<std::unique_ptr<ros2::WorkerThread>> workers_;  // by service
   std::vector<std::unique_ptr<ros2::ServiceServer>> servers_;
 };
 

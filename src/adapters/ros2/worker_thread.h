@@ -1,0 +1,41 @@
+// A thread that does one task after the other, in the order in which they came: for what may block, so that who
+// hands it over goes on.
+//
+//     WorkerThread worker(8);
+//     if (!worker.put([answer] { answer(ask_the_disk()); })) refuse("too much waits");
+//
+// Tasks must not throw. What still waits when this ends is not done; the task that is being done is waited for.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <thread>
+
+#include "base/mutex.h"
+
+namespace culprit::ros2 {
+
+class WorkerThread {
+ public:
+  // At most so many tasks wait, not counting the one that is being done.
+  explicit WorkerThread(std::size_t most_waiting);
+  ~WorkerThread();
+  WorkerThread(const WorkerThread&) = delete;
+  WorkerThread& operator=(const WorkerThread&) = delete;
+
+  // From any thread. False: too much waits, and this does not.
+  bool put(std::function<void()> task);
+
+ private:
+  void work();
+
+  const std::size_t most_waiting_;
+  Mutex mutex_;
+  ConditionVariable something_came_;
+  std::deque<std::function<void()>> tasks_ CULPRIT_GUARDED_BY(mutex_);
+  bool is_over_ CULPRIT_GUARDED_BY(mutex_) = false;
+  std::thread thread_;  // last: it begins when all is there
+};
+
+}  // namespace culprit::ros2
