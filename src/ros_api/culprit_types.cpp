@@ -11,19 +11,29 @@
 namespace culprit::ros_api {
 namespace {
 
-bool is_service(std::string_view type) { return type.find("/srv/") != std::string_view::npos; }
+// "msg", "srv" or "action".
+std::string_view kind_of(std::string_view type) {
+  const std::size_t first = type.find('/') + 1;
+  return type.substr(first, type.find('/', first) - first);
+}
 
 [[noreturn]] void end_with(const std::string& what) {
   std::cerr << "culprit: culprit_msgs: " << what << std::endl;
   std::abort();
 }
 
-// What stands before the line of three hyphens, and what stands behind it.
-std::pair<std::string_view, std::string_view> parts_of(std::string_view service) {
+// Between lines of three hyphens, the parts with these suffixes.
+void learn_parts(ros2::MessageLibrary& library, const InterfaceFile& file,
+                 std::initializer_list<const char*> suffixes) {
   constexpr std::string_view kBetween = "\n---\n";
-  const std::size_t at = service.find(kBetween);
-  if (at == std::string_view::npos) end_with("a service without an answer");
-  return {service.substr(0, at + 1), service.substr(at + kBetween.size())};
+  std::string_view rest = file.text;
+  for (const char* suffix : suffixes) {
+    const bool is_last = suffix == *(suffixes.end() - 1);
+    const std::size_t at = is_last ? rest.size() : rest.find(kBetween);
+    if (at == std::string_view::npos) end_with(std::string(file.type) + " without a " + suffix);
+    library.learn(std::string(file.type) + suffix, rest.substr(0, at));
+    rest.remove_prefix(is_last ? at : at + kBetween.size());
+  }
 }
 
 MessageType type_named(const std::string& name, ros2::MessageLibrary& library) {
@@ -56,25 +66,37 @@ CulpritTypes::CulpritTypes() {
   ros2::MessageLibrary library;
   for (const InterfaceFile& file : kInterfaceFiles) {
     const std::string type(file.type);
-    if (!is_service(type)) {
+    if (kind_of(type) == "srv") {
+      learn_parts(library, file, {"_Request", "_Response"});
+    } else if (kind_of(type) == "action") {
+      learn_parts(library, file, {"_Goal", "_Result", "_Feedback"});
+    } else {
       library.learn(type, file.text);
       for (const auto& [name, value] : constants_in(file.text))
         constants_.emplace(type + "." + name, value);
-      continue;
     }
-    const auto [request, response] = parts_of(file.text);
-    library.learn(type + "_Request", request);
-    library.learn(type + "_Response", response);
   }
+  const auto add = [&](const std::string& type) -> const MessageType& {
+    return messages_.emplace(type, type_named(type, library)).first->second;
+  };
+  const auto add_service = [&](const std::string& type) {
+    services_.emplace(
+        type, ServiceType{type, add(type + "_Request"), add(type + "_Response"), add(type).hash});
+  };
   for (const InterfaceFile& file : kInterfaceFiles) {
     const std::string type(file.type);
-    const MessageType& whole = messages_.emplace(type, type_named(type, library)).first->second;
-    if (!is_service(type)) continue;
-    for (const char* part : {"_Request", "_Response"})
-      messages_.emplace(type + part, type_named(type + part, library));
-    services_.emplace(type, ServiceType{type, messages_.at(type + "_Request"),
-                                        messages_.at(type + "_Response"), whole.hash});
+    if (kind_of(type) == "srv") {
+      add_service(type);
+    } else if (kind_of(type) == "action") {
+      add_service(type + "_SendGoal");
+      add_service(type + "_GetResult");
+      add(type + "_FeedbackMessage");
+    } else {
+      add(type);
+    }
   }
+  add_service("action_msgs/srv/CancelGoal");
+  add("action_msgs/msg/GoalStatusArray");
 }
 
 const MessageType& CulpritTypes::message(std::string_view name) const {
@@ -115,7 +137,7 @@ ros2::srv::GetTypeDescription::Response CulpritTypes::described(
     const bool is_part = type.definitions.contains(file.type);
     if (is_part)
       response.type_sources.push_back(
-          {std::string(file.type), is_service(file.type) ? "srv" : "msg", std::string(file.text)});
+          {std::string(file.type), std::string(kind_of(file.type)), std::string(file.text)});
   }
   return response;
 }

@@ -24,7 +24,8 @@ struct MessageType {
 };
 
 struct ServiceType {
-  std::string name;  // "culprit_msgs/srv/Pause"
+  std::string
+      name;  // "culprit_msgs/srv/Pause", or of an action "culprit_msgs/action/WaitForRecovery_SendGoal"
   MessageType request;
   MessageType response;
   std::string hash;  // of the service as a whole
@@ -34,7 +35,8 @@ class CulpritTypes {
  public:
   CulpritTypes();
 
-  // Also of "culprit_msgs/srv/Pause_Request" and of the service as a type of its own.
+  // Also of "culprit_msgs/srv/Pause_Request" and of the service as a type of its own; of an action
+  // "culprit_msgs/action/WaitForRecovery_FeedbackMessage", and what all actions share (action_msgs).
   const MessageType& message(std::string_view name) const;
   const ServiceType& service(std::string_view name) const;
   int constant(std::string_view message, std::string_view name) const;

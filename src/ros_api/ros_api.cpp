@@ -30,6 +30,7 @@ void RosApi::joined(ros2::NodeEntry& node) {
         offer(node, Topic::kDecisions, "~/decisions", kHistory), describe_types(node)}) {
     if (!offered) troubles.push_back(offered.error());
   }
+  for (const std::string& trouble : recovery_.open(node)) troubles.push_back(trouble);
   if (orders_) {
     for (const std::string& trouble : orders_->open(node)) troubles.push_back(trouble);
   }
@@ -42,6 +43,7 @@ void RosApi::joined(ros2::NodeEntry& node) {
 
 void RosApi::leaves() {
   if (orders_) orders_->close();
+  recovery_.close();
   descriptions_.reset();
   for (Told& each : told_) each.publisher.reset();
 }
@@ -72,6 +74,7 @@ Expected<void> RosApi::describe_types(ros2::NodeEntry& node) {
 
 // What cannot be sent is a status more or less: the robot is healed without it.
 void RosApi::tell(Topic topic, const Json& message) {
+  if (topic == Topic::kStatus) recovery_.told(message);
   const Told& told = told_[place_of(topic)];
   if (!told.publisher) return;
   const auto payload = encode(message, *told.type);

@@ -4,6 +4,7 @@
 //     ~/status         culprit_msgs/msg/Status    reliable, transient local, depth 1
 //     ~/incidents      culprit_msgs/msg/Incident  reliable
 //     ~/decisions      culprit_msgs/msg/Decision  reliable
+//     ~/wait_for_recovery   culprit_msgs/action/WaitForRecovery
 //     ~/pause, ~/resume, ~/approve, ~/silence, ~/run_strategy      if orders are taken
 //     ~/get_type_description    what these types look like, as each node of Jazzy and newer says it
 //
@@ -15,6 +16,7 @@
 
 #include "ros2/publisher.h"
 #include "ros_api/order_services.h"
+#include "ros_api/recovery_action.h"
 #include "ros_api/teller.h"
 
 namespace culprit::ros_api {
@@ -57,6 +59,7 @@ class RosApi : public live::Observer {
   std::array<Told, 3> told_;  // by topic
   std::unique_ptr<ros2::ServiceServer> descriptions_;
   std::optional<OrderServices> orders_;
+  RecoveryAction recovery_{types_};
   Teller teller_;
 };
 

@@ -1,6 +1,10 @@
 // culprit's node as nodes of ROS 2 see it, over DDS.
 #include "ros_api/ros_api.h"
 
+#include <array>
+#include <future>
+#include <thread>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -331,6 +335,92 @@ TEST(RosApi, MoreOrdersThanItCanKeepAreRefusedAtOnce) {
   }));
   disk.set_value();
   EXPECT_TRUE(answers.wait_for_count(count)) << "nobody is left without an answer";
+}
+
+constexpr const char* kAction = "/culprit/wait_for_recovery/_action/";
+constexpr const char* kSendGoal = "culprit_msgs/action/WaitForRecovery_SendGoal";
+constexpr const char* kGetResult = "culprit_msgs/action/WaitForRecovery_GetResult";
+constexpr const char* kCancelGoal = "action_msgs/srv/CancelGoal";
+
+Json goal_id(int number) {
+  std::array<std::uint8_t, 16> uuid{};
+  uuid[3] = static_cast<std::uint8_t>(number);
+  return {{"uuid", uuid}};
+}
+
+Json wait_for(TestRosNode& node, int number, const std::string& component,
+              const Json& timeout = {{"sec", 0}, {"nanosec", 0}}) {
+  return node.call(
+      kAction + std::string("send_goal"), kSendGoal,
+      {{"goal_id", goal_id(number)}, {"goal", {{"component", component}, {"timeout", timeout}}}});
+}
+
+Json result_of(TestRosNode& node, int number) {
+  return node.call(kAction + std::string("get_result"), kGetResult, {{"goal_id", goal_id(number)}});
+}
+
+void lose_camera(OrderedCulprit& culprit) {
+  culprit.step({{culprit.now, ProcessSeen{ComponentId(0), ProcessState::kRunning, 12, ""}}});
+  culprit.step({{culprit.now, ProcessSeen{ComponentId(0), ProcessState::kGone, 12,
+                                          "killed by signal 9", Cause::kFault}}});
+}
+
+TEST(RosApi, WhoWaitsForARecoveryIsAnsweredWhenItComes) {
+  OrderedCulprit culprit;
+  culprit.step({{culprit.now, NodeAppeared{"/lidar"}}});
+  lose_camera(culprit);
+  auto& feedback = culprit.panel.hear(kAction + std::string("feedback"),
+                                      "culprit_msgs/action/WaitForRecovery_FeedbackMessage");
+  auto& states = culprit.panel.hear(kAction + std::string("status"),
+                                    "action_msgs/msg/GoalStatusArray", Durability::kTransientLocal);
+  ASSERT_TRUE(culprit.panel.is_known_to("/culprit"));
+  EXPECT_EQ(wait_for(culprit.panel, 1, "camera")["accepted"], true);
+  EXPECT_EQ(wait_for(culprit.panel, 1, "camera")["accepted"], false) << "the id is taken";
+  ASSERT_TRUE(feedback.wait_for_count(1));
+  EXPECT_EQ(feedback.all()[0]["goal_id"], goal_id(1));
+  EXPECT_EQ(feedback.all()[0]["feedback"]["ill"], Json::array({"camera"}));
+  EXPECT_EQ(wait_for(culprit.panel, 2, "lidar")["accepted"], true);
+  EXPECT_EQ(result_of(culprit.panel, 2)["result"]["message"], "lidar is well");
+
+  std::promise<Json> result;
+  std::thread waits([&] {
+    TestRosNode other(culprit.domain.options());
+    result.set_value(result_of(other, 1));
+  });
+  auto answer = result.get_future();
+  culprit.step({{culprit.now, NodeVanished{"/camera"}}});
+  culprit.step({{culprit.now, NodeAppeared{"/camera"}},
+                {culprit.now, ProcessSeen{ComponentId(0), ProcessState::kRunning, 13, ""}}});
+  while (answer.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready)
+    culprit.step({});  // until the strategy has its verdict
+  waits.join();
+  const Json said = answer.get();
+  ASSERT_TRUE(said.is_object()) << said;
+  EXPECT_EQ(said["status"], 4) << "succeeded";
+  EXPECT_EQ(said["result"]["recovered"], true);
+  EXPECT_TRUE(states.wait_for_one([](const Json& each) {
+    const Json& all = each["status_list"];
+    return all.size() == 2 && all[0]["status"] == 4 && all[0]["goal_info"]["goal_id"] == goal_id(1);
+  })) << "and the topic says so";
+}
+
+TEST(RosApi, WhoWaitsForARecoveryMayStopOrRunOutOfTime) {
+  OrderedCulprit culprit;
+  lose_camera(culprit);
+  ASSERT_EQ(wait_for(culprit.panel, 1, "camera")["accepted"], true);
+  ASSERT_EQ(wait_for(culprit.panel, 2, "camera", {{"sec", 0}, {"nanosec", 1}})["accepted"], true);
+  EXPECT_EQ(result_of(culprit.panel, 2)["status"], 6) << "aborted";
+  const auto cancel = [&](int number) {
+    return culprit.panel.call(kAction + std::string("cancel_goal"), kCancelGoal,
+                              {{"goal_info", {{"goal_id", goal_id(number)}}}});
+  };
+  EXPECT_EQ(cancel(3)["return_code"], 2) << "there is no such goal";
+  EXPECT_EQ(cancel(2)["return_code"], 3) << "it has ended";
+  const Json canceled = cancel(1);
+  EXPECT_EQ(canceled["return_code"], 0);
+  EXPECT_EQ(canceled["goals_canceling"][0]["goal_id"], goal_id(1));
+  EXPECT_EQ(result_of(culprit.panel, 1)["status"], 5) << "canceled";
+  EXPECT_EQ(result_of(culprit.panel, 3)["status"], 0) << "unknown";
 }
 
 TEST(RosApi, GoesOnAtTheNodeOfTheNextSession) {

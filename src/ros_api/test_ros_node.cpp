@@ -55,7 +55,7 @@ Json TestRosNode::call_with(const std::string& service, const std::string& type,
 
 std::unique_ptr<ros2::ServiceClient> TestRosNode::client_of(const std::string& service,
                                                             const std::string& type) {
-  const std::string node = service.substr(0, service.rfind('/'));
+  const std::string node = service.substr(0, service.find('/', 1));
   auto client = ros2::ServiceClient::create(
       node_, {service, type}, ros2::qos::kServices,
       {{node + "/get_type_description", std::string(ros2::srv::GetTypeDescription::kType)},

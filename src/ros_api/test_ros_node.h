@@ -31,7 +31,7 @@ class TestRosNode {
   Json call_with(const std::string& service, const std::string& type, const ros2::Bytes& request,
                  Duration patience = ros2::kPatience);
 
-  // Of a service of culprit's node. What it asks for is sent once, when the server has proven that it knows the
+  // Of a service of culprit's node, which has no namespace. What it asks for is sent once, when the server has proven that it knows the
   // client: an order is not given twice.
   std::unique_ptr<ros2::ServiceClient> client_of(const std::string& service,
                                                  const std::string& type);

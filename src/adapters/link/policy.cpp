@@ -89,10 +89,14 @@ Rights rights_of(const RuleSet& rules, const NodeName& self) {
   const auto hearing = demangle_topic(Hearing::kTopic);
   rights.publishes = {"/diagnostics", "/parameter_events", "/rosout", lease->name, hearing->name};
   // Of ros_api/: what is told, and the orders that are taken.
-  for (const char* topic : {"status", "incidents", "decisions"})
+  for (const char* topic :
+       {"status", "incidents", "decisions", "wait_for_recovery/_action/feedback",
+        "wait_for_recovery/_action/status"})
     rights.publishes.push_back(self.full() + "/" + topic);
   for (const char* service :
-       {"get_type_description", "pause", "resume", "approve", "silence", "run_strategy"})
+       {"get_type_description", "pause", "resume", "approve", "silence", "run_strategy",
+        "wait_for_recovery/_action/send_goal", "wait_for_recovery/_action/cancel_goal",
+        "wait_for_recovery/_action/get_result"})
     rights.offers.push_back(self.full() + "/" + service);
   rights.subscribes = {lease->name, hearing->name};
   for (const char* service : {"describe_parameters", "get_parameter_types", "get_parameters",

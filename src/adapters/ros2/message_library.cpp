@@ -1,6 +1,7 @@
 #include "ros2/message_library.h"
 
 #include <algorithm>
+#include <array>
 #include <fcntl.h>
 #include <linux/openat2.h>
 #include <sys/stat.h>
@@ -43,19 +44,34 @@ std::optional<std::string> read_whole(int file) {
   return text;
 }
 
-// Where a type is defined: a file below a search directory, and which part of it.
+// Where a type is defined: a file below a search directory, and which part of it, counted from 0.
 struct Place {
   std::filesystem::path file;
-  enum class Part : std::uint8_t { kWhole, kRequest, kResponse } part = Part::kWhole;
+  std::optional<std::size_t> part{};  // nothing: the whole
 };
 
-// A service's two messages stand in one file.
+// Messages that stand in one file.
+struct PartSuffix {
+  std::string_view kind;    // "/srv/"
+  std::string_view suffix;  // "_Request"
+  std::string_view extension;
+  std::size_t part;
+};
+constexpr auto kPartSuffixes = std::to_array<PartSuffix>({{"/srv/", "_Request", ".srv", 0},
+                                                          {"/srv/", "_Response", ".srv", 1},
+                                                          {"/action/", "_Goal", ".action", 0},
+                                                          {"/action/", "_Result", ".action", 1},
+                                                          {"/action/", "_Feedback", ".action", 2}});
+
+bool is_of_kind(std::string_view type, std::string_view kind) {
+  return type.find(kind) != std::string_view::npos;
+}
+
 Place place_of(std::string_view type) {
-  for (const auto& [suffix, part] :
-       {std::pair<std::string_view, Place::Part>("_Request", Place::Part::kRequest),
-        {"_Response", Place::Part::kResponse}}) {
-    if (type.find("/srv/") == std::string_view::npos || !type.ends_with(suffix)) continue;
-    return {std::string(type.substr(0, type.size() - suffix.size())) + ".srv", part};
+  for (const PartSuffix& each : kPartSuffixes) {
+    if (!is_of_kind(type, each.kind) || !type.ends_with(each.suffix)) continue;
+    const std::string whole(type.substr(0, type.size() - each.suffix.size()));
+    return {whole + std::string(each.extension), each.part};
   }
   return {std::string(type) + ".msg"};
 }
@@ -64,30 +80,52 @@ Place place_of(std::string_view type) {
 // answered, and what is told of a call where it is watched.
 std::optional<std::string> service_text(std::string_view type) {
   constexpr std::string_view kEvent = "_Event";
-  if (type.find("/srv/") == std::string_view::npos || type.ends_with("_Request") ||
-      type.ends_with("_Response"))
-    return std::nullopt;
-  if (!type.ends_with(kEvent)) {
-    const std::string service(type);
+  const bool is_event = type.ends_with(kEvent);
+  const std::string service(type.substr(0, type.size() - (is_event ? kEvent.size() : 0)));
+  const bool is_of_action = is_of_kind(type, "/action/") &&
+                            (service.ends_with("_SendGoal") || service.ends_with("_GetResult"));
+  if (!is_of_action && !is_of_kind(type, "/srv/")) return std::nullopt;
+  if (service.ends_with("_Request") || service.ends_with("_Response")) return std::nullopt;
+  if (!is_event)
     return service + "_Request request_message\n" + service + "_Response response_message\n" +
            service + "_Event event_message\n";
-  }
-  const std::string service(type.substr(0, type.size() - kEvent.size()));
   return "service_msgs/ServiceEventInfo info\n" + service + "_Request[<=1] request\n" + service +
          "_Response[<=1] response\n";
 }
 
-// A line of three hyphens stands between the request and the response.
-std::string part_of(const std::string& text, Place::Part part) {
-  if (part == Place::Part::kWhole) return text;
-  std::size_t begin = 0;
-  while (begin < text.size() && text.compare(begin, 3, "---") != 0) {
-    const std::size_t end = text.find('\n', begin);
-    begin = end == std::string::npos ? text.size() : end + 1;
+// What goes to and fro for an action, around its own three messages (rosidl_parser, "implicit" types).
+std::optional<std::string> action_text(std::string_view type) {
+  if (!is_of_kind(type, "/action/")) return std::nullopt;
+  const auto action_before = [&](std::string_view suffix) -> std::optional<std::string> {
+    if (!type.ends_with(suffix)) return std::nullopt;
+    return std::string(type.substr(0, type.size() - suffix.size()));
+  };
+  const std::string id = "unique_identifier_msgs/UUID goal_id\n";
+  if (const auto action = action_before("_SendGoal_Request")) return id + *action + "_Goal goal\n";
+  if (action_before("_SendGoal_Response")) return "bool accepted\nbuiltin_interfaces/Time stamp\n";
+  if (action_before("_GetResult_Request")) return id;
+  if (const auto action = action_before("_GetResult_Response"))
+    return "int8 status\n" + *action + "_Result result\n";
+  if (const auto action = action_before("_FeedbackMessage"))
+    return id + *action + "_Feedback feedback\n";
+  return std::nullopt;
+}
+
+// A line of three hyphens stands between two parts.
+std::string part_of(std::string_view text, std::optional<std::size_t> part) {
+  if (!part) return std::string(text);
+  std::string found;
+  std::size_t number = 0;
+  while (!text.empty() && number <= *part) {
+    const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
+    if (text.starts_with("---")) {
+      ++number;
+    } else if (number == *part) {
+      found += text.substr(0, end);
+    }
+    text.remove_prefix(end);
   }
-  if (part == Place::Part::kRequest) return text.substr(0, begin);
-  const std::size_t line = text.find('\n', begin);
-  return line == std::string::npos ? "" : text.substr(line + 1);
+  return found;
 }
 
 }  // namespace
@@ -129,6 +167,7 @@ Expected<MessageDefinition> MessageLibrary::load(std::string_view type) const {
   if (const auto learned = learned_.find(type); learned != learned_.end())
     return parse_message_definition(learned->second, type, type);
   if (const auto text = service_text(type)) return parse_message_definition(*text, type, type);
+  if (const auto text = action_text(type)) return parse_message_definition(*text, type, type);
   const auto& [below, part] = place_of(type);
   for (const auto& directory : directories_) {
     for (const auto& path : {directory / below, directory / "share" / below}) {

@@ -19,7 +19,8 @@ class MessageLibrary {
  public:
   // In each directory, the first one first: <package>/msg/<Type>.msg, then
   // share/<package>/msg/<Type>.msg; of "package/srv/Type_Request" and "..._Response" the parts of
-  // <package>/srv/<Type>.srv. `root`: what directories, and links below them, are meant to
+  // <package>/srv/<Type>.srv, and of "package/action/Type_Goal", "..._Result" and "..._Feedback" those of
+  // <package>/action/<Type>.action. `root`: what directories, and links below them, are meant to
   // be below (/proc/PID/root for what a process in a container sees); nothing above it is read.
   explicit MessageLibrary(std::vector<std::filesystem::path> directories = {},
                           std::filesystem::path root = "/");
@@ -29,8 +30,9 @@ class MessageLibrary {
   // (mcap.dev/spec/registry, ros2msg). Goes before the directories; the first one of a type counts.
   void learn(std::string_view type, std::string_view text);
 
-  // `type` is "package/msg/Type", "package/srv/Type_Request" or "..._Response". "package/srv/Type" itself is what
-  // its parts make it, whether they are known or not. The definition lives as long as the library.
+  // `type` is "package/msg/Type" or a part as above. What is made of parts is known whether they are or not:
+  // "package/srv/Type" itself, and of an action "..._SendGoal", "..._GetResult", their requests and responses, and
+  // "..._FeedbackMessage" (rosidl). The definition lives as long as the library.
   Expected<const MessageDefinition*> find(std::string_view type);
 
   // `type` and all types in it. Errors: as find(); more than a thousand of them.

@@ -8,6 +8,14 @@ namespace {
 
 // In alphabetic order.
 constexpr auto kMessages = std::to_array<StandardMessage>({
+    {"action_msgs/msg/GoalInfo",
+     "unique_identifier_msgs/UUID goal_id\nbuiltin_interfaces/Time stamp"},
+    {"action_msgs/msg/GoalStatus", "GoalInfo goal_info\nint8 status"},
+    {"action_msgs/msg/GoalStatusArray", "GoalStatus[] status_list"},
+    {"action_msgs/srv/CancelGoal_Request", "action_msgs/GoalInfo goal_info"},
+    {"action_msgs/srv/CancelGoal_Response",
+     "int8 return_code\naction_msgs/GoalInfo[] goals_canceling"},
+
     {"builtin_interfaces/msg/Duration", "int32 sec\nuint32 nanosec"},
     {"builtin_interfaces/msg/Time", "int32 sec\nuint32 nanosec"},
 
@@ -176,6 +184,8 @@ constexpr auto kMessages = std::to_array<StandardMessage>({
     {"system_modes_msgs/msg/ModeEvent", "uint64 timestamp\nMode start_mode\nMode goal_mode"},
 
     {"tf2_msgs/msg/TFMessage", "geometry_msgs/TransformStamped[] transforms"},
+
+    {"unique_identifier_msgs/msg/UUID", "uint8[16] uuid"},
 });
 
 static_assert(std::ranges::is_sorted(kMessages, {}, &StandardMessage::type));

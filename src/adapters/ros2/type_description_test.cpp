@@ -55,6 +55,37 @@ TEST(TypeHash, OfServicesIsThatOfIronAndNewer) {
   EXPECT_FALSE(library.hash_of("p/srv/Nothing"));
 }
 
+// As rosidl of Jazzy computes them.
+TEST(TypeHash, OfActionsIsThatOfIronAndNewer) {
+  MessageLibrary library;
+  library.learn("example_interfaces/action/Fibonacci_Goal", "int32 order\n");
+  library.learn("example_interfaces/action/Fibonacci_Result", "int32[] sequence\n");
+  library.learn("example_interfaces/action/Fibonacci_Feedback", "int32[] sequence\n");
+  const std::string fibonacci = "example_interfaces/action/Fibonacci_";
+  for (const auto& [type, hash] : std::map<std::string, std::string>{
+           {"action_msgs/msg/GoalStatus",
+            "32f4cfd717735d17657e1178f24431c1ce996c878c515230f6c5b3476819dbb9"},
+           {"action_msgs/srv/CancelGoal",
+            "573d8b0a534451d7bc2ac8c5ffde8ac14b8593b7001175d0cd6516dcbeb8689a"},
+           {fibonacci + "Goal", "226cb437e4355dcd3e914f930382a3b0cc1da81545bd319ed554e95a03255f51"},
+           {fibonacci + "SendGoal",
+            "d1a57fb2a4afe8c21e34fb10db206f16ce6729b28531141472df92277c55b557"},
+           {fibonacci + "SendGoal_Request",
+            "3d088942b413247db536576f0286768c6be8fcd5d0c9a5d544f359fba090a238"},
+           {fibonacci + "SendGoal_Response",
+            "d8c07bb3d5b766fe4b43159c9a5222af5214e2fcc29229b991d826166c512be1"},
+           {fibonacci + "GetResult",
+            "1b0de0d5d29dc955d92f546706568428632771db13ec84c15ec1c1a59f424a57"},
+           {fibonacci + "GetResult_Response",
+            "6021dc98ab9b4bbe395e48aa4de81ee5f68eb570f88358affcc648146668b24f"},
+           {fibonacci + "FeedbackMessage",
+            "c1de71afd52e49a89c53d8262366884185bc0a02f78ce051c4e46b0a7fe59bb2"}}) {
+    const auto ours = library.hash_of(type);
+    ASSERT_TRUE(ours) << ours.error();
+    EXPECT_EQ(*ours, "RIHS01_" + hash) << type;
+  }
+}
+
 // Bounds are part of a type; constants and defaults are not.
 TEST(TypeHash, TellsBoundsApart) {
   const auto hash_of = [](std::string_view text) {
