@@ -5,6 +5,7 @@
 // being opened. Whoever answers at once, as every peer on the same machine does, answers into the
 // void, and repeats itself only when a heartbeat comes round, 1 to 3 s later. So nothing is sent
 // before create_participant() has returned; the announcements that follow are the first ones heard.
+// Nor is anything while a participant is taken apart before its goodbye (Participant::leave()).
 //
 // It receives in a thread of its own (receive_thread.h), the same for all ports, so that what it hears
 // is handed on one datagram at a time. Fast DDS has a thread for each port, and in a secured domain it
@@ -41,12 +42,10 @@
 
 namespace culprit::ros2::fast_dds {
 
-// True once the participant's receivers listen. Shared by the participant and its transport.
-using Listens = std::shared_ptr<std::atomic<bool>>;
-
 // What a participant and its transport share.
 struct Reception {
-  Listens listens = std::make_shared<std::atomic<bool>>(false);
+  // Whether anything is sent.
+  std::shared_ptr<std::atomic<bool>> speaks = std::make_shared<std::atomic<bool>>(false);
   std::shared_ptr<DatagramSources> sources = std::make_shared<DatagramSources>();
   std::shared_ptr<DatagramFilter> filter = std::make_shared<DatagramFilter>();
   std::shared_ptr<ReceiveThread> thread = std::make_shared<ReceiveThread>();
@@ -123,7 +122,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
             eprosima::fastrtps::rtps::LocatorsIterator* begin,
             eprosima::fastrtps::rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
-    return !*reception_.listens || sender->send(bytes, size, begin, end, timeout);
+    return !*reception_.speaks || sender->send(bytes, size, begin, end, timeout);
   }
 
   // The thread is our own: nothing comes this way.

@@ -363,7 +363,7 @@ class Participant::Impl {
                               "; are they of one keystore, signed and not expired?"
                         : "; is there a network interface, and a free UDP port for it?")};
     }
-    *reception_.listens = true;
+    *reception_.speaks = true;
     if (!options.security) reception_.filter->begin_to_address();
     likely_refusal_ = likely_refusal(options.security);
     guid_ = fast_dds::to_guid(participant_->guid());
@@ -379,6 +379,7 @@ class Participant::Impl {
     if (participant_ == nullptr) return;
     participant_->set_listener(nullptr);
     participant_->delete_contained_entities();
+    *reception_.speaks = true;
     dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
   }
 
@@ -395,6 +396,8 @@ class Participant::Impl {
     if (auto opened = writer->open(likely_refusal_); !opened) return Error{opened.error()};
     return std::make_unique<Writer>(std::move(writer));
   }
+
+  void leave() { *reception_.speaks = false; }
 
   const Guid& guid() const { return guid_; }
   const DatagramSources& sources() const { return *reception_.sources; }
@@ -420,6 +423,7 @@ class Participant::Impl {
 
 Participant::Participant(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Participant::~Participant() = default;
+void Participant::leave() { impl_->leave(); }
 const Guid& Participant::guid() const { return impl_->guid(); }
 DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) const {
   return impl_->sources().of(participant);

@@ -163,6 +163,10 @@ class Participant {
 
   const Guid& guid() const;
 
+  // Says nothing more but the goodbye of its end, which tells the others of the end of all its readers
+  // and writers at once: for who has many, and ends. @pre nothing more is created or written.
+  void leave();
+
   // Where the datagrams of another participant came from so far.
   DatagramSources::Origin origin_of(const GuidPrefix& participant) const;
   // When its last one came; kLongAgo: it is not there.

@@ -91,6 +91,35 @@ TEST(Participant, BytesArriveAsTheyWereWritten) {
   EXPECT_LT(now - sample.sent, kPatience);
 }
 
+TEST(Participant, WhoLeavesSaysOneGoodbyeForAllThatItHad) {
+  const TestDomain domain;
+  EventLog<Guid> gone;
+  const auto stays = join(domain, [&gone](DiscoveryEvent event) {
+    if (const auto* participant = std::get_if<ParticipantGone>(&event)) {
+      EXPECT_FALSE(participant->was_lost);
+      gone.add(participant->guid);
+    }
+    if (const auto* endpoint = std::get_if<EndpointGone>(&event)) gone.add(endpoint->guid);
+  });
+  auto leaves = join(domain);
+  const Guid participant = leaves->guid();
+  EventLog<MatchEvent> matches;
+  const auto writer =
+      stays->create_writer({"t", "T", {}, "", [&matches](const Guid& remote, Match match) {
+                              matches.add({remote, match});
+                            }});
+  auto reader =
+      leaves->create_reader({"t", "T", {}, PayloadUse::kWhole, "", {}}, [](const Sample&) {});
+  ASSERT_TRUE(writer && reader);
+  ASSERT_TRUE(matches.wait_for_count(1));
+  leaves->leave();
+  reader->reset();
+  leaves.reset();
+  ASSERT_TRUE(matches.wait_for_count(2));
+  EXPECT_EQ(matches.all().back().match, Match::kLost);
+  ASSERT_TRUE(gone.wait_for_one([&](const Guid& each) { return each == participant; }));
+}
+
 TEST(Participant, TheRelatedIdentityTravelsAlong) {
   Pair pair;
   const SampleIdentity related{pair.reader->guid(), (std::int64_t{5} << 32) | 7};

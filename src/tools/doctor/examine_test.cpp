@@ -404,6 +404,8 @@ TEST(Examine, D021WhatIsNotReportedAnyMore) {
             "its diagnostic status came every 1 s, and not any more for 14 s");
   picture.statuses["motor"].last = 16s;
   EXPECT_THAT(examine(picture), IsEmpty()) << "five pauses are no silence";
+  picture.statuses["motor"].last = 2s;
+  EXPECT_THAT(examine(picture), IsEmpty()) << "a burst has no rhythm";
 }
 
 // ---- who can hear whom at all

@@ -193,7 +193,8 @@ std::vector<Explanation> of_diagnostics() {
       {"D021", "a diagnostic status is not reported any more",
        "It came regularly and has stopped: who reports it hangs or has ended. What it said last is "
        "still on people's screens.",
-       "A status that was heard three times or more, and not any more for five of its pauses and "
+       "A status that was heard three times or more, over two seconds or more, and not any more "
+       "for five of its pauses and "
        "five "
        "seconds. Needs a look that is long enough (--for, --watch).",
        "See who publishes /diagnostics: `ros2 topic info -v /diagnostics`."},

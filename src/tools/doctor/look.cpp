@@ -57,6 +57,7 @@ class Look {
   }
 
   ~Look() {
+    if (context_) context_->participant().leave();
     tasks_.close();
     timer_.reset();
     diagnostics_.reset();
@@ -125,9 +126,16 @@ class Look {
     topics_->take_turns(live_now());
     processes_.sample(nodes_, since_begin());
     if (disks_.empty()) disks_ = disks_of(nodes_);
+    note_ended();
+  }
+
+  void note_ended() {
+    std::set<int> processes;  // of many nodes, some
+    for (const auto& [node, pid] : nodes_) processes.insert(pid);
+    processes.erase(0);
     const ros2::ProcessFinder finder;
-    for (const auto& [node, pid] : nodes_) {
-      if (pid != 0 && !finder.is_running(pid)) ended_.try_emplace(pid, live_now());
+    for (const int pid : processes) {
+      if (!finder.is_running(pid)) ended_.try_emplace(pid, live_now());
     }
   }
 
@@ -229,7 +237,8 @@ class Look {
     for (const ros2::msg::DiagnosticStatus& report : message.status) {
       if (statuses_.size() >= kMostStatuses && !statuses_.contains(report.name)) continue;
       HeardStatus& status = statuses_[report.name];
-      if (status.count++ == 0) status.first = now;
+      if (status.count == 0) status.first = now;
+      if (status.last != now) ++status.count;  // several of one name in a message are one report
       status.last = now;
       status.report = report;
     }

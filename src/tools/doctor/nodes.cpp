@@ -209,6 +209,8 @@ void examine_nodes(const Picture& picture, Findings& all) {
 void examine_statuses(const Picture& picture, Findings& all) {
   constexpr Duration kPatience = std::chrono::seconds(5);
   constexpr int kPauses = 5;
+  // What is reported of an event comes in bursts, and has no rhythm to be missed.
+  constexpr Duration kBurst = std::chrono::seconds(2);
   for (const auto& [name, status] : picture.statuses) {
     const ros2::msg::DiagnosticStatus& report = status.report;
     const std::string who = printable(name);
@@ -220,7 +222,7 @@ void examine_statuses(const Picture& picture, Findings& all) {
                      is_stale ? "who reports it has stopped reporting" : "who reports it is ill",
                      "look at its values: ros2 topic echo /diagnostics"});
     }
-    if (status.count < 3) continue;
+    if (status.count < 3 || status.last - status.first < kBurst) continue;
     const Duration pause = (status.last - status.first) / static_cast<int>(status.count - 1);
     const Duration silent = picture.looked - status.last;
     if (silent < std::max(kPatience, kPauses * pause)) continue;
