@@ -4,17 +4,20 @@
 // Three robots: SUNSET, SUAVE, and one of ten nodes that no rule file has ever named: two that a launcher starts
 // again, four that a launcher took through their lifecycle, four that activate themselves; all have a topic of a
 // type that culprit is not told. With CULPRIT_EACH_NODE (scripts/first-hour) each node of each is killed in turn;
-// without, a few of the first and the last.
+// without, a few of the first and the last. And `doctor` finds nothing wrong with them: for an hour, with
+// CULPRIT_HEALTHY_SECONDS=3600 (scripts/healthy).
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
 #include <regex>
+#include <sstream>
 #include <thread>
 #include <unistd.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "base/text_file.h"
 #include "demo/test_live_sunset.h"
@@ -228,6 +231,50 @@ TEST(FirstHour, EachNodeOfARobotThatNobodyKnows) {
   Programs programs;
   ASSERT_NO_FATAL_FAILURE(start_scratch(world, programs, {4, 4, 2}));
   kill_each(world);
+}
+
+// Looks at a robot that is well, for as long as it is told, and finds nothing but, where the robot breaks something itself,
+// what is ill then.
+void look_at_the_healthy(const TestWorld& world, const std::string& breaks_itself = "") {
+  const char* wanted = std::getenv("CULPRIT_HEALTHY_SECONDS");
+  const auto time = std::chrono::seconds(wanted == nullptr ? 10 : std::atoi(wanted));
+  TestProgram doctor(world, {"culprit", "doctor", "--watch", "--json"});
+  std::this_thread::sleep_for(time);
+  ASSERT_TRUE(doctor.prints("\n")) << doctor.output();
+  doctor.signal(SIGINT);
+  const int exit = doctor.wait().value_or(-1);
+  EXPECT_TRUE(exit == 0 || !breaks_itself.empty()) << doctor.output();
+  std::istringstream looks(doctor.output());
+  int count = 0;
+  for (std::string look; std::getline(looks, look); ++count) {
+    const auto report = nlohmann::json::parse(look, nullptr, false);
+    ASSERT_TRUE(report.is_object()) << look;
+    for (const auto& finding : report["findings"])
+      EXPECT_TRUE(finding["code"] == "D020" && finding["who"] == breaks_itself)
+          << "look " << count << ": " << finding;
+  }
+  std::cout << count << " looks\n";
+}
+
+TEST(Healthy, SunsetIs) {
+  const TestWorld world;
+  const lab::LiveSunset robot(world);
+  ASSERT_TRUE(robot.is_well_within(60s)) << robot.complaint();
+  look_at_the_healthy(world);
+}
+
+TEST(Healthy, SuaveIs) {
+  const TestWorld world;
+  Programs programs;
+  start_suave(world, programs);
+  look_at_the_healthy(world, "thruster_monitor: Thruster status");  // its mission loses thrusters
+}
+
+TEST(Healthy, ARobotThatNobodyKnowsIs) {
+  const TestWorld world;
+  Programs programs;
+  ASSERT_NO_FATAL_FAILURE(start_scratch(world, programs, {4, 4, 2}));
+  look_at_the_healthy(world);
 }
 
 }  // namespace
