@@ -18,6 +18,7 @@ struct NumberOf {
   Number operator()(const LauncherSeen& o) const { return o.component.index; }
   Number operator()(const ProcessWorked& o) const { return o.component.index; }
   Number operator()(const HostReached& o) const { return o.component.index; }
+  Number operator()(const LivesOn& o) const { return o.component.index; }
   Number operator()(const EndsWith& o) const { return o.component.index; }
   Number operator()(const ParametersListed& o) const { return o.component.index; }
   Number operator()(const Probed& o) const {
@@ -34,11 +35,12 @@ struct NumberOf {
 void SeenSoFar::note(std::span<const Observation> observations) {
   if (!is_whole_) return;
   for (const Observation& each : observations) note(each);
-  if (size() + statuses_.size() <= kMost) return;
+  if (size() + statuses_.size() + hosts_.size() <= kMost) return;
   is_whole_ = false;
   named_.clear();
   numbered_.clear();
   statuses_.clear();
+  hosts_.clear();
 }
 
 void SeenSoFar::note(const Observation& observation) {
@@ -68,6 +70,8 @@ void SeenSoFar::note(const Observation& observation) {
     --ends_;
   } else if (const auto* status = std::get_if<StatusHeard>(&observation.what)) {
     statuses_.insert_or_assign(status->name, entry);
+  } else if (const auto* host = std::get_if<HostHeard>(&observation.what)) {
+    hosts_.insert_or_assign(host->host, entry);
   } else if (std::holds_alternative<HearingLost>(observation.what)) {
     deaf_ = entry;
   } else if (std::holds_alternative<HearingRegained>(observation.what)) {
@@ -147,6 +151,7 @@ std::vector<Observation> SeenSoFar::observations() const {
     for (int i = 0; i < entry.count; ++i) entries.push_back(&entry);
   }
   for (const auto& [name, entry] : statuses_) entries.push_back(&entry);
+  for (const auto& [name, entry] : hosts_) entries.push_back(&entry);
   std::ranges::stable_sort(entries, {}, &Entry::place);
   std::vector<Observation> all;
   for (const Entry* entry : entries) {

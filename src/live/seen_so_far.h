@@ -72,6 +72,7 @@ class SeenSoFar {
   std::map<std::tuple<std::size_t, std::size_t>, Entry> numbered_;
   std::map<ComponentId, Entry> unanswered_;  // probes in a row, the last of them
   std::map<std::string, Entry> statuses_;    // by name
+  std::map<std::string, Entry> hosts_;       // HostHeard, by name
 };
 
 }  // namespace culprit::live

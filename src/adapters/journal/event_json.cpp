@@ -155,6 +155,13 @@ class EventWriter {
   void operator()(const JudgementSuspended& e) const { json_["reason"] = e.reason; }
   void operator()(const JudgementResumed&) const {}
   void operator()(const SleepNoticed& e) const { json_["time_ns"] = e.time.count(); }
+  void operator()(const HostSilent& e) const {
+    json_["host"] = e.host;
+    json_["components"] = Json::array();
+    for (const ComponentId component : e.components) json_["components"].push_back(name(component));
+    if (e.is_last) json_["is_last"] = true;
+  }
+  void operator()(const HostBack& e) const { json_["host"] = e.host; }
   void operator()(const PriorsAdopted& e) const {
     json_["source"] = e.source;
     Json& priors = json_["priors"] = Json::array();
@@ -345,6 +352,8 @@ class EventReader {
   bool complete(SilenceEnded&) const { return false; }    // of what?
   bool complete(NeverSeen&) const { return false; }       // each run finds out anew
   bool complete(PriorsAdopted&) const { return false; }   // likewise
+  bool complete(HostSilent&) const { return false; }      // likewise
+  bool complete(HostBack&) const { return false; }        // likewise
 
   bool complete(Order& order) const {
     order.author = text_of(json_, "author");

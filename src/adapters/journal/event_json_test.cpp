@@ -79,7 +79,9 @@ std::vector<EventWhat> samples() {
           JudgementSuspended{"deaf"},
           JudgementResumed{},
           SleepNoticed{3s},
-          PriorsAdopted{{{s, 4.5, 1.5}}, "3 robots"}};
+          PriorsAdopted{{{s, 4.5, 1.5}}, "3 robots"},
+          HostSilent{"rover2", {c}, true},
+          HostBack{"rover2"}};
 }
 
 std::vector<std::string> golden_rows() {

@@ -30,7 +30,9 @@ enum class Tag : std::uint8_t {
   kEndsWith = 23,
   kProcessSeenWithCause = 24,
   kLauncherSeen = 25,
-  kPriorsTold = 26
+  kPriorsTold = 26,
+  kLivesOn = 27,
+  kHostHeard = 28
 };
 
 enum class OrderTag : std::uint8_t {
@@ -148,6 +150,16 @@ class Encoder {
     head(Tag::kHostReached, age);
     out_.natural(o.component.index);
     out_.byte(o.is_reached ? 1 : 0);
+  }
+  void write(const LivesOn& o, Duration age) {
+    head(Tag::kLivesOn, age);
+    out_.natural(o.component.index);
+    out_.text(o.host);
+  }
+  void write(const HostHeard& o, Duration age) {
+    head(Tag::kHostHeard, age);
+    out_.text(o.host);
+    out_.byte(o.is_heard ? 1 : 0);
   }
   void write(const EndsWith& o, Duration age) {
     head(Tag::kEndsWith, age);
@@ -362,6 +374,14 @@ class Decoder {
       case Tag::kHostReached: {
         const auto component = id<ComponentId>(rules_.components.size());
         return HostReached{component, in_.byte() != 0};
+      }
+      case Tag::kLivesOn: {
+        const auto component = id<ComponentId>(rules_.components.size());
+        return LivesOn{component, in_.text()};
+      }
+      case Tag::kHostHeard: {
+        std::string host = in_.text();
+        return HostHeard{std::move(host), in_.byte() != 0};
       }
       case Tag::kEndsWith: {
         EndsWith seen;

@@ -69,7 +69,7 @@ decltype(Order::what) any_order() {
 ObservationWhat anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 24)) {
+  switch (*rc::gen::inRange(0, 26)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -122,6 +122,10 @@ ObservationWhat anything() {
       return LauncherSeen{component, *rc::gen::inRange(0, 100000), *rc::gen::arbitrary<bool>()};
     case 22:
       return PriorsTold{{{StrategyId(0), *rc::gen::arbitrary<double>(), 2.5}}, text};
+    case 23:
+      return LivesOn{component, text};
+    case 24:
+      return HostHeard{text, *rc::gen::arbitrary<bool>()};
     default:
       return LinkTrouble{text};
   }

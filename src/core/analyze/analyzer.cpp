@@ -404,6 +404,8 @@ bool Analyzer::went_away_before(const Attempt& attempt) const {
 
 void Analyzer::succeed(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
+  // As a failure would not count either.
+  state.attempt->is_ambiguous |= unheard_behind(*state.attempt).has_value();
   const Attempt attempt = *std::exchange(state.attempt, std::nullopt);
   // Whoever has its components meanwhile is as likely.
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
@@ -421,9 +423,52 @@ void Analyzer::succeed(RuleId id, Time now) {
   if (caused) outcomes_.judged(attempt, true, now);
 }
 
+std::optional<ComponentId> Analyzer::unheard_behind(const Attempt& attempt) const {
+  const Strategy& strategy = knowledge_.rules[attempt.strategy];
+  const auto own = std::ranges::find_if(strategy.components,
+                                        [&](ComponentId c) { return knowledge_.is_unheard(c); });
+  return own != strategy.components.end() ? std::optional(*own)
+                                          : knowledge_.unheard_behind(strategy.rule);
+}
+
+// It ends without a verdict. What went round the computer that is not heard, and did not help, is not
+// tried once more meanwhile.
+void Analyzer::excuse(RuleId id, ComponentId unheard, Time now) {
+  Attempt& attempt = *write_.states.state(id).attempt;
+  const auto& adapted = knowledge_.rules[attempt.strategy].components;
+  if (std::ranges::none_of(adapted, [&](ComponentId c) { return knowledge_.is_unheard(c); }))
+    write_.states.set_tried(attempt.strategy, true);
+  attempt.stage = Attempt::Stage::kUndoing;
+  write_.events.tell(now, StrategyAbandoned{attempt.strategy, knowledge_.rules[unheard].name + " " +
+                                                                  knowledge_.why_unheard(unheard)});
+}
+
+void Analyzer::forgive_unheard(Time now) {
+  outcomes_.host_fell_silent();
+  const auto forgive = [&](RuleId id) {
+    RuleState& state = write_.states.state(id);
+    Search& search = state.search;
+    // What an earlier process had tried was tried before.
+    if (state.left_off || search.is_at_last_resort || !knowledge_.unheard_behind(id)) return;
+    search.attempts = search.attempts_before;
+    search.round = 0;
+    search.retry_at = now;
+    std::fill(search.tried.begin(), search.tried.end(), false);
+    if (state.phase != RulePhase::kExhausted) return;
+    search.is_exhausted = false;
+    write_.states.enter(id, RulePhase::kFailing);
+  };
+  std::vector<RuleId> all = knowledge_.states.active();
+  const auto& exhausted = knowledge_.states.exhausted();
+  all.insert(all.end(), exhausted.begin(), exhausted.end());
+  for (const RuleId id : all) forgive(id);
+}
+
 void Analyzer::fail(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   Attempt& attempt = *state.attempt;
+  if (const auto unheard = attempt.has_no_failure ? std::nullopt : unheard_behind(attempt))
+    return excuse(id, *unheard, now);
   if (!attempt.has_no_failure) {
     write_.states.set_tried(attempt.strategy, true);
     ++state.search.attempts;

@@ -107,6 +107,10 @@ class Analyzer {
   // were, a person.
   void give_up(RuleId id, Time now);
 
+  // A computer is not heard any more: what it explains and was tried in vain shortly before, while nobody
+  // knew, was tried for nothing. That is forgotten, and what is not proven yet is not learned.
+  void forgive_unheard(Time now);
+
   // No untried strategy of the rule is valid: its round is over.
   void round_is_spent(RuleId id, Time now);
 
@@ -133,6 +137,8 @@ class Analyzer {
   void end_attempt(RuleId id, Time now);
   void succeed(RuleId id, Time now);
   void fail(RuleId id, Time now);
+  std::optional<ComponentId> unheard_behind(const Attempt& attempt) const;
+  void excuse(RuleId id, ComponentId unheard, Time now);
   void resolve(RuleId id, FailureResolved how, Time now);
   void exhaust_if_spent(RuleId id, Time now);
   bool has_components_back(const Attempt& attempt) const;

@@ -43,6 +43,12 @@ void OutcomeWatch::restart() {
   for (PendingOutcome& outcome : write_.outcomes.open) outcome.is_void = true;
 }
 
+void OutcomeWatch::host_fell_silent() {
+  for (PendingOutcome& outcome : write_.outcomes.open)
+    outcome.is_void |=
+        knowledge_.unheard_behind(knowledge_.rules[outcome.strategy].rule).has_value();
+}
+
 void OutcomeWatch::remember(const Event& event) {
   auto& open = write_.outcomes.open;
   if (const auto* pending = std::get_if<OutcomePending>(&event.what)) {

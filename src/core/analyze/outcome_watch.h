@@ -34,6 +34,8 @@ class OutcomeWatch {
   void detected(RuleId rule, Time now);
   // Nobody watched for a while: what came out meanwhile counts for nothing.
   void restart();
+  // A computer is not heard any more: what it explains from now on says nothing of strategies.
+  void host_fell_silent();
   // What an earlier process waited for.
   void remember(const Event& event);
 

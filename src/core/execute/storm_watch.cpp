@@ -42,7 +42,7 @@ std::optional<StormWatch::Storm> StormWatch::look() {
     if (state.alive != false || !knowledge_.sightings.has(ComponentId(c))) continue;
     if (!state.in_graph && runs) ++unseen;
     // Its lease may say for long that it is there.
-    if (state.known_pid() == 0) ++out_of_reach;
+    if (state.known_pid() == 0 && !knowledge_.is_unheard(ComponentId(c))) ++out_of_reach;
   }
   const auto count = [all](std::size_t some) {
     return std::to_string(some) + " of " + std::to_string(all) + " components";
@@ -82,7 +82,7 @@ std::size_t StormWatch::ill_roots() const {
   for (const RuleId id : knowledge_.states.active()) {
     for (const ComponentId component : knowledge_.rules[id].components) {
       // Its death is no riddle; it is to be brought back.
-      if (is_dead_[component.index]) continue;
+      if (is_dead_[component.index] || knowledge_.unheard_behind(id)) continue;
       const auto& upstream = knowledge_.graph.upstream(component);
       const bool is_explained =
           std::any_of(upstream.begin(), upstream.end(), [&](ComponentId other) {

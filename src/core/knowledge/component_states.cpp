@@ -26,6 +26,18 @@ void ComponentStates::set_known_dead(ComponentId component, std::optional<Time> 
   known = since;
 }
 
+void ComponentStates::set_host_silent(ComponentId component, std::optional<Time> since) {
+  std::optional<Time>& known = components_[component.index].host_silent;
+  unreached_ += static_cast<int>(since.has_value()) - static_cast<int>(known.has_value());
+  known = since;
+}
+
+void ComponentStates::set_out_of_reach(ComponentId component, bool is_out_of_reach) {
+  bool& known = components_[component.index].is_out_of_reach;
+  unreached_ += static_cast<int>(is_out_of_reach) - static_cast<int>(known);
+  known = is_out_of_reach;
+}
+
 void ComponentStates::intend_lifecycle(ComponentId component, Lifecycle state, Time at,
                                        EventLog& events) {
   Lifecycle& intended = components_[component.index].intended_lifecycle;

@@ -49,8 +49,15 @@ struct ComponentState {
 
   // Does it work as a process and as a node? Nothing until something is known of it.
   std::optional<bool> alive;
-  bool is_out_of_reach = false;  // the computer that runs it cannot be asked (HostReached)
-  bool is_missed = false;        // it was never seen, and had its time to show itself
+  bool is_missed = false;  // it was never seen, and had its time to show itself
+
+  // The other computer that its node ran on last (LivesOn); empty: it was this one, or is not known.
+  std::string host;
+  // Since when nothing is heard of that computer (HostHeard), and for a while after it is heard again:
+  // its nodes have to be heard, too, and what they say. Set by ComponentStates::set_host_silent().
+  std::optional<Time> host_silent{};
+  // The computer that runs it cannot be asked (HostReached). Set by ComponentStates::set_out_of_reach().
+  bool is_out_of_reach = false;
 
   // Its process runs, or is somewhere else, and it does nothing more.
   bool hangs() const { return in_graph && process == ProcessState::kRunning && alive == false; }
@@ -75,6 +82,12 @@ class ComponentStates {
   void set_known_dead(ComponentId component, std::optional<Time> since);
   bool is_any_known_dead() const { return known_dead_ > 0; }
 
+  void set_host_silent(ComponentId component, std::optional<Time> since);
+  void set_out_of_reach(ComponentId component, bool is_out_of_reach);
+  // Of a component that is not alive, whether that tells of its computer and not of itself
+  // (Knowledge::is_unheard).
+  bool is_any_unreached() const { return unreached_ > 0; }
+
   // The last value that was read of a parameter; nothing while none was, or since its process began
   // anew.
   std::optional<Value>& operator[](ParameterId id) { return parameters_[id.index]; }
@@ -84,6 +97,7 @@ class ComponentStates {
   std::vector<ComponentState> components_;
   std::vector<std::optional<Value>> parameters_;
   int known_dead_ = 0;  // how many are
+  int unreached_ = 0;   // silent computers and those out of reach, by component
 };
 
 }  // namespace culprit

@@ -174,6 +174,17 @@ class Describer {
   std::string operator()(const SleepNoticed& e) const {
     return "culprit stood still for " + to_string(e.time) + "; all ages begin anew";
   }
+  std::string operator()(const HostSilent& e) const {
+    std::vector<std::string> names;
+    for (const ComponentId c : e.components) names.push_back(rules_[c].name);
+    return "nothing is heard of " + e.host + ", where " + listed(names) +
+           " ran: it is down, or cut off. Nothing is started in their place until it is heard "
+           "again" +
+           (e.is_last
+                ? ". Nothing is heard of any other computer: it may be this one that is cut off"
+                : "");
+  }
+  std::string operator()(const HostBack& e) const { return e.host + " is heard again"; }
   std::string operator()(const PriorsAdopted& e) const {
     return "what is believed of " + std::to_string(e.priors.size()) +
            (e.priors.size() == 1 ? " strategy" : " strategies") + " begins from what " +
@@ -284,6 +295,8 @@ std::string_view to_string(Condition condition) {
       return "in_the_way";
     case Condition::kWithheld:
       return "withheld";
+    case Condition::kUnheard:
+      return "unheard";
   }
   return "";
 }
@@ -451,6 +464,12 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
              rules[*candidate.failure].name;
     case Condition::kWithheld:
       return strategy + " is withheld: " + candidate.remark;
+    case Condition::kUnheard: {
+      const auto& own = rules[candidate.strategy].components;
+      const bool is_own = std::binary_search(own.begin(), own.end(), candidate.component);
+      return is_own ? component + " " + candidate.remark
+                    : "it depends on " + component + ", which " + candidate.remark;
+    }
   }
   return "";
 }

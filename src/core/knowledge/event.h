@@ -27,7 +27,9 @@ enum class Condition : std::uint8_t {
   kSettling,    // the failure is expected to go away with one that was just resolved
   kInTheWay,    // it would be in the way of what is to be done about another failure
   // Of both planners:
-  kWithheld  // the governor does not allow it now
+  kWithheld,  // the governor does not allow it now
+  // Its component, or one that may be the cause (bayes), is on a computer that is not heard.
+  kUnheard
 };
 
 struct Candidate {
@@ -37,7 +39,7 @@ struct Candidate {
   ComponentId component;              // that the condition is about
   std::optional<RuleId> failure;      // kDependency: what `component` may be the cause of;
                                       // likewise kSuspect, kSettling, kInTheWay: the other failure
-  std::string remark;                 // kInvalid, kWithheld: why
+  std::string remark;                 // kInvalid, kWithheld, kUnheard: why
   // Of a planner that weighs them (bayes) and only if nothing excludes it beforehand.
   double resolves = 0;  // the probability that it resolves the failure
   double value = 0;     // what that is worth, before its cost
@@ -286,6 +288,17 @@ struct SleepNoticed {
   Duration time{};
 };
 
+// Nothing is heard of another computer where components ran: it is down, or cut off. One cause, however
+// many rules fail because of it.
+struct HostSilent {
+  std::string host;
+  std::vector<ComponentId> components;  // that ran there
+  bool is_last = false;  // nothing is heard of any other computer, of which there are several
+};
+struct HostBack {
+  std::string host;
+};
+
 // What is believed of strategies begins from what the robots of a fleet learned, or again from what
 // the rules say, where nobody learned anything (empty `source`).
 struct PriorsAdopted {
@@ -296,14 +309,15 @@ struct PriorsAdopted {
 // One of these happened. To copy and to destroy a variant of so many is compiled once (event.cpp), not into every file that
 // touches an event.
 class EventWhat
-    : public std::variant<
-          FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
-          AdaptationDone, AdaptationFailed, StrategyFailed, StrategyResumed, Undone, RoundSpent,
-          RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble, OrderAccepted,
-          OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed, StrategyAbandoned,
-          OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached,
-          LifecycleIntended, CameUp, OutcomePending, OutcomeCounted, FailureFlaps,
-          JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen, PriorsAdopted> {
+    : public std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen,
+                          FailureHeldBack, AdaptationDone, AdaptationFailed, StrategyFailed,
+                          StrategyResumed, Undone, RoundSpent, RuleExhausted, ComponentLost,
+                          ComponentFound, RivalSeen, Trouble, OrderAccepted, OrderRefused,
+                          ActionHeldBack, ApprovalAsked, ApprovalLapsed, StrategyAbandoned,
+                          OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached,
+                          LifecycleIntended, CameUp, OutcomePending, OutcomeCounted, FailureFlaps,
+                          JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen,
+                          PriorsAdopted, HostSilent, HostBack> {
  public:
   using Variant = variant;
   using variant::variant;

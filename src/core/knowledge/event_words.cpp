@@ -59,6 +59,8 @@ constexpr std::array<EventWords, kKinds> kWords = [] {
       row<JudgementSuspended>("judgement_suspended", "DEAF", kError, Tone::kAlarm, kStrong),
       row<JudgementResumed>("judgement_resumed", "hears", kInfo, Tone::kRelief),
       row<SleepNoticed>("sleep_noticed", "slept", kWarning, Tone::kWarning),
+      row<HostSilent>("host_silent", "HOST DOWN", kError, Tone::kAlarm, kStrong),
+      row<HostBack>("host_back", "host back", kInfo, Tone::kRelief),
       row<PriorsAdopted>("priors_adopted", "fleet", kInfo, Tone::kAside),
   };
   static_assert(std::size(kRows) == kKinds, "an event without words, or one that is there twice");

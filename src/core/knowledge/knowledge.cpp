@@ -25,6 +25,51 @@ Time Knowledge::began(ComponentId component) const {
   return last;
 }
 
+bool Knowledge::is_unheard(ComponentId component) const {
+  if (!components.is_any_unreached()) return false;
+  const ComponentState& state = components[component];
+  // Where there is somebody to ask about it, his word counts.
+  const bool is_silent = rules[component].has_owner() ? state.is_out_of_reach && state.alive != true
+                                                      : state.host_silent.has_value();
+  return is_silent && state.process == ProcessState::kRunning && sightings.has(component);
+}
+
+std::string Knowledge::host_of(ComponentId component) const {
+  const std::string& asked = rules[component].host();
+  return asked.empty() ? components[component].host : asked;
+}
+
+std::string Knowledge::why_unheard(ComponentId component) const {
+  return "is on " + host_of(component) +
+         (rules[component].has_owner() ? ", which cannot be asked" : ", of which nothing is heard");
+}
+
+bool Knowledge::is_older_than_silence(RuleId rule, ComponentId unheard) const {
+  // A computer is called silent some seconds after it fell silent.
+  constexpr Duration kRecognised = std::chrono::seconds(10);
+  const auto& since = components[unheard].host_silent;
+  const Time failing = states[rule].failing_since;
+  return since && states[rule].phase != RulePhase::kQuiet && later(failing, kRecognised) < *since;
+}
+
+std::optional<ComponentId> Knowledge::unheard_behind(RuleId rule) const {
+  if (!components.is_any_unreached()) return std::nullopt;
+  const auto& own = rules[rule].components;
+  const bool has_dead = std::ranges::any_of(
+      own, [&](ComponentId c) { return components[c].process != ProcessState::kRunning; });
+  if (has_dead) return std::nullopt;
+  const auto is_cause = [&](ComponentId c) {
+    return is_unheard(c) && !is_older_than_silence(rule, c);
+  };
+  for (const ComponentId c : own) {
+    if (is_cause(c)) return c;
+    const auto& upstream = graph.upstream(c);
+    const auto found = std::ranges::find_if(upstream, is_cause);
+    if (found != upstream.end()) return *found;
+  }
+  return std::nullopt;
+}
+
 Time Knowledge::can_hear_from(ComponentId component) const {
   if (!graph.reads_others(component)) return kLongAgo;
   const auto has_ends = [](const ComponentState& state) {

@@ -84,6 +84,20 @@ struct Knowledge {
   // When the component, or something that it depends on, last joined the graph.
   Time began(ComponentId component) const;
 
+  // It was seen, and its computer is not heard, or was not until a moment ago; or whoever runs it there
+  // cannot be asked, and it is not known to work. Nobody knows what became of it: nothing is done about
+  // it, and nothing learned from it.
+  bool is_unheard(ComponentId component) const;
+  // That computer, for people: "rover2".
+  std::string host_of(ComponentId component) const;
+  // Why nobody knows, of such a component: "is on rover2, of which nothing is heard".
+  std::string why_unheard(ComponentId component) const;
+  // The unheard component that the rule is about, or that what it is about depends on; nothing: there is
+  // none, or the failure was there long before, or the operating system knows a death of its own.
+  std::optional<ComponentId> unheard_behind(RuleId rule) const;
+  // Was the failure detected so long before that computer fell silent that this cannot be its cause?
+  bool is_older_than_silence(RuleId rule, ComponentId unheard) const;
+
   // When a message of what the component reads can have come at the latest, since it or what it depends
   // on began anew: its middleware has to find them first, and they have to publish again. kNever: one of
   // those is not there. kLongAgo: it reads nothing.

@@ -42,6 +42,12 @@ bool is_news(const Observation& observation) {
          !std::holds_alternative<ParametersListed>(observation.what);
 }
 
+bool tells_of_silence(const Observation& observation) {
+  const auto* host = std::get_if<HostHeard>(&observation.what);
+  const auto* reached = std::get_if<HostReached>(&observation.what);
+  return (host != nullptr && !host->is_heard) || (reached != nullptr && !reached->is_reached);
+}
+
 }  // namespace
 
 Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Options options)
@@ -113,6 +119,7 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
     }
     monitor_.advance(now_);
     monitor_.observe(observation, now_);
+    if (tells_of_silence(observation)) analyzer_.forgive_unheard(now_);
     if (const auto* reply = std::get_if<Reply>(&observation.what)) executor_.answered(*reply, now_);
     if (const auto* order = std::get_if<Order>(&observation.what)) obey(*order, now_);
     if (const auto* told = std::get_if<PriorsTold>(&observation.what)) adopt(*told, now_);
@@ -241,7 +248,12 @@ void Manager::plan(Time now) {
       if (!has_to_wait) carry_out(decision, now);
     } else if (decision.is_spent && !plan::awaits_repair(decision, knowledge_)) {
       hold_back(decision, now);
-      analyzer_.round_is_spent(decision.rule, now);
+      // What was tried in vain while a computer explains the failure is tried again when that is heard.
+      const bool is_last = knowledge_.states[decision.rule].search.is_at_last_resort;
+      if (knowledge_.unheard_behind(decision.rule) && !is_last)
+        analyzer_.turn_to_last_resort(decision.rule, now);
+      else
+        analyzer_.round_is_spent(decision.rule, now);
     } else {
       hold_back(decision, now);
       if (is_given_up(decision, knowledge_))

@@ -1,6 +1,7 @@
 #include "manager/test_robot.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -59,8 +60,10 @@ void TestRobot::show_ends() {
 }
 
 void TestRobot::appear(const Component& component) {
-  observe(ProcessSeen{id(component.name), ProcessState::kRunning, component.pid, ""});
-  observe(NodeAppeared{"/" + component.name, component.pid});
+  const bool is_here = component.host.empty();
+  if (is_here) observe(ProcessSeen{id(component.name), ProcessState::kRunning, component.pid, ""});
+  observe(NodeAppeared{"/" + component.name, is_here ? component.pid : 0});
+  if (!is_here) observe(LivesOn{id(component.name), component.host});
   if (component.has_lifecycle) observe(LifecycleRead{id(component.name), component.state});
 }
 
@@ -78,6 +81,7 @@ bool TestRobot::works(const std::string& name) const {
   for (std::size_t next = 0; next < needed.size(); ++next) {
     const Component& c = components_.at(needed[next]);
     const bool is_up = c.process == ProcessState::kRunning && c.is_in_graph;
+    if (is_cut_off(c)) return false;
     if (!is_up || c.state != Lifecycle::kActive || !c.fault.empty()) return false;
     for (const std::string& n : c.needs) {
       if (std::find(needed.begin(), needed.end(), n) == needed.end()) needed.push_back(n);
@@ -121,6 +125,43 @@ void TestRobot::start_by_hand(const std::string& name) {
   component.start(++last_pid_);
   come_up(component);
   step();
+}
+
+void TestRobot::cut(const std::string& host) {
+  constexpr Duration kUntilSilent = 4s;
+  constexpr Duration kLease = 20s;
+  cut_.insert(host);
+  const auto while_cut = [this, host](const std::function<void()>& action) {
+    return [this, host, action] {
+      if (cut_.contains(host)) action();
+    };
+  };
+  later(kUntilSilent, while_cut([this, host] {
+          told_silent_.insert(host);
+          observe(HostHeard{host, false});
+        }));
+  later(kLease, while_cut([this, host] {
+          for (auto& [name, component] : components_) {
+            if (component.host != host) continue;
+            component.is_in_graph = false;
+            observe(NodeVanished{"/" + name});
+          }
+        }));
+}
+
+void TestRobot::mend(const std::string& host) {
+  constexpr Duration kAnnounced = 1s;
+  cut_.erase(host);
+  later(kAnnounced, [this, host] {
+    if (cut_.contains(host)) return;
+    if (told_silent_.erase(host) > 0) observe(HostHeard{host, true});
+    for (auto& [name, component] : components_) {
+      if (component.host != host || component.process != ProcessState::kRunning) continue;
+      if (!std::exchange(component.is_in_graph, true)) appear(component);
+      observe(Probed{id(name), true});
+    }
+    show_ends();
+  });
 }
 
 void TestRobot::later(Duration delay, std::function<void()> action) {
@@ -184,6 +225,10 @@ void TestRobot::reply(const Command& command, Outcome outcome, decltype(Reply::v
 
 void TestRobot::serve(const Command& command) {
   Component& c = components_.at(rules_->components[command.component.index].name);
+  const bool is_of_process = std::holds_alternative<StopProcess>(command.what) ||
+                             std::holds_alternative<StartProcess>(command.what);
+  if (!c.host.empty() && is_of_process)
+    return reply(command, Outcome::kUnreachable, {}, "it is on another computer");
   if (const auto* stop = std::get_if<StopProcess>(&command.what)) {
     if (c.ends_only_if_killed && !stop->hangs) return;
     if (c.end())
@@ -191,7 +236,7 @@ void TestRobot::serve(const Command& command) {
     return reply(command, Outcome::kDone);
   }
   if (std::holds_alternative<StartProcess>(command.what)) return start(c, command);
-  if (!c.can_answer()) {
+  if (is_cut_off(c) || !c.can_answer()) {
     return later(command.timeout + c.lateness,
                  [this, command] { reply(command, Outcome::kTimedOut); });
   }

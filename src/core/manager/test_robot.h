@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,7 @@ class TestRobot {
     Duration activates_itself_after{};
     bool leaves_before_it_ends = false;  // the graph, as nodes in Python do
     bool fails_to_activate = false;      // with an error: it falls back to unconfigured
+    std::string host{};  // another computer, where nobody can start or end it; empty: this one
   };
   Component& operator[](const std::string& name) { return components_.at(name); }
   Component& add(const std::string& name, std::vector<std::string> needs = {},
@@ -63,6 +65,10 @@ class TestRobot {
   void leave(const std::string& name);          // it says good-bye and ends, as after Ctrl-C
   void start_by_hand(const std::string& name);  // a person does
   void run_for(Duration time);
+  // Nothing comes from that computer any more, and it is told as the link does it: that it is silent
+  // after some seconds, that its nodes left the graph when their leases ran out.
+  void cut(const std::string& host);
+  void mend(const std::string& host);
   // All stands still, the manager too.
   void freeze(Duration time);
   void order(Order order) { tell(std::move(order)); }
@@ -124,6 +130,7 @@ class TestRobot {
   void start(Component& component, const Command& command);
   void come_up(Component& component);
   void appear(const Component& component);
+  bool is_cut_off(const Component& component) const { return cut_.contains(component.host); }
   void activate_itself(Component& component, int pid);
   void show_ends();  // of what runs
   void later(Duration delay, std::function<void()> action);
@@ -132,6 +139,8 @@ class TestRobot {
   std::unique_ptr<Manager> manager_;
   std::map<std::string, Component> components_;
   std::vector<Topic> topics_;
+  std::set<std::string> cut_;          // computers
+  std::set<std::string> told_silent_;  // of them
   std::multimap<Time, std::function<void()>> agenda_;
   std::vector<Observation> inbox_;
   int last_pid_ = 100;

@@ -35,7 +35,7 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       parameter_inputs_(knowledge.rules.parameters.size()),
       parameter_signals_(knowledge.rules.parameters.size()),
       diagnostic_inputs_(knowledge.rules.diagnostics.size()),
-      deadlines_(knowledge.rules.inputs.size() + 2 + 2 * knowledge.rules.components.size()) {
+      deadlines_(knowledge.rules.inputs.size() + 2 + 3 * knowledge.rules.components.size()) {
   const RuleSet& rules = knowledge.rules;
   for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
     const Input& input = rules.inputs[i];
@@ -111,6 +111,10 @@ void Monitor::advance(Time now) {
   while (const auto due = deadlines_.pop_due(now)) {
     if (*due < knowledge_.rules.inputs.size()) {
       update(InputId(*due), now);
+      continue;
+    }
+    if (*due >= return_of(ComponentId(0))) {
+      write_.components.set_host_silent(ComponentId(*due - return_of(ComponentId(0))), {});
       continue;
     }
     if (*due >= farewell_of(ComponentId(0))) {

@@ -7,6 +7,7 @@
 // therefore costs no evaluation at all.
 #pragma once
 
+#include <set>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -40,6 +41,11 @@ class Monitor {
   // Who ends in an orderly way says good-bye first. That comes another way than the word of the
   // operating system, and may come after it.
   static constexpr Duration kFarewell = std::chrono::milliseconds(10);
+
+  // When a computer is heard again, so long for each of its nodes: it may have to be discovered anew.
+  static constexpr Duration kReturn = std::chrono::seconds(10);
+  // And so long for what such a node says, from when it answers.
+  static constexpr Duration kSpeaks = std::chrono::milliseconds(3500);
 
   // What it writes; all else it only reads.
   struct Writes {
@@ -119,6 +125,8 @@ class Monitor {
   void on(Time at, const StatusHeard& seen);
   void on(Time at, const ParametersListed& seen);
   void on(Time at, const HostReached& seen);
+  void on(Time at, const LivesOn& seen);
+  void on(Time at, const HostHeard& seen);
   void on(Time at, const EndsWith& seen);
   void on(Time at, const LauncherSeen& seen);
   void on(Time, const Reply&) {}  // the executor's
@@ -166,6 +174,7 @@ class Monitor {
   void update_lifecycle_inputs(ComponentId component, Time now);
   bool does_not_answer(ComponentId component, Time now) const;
   bool is_silent(ComponentId component, Time now) const;
+  void note_silent(const std::string& host, Time at);
   void update_alive(ComponentId component, Time at, const std::string& remark);
   void update_alive_inputs(ComponentId component, const Slot& value);
 
@@ -179,6 +188,7 @@ class Monitor {
   Time awake_ = kLongAgo;   // no gap counts from before
   Time graced_ = kLongAgo;  // until then nodes may have to be discovered anew
   bool is_deaf_ = false;
+  std::set<std::string> silent_hosts_;  // that were told of
   std::vector<Topic> topics_;
   std::unordered_map<std::string, TopicId> topic_ids_;
   std::vector<Signal> signals_;
@@ -192,8 +202,13 @@ class Monitor {
            component.index;
   }
 
+  std::size_t return_of(ComponentId component) const {
+    return farewell_of(component) + knowledge_.rules.components.size();
+  }
+
   // By InputId; then `discovered_`, then `graced_`; then ComponentState::awaits_ends_until by
-  // component; then, by component, until when its good-bye may still come.
+  // component; then, by component, until when its good-bye may still come;
+  // then, by component, until when it may have to be heard again after its computer was.
   Deadlines deadlines_;
 };
 

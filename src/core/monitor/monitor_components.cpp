@@ -246,8 +246,55 @@ void Monitor::on(Time at, const ProcessWorked& seen) {
 }
 
 void Monitor::on(Time at, const HostReached& seen) {
-  write_.components[seen.component].is_out_of_reach = !seen.is_reached;
+  write_.components.set_out_of_reach(seen.component, !seen.is_reached);
   update_alive(seen.component, at, "its node left the graph");
+}
+
+// What was known of another computer does not hold of this one.
+void Monitor::on(Time, const LivesOn& seen) {
+  if (knowledge_.components[seen.component].host == seen.host) return;
+  write_.components[seen.component].host = seen.host;
+  write_.components.set_host_silent(seen.component, {});
+  deadlines_.clear(return_of(seen.component));
+}
+
+void Monitor::on(Time at, const HostHeard& seen) {
+  if (seen.host.empty()) return;
+  if (!seen.is_heard) return note_silent(seen.host, at);
+  if (silent_hosts_.erase(seen.host) == 0) return;
+  write_.events.tell(at, HostBack{seen.host});
+  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
+    const ComponentId component(c);
+    const ComponentState& state = knowledge_.components[component];
+    if (state.host != seen.host || !state.host_silent) continue;
+    deadlines_.set(return_of(component), later(at, state.alive == true ? kSpeaks : kReturn));
+  }
+}
+
+// Only where something ran that was seen: of a name that nobody has there is nothing to say.
+void Monitor::note_silent(const std::string& host, Time at) {
+  HostSilent silent{host, {}, true};
+  bool are_several = false;
+  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
+    const ComponentId component(c);
+    const ComponentState& state = knowledge_.components[component];
+    if (state.host.empty() || !knowledge_.sightings.has(component)) continue;
+    if (state.host != host) {
+      are_several = true;
+      silent.is_last &= state.host_silent.has_value();
+      continue;
+    }
+    silent.components.push_back(component);
+    // More than a few questions without an answer.
+    write_.components[component].missed_probes = std::max(state.missed_probes, kMissedProbes);
+    if (!state.host_silent) write_.components.set_host_silent(component, at);
+    deadlines_.clear(return_of(component));
+  }
+  silent.is_last &= are_several;
+  if (silent.components.empty()) return;
+  if (silent_hosts_.insert(host).second) write_.events.tell(at, silent);
+  for (const ComponentId component : silent.components)
+    update_alive(component, at, "it does not answer");
 }
 
 void Monitor::on(Time, const EndsWith& seen) {
@@ -321,10 +368,13 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   }
   if (state.alive == is_alive) return;
   state.alive = is_alive;
+  if (is_alive && state.host_silent) deadlines_.set(return_of(component), later(at, kSpeaks));
   if (is_alive) {
     write_.events.tell(at, ComponentFound{component, state.node_pid});
   } else {
-    write_.events.tell(at, ComponentLost{component, remark});
+    const bool is_host = knowledge_.is_unheard(component);
+    write_.events.tell(
+        at, ComponentLost{component, is_host ? "it " + knowledge_.why_unheard(component) : remark});
   }
   update_alive_inputs(component, Slot::of(is_alive));
 }

@@ -43,8 +43,9 @@ bool waits_for_person(const Decision& decision, const Knowledge& knowledge) {
     return c.excluded == Condition::kTried || c.excluded == Condition::kInvalid;
   };
   const auto waits = [&](const Candidate& c) {
-    return c.excluded == Condition::kDependency && c.failure &&
-           knowledge.states.awaits_person(*c.failure);
+    return c.excluded == Condition::kUnheard ||
+           (c.excluded == Condition::kDependency && c.failure &&
+            knowledge.states.awaits_person(*c.failure));
   };
   const auto& all = decision.candidates;
   return std::any_of(all.begin(), all.end(), waits) &&

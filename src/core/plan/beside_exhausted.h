@@ -6,7 +6,7 @@
 //   - one reconfiguration, once: a strategy that takes nothing down and starts nothing. It may get
 //     round the cause (another source, another mode);
 //   - a LASTRESORT: the safe stop never waits.
-// The same holds for the effects of a failure that waits for a person for another reason, for
+// The same holds for what a computer that is not heard explains, and for the effects of a failure that waits for a person for another reason, for
 // example because all its remaining strategies were refused.
 #pragma once
 
@@ -17,7 +17,8 @@ namespace culprit::plan {
 // May `strategy` be tried though an exhausted failure explains its own?
 bool may_be_tried_beside_exhausted(StrategyId strategy, const Knowledge& knowledge);
 
-// Does the failure wait for a person, together with an exhausted one that explains it?
+// Does the failure wait for a person, together with an exhausted one that explains it, or until a computer
+// is heard again that explains it?
 bool waits_for_person(const Decision& decision, const Knowledge& knowledge);
 
 }  // namespace culprit::plan

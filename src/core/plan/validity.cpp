@@ -16,16 +16,22 @@ bool is_left_alone(const Adaptation& adaptation, const Knowledge& knowledge) {
                                         knowledge.began(adaptation.component));
 }
 
+bool is_of_process(AdaptationType type) {
+  return type == AdaptationType::kRedeploy || type == AdaptationType::kStart ||
+         type == AdaptationType::kStop;
+}
+
+bool cannot_be_reached(const Adaptation& adaptation, const Knowledge& knowledge) {
+  return knowledge.is_unheard(adaptation.component) ||
+         (is_of_process(adaptation.type) &&
+          knowledge.components[adaptation.component].is_out_of_reach);
+}
+
 // Why `adaptation` is invalid; empty if it is not.
 std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
   const bool is_alive = state.alive.value_or(false);
   const Component& component = knowledge.rules[adaptation.component];
-  const bool is_of_process = adaptation.type == AdaptationType::kRedeploy ||
-                             adaptation.type == AdaptationType::kStart ||
-                             adaptation.type == AdaptationType::kStop;
-  if (is_of_process && state.is_out_of_reach)
-    return "is on " + component.host() + ", which cannot be asked";
   switch (adaptation.type) {
     case AdaptationType::kRedeploy:
       return component.can_start_again() ? "" : "has no LAUNCH command";
@@ -81,6 +87,8 @@ std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& kno
     // What an earlier adaptation of the same strategy brings about is not known yet: start, then
     // set a parameter.
     if (is_changed_before) continue;
+    if (cannot_be_reached(adaptation, knowledge))
+      return Invalid{adaptation.component, knowledge.why_unheard(adaptation.component), true};
     const std::string reason = obstacle(adaptation, knowledge);
     if (!reason.empty()) {
       return Invalid{adaptation.component,

@@ -10,6 +10,7 @@
 //   - redeploy: it has a LAUNCH command;
 //   - start: it has a LAUNCH command and is not there;
 //   - stop: it is there.
+// Of a component on a computer that is not heard, or cannot be asked, nothing can be done.
 // A strategy is valid if each of its adaptations is, given the ones before it, its WHEN condition
 // is true, and it is a LASTRESORT just when nothing else is left.
 #pragma once
@@ -24,6 +25,8 @@ namespace culprit::plan {
 struct Invalid {
   ComponentId component;  // what it is about; for a WHEN condition the strategy's first
   std::string reason;
+  bool is_unheard =
+      false;  // nobody knows what became of it (Knowledge::is_unheard), or can do it now
 };
 
 // Nothing if the strategy is valid.

@@ -40,7 +40,8 @@ TEST(Validity, RulesOutToEndOrStartWhatIsOnAComputerThatCannotBeAsked) {
   EXPECT_FALSE(invalid("Dark.again"));
   scene->components[scene.component("lidar")].is_out_of_reach = true;
   ASSERT_TRUE(invalid("Dark.again"));
-  EXPECT_EQ(invalid("Dark.again")->reason, "lidar is on rover2, which cannot be asked");
+  EXPECT_EQ(invalid("Dark.again")->reason, "is on rover2, which cannot be asked");
+  EXPECT_TRUE(invalid("Dark.again")->is_unheard);
   EXPECT_FALSE(invalid("Dark.tune")) << "its node is heard";
 }
 

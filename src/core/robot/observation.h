@@ -140,6 +140,20 @@ struct HostReached {
   bool is_reached = false;
 };
 
+// On which other computer the component's node runs, as its middleware says: the name of the host.
+// Empty: on this one, or it is not known.
+struct LivesOn {
+  ComponentId component;
+  std::string host;
+};
+
+// Nothing at all is heard of another computer any more, of no process there: it is down, or cut off.
+// Or it is heard again. Told only while we hear ourselves (HearingLost).
+struct HostHeard {
+  std::string host;
+  bool is_heard = false;
+};
+
 // To end the component's process is to end these components', too: they live in it, or it started
 // them.
 struct EndsWith {
@@ -229,7 +243,8 @@ class ObservationWhat
                           SampleArrived, SignalRead, DiagnosticRead, ParameterRead, LifecycleRead,
                           ProcessSeen, Probed, Reply, LinkTrouble, Order, NamesakesSeen,
                           HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
-                          ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold> {
+                          ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
+                          HostHeard> {
  public:
   using Variant = variant;
   using variant::variant;

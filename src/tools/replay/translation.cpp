@@ -83,6 +83,8 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     is_known = renumber(worked->component, components_);
   } else if (auto* reached = std::get_if<HostReached>(&out.what)) {
     is_known = renumber(reached->component, components_);
+  } else if (auto* lives = std::get_if<LivesOn>(&out.what)) {
+    is_known = renumber(lives->component, components_);
   } else if (auto* ends = std::get_if<EndsWith>(&out.what)) {
     is_known = renumber(ends->component, components_);
     std::erase_if(ends->others, [&](ComponentId& each) { return !renumber(each, components_); });

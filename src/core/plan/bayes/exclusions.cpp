@@ -62,6 +62,10 @@ std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
   std::for_each(knowledge.states.active().begin(), knowledge.states.active().end(), add);
   std::for_each(knowledge.states.exhausted().begin(), knowledge.states.exhausted().end(), add);
   std::for_each(suspicious.begin(), suspicious.end(), add);
+  for (std::size_t c = 0;
+       knowledge.components.is_any_unreached() && c < knowledge.rules.components.size(); ++c) {
+    if (knowledge.is_unheard(ComponentId(c))) all.emplace_back(c);
+  }
   return all;
 }
 

@@ -8,8 +8,8 @@
 
 namespace culprit::plan {
 
-// Which components a plan looks at: those that active and exhausted rules touch, and those of
-// suspicious rules while anyone waits to see whether they fail.
+// Which components a plan looks at: those that active and exhausted rules touch, those of
+// suspicious rules while anyone waits to see whether they fail, and those that are not heard.
 std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
                                                 std::span<const RuleId> suspicious);
 

@@ -41,6 +41,7 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
       paths_(knowledge, reach_),
       failures_(knowledge, reach_, paths_),
       responsibility_(knowledge, failures_),
+      unheard_(all_unheard()),
       levels_(knowledge, failures_, responsibility_),
       chances_(all_chances()),
       exclusions_(knowledge, reach_, levels_, worked_on(), suspicious_),
@@ -83,11 +84,13 @@ std::vector<RuleId> PlanningStep::worked_on() const {
 bool PlanningStep::waits_for_person(std::size_t failure) const {
   const auto cause = cause_of(failure);
   const auto is_in_vain = [&](StrategyId id) {
-    return cause && !only_revives(knowledge_.rules[id], knowledge_) &&
-           !may_be_tried_beside_exhausted(id, knowledge_) && is_left_to_person(*cause);
+    return (cause || unheard_[failure]) && !only_revives(knowledge_.rules[id], knowledge_) &&
+           !may_be_tried_beside_exhausted(id, knowledge_) &&
+           (unheard_[failure] || is_left_to_person(*cause));
   };
   bool is_anything_left = false;
   for (const StrategyChance& each : chances_[failure]) {
+    is_anything_left |= each.is_unheard();
     if (each.is_out()) continue;
     is_anything_left = true;
     const StrategyId id = each.strategy;
@@ -95,6 +98,29 @@ bool PlanningStep::waits_for_person(std::size_t failure) const {
     if (!is_held && !is_in_vain(id)) return false;
   }
   return is_anything_left;
+}
+
+std::vector<std::optional<ComponentId>> PlanningStep::all_unheard() const {
+  std::vector<std::optional<ComponentId>> all(failures_.size());
+  for (std::size_t i = 0; knowledge_.components.is_any_unreached() && i < all.size(); ++i)
+    all[i] = unheard_behind(i);
+  return all;
+}
+
+// As Knowledge::unheard_behind(), but without what is seen to be well.
+std::optional<ComponentId> PlanningStep::unheard_behind(std::size_t failure) const {
+  const RuleId rule = failures_[failure];
+  if (!knowledge_.unheard_behind(rule)) return std::nullopt;
+  std::optional<ComponentId> found;
+  const auto look = [&](ComponentId c) {
+    if (!found && knowledge_.is_unheard(c) && !knowledge_.is_older_than_silence(rule, c)) found = c;
+  };
+  for (const ComponentId c : knowledge_.rules[rule].components) {
+    look(c);
+    for_each(paths_.upstream(reach_.place_of(c), rule),
+             [&](std::size_t place) { look(reach_[place]); });
+  }
+  return found;
 }
 
 // It is exhausted, or nothing may be begun for it without a person.
@@ -267,7 +293,7 @@ void PlanningStep::exclude(WeighedCandidate& weighed, const Exclusions::Obstacle
 void PlanningStep::exclude_invalid(WeighedCandidate& weighed, const Invalid& why) const {
   const Strategy& strategy = knowledge_.rules[weighed.candidate.strategy];
   if (const auto held = exclusions_.reserved(strategy)) return exclude(weighed, *held);
-  weighed.candidate.excluded = Condition::kInvalid;
+  weighed.candidate.excluded = why.is_unheard ? Condition::kUnheard : Condition::kInvalid;
   weighed.candidate.component = why.component;
   weighed.candidate.remark = why.reason;
 }
@@ -279,6 +305,13 @@ void PlanningStep::exclude_effect(WeighedCandidate& weighed) const {
                             is_left_to_person(*cause);
     if (!goes_round)
       exclude(weighed, {Condition::kDependency, likeliest_component(*cause), *cause});
+    return;
+  }
+  // A failure of what is on a computer that is not heard, or depends on it, waits until it is.
+  if (const auto unheard = unheard_[weighed.failure]) {
+    if (may_be_tried_beside_exhausted(weighed.candidate.strategy, knowledge_)) return;
+    exclude(weighed, {Condition::kUnheard, *unheard, {}});
+    weighed.candidate.remark = knowledge_.why_unheard(*unheard);
     return;
   }
   // In a circle the members take turns, whoever is the likelier: what counts is what is outside.

@@ -37,6 +37,8 @@ class PlanningStep {
   bool waits_for_person(std::size_t failure) const;
   bool is_left_to_person(RuleId rule) const;
   std::optional<RuleId> cause_of(std::size_t failure) const;
+  std::vector<std::optional<ComponentId>> all_unheard() const;
+  std::optional<ComponentId> unheard_behind(std::size_t failure) const;
   void find_stakes();
   void examine(std::size_t failure);
   std::vector<Try> tries_of(std::size_t failure, const std::vector<StrategyChance>& chances) const;
@@ -66,6 +68,9 @@ class PlanningStep {
   std::optional<Watchers> watchers_;  // while a failure is newborn
   Failures failures_;
   Responsibility responsibility_;
+  // By failure: the component on a computer that is not heard that it is about, or can have spread
+  // from. It explains the failure for sure, as nothing that is only learned does.
+  std::vector<std::optional<ComponentId>> unheard_;
   Levels levels_;
   std::vector<std::vector<StrategyChance>> chances_;  // by failure, of those to be decided about
   Exclusions exclusions_;

@@ -33,7 +33,9 @@ std::vector<StrategyChance> strategy_chances(RuleId rule, const Knowledge& knowl
   const double causes = std::max(1.0, sum);
   double left = 1;
   for (const StrategyChance& each : all) {
-    if (each.is_out()) left -= each.chance / causes;
+    // What nobody can do now is not ruled out by that.
+    const bool is_ruled_out = each.is_out() && !each.is_unheard();
+    if (is_ruled_out) left -= each.chance / causes;
   }
   for (StrategyChance& each : all) {
     const double own = each.chance / causes;

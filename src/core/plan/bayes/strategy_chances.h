@@ -10,7 +10,7 @@
 //   w_s   P_s * e_s
 //   P_s   the belief that s helps (knowledge/beliefs.h)
 //   out   the strategies of the rule that were tried in this round, or are invalid now: their own
-//         fault is ruled out
+//         fault is ruled out, unless their component is only not heard
 //   e_s   evidence of the operating system: kUnlikely if a process is gone or stopped that another
 //         strategy would replace and s would not; 1 otherwise
 //
@@ -39,6 +39,7 @@ struct StrategyChance {
   bool is_withheld = false;  // by the governor; it would help as well as ever
 
   bool is_out() const { return is_tried || invalid.has_value(); }
+  bool is_unheard() const { return !is_tried && invalid && invalid->is_unheard; }
 };
 
 // Of all strategies of the rule, in their order.
