@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/live_clock.h"
 #include "base/ros_names.h"
 #include "base/tracer.h"
 #include "link/list_parameter.h"
@@ -238,10 +239,31 @@ void ComponentLink::check_parameters() {
                });
 }
 
-void ComponentLink::probe(int pid) {
-  const auto tell_of = [this, pid](const CallResult& result) {
-    const bool answered = result.outcome == CallOutcome::kAnswered;
-    if (answered || pid == 0 || !is_traced(pid)) inbox_.put(Probed{component_, answered});
+// Of a few in a row nobody learns more.
+void ComponentLink::unanswered(Time due, const std::function<Time()>& heard) {
+  constexpr std::size_t kMost = 10;
+  const Time last = heard ? heard() : kNever;
+  const MutexLock lock(unanswered_mutex_);
+  unanswered_.push_back(due);
+  if (unanswered_.size() > kMost) unanswered_.pop_front();
+  for (; !unanswered_.empty() && unanswered_.front() <= last; unanswered_.pop_front())
+    inbox_.put(Probed{component_, false});
+}
+
+void ComponentLink::forget_unanswered() {
+  const MutexLock lock(unanswered_mutex_);
+  unanswered_.clear();
+}
+
+void ComponentLink::probe(int pid, std::function<Time()> heard) {
+  const auto tell_of = [this, pid, heard = std::move(heard),
+                        due = later(live_now(), kProbe)](const CallResult& result) {
+    if (result.outcome == CallOutcome::kAnswered) {
+      forget_unanswered();
+      inbox_.put(Probed{component_, true});
+    } else if (pid == 0 || !is_traced(pid)) {
+      unanswered(due, heard);
+    }
   };
   const bool is_managed = has_lifecycle();
   ServiceClient* client = is_managed ? lifecycle_reader() : parameter_reader();

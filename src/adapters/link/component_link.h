@@ -9,6 +9,8 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -48,8 +50,12 @@ class ComponentLink {
 
   // A cheap read that proves that the node answers: of its lifecycle, which is told as by
   // check_lifecycle(), or of no parameter. `pid` is its process; 0: it is not known. That a traced
-  // one does not answer is not told.
-  void probe(int pid);
+  // one does not answer is not told; nor is it of one on another computer until something else of that
+  // computer was heard after the answer was due: `heard` says when last, and is called from any thread.
+  // Null: it is on this one.
+  void probe(int pid, std::function<Time()> heard = {});
+  // Its computer is known to be silent: what was not told yet never is.
+  void forget_unanswered();
 
   // Reads the state of a node that was seen to have a lifecycle, and tells it if it is another than
   // was told last. Events tell of transitions sooner, and they may be lost: nobody repeats them,
@@ -97,6 +103,7 @@ class ComponentLink {
   void read_lifecycle(Duration patience, Told told);
   void tell(Lifecycle state, Told told);
   void watch_transitions();
+  void unanswered(Time due, const std::function<Time()>& heard);
   void read_parameters();
 
   ServiceClient* lifecycle();
@@ -132,7 +139,10 @@ class ComponentLink {
   std::map<std::string, std::unique_ptr<ServiceClient>> routines_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, TypeFinder::Offer> services_
       CULPRIT_GUARDED_BY(mutex_);  // that the node offers, by name
-  Mutex lists_mutex_;              // another one: receive threads take it
+  Mutex unanswered_mutex_;
+  // When the answers were due that nobody was told of.
+  std::deque<Time> unanswered_ CULPRIT_GUARDED_BY(unanswered_mutex_);
+  Mutex lists_mutex_;  // another one: receive threads take it
   std::map<std::string, std::uint8_t> lists_
       CULPRIT_GUARDED_BY(lists_mutex_);  // parameters that were read to be lists -> type
   std::unique_ptr<RawSubscription> transitions_;

@@ -1,43 +1,15 @@
 #include "link/lease_link.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
-#include <ifaddrs.h>
-#include <netinet/in.h>
-#include <set>
 
 #include "base/live_clock.h"
+#include "link/neighbour_hosts.h"
 #include "ros2/cdr.h"
 
 namespace culprit::ros2 {
 namespace {
 
 constexpr Qos kLeaseQos{.reliability = Reliability::kBestEffort, .depth = 10};
-
-// This machine's, as far as sockets go: of another container it is another one.
-std::set<std::array<std::uint8_t, 4>> own_addresses() {
-  std::set<std::array<std::uint8_t, 4>> own{{127, 0, 0, 1}};
-  ifaddrs* all = nullptr;
-  if (getifaddrs(&all) != 0) return own;
-  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(all, &freeifaddrs);
-  for (const ifaddrs* i = all; i != nullptr; i = i->ifa_next) {
-    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
-    const auto* address = reinterpret_cast<const sockaddr_in*>(i->ifa_addr);
-    std::array<std::uint8_t, 4> ip{};
-    std::memcpy(ip.data(), &address->sin_addr, ip.size());
-    own.insert(ip);
-  }
-  return own;
-}
-
-// All that it says must be ours: addresses of bridges are the same on many machines.
-bool is_on_this_machine(const ParticipantInfo& info) {
-  const auto own = own_addresses();
-  return !info.metatraffic.empty() &&
-         std::all_of(info.metatraffic.begin(), info.metatraffic.end(),
-                     [&](const UdpAddress& address) { return own.contains(address.ip); });
-}
 
 }  // namespace
 
@@ -50,8 +22,6 @@ Expected<std::unique_ptr<LeaseLink>> LeaseLink::open(Context& context, const Hea
   if (!announced) return Error{announced.error()};
   link->writers_ = std::move(*announced);
   if (auto listening = link->listen(); !listening) return Error{listening.error()};
-  context.on_discovery(
-      [link = link.get()](const DiscoveryEvent& event) { link->on_discovery(event); });
   link->timer_ = std::make_unique<Timer>(executor, ManagerLease::kPeriod,
                                          [link = link.get()] { link->say(); });
   return link;
@@ -123,13 +93,6 @@ void LeaseLink::on_discovery(const DiscoveryEvent& event) {
     neighbours_[prefix] = {printable(info->host), is_on_this_machine(*info)};
   } else if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
     neighbours_.erase(gone->guid.prefix());
-  } else if (const auto* endpoint = std::get_if<EndpointInfo>(&event)) {
-    constexpr std::size_t kMostHosts = 100;
-    const auto found = neighbours_.find(endpoint->guid.prefix());
-    if (found == neighbours_.end() || !lease_.is_friend(found->first)) return;
-    const Neighbour& neighbour = found->second;
-    if (!neighbour.is_here && !neighbour.host.empty() && hosts_of_others_.size() < kMostHosts)
-      hosts_of_others_.insert(neighbour.host);
   }
 }
 
@@ -164,26 +127,6 @@ std::optional<std::string> LeaseLink::elder_at(const std::string& node) const {
       lease_.elder_at(node, live_now(),
                       [this](const GuidPrefix& p) CULPRIT_REQUIRES(mutex_) { return is_here(p); });
   return elder ? std::optional(host_of(*elder)) : std::nullopt;
-}
-
-std::set<std::string> LeaseLink::hosts_of_others() const {
-  const MutexLock lock(mutex_);
-  return hosts_of_others_;
-}
-
-bool LeaseLink::is_silent(const std::string& host) const {
-  std::vector<GuidPrefix> there;
-  {
-    const MutexLock lock(mutex_);
-    if (!hosts_of_others_.contains(host)) return false;
-    for (const auto& [prefix, neighbour] : neighbours_) {
-      if (neighbour.host == host && !neighbour.is_here) there.push_back(prefix);
-    }
-  }
-  const Time now = live_now();
-  return std::none_of(there.begin(), there.end(), [&](const GuidPrefix& each) {
-    return now < later(context_.participant().heard_last(each), kHostPatience);
-  });
 }
 
 std::vector<std::string> LeaseLink::strangers() const {

@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -20,9 +19,6 @@ namespace culprit::ros2 {
 
 class LeaseLink {
  public:
-  // Participants announce themselves every 3 s, and culprit asks nodes every 400 ms.
-  static constexpr Duration kHostPatience = std::chrono::seconds(4);
-
   struct Options {
     LeaseClaim claim;
     bool manages = false;  // now
@@ -35,6 +31,9 @@ class LeaseLink {
   static Expected<std::unique_ptr<LeaseLink>> open(Context& context, const Hearing& hearing,
                                                    Executor& executor, Options options);
 
+  // On the executor's thread.
+  void on_discovery(const DiscoveryEvent& event);
+
   // From any thread, all of these.
 
   // Until when it is sure that no other culprit manages the robot. Not later than `now`: it is not.
@@ -44,12 +43,6 @@ class LeaseLink {
   // there is none.
   std::optional<std::string> elder() const;
   std::optional<std::string> elder_at(const std::string& node) const;
-  // Other computers where a culprit runs, or ran, that has proven itself: it looks after what is
-  // there. Names of hosts, as far as participants say them.
-  std::set<std::string> hosts_of_others() const;
-  // Whether nothing at all comes from this computer: it is down, or cut off. Of one where no such
-  // culprit ran: false.
-  bool is_silent(const std::string& host) const;
   // Where those run that claim the same and do not prove it.
   std::vector<std::string> strangers() const;
   // What the last one that managed this robot, on another machine or here, said of orders; empty:
@@ -76,8 +69,7 @@ class LeaseLink {
   bool is_here(const GuidPrefix& participant) const CULPRIT_REQUIRES(mutex_);
   std::string host_of(const GuidPrefix& participant) const CULPRIT_REQUIRES(mutex_);
 
-  void on_discovery(const DiscoveryEvent& event);  // on the executor's thread
-  void on_beat(const Sample& sample);              // on a receive thread
+  void on_beat(const Sample& sample);  // on a receive thread
 
   const Options options_;
   Context& context_;
@@ -94,8 +86,6 @@ class LeaseLink {
   bool manages_ CULPRIT_GUARDED_BY(mutex_) = false;
   std::map<GuidPrefix, Neighbour> neighbours_
       CULPRIT_GUARDED_BY(mutex_);  // of those that can be discovered
-
-  std::set<std::string> hosts_of_others_ CULPRIT_GUARDED_BY(mutex_);
 
   std::unique_ptr<Reader> reader_;
   std::unique_ptr<Timer> timer_;

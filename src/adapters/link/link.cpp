@@ -155,7 +155,11 @@ Expected<void> Link::start() {
     publish_again();
     tell_of_refused();
     remind();
-    tell_of_silent_hosts();
+    listen_to_hosts();
+    look_at_hosts();
+  });
+  hosts_ = std::make_unique<NeighbourHosts>([this](const GuidPrefix& participant) {
+    return context_->participant().heard_last(participant);
   });
   auto hearing = Hearing::begin(context_->participant(), executor_);
   if (!hearing) return Error{hearing.error()};
@@ -165,6 +169,7 @@ Expected<void> Link::start() {
     if (!lease) return Error{lease.error()};
     lease_ = std::move(*lease);
   }
+  context_->on_discovery([this](const DiscoveryEvent& event) { on_discovery(event); });
   if (options_.use_sim_time) {
     auto clock = SimulatedClock::open(node_->entry());
     if (!clock) return Error{clock.error()};
@@ -241,6 +246,23 @@ void Link::on_change(const GraphChange& change) {
   }
 }
 
+void Link::on_discovery(const DiscoveryEvent& event) {
+  if (const auto* info = std::get_if<ParticipantInfo>(&event)) {
+    hosts_->joined(info->guid.prefix(), printable(info->host), is_on_this_machine(*info));
+  } else if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
+    hosts_->left(gone->guid.prefix(), gone->was_lost, live_now());
+  }
+  if (lease_) lease_->on_discovery(event);
+}
+
+// Who is deaf, or stood still, did not hear what they said meanwhile.
+void Link::listen_to_hosts() {
+  const Time now = live_now();
+  const bool stood_still = later(looked_at_hosts_, 2 * kPublishPeriod) < now;
+  if (sure_to_hear(now) <= now || stood_still) hosts_->listens_from(now);
+  looked_at_hosts_ = now;
+}
+
 // Rules may have nothing to complain of, or complain late: this is told in its own right.
 void Link::on_namesakes(const NodeNamesakes& seen) {
   {
@@ -277,37 +299,48 @@ std::map<std::string, std::string> Link::contested() const {
   return all;
 }
 
-std::optional<std::string> Link::cut_off(ComponentId component) const {
-  std::string host;
+std::optional<std::string> Link::cut_off(ComponentId component) {
+  look_at_hosts();
+  const MutexLock lock(mutex_);
+  const auto found = elsewhere_.find(component);
+  if (found == elsewhere_.end() || !silent_hosts_.contains(found->second)) return std::nullopt;
+  return found->second;
+}
+
+// While it is not sure that we hear, nothing new is known of any.
+void Link::look_at_hosts() {
+  const Time now = live_now();
+  if (sure_to_hear(now) <= now) return;
+  std::vector<ComponentId> silent;
+  {
+    const MutexLock lock(mutex_);
+    std::set<std::string> hosts;
+    for (const auto& [component, host] : elsewhere_) hosts.insert(host);
+    for (const std::string& host : silent_hosts_) hosts.insert(host);
+    for (const std::string& host : hosts) {
+      const bool is_silent = hosts_->is_silent(host, now);
+      const bool is_news =
+          is_silent ? silent_hosts_.insert(host).second : silent_hosts_.erase(host) > 0;
+      if (is_news) inbox_.put(HostHeard{host, !is_silent});
+      for (const auto& [component, where] : elsewhere_) {
+        if (is_silent && where == host) silent.push_back(component);
+      }
+    }
+  }
+  for (const ComponentId component : silent) {
+    if (ComponentLink* link = link_of(component)) link->forget_unanswered();
+  }
+}
+
+void Link::lives_on(ComponentId component, const std::string& host) {
   {
     const MutexLock lock(mutex_);
     const auto found = elsewhere_.find(component);
-    if (found == elsewhere_.end()) return std::nullopt;
-    host = found->second;
+    if ((found == elsewhere_.end() ? "" : found->second) == host) return;
+    elsewhere_.erase(component);
+    if (!host.empty()) elsewhere_[component] = host;
   }
-  return lease_ && lease_->is_silent(host) ? std::optional(host) : std::nullopt;
-}
-
-// One cause for all that is missed there, told once.
-void Link::tell_of_silent_hosts() {
-  if (!lease_) return;
-  for (const std::string& host : lease_->hosts_of_others()) {
-    std::string missed;
-    for (std::size_t c = 0; c < rules_.components.size(); ++c) {
-      const MutexLock lock(mutex_);
-      const auto found = elsewhere_.find(ComponentId(c));
-      if (found != elsewhere_.end() && found->second == host)
-        missed += (missed.empty() ? "" : ", ") + rules_.components[c].name;
-    }
-    if (!lease_->is_silent(host)) {
-      if (silent_hosts_.erase(host) > 0) inbox_.put(LinkTrouble{host + " is heard again"});
-    } else if (!missed.empty() && silent_hosts_.insert(host).second) {
-      inbox_.put(
-          LinkTrouble{"nothing is heard of " + host + ", where " + missed +
-                      " ran: it is down, or cut off. Nothing is started in their place until "
-                      "it is heard again"});
-    }
-  }
+  inbox_.put(LivesOn{component, host});
 }
 
 // Only a person can end that, and who comes late must hear of it too.
@@ -337,11 +370,7 @@ void Link::on_joined(const GraphNode& node) {
   const auto component = binding_.bind(node.name);
   if (!component) return;
   make_link(*component, node.name)->lives_in(node.pid);
-  {
-    const MutexLock lock(mutex_);
-    elsewhere_.erase(*component);
-    if (node.pid == 0 && !node.host.empty()) elsewhere_[*component] = printable(node.host);
-  }
+  lives_on(*component, node.pid == 0 ? printable(node.host) : "");
   if (node.pid == 0 || needs_of(*component, rules_).is_to_answer) {
     probed_[node.name] = {*component, node.pid};
   } else {
@@ -350,10 +379,8 @@ void Link::on_joined(const GraphNode& node) {
 }
 
 void Link::on_left(const std::string& node, bool was_lost) {
-  if (const auto component = was_lost ? std::nullopt : binding_.bind(node)) {
-    const MutexLock lock(mutex_);
-    elsewhere_.erase(*component);
-  }
+  if (const auto component = was_lost ? std::nullopt : binding_.bind(node))
+    lives_on(*component, "");
   probed_.erase(node);
   pids_.erase(node);
   const auto managed = systems_.extract(node);
@@ -421,7 +448,18 @@ void Link::probe() {
   std::set<ComponentId> are_probed;
   for (const auto& [node, each] : probed_) {
     are_probed.insert(each.component);
-    make_link(each.component, node)->probe(each.pid);
+    ComponentLink* link = make_link(each.component, node);
+    std::string host;
+    {
+      const MutexLock lock(mutex_);
+      const auto found = elsewhere_.find(each.component);
+      if (found != elsewhere_.end()) host = found->second;
+    }
+    if (host.empty()) {
+      link->probe(each.pid);
+    } else {
+      link->probe(each.pid, [this, host] { return hosts_->heard(host); });
+    }
   }
   for (const Parameter& parameter : rules_.parameters) {
     if (ComponentLink* link = link_of(parameter.component)) link->check_parameters();

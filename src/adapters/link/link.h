@@ -23,6 +23,7 @@
 #include "link/component_link.h"
 #include "link/diagnostics_watch.h"
 #include "link/lease_link.h"
+#include "link/neighbour_hosts.h"
 #include "link/simulated_clock.h"
 #include "link/topic_watch.h"
 #include "link/type_finder.h"
@@ -75,10 +76,10 @@ class Link {
   // machine, or not proven. From any thread.
   std::map<std::string, std::vector<int>> doubled() const;
 
-  // The computer where the component ran when it was seen last, if it is one that another culprit
-  // looks after and of which nothing is heard now: nobody knows whether it still runs there. From
-  // any thread.
-  std::optional<std::string> cut_off(ComponentId component) const;
+  // The other computer where the component ran when it was seen last, if nothing is heard of it now:
+  // nobody knows whether it still runs there. What was found is told (HostHeard) before this returns.
+  // From any thread.
+  std::optional<std::string> cut_off(ComponentId component);
 
   // Our own node, for clients of what is no component. It goes with the link.
   NodeEntry& entry() { return node_->entry(); }
@@ -117,7 +118,10 @@ class Link {
   void tell_of_refused();
   void on_namesakes(const NodeNamesakes& seen);
   void remind();
-  void tell_of_silent_hosts();
+  void on_discovery(const DiscoveryEvent& event);
+  void listen_to_hosts();
+  void look_at_hosts();
+  void lives_on(ComponentId component, const std::string& host);
 
   ComponentLink* link_of(ComponentId component);
   Time sure_to_hear(Time now) const;
@@ -150,7 +154,8 @@ class Link {
   std::unique_ptr<Hearing> hearing_;
   std::uint64_t refused_ = 0;  // datagrams that were told of
   std::unique_ptr<LeaseLink> lease_;
-  std::set<std::string> silent_hosts_;  // that were told of
+  std::unique_ptr<NeighbourHosts> hosts_;
+  Time looked_at_hosts_ = kLongAgo;  // on the executor's thread
 
   mutable Mutex mutex_;
   // A component's node that others have the name of.
@@ -162,6 +167,7 @@ class Link {
   std::map<std::string, std::vector<int>> doubled_ CULPRIT_GUARDED_BY(mutex_);  // by node
   std::map<ComponentId, std::string> elsewhere_
       CULPRIT_GUARDED_BY(mutex_);  // the other computer where it ran last, if it said no good-bye
+  std::set<std::string> silent_hosts_ CULPRIT_GUARDED_BY(mutex_);  // that were told of
   std::vector<Health> health_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<ComponentLink>> links_
       CULPRIT_GUARDED_BY(mutex_);  // by component; one that is made stays
