@@ -55,11 +55,14 @@ std::string_view condition_of(const std::vector<ComponentId>& components,
   return all;
 }
 
-// "camera is dead", "fusion hangs", "camera and fusion are held responsible".
+// "camera is dead", "fusion hangs", "camera and fusion are held responsible", "nothing is heard of
+// rover2, where camera and lidar ran".
 std::string headline_of(const Incident& incident, bool is_suspected, const Knowledge& knowledge) {
   const std::string who = names_of_components(incident.components, knowledge.rules);
   const bool are_many = incident.components.size() > 1;
   const std::string are = are_many ? " are " : " is ";
+  if (!incident.host.empty())
+    return "nothing is heard of " + incident.host + ", where " + who + " ran";
   if (incident.condition == "hung") return who + (are_many ? " hang" : " hangs");
   if (!incident.condition.empty()) return who + are + incident.condition;
   if (incident.is_certain) return who + are + "held responsible";
@@ -172,8 +175,27 @@ RuleId Situation::root_of(RuleId rule, const std::vector<RuleId>& all) const {
   return rule;
 }
 
+// The computer that the failure waits for; empty: it waits for none.
+std::string Situation::unheard_host(RuleId root, const Knowledge& knowledge) const {
+  const Failure& failure = of(root);
+  if (!failure.is_held_back) return "";
+  for (const Candidate& each : failure.candidates) {
+    if (each.excluded == Condition::kUnheard && knowledge.is_unheard(each.component))
+      return knowledge.host_of(each.component);
+  }
+  return "";
+}
+
 void Situation::blame(Incident& incident, const Knowledge& knowledge) const {
   const RuleSet& rules = knowledge.rules;
+  incident.host = unheard_host(incident.root, knowledge);
+  for (std::size_t c = 0; !incident.host.empty() && c < rules.components.size(); ++c) {
+    const ComponentId component(c);
+    if (knowledge.is_unheard(component) && knowledge.host_of(component) == incident.host)
+      incident.components.push_back(component);
+  }
+  incident.is_certain = !incident.host.empty();
+  if (incident.is_certain) return;
   const Failure& root = of(incident.root);
   if (root.blamed && !rules[*root.blamed].components.empty()) {
     incident.components = rules[*root.blamed].components;
@@ -192,6 +214,7 @@ std::string Situation::doing_about(const Incident& incident, const Manager& mana
   const RuleSet& rules = manager.knowledge().rules;
   const Failure& root = of(incident.root);
   const RulePhase phase = manager.knowledge().states[incident.root].phase;
+  if (!incident.host.empty()) return "nothing is started in their place until it is heard again";
   if (phase == RulePhase::kExhausted) return "nothing helped";
   if (manager.governor().is_paused()) return "nothing is done: culprit is paused";
   if (incident.awaits_approval && root.blamed)
@@ -247,10 +270,13 @@ std::vector<Incident> Situation::incidents(const Manager& manager) const {
         return rules[strategy].rule == rule;
       });
     }
-    incident.condition = condition_of(incident.components, knowledge);
+    incident.condition = incident.host.empty() ? condition_of(incident.components, knowledge)
+                                               : std::string_view("not heard");
     incident.headline = headline_of(incident, !of(incident.root).suspects.empty(), knowledge);
     incident.doing = doing_about(incident, manager);
-    incident.next = next_of(knowledge.states[incident.root], knowledge);
+    incident.next = incident.host.empty()
+                        ? next_of(knowledge.states[incident.root], knowledge)
+                        : "a person must look: is it on, and connected? Then it goes on by itself";
   }
   std::stable_sort(merged.begin(), merged.end(), [](const Incident& a, const Incident& b) {
     if (a.needs_person() != b.needs_person()) return a.needs_person();

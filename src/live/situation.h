@@ -22,18 +22,19 @@ struct Incident {
   RuleId root;                            // the failure that none of the others explains
   std::vector<RuleId> consequences{};     // failures that are there because of it
   std::vector<ComponentId> components{};  // that are held responsible, or else suspected
+  std::string host{};       // the computer that is not heard, where they are: it is what is wrong
   bool is_certain = false;  // the manager holds them responsible: it decided about them
   Time since = kNever;      // of the first of its failures
   Criticality criticality = Criticality::kNonCritical;  // of the worst of its failures
   bool is_exhausted = false;                            // nothing is left to try about one of them
   bool awaits_approval = false;                         // of what is to be done about one of them
   std::string
-      condition{};  // of these components: "dead", "stopped", "hung"; empty: they work, or differ
+      condition{};  // of these components: "dead", "stopped", "hung", "not heard"; empty: they work, or differ
   std::string headline{};  // "camera is dead"
   std::string doing{};     // what is done about it, or why nothing is
   std::string next{};      // what comes next, and when; may be empty
 
-  bool needs_person() const { return is_exhausted || awaits_approval; }
+  bool needs_person() const { return is_exhausted || awaits_approval || !host.empty(); }
 };
 
 class Situation {
@@ -63,6 +64,7 @@ class Situation {
   bool is_own(RuleId rule) const;
   std::optional<RuleId> upstream_of(RuleId rule, const std::vector<RuleId>& all) const;
   RuleId root_of(RuleId rule, const std::vector<RuleId>& all) const;
+  std::string unheard_host(RuleId root, const Knowledge& knowledge) const;
   void blame(Incident& incident, const Knowledge& knowledge) const;
   std::string doing_about(const Incident& incident, const Manager& manager) const;
 

@@ -35,12 +35,13 @@ RULE Dark
 
 // A camera, what needs it, and a lamp that has nothing to do with either.
 struct Watched {
-  explicit Watched(Approval approval = Approval::kNone, Autonomy autonomy = Autonomy::kAct) {
+  explicit Watched(Approval approval = Approval::kNone, Autonomy autonomy = Autonomy::kAct,
+                   const std::string& host_of_camera = "") {
     Manager::Options options;
     options.governor.approval = approval;
     options.autonomy = autonomy;
     robot.emplace(kSituationRules, std::make_unique<BayesPlanner>(), options);
-    robot->add("camera", {}, "/rgb");
+    robot->add("camera", {}, "/rgb").host = host_of_camera;
     robot->add("fusion", {"camera"}, "/fused").hears = {};
     robot->add("lamp").parameters["on"] = Value(std::int64_t{0});
     robot->after_step = [this] { situation.take(robot->manager().events(), robot->rules()); };
@@ -77,6 +78,23 @@ TEST(Situation, IsOneIncidentForOneFaultWithWhatSuffersFromIt) {
   EXPECT_EQ(incident.doing, "being repaired: redeploy camera");
   EXPECT_FALSE(incident.needs_person());
   watched.robot->run_for(10s);
+  EXPECT_TRUE(watched.incidents().empty()) << transcript(*watched.robot);
+}
+
+TEST(Situation, IsOneIncidentForAPersonWhereAComputerIsNotHeard) {
+  Watched watched(Approval::kNone, Autonomy::kAct, "rover2");
+  watched.robot->cut("rover2");
+  watched.robot->run_for(60s);
+  const auto incidents = watched.incidents();
+  ASSERT_EQ(incidents.size(), 1u) << transcript(*watched.robot);
+  EXPECT_EQ(incidents[0].headline, "nothing is heard of rover2, where camera ran");
+  EXPECT_EQ(incidents[0].host, "rover2");
+  EXPECT_EQ(incidents[0].components, std::vector{ComponentId(0)});
+  EXPECT_EQ(incidents[0].consequences.size(), 1u);
+  EXPECT_TRUE(incidents[0].needs_person());
+  EXPECT_FALSE(incidents[0].is_exhausted);
+  watched.robot->mend("rover2");
+  watched.robot->run_for(5s);
   EXPECT_TRUE(watched.incidents().empty()) << transcript(*watched.robot);
 }
 

@@ -124,6 +124,8 @@ Json components_to_json(const Knowledge& knowledge) {
     if (state.alive) json["process"] = word_of_process(state);
     if (state.lifecycle != Lifecycle::kUnknown) json["lifecycle"] = to_string(state.lifecycle);
     if (!state.process_remark.empty()) json["remark"] = state.process_remark;
+    if (const std::string host = knowledge.host_of(id); !host.empty()) json["host"] = host;
+    if (knowledge.is_unheard(id)) json["unheard"] = true;
     if (const Attempt* attempt = knowledge.states.reservation(id))
       json["adapting"] = knowledge.rules[attempt->strategy].name;
     list.push_back(std::move(json));
@@ -202,8 +204,11 @@ Json graph_to_json(const Knowledge& knowledge) {
   Json json{{"nodes", Json::array()}, {"edges", Json::array()}};
   for (const auto& [name, is_present] : nodes) {
     Json node{{"node", name}, {"present", is_present}};
-    if (const auto component = components.find(name); component != components.end())
+    if (const auto component = components.find(name); component != components.end()) {
       node["component"] = knowledge.rules[component->second].name;
+      const std::string host = knowledge.host_of(component->second);
+      if (!host.empty()) node["host"] = host;
+    }
     json["nodes"].push_back(std::move(node));
   }
   for (const auto& edge : edges)
@@ -246,6 +251,7 @@ Json incidents_to_json(const std::vector<live::Incident>& incidents, const RuleS
          {"rule", rules[each.root].name},
          {"components", names_of(each.components, rules)},
          {"certain", each.is_certain},
+         {"host", each.host.empty() ? Json(nullptr) : Json(each.host)},
          {"consequences", names_of(each.consequences, rules)},
          {"needs_person", each.needs_person()},
          {"doing", each.doing},

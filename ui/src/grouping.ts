@@ -39,7 +39,7 @@ export function groupOf(node: Node): string | undefined {
     case 'container':
       return facts?.container
     case 'host':
-      return facts && (facts.host ?? 'this computer')
+      return facts && (node.host ?? facts.host ?? 'this computer')
     default:
       return undefined
   }

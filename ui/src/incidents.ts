@@ -5,6 +5,7 @@ import type { ComponentState, Health, ManagerEvent } from './types'
 export interface Incident {
   root: Failure
   components: string[] // that are held responsible, or are about to be
+  host?: string // the computer that is not heard, where they are: it is what is wrong
   isCertain: boolean // the manager blames them, and not only this page
   consequences: Failure[]
   since: number
@@ -39,7 +40,17 @@ function rootOf(failure: Failure, all: Failure[]): Failure {
 
 const mostProbable = (decision: ManagerEvent | undefined) => decision?.suspects?.[0]
 
-function culpritsOf(root: Failure, components: string[], known: Known): Pick<Incident, 'components' | 'isCertain'> {
+// The component that the failure waits for, on a computer that is not heard.
+const unheardBehind = (failure: Failure) =>
+  failure.decision?.type === 'failure_held_back'
+    ? failure.decision.candidates?.find((c) => c.excluded?.condition === 'unheard')?.excluded?.component
+    : undefined
+
+const hostOf = (component: string, known: Known) => known(component).state?.host
+
+function culpritsOf(root: Failure, components: string[], known: Known): Pick<Incident, 'components' | 'isCertain' | 'host'> {
+  const unheard = unheardBehind(root)
+  if (unheard) return { components: [unheard], isCertain: true, host: hostOf(unheard, known) ?? 'its computer' }
   if (root.blame?.components?.length) return { components: root.blame.components, isCertain: true }
   const dead = components.filter((c) => known(c).isGone || known(c).state?.alive === false)
   if (dead.length > 0) return { components: dead, isCertain: false }
@@ -61,9 +72,10 @@ export function incidentsOf(failures: Failure[], componentsOf: (rule: string) =>
   const result: Incident[] = []
   for (const [root, consequences] of byRoot) {
     const blamed = culpritsOf(root, componentsOf(root.rule), known)
-    const key = [...blamed.components].sort().join()
+    const key = blamed.host ? `host ${blamed.host}` : [...blamed.components].sort().join()
     const same = byCulprit.get(key)
     if (same) {
+      if (blamed.host) same.components = [...new Set([...same.components, ...blamed.components])]
       same.consequences.push(root, ...consequences)
       continue
     }
@@ -88,6 +100,7 @@ export function headlineOf(incident: Incident, known: Known): string {
   const { components } = incident
   const subject = listed(components) || incident.root.rule
   const are = components.length > 1 ? 'are' : 'is'
+  if (incident.host) return `nothing is heard of ${incident.host}, where ${subject} ran`
   const ways = new Set(components.map((c) => wayOf(known(c))))
   const [way] = ways
   if (ways.size === 1 && way === 'hung') return `${subject} ${components.length > 1 ? 'hang' : 'hangs'}`
@@ -98,6 +111,7 @@ export function headlineOf(incident: Incident, known: Known): string {
 }
 
 function wayOf({ isGone, state }: ReturnType<Known>): string {
+  if (state?.unheard) return 'not heard'
   if (state?.process === 'stopped') return 'stopped'
   if (state?.process === 'hung') return 'hung'
   return isGone || state?.process === 'gone' || state?.alive === false ? 'dead' : ''

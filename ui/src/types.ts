@@ -37,7 +37,7 @@ export interface Robot {
 }
 
 export interface Graph {
-  nodes: { node: string; present: boolean; component?: string }[]
+  nodes: { node: string; present: boolean; component?: string; host?: string }[]
   edges: [consumer: string, producer: string, channel: string][]
 }
 
@@ -58,6 +58,8 @@ export interface ComponentState {
   pid?: number
   lifecycle?: string
   remark?: string
+  host?: string // another computer, where its node runs or ran last
+  unheard?: boolean // nothing is heard of its computer: nobody knows what became of it
   adapting?: string
 }
 export interface TopicState {
