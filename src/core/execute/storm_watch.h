@@ -3,9 +3,8 @@
 // A storm: components that nothing upstream explains are ill, many of them (NodeHealthCheck's
 // minHealthy, with the dependency graph taken into account: a dead camera and all that needs it is
 // no storm; nor are dead processes, whose cause is clear). A graph in doubt: nodes vanished from
-// the graph although their processes run, or those of other computers do not
-// answer although these are heard. Then the
-// network is more likely to be ill than all of them.
+// the graph although their processes run, or those of other computers do not answer although these
+// are heard. Then the network is more likely to be ill than all of them.
 #pragma once
 
 #include <optional>

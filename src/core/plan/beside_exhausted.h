@@ -6,8 +6,8 @@
 //   - one reconfiguration, once: a strategy that takes nothing down and starts nothing. It may get
 //     round the cause (another source, another mode);
 //   - a LASTRESORT: the safe stop never waits.
-// The same holds for what a computer that is not heard explains, and for the effects of a failure that waits for a person for another reason, for
-// example because all its remaining strategies were refused.
+// The same holds for what a computer that is not heard explains, and for the effects of a failure that
+// waits for a person for another reason, for example because all its remaining strategies were refused.
 #pragma once
 
 #include "plan/planner.h"

@@ -25,8 +25,8 @@ namespace culprit::plan {
 struct Invalid {
   ComponentId component;  // what it is about; for a WHEN condition the strategy's first
   std::string reason;
-  bool is_unheard =
-      false;  // nobody knows what became of it (Knowledge::is_unheard), or can do it now
+  // Nobody knows what became of it (Knowledge::is_unheard), or can do it now.
+  bool is_unheard = false;
 };
 
 // Nothing if the strategy is valid.
