@@ -3,7 +3,10 @@
 //   culprit-bench-peer latencies TOPIC     reads std_msgs/Float64, prints "<number> <nanoseconds
 //   from write to callback>" culprit-bench-peer fleet INDEX NODES   nodes with four topics of 10 Hz
 //   each culprit-bench-peer images              1080p pictures at 30 Hz on /bench/image
+//   culprit-bench-peer quiet               publishes /quiet/value at 10 Hz, or, after a SIGUSR1, does
+//   not; after the next one it does again
 //   culprit-bench-peer bare-reader         reads those with nothing but Fast DDS
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -99,6 +102,19 @@ void robot(int index, int of, int nodes) {
   peer.executor.run();
 }
 
+std::atomic<bool> speaks = true;
+
+void quiet() {
+  std::signal(SIGUSR1, [](int) { speaks = !speaks; });
+  Peer peer;
+  const auto node = peer.node("quiet");
+  auto publisher = node->create_publisher<ros2::msg::Float64>("/quiet/value");
+  const ros2::Timer timer(peer.executor, 100ms, [&] {
+    if (speaks) publisher->publish({1.0});
+  });
+  peer.executor.run();
+}
+
 void images() {
   Peer peer;
   const auto node = peer.node("images");
@@ -128,6 +144,8 @@ int main(int argc, char** argv) {
     fleet(std::stoi(arguments[1]), std::stoi(arguments[2]));
   } else if (arguments.size() == 4 && arguments[0] == "robot") {
     robot(std::stoi(arguments[1]), std::stoi(arguments[2]), std::stoi(arguments[3]));
+  } else if (arguments == std::vector<std::string>{"quiet"}) {
+    quiet();
   } else if (arguments == std::vector<std::string>{"images"}) {
     images();
   } else if (arguments == std::vector<std::string>{"bare-reader"}) {

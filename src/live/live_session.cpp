@@ -11,6 +11,7 @@
 #include "live/launch.h"
 #include "live/role.h"
 #include "live/setups.h"
+#include "owners/proc.h"
 #include "replay/replay.h"
 
 namespace culprit::live {
@@ -79,6 +80,22 @@ void adopt_again(LiveRobot& robot, const History& past, const Sightings& sightin
     const auto* found = std::get_if<ComponentFound>(&event.what);
     if (found != nullptr && sightings.has(found->component))
       robot.adopt_again(found->component, found->pid, event.at);
+  }
+}
+
+// What the journal says of processes holds for those that run since then. Numbers are given out
+// anew.
+void forget_other_processes(KnownRobot& known, const History& past, const RuleSet& rules) {
+  for (KnownRobot::Part& part : known.parts) {
+    const auto component = journal::find_component(rules, part.component);
+    std::optional<Time> found;
+    for (const Event& event : past) {
+      const auto* seen = std::get_if<ComponentFound>(&event.what);
+      if (seen == nullptr || !component || seen->component != *component) continue;
+      found = seen->pid == part.pid ? std::optional(event.at) : std::nullopt;
+    }
+    const auto started = found ? owners::started_at(part.pid) : std::nullopt;
+    if (!started || *started > *found) part.pid = 0;
   }
 }
 
@@ -341,6 +358,13 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
     preflight_ = std::make_unique<Preflight>(
         source_, frame_.options.message_path,
         [&listener = frame_.listener](const std::string& lines) { listener.on_remark(lines); });
+  KnownRobot& known = beginning.known_robot;
+  // One of another machine may be about to be heard of, and go before this one.
+  const bool has_rivals = frame_.lease && !frame_.lease->key.empty();
+  known.is_whole = known.is_whole && !has_rivals && beginning.last_rules == source_.text();
+  forget_other_processes(known, beginning.past, rules_);
+  if (known.is_whole)
+    robot_->link().prove_listening(later(robot_->now(), frame_.options.discovery));
   journal::Session session = session_of(frame_, std::string(source_.text()), rules_, domain_,
                                         robot_->now(), watched_since, beginning);
   session.occasion = std::move(occasion);

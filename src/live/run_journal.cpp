@@ -80,6 +80,7 @@ std::optional<Recovery> take_over(const journal::Reader& reader,
   const auto learned = reader.learned();
   journal::Unwritten unwritten = journal::unwritten_rows(intents, reader);
   if (!unwritten.remark.empty()) beginning.findings.push_back(unwritten.remark);
+  const bool is_sound = beginning.findings.empty();  // else rows may be lost
   const auto recovery = journal::recover(reader, unwritten, rules, now, manager_before);
   beginning.unwritten = std::move(unwritten.rows);
   if (learned) beginning.learned = *learned;
@@ -91,6 +92,8 @@ std::optional<Recovery> take_over(const journal::Reader& reader,
   tell(*recovery, rules, beginning.findings);
   beginning.past = recovery->past;
   beginning.known_robot = recovery->known_robot;
+  beginning.last_rules = recovery->rules_text;
+  if (!is_sound) beginning.known_robot.is_whole = false;
   std::erase_if(beginning.past, journal::is_about_silence);
   if (!learned->beliefs.empty())
     beginning.findings.push_back(

@@ -19,8 +19,9 @@ struct RunBeginning {
   std::vector<journal::Entry> unwritten;
   journal::Learned learned;
   journal::Json interrupted = journal::Json::array();
-  History past;  // without silences
-  KnownRobot known_robot;
+  History past;            // without silences
+  KnownRobot known_robot;  // is_whole: as far as the journal tells
+  std::string last_rules;  // the text of the last run's rules
   journal::StandingOrders orders;
   bool are_orders_kept = false;       // they stand in their file just so
   bool is_of_another = false;         // another culprit writes the journal, and the orders

@@ -24,7 +24,11 @@ void for_each_text(const Json& json, const char* key, Visit visit) {
 }  // namespace
 
 Json to_json(const KnownRobot& known) {
-  Json json = {{"components", Json::array()}, {"topics", known.topics}};
+  Json json = {{"components", Json::array()},
+               {"topics", known.topics},
+               {"heard", known.heard},
+               {"read", known.read},
+               {"whole", known.is_whole}};
   for (const KnownRobot::Part& part : known.parts) {
     Json component = {{"name", part.component}, {"node", part.node}};
     for (const auto& [kind, key] : kKinds) {
@@ -32,6 +36,7 @@ Json to_json(const KnownRobot& known) {
         if (end.kind == kind) component[key].push_back(end.name);
       }
     }
+    if (part.pid != 0) component["process"] = part.pid;
     json["components"].push_back(std::move(component));
   }
   return json;
@@ -41,11 +46,17 @@ KnownRobot known_robot_from_json(const Json& json) {
   KnownRobot known;
   if (!json.is_object()) return known;
   for_each_text(json, "topics", [&](std::string name) { known.topics.push_back(std::move(name)); });
+  for_each_text(json, "heard", [&](std::string name) { known.heard.push_back(std::move(name)); });
+  for_each_text(json, "read", [&](std::string name) { known.read.push_back(std::move(name)); });
+  known.is_whole = flag_of(json, "whole");
   const auto components = json.find("components");
   if (components == json.end() || !components->is_array()) return known;
   for (const Json& each : *components) {
     if (!each.is_object()) continue;
-    KnownRobot::Part part{text_of(each, "name"), text_of(each, "node"), {}};
+    KnownRobot::Part part{text_of(each, "name"),
+                          text_of(each, "node"),
+                          {},
+                          static_cast<int>(integer_of(each, "process"))};
     for (const auto& [kind, key] : kKinds)
       for_each_text(each, key, [&, kind = kind](std::string name) {
         part.ends.push_back({kind, std::move(name)});

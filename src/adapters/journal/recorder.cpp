@@ -292,7 +292,8 @@ bool Recorder::is_with_the_kernel(const Decided& decision, Time now) {
 
 std::optional<KnownRobot> Recorder::newly_known(Time now) {
   const std::uint64_t sightings = knowledge_.sightings.count();
-  const std::uint64_t changes = knowledge_.graph.changes() + sightings;
+  const std::uint64_t changes =
+      knowledge_.graph.changes() + sightings + knowledge_.sightings.heard_count();
   const bool is_old = robot_written_ != kLongAgo && later(robot_written_, kRobotAtLatest) <= now;
   const bool was_looked_at =
       robot_looked_at_ != kLongAgo && now < later(robot_looked_at_, kRobotPeriod);

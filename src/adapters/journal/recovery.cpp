@@ -60,6 +60,9 @@ class Trail {
     return manager && (*manager == 0 || *manager != process_);
   }
 
+  // When its run lived last, as far as is known.
+  Time latest() const { return latest_; }
+
   // Those that had begun to change anything. Not where nobody knows who changed what since.
   std::vector<Interrupted> open(Time now, std::optional<int> manager_before) && {
     std::erase_if(open_, [](const Interrupted& each) { return each.requests.empty(); });
@@ -180,7 +183,8 @@ Duration shift_of_clock(const Entry& begin, Time robot_then, const Moment& now) 
 }
 
 // The newest row says all.
-Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& where) {
+Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& where,
+                                      std::int64_t last_run) {
   const auto newest = journal.newest(kind::kRobot);
   if (!newest) return Error{newest.error()};
   if (!*newest) return KnownRobot{};
@@ -192,7 +196,10 @@ Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& 
   if (!row) return Error{row.error()};
   // What was seen must not be for others to say.
   if (!rows->is_as_written(entry, hasher)) return KnownRobot{};
-  return known_robot_of(from_text(entry.body), where);
+  KnownRobot known = known_robot_of(from_text(entry.body), where);
+  // The last run may have had other rules, and did not see the robot whole.
+  known.is_whole = known.is_whole && entry.id > last_run;
+  return known;
 }
 
 }  // namespace
@@ -202,7 +209,7 @@ Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, co
   Recovery recovery;
   const auto last = journal.newest(kind::kSession);
   if (!last) return Error{last.error()};
-  auto known_robot = find_known_robot(journal, {now.domain, boot_id()});
+  auto known_robot = find_known_robot(journal, {now.domain, boot_id()}, *last ? (*last)->id : 0);
   if (!known_robot) return Error{known_robot.error()};
   recovery.known_robot = std::move(*known_robot);
   if (!*last) return recovery;
@@ -214,6 +221,7 @@ Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, co
   Hasher hasher;
   const auto is_good = [&] {
     if (rows->is_as_written(entry, hasher)) return true;
+    recovery.known_robot.is_whole = false;
     recovery.given_up.push_back("row " + std::to_string(entry.id) + " (" + entry.kind +
                                 ") is not what was written; nothing is done because of it");
     recovery.orders_kept = true;  // it may have been one: the rows alone do not count
@@ -227,6 +235,7 @@ Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, co
   // An older culprit did not write it.
   recovery.was_other_domain = integer_of(begin, "domain", now.domain) != now.domain;
   recovery.orders_kept |= flag_of(begin, "orders_kept");
+  recovery.rules_text = text_of(begin, "rules_text");
   Trail trail(rules, recovery.given_up);
   trail.begin_with(begin);
   for (row = rows->next(entry); row && *row; row = rows->next(entry)) {
@@ -236,6 +245,9 @@ Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, co
   if (!row) return Error{row.error()};
   for (const Entry& each : unwritten.rows) trail.follow(each);
   trail.lived_at(unwritten.latest);
+  const bool is_recent = trail.latest() <= now.robot && now.robot - trail.latest() <= kExpected;
+  if (!is_recent || recovery.is_other_robot() || trail.was_succeeded_by(manager_before))
+    recovery.known_robot.is_whole = false;
   recovery.is_paused = trail.is_paused();
   recovery.is_dry_run = trail.is_dry_run();
   const Time robot_then = Time(Duration(integer_of(begin, "start")));

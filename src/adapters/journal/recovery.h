@@ -22,6 +22,9 @@ namespace culprit::journal {
 // How long culprit may have been dead to go on with what it left in the middle.
 inline constexpr Duration kGoneOnWith = std::chrono::minutes(1);
 
+// How long culprit may have been away to expect that all is as it left it (KnownRobot::is_whole).
+inline constexpr Duration kExpected = std::chrono::minutes(10);
+
 struct Recovery {
   bool had_run = false;           // there was a run before
   bool was_stopped = false;       // and it was asked to end
@@ -35,6 +38,7 @@ struct Recovery {
   std::vector<std::string> given_up;  // what was under way and cannot be finished, and why
   History past;                       // of all runs before, on the robot's clock
   KnownRobot known_robot;             // what they saw of this robot since the machine was started
+  std::string rules_text;             // of the last run
 };
 
 // Two clocks at one moment. `wall`: nanoseconds since 1970. And the DDS domain that is watched from

@@ -13,6 +13,7 @@
 namespace culprit::journal {
 namespace {
 
+using namespace std::chrono_literals;
 using culprit::test::value_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -84,6 +85,126 @@ TEST_F(JournalRecovery, NorFromTheBeginningOfARun) {
   EXPECT_TRUE(recovery.orders_kept) << "whether it was paused, it does not tell";
   EXPECT_THAT(processes(recovery.past), IsEmpty());
   EXPECT_THAT(recovery.given_up, ElementsAre(HasSubstr("row 1 (session)")));
+}
+
+// A run that saw the robot whole, and another one that begins.
+struct ExpectedRobot : testing::Test {
+  struct Told {
+    int domain = 0;
+    std::string boot = boot_id();
+    Time latest = Time(100s);
+    bool is_whole = true;
+  };
+  void write(const Told& told) { write_rows(told, {kind::kSession, kind::kRobot, kind::kEvent}); }
+  void write_rows(const Told& told, const std::vector<std::string_view>& kinds) {
+    Writer writer = value_of(Writer::open(path, {}));
+    Batch all;
+    for (const std::string_view kind : kinds) all.entries.push_back(row(kind, told));
+    EXPECT_TRUE(writer.append(all, kRecoveredAt, Durability::kProcessEnd));
+  }
+  Entry row(std::string_view kind, const Told& told) const {
+    Json body;
+    if (kind == kind::kSession) {
+      Session session;
+      session.boot = told.boot;
+      session.domain = told.domain;
+      session.rules_text = "the rules";
+      session.start = Time(50s);
+      body = to_json(session);
+    } else if (kind == kind::kRobot) {
+      KnownRobot known;
+      known.parts = {{"camera", "/camera", {}, 77}};
+      known.topics = known.heard = {"/image"};
+      known.read = {"signal hot"};
+      known.is_whole = told.is_whole;
+      body = robot_row(known, {told.domain, told.boot});
+    } else {
+      body = to_json(Event{told.latest, ComponentFound{ComponentId(0), 77}}, rules);
+    }
+    return {0, kRecoveredAt, std::string(kind), to_text(body)};
+  }
+  Recovery recovered(Time now = Time(110s), std::optional<int> manager_before = {},
+                     std::int64_t wall = kRecoveredAt) {
+    const Reader reader = value_of(Reader::open(path));
+    return value_of(recover(reader, {}, rules, {now, wall, 0}, manager_before));
+  }
+  bool is_expected() { return recovered().known_robot.is_whole; }
+
+  const RuleSet rules = *check(Source("my.rules", "COMPONENT camera NODE /camera\n")).rules;
+  culprit::test::TestFolder folder;
+  const std::filesystem::path path = folder / "a.journal";
+};
+
+TEST_F(ExpectedRobot, IsWhatTheLastRunSawAMomentAgo) {
+  write({});
+  const Recovery recovery = recovered();
+  EXPECT_TRUE(recovery.known_robot.is_whole);
+  EXPECT_EQ(recovery.rules_text, "the rules");
+  EXPECT_THAT(recovery.known_robot.heard, ElementsAre("/image"));
+  EXPECT_THAT(recovery.known_robot.read, ElementsAre("signal hot"));
+  ASSERT_EQ(recovery.known_robot.parts.size(), 1u);
+  EXPECT_EQ(recovery.known_robot.parts[0].pid, 77);
+}
+
+TEST_F(ExpectedRobot, IsNoneOfAnotherDomainOrAnotherStartOfTheMachine) {
+  write({.domain = 7});
+  EXPECT_FALSE(is_expected());
+  write({.boot = "another"});
+  EXPECT_FALSE(is_expected());
+}
+
+TEST_F(ExpectedRobot, IsNoneOfALongTimeAgo) {
+  write({});
+  EXPECT_TRUE(recovered(Time(100s) + kExpected).known_robot.is_whole);
+  EXPECT_FALSE(recovered(Time(101s) + kExpected).known_robot.is_whole);
+  EXPECT_FALSE(recovered(Time(100s) + std::chrono::weeks(3)).known_robot.is_whole);
+}
+
+// The robot's clock never goes back within one start of the machine.
+TEST_F(ExpectedRobot, IsNoneOfTheFuture) {
+  write({});
+  EXPECT_FALSE(recovered(Time(99s)).known_robot.is_whole);
+}
+
+TEST_F(ExpectedRobot, DoesNotDependOnTheWallClock) {
+  write({});
+  for (const std::int64_t jump : {-kRecoveredAt, kRecoveredAt})
+    EXPECT_TRUE(recovered(Time(110s), {}, kRecoveredAt + jump).known_robot.is_whole);
+}
+
+TEST_F(ExpectedRobot, IsNoneOfARunThatSawAPart) {
+  write({.is_whole = false});
+  EXPECT_FALSE(is_expected());
+}
+
+// It was killed before it saw anything; what is on record was seen under the rules of the one before.
+TEST_F(ExpectedRobot, IsNoneOfTheRunBeforeTheLast) {
+  write({});
+  write_rows({}, {kind::kSession, kind::kEvent});
+  EXPECT_FALSE(is_expected());
+}
+
+TEST_F(ExpectedRobot, IsNoneOnceAnotherCulpritManagedIt) {
+  write({});
+  EXPECT_FALSE(recovered(Time(110s), 4711).known_robot.is_whole);
+}
+
+TEST_F(ExpectedRobot, IsNoneIfAnyRowIsNotAsItWasWritten) {
+  for (int row = 1; row <= 3; ++row) {
+    std::filesystem::remove(path);
+    write({});
+    auto database = value_of(Database::open(path, Database::Mode::kWrite));
+    ASSERT_TRUE(
+        database.run("UPDATE entry SET body = body || ' ' WHERE id = " + std::to_string(row)));
+    EXPECT_FALSE(is_expected()) << row;
+  }
+}
+
+TEST_F(ExpectedRobot, IsNoneIfARowIsMissing) {
+  write({});
+  auto database = value_of(Database::open(path, Database::Mode::kWrite));
+  ASSERT_TRUE(database.run("DELETE FROM entry WHERE id = 2"));
+  EXPECT_FALSE(is_expected());
 }
 
 }  // namespace

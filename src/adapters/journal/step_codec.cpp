@@ -32,7 +32,8 @@ enum class Tag : std::uint8_t {
   kLauncherSeen = 25,
   kPriorsTold = 26,
   kLivesOn = 27,
-  kHostHeard = 28
+  kHostHeard = 28,
+  kListenerKnown = 29
 };
 
 enum class OrderTag : std::uint8_t {
@@ -215,6 +216,10 @@ class Encoder {
     head(Tag::kParametersListed, age);
     out_.natural(o.component.index);
     texts(o.names);
+  }
+  void write(const ListenerKnown& o, Duration age) {
+    head(Tag::kListenerKnown, age);
+    out_.natural(o.topic.index);
   }
   void write(const PriorsTold& o, Duration age) {
     head(Tag::kPriorsTold, age);
@@ -410,6 +415,8 @@ class Decoder {
         return HearingRegained{};
       case Tag::kOverslept:
         return Overslept{Duration(in_.integer())};
+      case Tag::kListenerKnown:
+        return ListenerKnown{id<TopicId>(rules_.topics.size())};
       case Tag::kPriorsTold: {
         PriorsTold told;
         for (std::uint64_t left = in_.natural(); left > 0 && in_.is_good(); --left) {

@@ -69,7 +69,7 @@ decltype(Order::what) any_order() {
 ObservationWhat anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 26)) {
+  switch (*rc::gen::inRange(0, 27)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -126,6 +126,8 @@ ObservationWhat anything() {
       return LivesOn{component, text};
     case 24:
       return HostHeard{text, *rc::gen::arbitrary<bool>()};
+    case 25:
+      return ListenerKnown{TopicId(0)};
     default:
       return LinkTrouble{text};
   }

@@ -16,6 +16,7 @@ namespace culprit::ros2 {
 namespace {
 
 constexpr Duration kProbePeriod = std::chrono::milliseconds(400);
+constexpr Duration kAskPeriod = std::chrono::milliseconds(100);
 constexpr Duration kPublishPeriod = std::chrono::seconds(1);
 constexpr Duration kReminder = std::chrono::minutes(1);
 // One that ends, or is ended, needs no person.
@@ -109,6 +110,9 @@ Link::~Link() {
   executor_.stop();
   if (thread_.joinable()) thread_.join();
   // Clients and readers go before the node that they belong to.
+  tasks_.close();
+  asking_.reset();
+  asked_.clear();
   probing_.reset();
   publishing_.reset();
   lease_.reset();
@@ -237,6 +241,11 @@ void Link::on_change(const GraphChange& change) {
     on_endpoint(endpoint->node, endpoint->endpoint);
   } else if (const auto* gone = std::get_if<EndpointLeft>(&change)) {
     if (is_service(gone->kind) && is_for_management(gone->name)) return;
+    if (const auto known = publishers_.find(gone->name);
+        gone->kind == EndpointKind::kPublisher && known != publishers_.end()) {
+      const auto one = known->second.find(gone->node);
+      if (one != known->second.end()) known->second.erase(one);
+    }
     inbox_.put(EndpointVanished{gone->node, gone->kind, gone->name});
   } else if (const auto* namesakes = std::get_if<NodeNamesakes>(&change)) {
     on_namesakes(*namesakes);  // before anybody acts on it
@@ -381,6 +390,7 @@ void Link::on_joined(const GraphNode& node) {
 void Link::on_left(const std::string& node, bool was_lost) {
   if (const auto component = was_lost ? std::nullopt : binding_.bind(node))
     lives_on(*component, "");
+  for (auto& [topic, nodes] : publishers_) nodes.erase(node);
   probed_.erase(node);
   pids_.erase(node);
   const auto managed = systems_.extract(node);
@@ -412,7 +422,10 @@ void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
   }
   if (endpoint.kind == EndpointKind::kPublisher) {
     const auto watch = watches_.find(endpoint.name);
-    if (watch != watches_.end()) find_type(node, endpoint, *watch->second);
+    if (watch != watches_.end()) {
+      publishers_[endpoint.name].insert(node);
+      find_type(node, endpoint, *watch->second);
+    }
   }
   if (is_service(endpoint.kind) && is_for_management(endpoint.name)) return;
   inbox_.put(EndpointAppeared{node, endpoint.kind, endpoint.name});
@@ -467,6 +480,41 @@ void Link::probe() {
   for (const Input& input : rules_.inputs) {
     if (input.kind != Input::Kind::kLifecycle || are_probed.contains(input.component)) continue;
     if (ComponentLink* link = link_of(input.component)) link->check_lifecycle();
+  }
+}
+
+void Link::prove_listening(Time until) {
+  if (!options_.participant.servers.empty()) return;
+  tasks_.post([this, until] {
+    asks_until_ = until;
+    asking_ = std::make_unique<Timer>(executor_, kAskPeriod, [this] { ask_silent_ones(); });
+  });
+}
+
+// Discovery data is ordered for each participant (service_client.h): who answers a client knows
+// each reader that was made before it. So each topic has a client of its own, made after its reader.
+void Link::ask_silent_ones() {
+  const Time now = live_now();
+  if (now >= asks_until_) {
+    asked_.clear();
+    tasks_.post([this] { asking_.reset(); });
+    return;
+  }
+  for (const auto& [name, watch] : watches_) {
+    if (watch->has_heard() || !watch->is_listening() || asked_.contains(watch->topic())) continue;
+    const auto publishers = publishers_.find(name);
+    if (publishers == publishers_.end() || publishers->second.size() != 1) continue;
+    const std::string& node = *publishers->second.begin();
+    auto client = ServiceClient::create(
+        node_->entry(), {node + "/get_parameters", std::string(srv::GetParameters::kType)},
+        qos::kParameterServices);
+    if (!client) continue;  // a secured domain need not allow it
+    (*client)->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered,
+                    asks_until_ - now, [this, topic = watch->topic()](const CallResult& result) {
+                      if (result.outcome == CallOutcome::kAnswered)
+                        inbox_.put(ListenerKnown{topic});
+                    });
+    asked_.emplace(watch->topic(), std::move(*client));
   }
 }
 

@@ -91,6 +91,9 @@ class Link {
   // When it was last shown that the robot is heard, and to have it shown now.
   Time heard() const { return hearing_->heard(); }
   void prove_hearing() { hearing_->say(); }
+  // Asks those that alone publish what the rules watch, and of which nothing comes, whether they know
+  // that it is listened to (ListenerKnown), until then. Not where a discovery server stands between.
+  void prove_listening(Time until);
   // What is not sure, if that time has come.
   std::string doubt() const;
   // Nothing is wrong with culprit: it is only the robot's time that stands still.
@@ -114,6 +117,7 @@ class Link {
   void find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch);
   void on_parameter_event(const msg::ParameterEvent& event);
   void probe();
+  void ask_silent_ones();
   void publish_again();
   void tell_of_refused();
   void on_namesakes(const NodeNamesakes& seen);
@@ -148,7 +152,12 @@ class Link {
   std::map<std::string, ToProbe> probed_;  // by node
   bool is_namesake_told_ = false;
   std::map<std::string, int> pids_;  // of nodes that are there; 0 where it is not known
-  std::map<std::string, std::vector<std::string>> systems_;  // by the mode manager's node
+  std::map<std::string, std::vector<std::string>> systems_;       // by the mode manager's node
+  std::map<std::string, std::multiset<std::string>> publishers_;  // nodes, by watched topic
+  // Those that are asked whether they know that the topic is listened to.
+  std::map<TopicId, std::unique_ptr<ServiceClient>> asked_;
+  Time asks_until_ = kLongAgo;
+  std::unique_ptr<Timer> asking_;
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;
   std::unique_ptr<Hearing> hearing_;
@@ -171,6 +180,9 @@ class Link {
   std::vector<Health> health_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<ComponentLink>> links_
       CULPRIT_GUARDED_BY(mutex_);  // by component; one that is made stays
+
+  // Work of other threads for the executor's.
+  TaskGroup tasks_{executor_};
 
   std::thread thread_;
 };

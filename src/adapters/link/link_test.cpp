@@ -56,8 +56,8 @@ class Linked {
 
   // The first observation of this kind that fits, now or later.
   template <class What, class Fits>
-  std::optional<What> wait(Fits fits) {
-    const Time end = live_now() + kPatience;
+  std::optional<What> wait(Fits fits, Duration patience = kPatience) {
+    const Time end = live_now() + patience;
     for (std::size_t i = 0;; ++i) {
       while (i == seen_.size()) {
         if (live_now() >= end) return std::nullopt;
@@ -151,6 +151,66 @@ TEST(Link, AsksLocalNodesTooWhetherTheyAnswer) {
   EXPECT_TRUE(answers(false)) << "its callback hangs";
   goes_on.set_value();
   hung.join();
+}
+
+// Who answers a client that was made after the reader has been told of the reader, too.
+TEST(Link, KnowsThatWhoIsSilentKnowsItsListener) {
+  const TestDomain domain;
+  Robot robot(domain);
+  auto silent = robot.publisher<msg::Float64>("/silent");
+  auto speaking = robot.publisher<msg::Float64>("/speaking");
+  Linked linked(domain, {},
+                "COMPONENT robot NODE /robot\nRULE R\nPOLICIES ERROR\n"
+                "TRIGGER age(/silent) > 1h || age(/speaking) > 1h\n"
+                "STRATEGY s 50 10\nADAPTATION robot restart 5\n");
+  const auto is_about = [&](const std::string& topic) {
+    return [&linked, topic](const auto& seen) { return linked.rules[seen.topic].name == topic; };
+  };
+  const auto begins_to_speak = [&] {
+    for (int i = 0; i < 100; ++i) {
+      speaking.publish(msg::Float64{1});
+      if (linked.wait<SampleArrived>(is_about("/speaking"), 200ms)) return true;
+    }
+    return false;
+  };
+  ASSERT_TRUE(begins_to_speak());
+  linked.link->prove_listening(live_now() + kPatience);
+  EXPECT_TRUE(linked.wait<ListenerKnown>(is_about("/silent")));
+  EXPECT_FALSE(linked.has_seen<ListenerKnown>(is_about("/speaking"))) << "nobody has to ask";
+  silent.publish(msg::Float64{1});
+  EXPECT_TRUE(linked.wait<SampleArrived>(is_about("/silent"))) << "the first one is heard";
+}
+
+TEST(Link, TakesTheListenerForKnownToNobodyWhoDoesNotAnswer) {
+  const TestDomain domain;
+  Robot robot(domain);
+  const auto hung_topic = robot.publisher<msg::Float64>("/of_hung");
+  LiveContext context(domain.options());
+  std::unique_ptr<LifecycleNode> other;
+  context.run([&] { other = std::move(*LifecycleNode::create(*context, {"/", "other"}, {})); });
+  const auto well_topic = other->node().create_publisher<msg::Float64>("/of_well");
+  Linked linked(domain, {},
+                "COMPONENT robot NODE /robot\nRULE R\nPOLICIES ERROR\n"
+                "TRIGGER age(/of_hung) > 1h || age(/of_well) > 1h\n"
+                "STRATEGY s 50 10\nADAPTATION robot restart 5\n");
+  const auto is_about = [&](const std::string& topic) {
+    return [&linked, topic](const auto& seen) { return linked.rules[seen.topic].name == topic; };
+  };
+  std::promise<void> goes_on;
+  std::promise<void> hangs;
+  std::thread hung([&] {
+    robot.context.run([&] {
+      hangs.set_value();
+      goes_on.get_future().wait();
+    });
+  });
+  hangs.get_future().wait();
+  linked.link->prove_listening(live_now() + kPatience);
+  EXPECT_TRUE(linked.wait<ListenerKnown>(is_about("/of_well")));
+  EXPECT_FALSE(linked.has_seen<ListenerKnown>(is_about("/of_hung"))) << "its callback hangs";
+  goes_on.set_value();
+  hung.join();
+  EXPECT_TRUE(linked.wait<ListenerKnown>(is_about("/of_hung")));
 }
 
 TEST(Link, IsANodeThatOthersSee) {

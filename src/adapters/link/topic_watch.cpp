@@ -47,6 +47,7 @@ Expected<void> TopicWatch::listen(const std::string& type, Keys keys) {
       fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
       {.on_arrival =
            [this](const Sample& sample) {
+             has_heard_ = true;
              if (counts_)
                inbox_.put(SampleArrived{topic_, published_since(sample.identity)}, Urgency::kSoon);
            },
@@ -97,6 +98,7 @@ void TopicWatch::on_message(const Sample& sample) {
 
 // What we cannot put together was published all the same: nobody is silent.
 void TopicWatch::on_unheard() {
+  has_heard_ = true;
   if (!told_unheard_.exchange(true)) {
     inbox_.put(LinkTrouble{"messages of " + rules_[topic_].name +
                            " come, but cannot be put together: they are too large, or lost in "

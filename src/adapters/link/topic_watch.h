@@ -26,6 +26,12 @@ class TopicWatch {
   // Whether it takes a message's type to watch it, not only that it comes.
   bool reads_fields() const;
 
+  TopicId topic() const { return topic_; }
+  // Whether it would be known if something came. On the thread of publisher_seen().
+  bool is_listening() const { return listener_ != nullptr && counts_; }
+  // Whether anything came. From any thread.
+  bool has_heard() const { return has_heard_; }
+
   // A publisher of the topic was discovered: subscribes with its type, unless that is done already.
   // `offered`: its quality of service. `library`: what has that type; not used where no field is
   // read. On one thread.
@@ -57,6 +63,7 @@ class TopicWatch {
   std::vector<Field> fields_;
   std::unordered_map<Guid, std::int64_t> last_sequence_;  // by writer
 
+  std::atomic<bool> has_heard_ = false;
   std::atomic<bool> told_unheard_ =
       false;  // receive threads come one at a time, but not always one
 

@@ -1,20 +1,79 @@
 #include "knowledge/knowledge.h"
 
 #include <algorithm>
+#include <set>
 
 namespace culprit {
+namespace {
+
+bool was_read(const Input& input, const Sightings& sightings) {
+  switch (input.kind) {
+    case Input::Kind::kRate:
+    case Input::Kind::kAge:
+    case Input::Kind::kPhi:
+    case Input::Kind::kAlive:
+      return false;
+    case Input::Kind::kLifecycle:
+      return sightings.was_lifecycle_read(input.component);
+    case Input::Kind::kParameter:
+      return sightings.was_read(input.parameter);
+    case Input::Kind::kLevel:
+      return sightings.was_read(input.diagnostic);
+    default:
+      return sightings.was_read(input.signal);
+  }
+}
+
+void note_heard(const Knowledge& knowledge, KnownRobot& known) {
+  const RuleSet& rules = knowledge.rules;
+  const Sightings& sightings = knowledge.sightings;
+  for (std::size_t t = 0; t < rules.topics.size(); ++t) {
+    const std::string& name = rules.topics[t].name;
+    if (sightings.was_heard(TopicId(t)) && knowledge.graph.publisher_count(name) == 1)
+      known.heard.push_back(name);
+  }
+  std::set<std::string> values;
+  for (const Input& input : rules.inputs) {
+    if (was_read(input, sightings)) values.insert(value_name(input, rules));
+  }
+  known.read.assign(values.begin(), values.end());
+  known.is_whole = sightings.is_whole();
+}
+
+}  // namespace
+
+std::string value_name(const Input& input, const RuleSet& rules) {
+  switch (input.kind) {
+    case Input::Kind::kRate:
+    case Input::Kind::kAge:
+    case Input::Kind::kPhi:
+    case Input::Kind::kAlive:
+      return "";
+    case Input::Kind::kLifecycle:
+      return "lifecycle " + rules[input.component].name;
+    case Input::Kind::kParameter: {
+      const Parameter& parameter = rules[input.parameter];
+      return "parameter " + rules[parameter.component].name + " " + parameter.name;
+    }
+    case Input::Kind::kLevel:
+      return "diagnostic " + rules.diagnostics[input.diagnostic.index].name;
+    default:
+      return "signal " + rules[input.signal].name;
+  }
+}
 
 KnownRobot Knowledge::known_robot() const {
   KnownRobot known;
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     const ComponentId component(c);
     if (!sightings.has(component)) continue;
-    known.parts.push_back(
-        {rules[component].name, graph.node_name(component), graph.ends_of(component)});
+    known.parts.push_back({rules[component].name, graph.node_name(component),
+                           graph.ends_of(component), components[component].node_pid});
   }
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {
     if (sightings.has(TopicId(t))) known.topics.push_back(rules.topics[t].name);
   }
+  note_heard(*this, known);
   return known;
 }
 

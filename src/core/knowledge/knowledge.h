@@ -77,7 +77,7 @@ struct Knowledge {
   Time now{};          // of the step under way
   EventLog events;
 
-  // What the run that comes next should know. Changes only with the graph's changes and the count
+  // What the run that comes next should know. Changes only with the graph's changes and the counts
   // of sightings.
   KnownRobot known_robot() const;
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "language/rule_set.h"
 #include "robot/observation.h"
 
 namespace culprit {
@@ -21,11 +22,23 @@ struct KnownRobot {
     std::string component;
     std::string node;
     std::vector<End> ends;
+    int pid = 0;  // the process of this machine that its node was in; 0: not known, or it ended
     bool operator==(const Part&) const = default;
   };
   std::vector<Part> parts;
   std::vector<std::string> topics;  // that were seen (sightings.h)
+
+  // The rest is for a run that comes soon, with the same rules: once all that was seen is there again,
+  // it need not wait any longer for more (monitor_start.cpp).
+
+  // Topics of which messages came, since the process of the one node that published them began.
+  std::vector<std::string> heard{};
+  std::vector<std::string> read{};  // what had a value: "signal dark", "lifecycle camera"
+  bool is_whole = false;  // the run had its time to see what there is, and this one may rely on it
   bool operator==(const KnownRobot&) const = default;
 };
+
+// As KnownRobot::read has it; empty where it is a topic's rhythm, or whether a component is alive.
+std::string value_name(const Input& input, const RuleSet& rules);
 
 }  // namespace culprit

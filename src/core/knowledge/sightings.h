@@ -5,9 +5,12 @@
 //
 //   a component  was seen once its node was in the graph
 //   a topic      once a node published it, or a message came on it
+//
+// And what was heard of it, for the run that comes next (known_robot.h).
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/time.h"
@@ -18,7 +21,13 @@ namespace culprit {
 class Sightings {
  public:
   explicit Sightings(const RuleSet& rules)
-      : components_(rules.components.size()), topics_(rules.topics.size()) {}
+      : components_(rules.components.size()),
+        topics_(rules.topics.size()),
+        heard_(rules.topics.size()),
+        signals_(rules.signals.size()),
+        diagnostics_(rules.diagnostics.size()),
+        parameters_(rules.parameters.size()),
+        lifecycles_(rules.components.size()) {}
 
   // Since when it is known. Of what an earlier run saw: since this one began.
   std::optional<Time> first(ComponentId id) const { return components_[id.index]; }
@@ -33,7 +42,39 @@ class Sightings {
   // Another number whenever something was seen for the first time.
   std::size_t count() const { return count_; }
 
+  // A message came, or a value.
+  void hear(TopicId id) { mark(heard_, id.index); }
+  // Who published it is gone, or another process.
+  void unhear(TopicId id) {
+    if (heard_[id.index]) ++heard_count_;
+    heard_[id.index] = false;
+  }
+  void read(SignalId id) { mark(signals_, id.index); }
+  void read(DiagnosticId id) { mark(diagnostics_, id.index); }
+  void read(ParameterId id) { mark(parameters_, id.index); }
+  void read_lifecycle(ComponentId id) { mark(lifecycles_, id.index); }
+  bool was_heard(TopicId id) const { return heard_[id.index]; }
+  bool was_read(SignalId id) const { return signals_[id.index]; }
+  bool was_read(DiagnosticId id) const { return diagnostics_[id.index]; }
+  bool was_read(ParameterId id) const { return parameters_[id.index]; }
+  bool was_lifecycle_read(ComponentId id) const { return lifecycles_[id.index]; }
+
+  // There was time to see what there is.
+  void complete() {
+    if (!std::exchange(is_whole_, true)) ++heard_count_;
+  }
+  bool is_whole() const { return is_whole_; }
+
+  // Another number whenever one of these became true, or ceased to be.
+  std::size_t heard_count() const { return heard_count_; }
+
  private:
+  void mark(std::vector<bool>& marks, std::size_t place) {
+    if (marks[place]) return;
+    marks[place] = true;
+    ++heard_count_;
+  }
+
   bool note(std::optional<Time>& first, Time at) {
     if (first) return false;
     first = at;
@@ -44,6 +85,13 @@ class Sightings {
   std::vector<std::optional<Time>> components_;
   std::vector<std::optional<Time>> topics_;
   std::size_t count_ = 0;
+  std::vector<bool> heard_;
+  std::vector<bool> signals_;
+  std::vector<bool> diagnostics_;
+  std::vector<bool> parameters_;
+  std::vector<bool> lifecycles_;
+  bool is_whole_ = false;
+  std::size_t heard_count_ = 0;
 };
 
 }  // namespace culprit

@@ -35,7 +35,7 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       parameter_inputs_(knowledge.rules.parameters.size()),
       parameter_signals_(knowledge.rules.parameters.size()),
       diagnostic_inputs_(knowledge.rules.diagnostics.size()),
-      deadlines_(knowledge.rules.inputs.size() + 2 + 3 * knowledge.rules.components.size()) {
+      deadlines_(knowledge.rules.inputs.size() + 3 + 3 * knowledge.rules.components.size()) {
   const RuleSet& rules = knowledge.rules;
   for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
     const Input& input = rules.inputs[i];
@@ -91,6 +91,7 @@ void Monitor::observe(const Observation& observation, Time at) {
 
 void Monitor::restart(Time now) {
   is_deaf_ = false;
+  expect_no_more();
   awake_ = now;
   graced_ = later(now, kGrace);
   deadlines_.set(knowledge_.rules.inputs.size() + 1, graced_);
@@ -111,6 +112,10 @@ void Monitor::advance(Time now) {
   while (const auto due = deadlines_.pop_due(now)) {
     if (*due < knowledge_.rules.inputs.size()) {
       update(InputId(*due), now);
+      continue;
+    }
+    if (*due == look_at_expected_slot()) {
+      look_at_expected(now);
       continue;
     }
     if (*due >= return_of(ComponentId(0))) {
@@ -134,6 +139,7 @@ void Monitor::advance(Time now) {
     }
     if (*due > knowledge_.rules.inputs.size()) continue;
     if (!is_deaf_) {
+      if (discovered_ - start_ >= kGrace) write_.sightings.complete();
       tell_never_seen(now);
     } else {
       deadlines_.set(*due, later(now, kGrace));
@@ -157,6 +163,7 @@ void Monitor::remember(const KnownRobot& known) {
     const auto topic = topic_ids_.find(name);
     if (topic != topic_ids_.end()) see(topic->second, start_);
   }
+  expect(known);
 }
 
 void Monitor::tell_never_seen(Time at) {

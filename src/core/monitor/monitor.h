@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "knowledge/deadlines.h"
@@ -38,6 +39,8 @@ class Monitor {
   static constexpr Duration kEndsAwaited = std::chrono::seconds(10);
   // Participants announce themselves every 3 s.
   static constexpr Duration kGrace = std::chrono::seconds(5);
+  // How often it is looked whether all is there that an earlier run saw.
+  static constexpr Duration kLook = std::chrono::milliseconds(50);
   // Who ends in an orderly way says good-bye first. That comes another way than the word of the
   // operating system, and may come after it.
   static constexpr Duration kFarewell = std::chrono::milliseconds(10);
@@ -62,7 +65,8 @@ class Monitor {
   // (knowledge/sightings.h) is unknown; when `discovered`, that is told. What an earlier run saw may
   // still be discovered until `discovered`, from then on it is absent: a component that is not there
   // is not alive, a topic is silent. A topic that is seen later has as long to speak, from when its
-  // publisher came.
+  // publisher came. Where all is there that an earlier run saw, that is known before `discovered`
+  // (monitor_start.cpp).
   Monitor(const Knowledge& knowledge, Writes writes, Time start, Time discovered);
 
   // What earlier processes of culprit knew of lifecycles. Before the first observation.
@@ -94,6 +98,11 @@ class Monitor {
     std::vector<InputId> inputs;
     bool needs_phi = false;
     bool is_known_silent = false;  // since who publishes it was known dead, nothing came
+    std::optional<Time> listened;  // since when who publishes it knows that it is listened to
+    // It is certain that nothing came since then, though `discovered` is still ahead; and who would
+    // have spoken.
+    std::optional<Time> silent_since;
+    ComponentId silent_one;
   };
   struct Signal {
     std::optional<Time> last;
@@ -135,6 +144,7 @@ class Monitor {
   void on(Time, const HearingRegained&) {}  // the manager's: restart()
   void on(Time, const Overslept&) {}        // likewise
   void on(Time, const PriorsTold&) {}       // likewise: adopt()
+  void on(Time at, const ListenerKnown& seen);
   void on(Time, const HearingLost&) { is_deaf_ = true; }
 
   void read_signal(SignalId signal, const Value& value, Time at);
@@ -155,7 +165,19 @@ class Monitor {
   void see(TopicId topic, Time at);
   // From when on a topic that has not spoken is silent; kNever while it was not seen.
   Time silent_from(TopicId topic) const;
+  Time listened_since(TopicId topic) const;
+  Time zero_from(const Input& input) const;
   void tell_never_seen(Time at);
+
+  void expect(const KnownRobot& known);
+  void expect_no_more();
+  void look_at_expected(Time now);
+  bool is_all_there() const;
+  bool is_there(ComponentId component) const;
+  bool is_there(TopicId topic) const;
+  bool is_there(InputId input) const;
+  std::optional<ComponentId> certainly_silent(TopicId topic) const;
+  void forget_what_was_heard_of(ComponentId component, Time now);
 
   void await_ends(ComponentId component, Time at);
   void note_ends(ComponentId component, Time at);
@@ -183,6 +205,19 @@ class Monitor {
   // Since when a gap counts that began at `since`.
   Time heard_since(Time since) const { return std::max(since, awake_); }
 
+  // What an earlier run saw, until all of it is there or there was time for more.
+  struct Expected {
+    struct Part {
+      ComponentId component;
+      int pid = 0;  // as in KnownRobot::Part
+    };
+    std::vector<Part> parts;
+    std::vector<bool> seen;   // by topic
+    std::vector<bool> heard;  // likewise
+    std::vector<InputId> values;
+  };
+  std::optional<Expected> expected_;
+
   Time start_;
   Time discovered_;
   Time awake_ = kLongAgo;   // no gap counts from before
@@ -205,10 +240,14 @@ class Monitor {
   std::size_t return_of(ComponentId component) const {
     return farewell_of(component) + knowledge_.rules.components.size();
   }
+  std::size_t look_at_expected_slot() const {
+    return knowledge_.rules.inputs.size() + 2 + 3 * knowledge_.rules.components.size();
+  }
 
   // By InputId; then `discovered_`, then `graced_`; then ComponentState::awaits_ends_until by
   // component; then, by component, until when its good-bye may still come;
-  // then, by component, until when it may have to be heard again after its computer was.
+  // then, by component, until when it may have to be heard again after its computer was; then when
+  // to look at `expected_`.
   Deadlines deadlines_;
 };
 

@@ -152,6 +152,7 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
         std::max(longest_transition(state.coming_up), state.transition_patience);
     state.changes_until = later(at, is_measured || is_ours ? longest : kUnknownTransition);
   }
+  if (is_primary) write_.sightings.read_lifecycle(seen.component);
   if (is_primary && !state.took_place && knowledge_.states.reservation(seen.component) == nullptr)
     write_.components.intend_lifecycle(seen.component, seen.state, at, write_.events);
   if (seen.state != Lifecycle::kUnknown) state.took_place = false;
@@ -306,6 +307,8 @@ void Monitor::on(Time at, const LinkTrouble& seen) { write_.events.tell(at, Trou
 // The node or its process is gone or is another now: what was known of it does not hold any more.
 void Monitor::forget_process(ComponentId component, Time at) {
   ComponentState& state = write_.components[component];
+  if (state.in_graph) expect_no_more();
+  forget_what_was_heard_of(component, at);
   state.in_graph = false;
   state.node_pid = 0;
   state.is_rising = false;

@@ -26,6 +26,7 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
   if (!is_first) state.interval = smoothed(state.interval, at - *state.last);
   const bool has_rhythm = state.interval > Duration::zero();
   state.last = at;
+  write_.sightings.read(signal);
   std::string text;
   const Slot slot = as_type(value, declared.type, text);
   for (const InputId id : state.inputs) {
@@ -115,6 +116,7 @@ void Monitor::on(Time, const ParametersListed& seen) {
 }
 
 void Monitor::on(Time, const DiagnosticRead& seen) {
+  write_.sightings.read(seen.diagnostic);
   for (const InputId id : diagnostic_inputs_[seen.diagnostic.index]) {
     write_.signals.set(id, Slot::of(std::int64_t{seen.level}));
   }
@@ -122,6 +124,7 @@ void Monitor::on(Time, const DiagnosticRead& seen) {
 
 void Monitor::on(Time at, const ParameterRead& seen) {
   write_.components[seen.parameter] = seen.value;
+  write_.sightings.read(seen.parameter);
   for (const SignalId signal : parameter_signals_[seen.parameter.index])
     read_signal(signal, seen.value, at);
   for (const InputId id : parameter_inputs_[seen.parameter.index]) {

@@ -19,6 +19,7 @@ using monitor::usual_latency;
 
 void Monitor::on(Time at, const SampleArrived& seen) {
   write_.sightings.note(seen.topic, at);
+  write_.sightings.hear(seen.topic);
   Topic& topic = topics_[seen.topic.index];
   if (!topic.first) topic.first = at;
   SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(seen.topic);
@@ -66,8 +67,21 @@ void Monitor::see(TopicId topic, Time at) {
 }
 
 Time Monitor::silent_from(TopicId topic) const {
+  if (const auto& since = topics_[topic.index].silent_since) return *since;
   const auto first = knowledge_.sightings.first(topic);
   return first ? later(std::max(*first, start_), discovered_ - start_) : kNever;
+}
+
+// Of a topic that was seen and has not spoken.
+Time Monitor::listened_since(TopicId topic) const {
+  return topics_[topic.index].silent_since.value_or(
+      std::max(*knowledge_.sightings.first(topic), start_));
+}
+
+// From when on its rate is known although it has not spoken.
+Time Monitor::zero_from(const Input& input) const {
+  const auto& since = topics_[input.topic.index].silent_since;
+  return since ? later(heard_since(*since), input.window) : silent_from(input.topic);
 }
 
 Slot Monitor::age(InputId id, Time now) const {
@@ -75,14 +89,14 @@ Slot Monitor::age(InputId id, Time now) const {
   const auto& last = topics_[topic.index].last;
   if (last) return Slot::of(now - heard_since(*last));
   if (now < silent_from(topic)) return {};
-  return Slot::of(now - heard_since(std::max(*knowledge_.sightings.first(topic), start_)));
+  return Slot::of(now - heard_since(listened_since(topic)));
 }
 
 Slot Monitor::rate(InputId id, Time now) {
   const Input& input = knowledge_.rules[id];
   const Topic& topic = topics_[input.topic.index];
   const bool window_is_full = topic.first && later(heard_since(*topic.first), input.window) <= now;
-  if (topic.first ? !window_is_full : now < silent_from(input.topic)) return {};
+  if (topic.first ? !window_is_full : now < zero_from(input)) return {};
   derived_[id.index].count.advance(now);
   return Slot::of(derived_[id.index].count.rate());
 }
@@ -107,13 +121,14 @@ Time Monitor::next_crossing(InputId id, Time now) const {
     default:
       if (topic.first && now < later(heard_since(*topic.first), input.window))
         return later(heard_since(*topic.first), input.window);
+      if (!topic.first && now < zero_from(input)) return zero_from(input);
       return next_rate(id);
   }
 }
 
 Time Monitor::next_age(const Input& input, Time now) const {
-  const Time since = heard_since(topics_[input.topic.index].last.value_or(
-      std::max(*knowledge_.sightings.first(input.topic), start_)));
+  const auto& last = topics_[input.topic.index].last;
+  const Time since = heard_since(last ? *last : listened_since(input.topic));
   for (const double threshold : input.thresholds) {
     // One nanosecond on: `age > threshold` must hold then.
     const Time crossing = later(since, from_seconds(threshold) + Duration(1));

@@ -237,6 +237,12 @@ struct PriorsTold {
   std::string source;  // for people: who learned it; empty: nobody
 };
 
+// A node that was seen to publish the topic, alone, has proven that it knows that the topic is
+// listened to: what it publishes from now on is heard.
+struct ListenerKnown {
+  TopicId topic;
+};
+
 // One of these was observed. Copied and destroyed in observation.cpp: see EventWhat (knowledge/event.h) for why.
 class ObservationWhat
     : public std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished,
@@ -244,7 +250,7 @@ class ObservationWhat
                           ProcessSeen, Probed, Reply, LinkTrouble, Order, NamesakesSeen,
                           HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
                           ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
-                          HostHeard> {
+                          HostHeard, ListenerKnown> {
  public:
   using Variant = variant;
   using variant::variant;

@@ -67,6 +67,8 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
   bool is_known = true;
   if (auto* sample = std::get_if<SampleArrived>(&out.what)) {
     is_known = renumber(sample->topic, topics_);
+  } else if (auto* listener = std::get_if<ListenerKnown>(&out.what)) {
+    is_known = renumber(listener->topic, topics_);
   } else if (auto* signal = std::get_if<SignalRead>(&out.what)) {
     is_known = renumber(signal->signal, signals_);
   } else if (auto* level = std::get_if<DiagnosticRead>(&out.what)) {
