@@ -7,6 +7,8 @@
 namespace culprit {
 namespace {
 
+constexpr Duration kOverdue = std::chrono::milliseconds(450);  // it is asked every 400 ms
+
 // What is silent, if the rule is about nothing but who is there and who is heard.
 std::optional<std::vector<TopicId>> silent_topics(const Rule& rule, const RuleSet& rules) {
   std::vector<TopicId> topics;
@@ -46,6 +48,26 @@ std::optional<TopicId> heard_topic(ComponentId component, const Knowledge& knowl
   return std::nullopt;
 }
 
+// Since when a topic that the rule reads, and that only the component publishes, does not come any more.
+std::optional<Time> silent_since(ComponentId component, const Rule& rule,
+                                 const Knowledge& knowledge, Time now) {
+  std::optional<Time> since;
+  for (const InputId id : rule.inputs) {
+    const Input& input = knowledge.rules[id];
+    const bool is_of_topic = input.kind == Input::Kind::kRate || input.kind == Input::Kind::kAge ||
+                             input.kind == Input::Kind::kPhi;
+    if (!is_of_topic) continue;
+    const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
+    const std::string& name = knowledge.rules[input.topic].name;
+    const bool is_its =
+        knowledge.graph.publishes(component, name) && knowledge.graph.publisher_count(name) == 1;
+    const bool is_known = rhythm.last && rhythm.interval > Duration::zero();
+    if (is_its && is_known && later(*rhythm.last, rhythm.interval + rhythm.interval / 2) < now)
+      since = std::max(since.value_or(kLongAgo), *rhythm.last);
+  }
+  return since;
+}
+
 }  // namespace
 
 std::optional<std::string> contradiction(const Strategy& strategy, const Knowledge& knowledge,
@@ -73,7 +95,6 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
 }
 
 bool owes_answer(const ComponentState& state, Time now) {
-  constexpr Duration kOverdue = std::chrono::milliseconds(450);  // it is asked every 400 ms
   return state.answers_probes && later(state.answered, kOverdue) < now;
 }
 
@@ -87,8 +108,13 @@ std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowl
         adaptation.type == AdaptationType::kRestart || adaptation.type == AdaptationType::kRedeploy;
     const ComponentState& state = knowledge.components[adaptation.component];
     const bool is_asked = is_at_work(state) && state.changes_until == kNever;
-    const Time until = later(state.answered, kVerdict);
-    if (disturbs && is_asked && owes_answer(state, now) && now < until)
+    if (!disturbs || !is_asked || !state.answers_probes) continue;
+    const auto silent =
+        silent_since(adaptation.component, knowledge.rules[strategy.rule], knowledge, now);
+    const bool is_unheard = silent && state.answered <= *silent;
+    const Time until =
+        later(state.answered, owes_answer(state, now) || is_unheard ? kVerdict : Duration::zero());
+    if (now < until)
       return AnswerToCome{
           "it is seen whether " + knowledge.rules[adaptation.component].name + " still answers",
           until};

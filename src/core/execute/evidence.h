@@ -26,7 +26,7 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
 bool owes_answer(const ComponentState& state, Time now);
 
 // Whether a component that the strategy ends, or takes through its lifecycle, hangs will be known soon: its
-// answer is overdue. What hangs is not asked politely, and for nothing else; what was ended politely
+// answer is overdue, or it did not answer since what the rule is about fell silent. What hangs is not asked politely, and for nothing else; what was ended politely
 // can hardly be told from it any more. Nothing: it answers, or is never asked. A last resort does not wait.
 struct AnswerToCome {
   std::string reason;

@@ -379,6 +379,38 @@ TEST(Evidence, IsAwaitedWhereAnAnswerIsOverdue) {
   }
 }
 
+// The rule is faster than the questions: the last answer came just before the silence, and is not overdue.
+TEST(Evidence, IsAwaitedWhereNothingWasAnsweredSinceTheSilenceBegan) {
+  for (const bool hangs : {true, false}) {
+    TestRobot robot = one_camera(with_evidence(), R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Silent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 200ms
+    STRATEGY again 90 10
+      ADAPTATION camera redeploy 5
+)");
+    robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/rgb"});
+    robot.tell(Probed{ComponentId(0), true});
+    robot.run_for(400ms);
+    robot.tell(Probed{ComponentId(0), true});
+    const Time began = robot.now;
+    robot.run_for(100ms);  // one more message
+    robot["camera"].fault = "redeploy";
+    robot.run_for(299ms);
+    EXPECT_FALSE(robot.was_asked("camera: ")) << transcript(robot);
+    robot.tell(Probed{ComponentId(0), !hangs});
+    EXPECT_EQ(robot.was_asked("camera: stop process"), !hangs) << transcript(robot);
+    while (hangs && !robot.was_asked("camera: ") && robot.now < began + 5s) {
+      robot.run_for(400ms);
+      robot.tell(Probed{ComponentId(0), false});
+    }
+    EXPECT_LT(robot.now - began, 2s) << transcript(robot);
+    EXPECT_EQ(robot.count("camera is lost: its process runs, but it does not answer"), hangs)
+        << transcript(robot);
+  }
+}
+
 TEST(Evidence, WhatRunsAndPublishesIsNotEndedBecauseSomethingElseIsSilent) {
   TestRobot robot = camera_and_fusion("age(/fused) > 300ms", with_evidence());
   robot["fusion"].fault = "a person";
