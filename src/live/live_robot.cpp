@@ -265,7 +265,8 @@ void LiveRobot::stop_process(const Command& command) {
 
 void LiveRobot::end_process(CommandId command, ComponentId component, int pid,
                             owners::Ending ending, owners::Hangs hangs) {
-  if (auto* units = units_.of(component)) return units->stop(command, component, pid, ending);
+  if (auto* units = units_.of(component))
+    return units->stop(command, component, pid, ending, hangs);
   supervisor_->stop(command, component, ending, hangs);
 }
 

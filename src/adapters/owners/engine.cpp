@@ -270,18 +270,24 @@ Expected<void> Engine::change(const std::string& container, const std::string& w
   return Error{name() + ": " + message_of(answer->body)};
 }
 
+namespace {
+
+std::string whole_seconds(Duration duration) {
+  return std::to_string(std::chrono::floor<std::chrono::seconds>(duration).count());
+}
+
+}  // namespace
+
 Expected<void> Engine::start(const std::string& container) {
   return change(container, "start", kPatience);
 }
 
-Expected<void> Engine::stop(const std::string& container) {
-  const auto polite = std::chrono::duration_cast<std::chrono::seconds>(kPolite).count();
-  return change(container, "stop?t=" + std::to_string(polite), kPolite + kPatience);
+Expected<void> Engine::stop(const std::string& container, Duration polite) {
+  return change(container, "stop?t=" + whole_seconds(polite), polite + kPatience);
 }
 
-Expected<void> Engine::restart(const std::string& container) {
-  const auto polite = std::chrono::duration_cast<std::chrono::seconds>(kPolite).count();
-  return change(container, "restart?t=" + std::to_string(polite), kPolite + kPatience);
+Expected<void> Engine::restart(const std::string& container, Duration polite) {
+  return change(container, "restart?t=" + whole_seconds(polite), polite + kPatience);
 }
 
 Expected<void> Engine::kill(const std::string& container) {

@@ -19,8 +19,6 @@ namespace culprit::owners {
 class Engine : public ServiceOwner {
  public:
   static constexpr Duration kPatience = std::chrono::seconds(2);
-  // How long the engine gives a process to end before it kills it.
-  static constexpr Duration kPolite = std::chrono::seconds(3);
 
   // `host`: the computer, as ssh is told; empty: this one.
   explicit Engine(EngineContainer::Engine which, std::string host = {})
@@ -28,8 +26,9 @@ class Engine : public ServiceOwner {
 
   Expected<UnitState> state_of(const std::string& container) override;
   Expected<void> start(const std::string& container) override;
-  Expected<void> stop(const std::string& container) override;
-  Expected<void> restart(const std::string& container) override;
+  // The API has whole seconds: what has less gets none.
+  Expected<void> stop(const std::string& container, Duration polite) override;
+  Expected<void> restart(const std::string& container, Duration polite) override;
   Expected<void> kill(const std::string& container) override;
   // By the control group that the kernel says it is in; or it is the first process of the container,
   // or comes from that.

@@ -37,8 +37,10 @@ class ServiceOwner {
 
   virtual Expected<UnitState> state_of(const std::string& service) = 0;
   virtual Expected<void> start(const std::string& service) = 0;
-  virtual Expected<void> stop(const std::string& service) = 0;
-  virtual Expected<void> restart(const std::string& service) = 0;
+  // `polite`: how long its processes have to end by themselves, if that can be said with the request
+  // (an engine kills them then; systemd waits as its unit says).
+  virtual Expected<void> stop(const std::string& service, Duration polite) = 0;
+  virtual Expected<void> restart(const std::string& service, Duration polite) = 0;
   // SIGKILL to all its processes.
   virtual Expected<void> kill(const std::string& service) = 0;
 

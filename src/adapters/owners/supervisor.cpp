@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/tracer.h"
 #include "owners/bounded_log.h"
 #include "owners/mark.h"
 
@@ -262,6 +263,18 @@ std::optional<std::string> Supervisor::doubt(const Member& member) const {
          "; if that is right, start culprit anew";
 }
 
+// Who debugs it would lose it. What it started may be the node.
+std::optional<std::string> Supervisor::hold_of(const Member& member) {
+  std::vector<int> all{member.process.pid()};
+  if (member.process.relation() != Relation::kAdopted) all = members_of_group(all.front());
+  for (const int pid : all) {
+    if (state_letter(pid) == 't' && is_traced(pid))
+      return "process " + std::to_string(pid) +
+             " is not replaced while a debugger holds it: let it go on, or end it there";
+  }
+  return std::nullopt;
+}
+
 void Supervisor::note_launcher(ComponentId component, int pid, bool is_others) {
   const Origin origin = is_others ? origin_of(pid) : Origin{Origin::What::kEnded, 0};
   switch (origin.what) {
@@ -322,6 +335,8 @@ std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending
   for (const Member& member : members_) {
     if (member.component != component) continue;
     if (auto why = doubt(member)) return why;
+    if (ending == Ending::kForGood) continue;  // that is what is wanted, whoever looks at it
+    if (auto why = hold_of(member)) return why;
   }
   const Component& what = rules_[component];
   if (!what.is_respawned) return std::nullopt;

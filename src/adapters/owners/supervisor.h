@@ -15,7 +15,7 @@
 // Proof before harm. What was not started here, and carries no mark of ours, is ended only if it is
 // what the component was when its process was found first: the same program of the same user. What
 // is ended to be started again is ended only if the start was tried, all but its last step. Nobody
-// waits here for a program whose file system does not answer.
+// waits here for a program whose file system does not answer. What a debugger holds is not replaced.
 //
 // A component that is RESPAWNED is its launcher's to start: it is ended, and its launcher starts it
 // again. It is started here only once that launcher is known and has ended.
@@ -181,6 +181,7 @@ class Supervisor {
   Expected<void> begin_start(CommandId command, ComponentId component) CULPRIT_REQUIRES(mutex_);
   void meet(CommandId command, ComponentId component) CULPRIT_REQUIRES(mutex_);
   std::optional<std::string> doubt(const Member& member) const CULPRIT_REQUIRES(mutex_);
+  static std::optional<std::string> hold_of(const Member& member);
   void tell_of_unit(ComponentId component, int pid) const;
   void note_launcher(ComponentId component, int pid, bool is_others) CULPRIT_REQUIRES(mutex_);
   bool is_left_to_launcher(ComponentId component) const CULPRIT_REQUIRES(mutex_);

@@ -520,6 +520,25 @@ TEST(WatchedProcess, OneThatADebuggerHoldsIsNotStopped) {
   if (!may_trace) GTEST_SKIP() << "no process may be traced here";
 }
 
+// A person looks at it; but what is to stop for good does.
+TEST(Supervisor, DoesNotReplaceWhatADebuggerHolds) {
+  Supervised c("sleep 1000");
+  const int pid = c.start();
+  if (ptrace(PTRACE_SEIZE, pid, nullptr, nullptr) != 0)
+    GTEST_SKIP() << "no process may be traced here";
+  ptrace(PTRACE_INTERRUPT, pid, nullptr, nullptr);
+  for (const Time end = live_now() + 20s; state_letter(pid) != 't' && live_now() < end;)
+    std::this_thread::sleep_for(1ms);
+  c.supervisor->stop({3}, ComponentId(0), Ending::kToStartAgain, Hangs::kYes);
+  const Reply refused = c.reply_to({3});
+  EXPECT_EQ(refused.outcome, Outcome::kRefused);
+  EXPECT_NE(refused.text.find("is not replaced while a debugger holds it"), std::string::npos)
+      << refused.text;
+  EXPECT_TRUE(exists(pid));
+  c.supervisor->stop({4}, ComponentId(0), Ending::kForGood, Hangs::kYes);
+  EXPECT_EQ(c.reply_to({4}).outcome, Outcome::kDone);
+}
+
 TEST(Supervisor, NoticesThatAStoppedProcessGoesOn) {
   Supervised c("sleep 1000");
   const int pid = c.start();

@@ -36,8 +36,10 @@ class SystemdBus : public ServiceOwner {
   // Errors say what is wrong and what to do. Where systemd refused, nothing was done.
   Expected<UnitState> state_of(const std::string& unit) override;
   Expected<void> start(const std::string& unit) override { return ask("StartUnit", unit); }
-  Expected<void> stop(const std::string& unit) override { return ask("StopUnit", unit); }
-  Expected<void> restart(const std::string& unit) override { return ask("RestartUnit", unit); }
+  Expected<void> stop(const std::string& unit, Duration) override { return ask("StopUnit", unit); }
+  Expected<void> restart(const std::string& unit, Duration) override {
+    return ask("RestartUnit", unit);
+  }
   // SIGKILL to all processes of the unit.
   Expected<void> kill(const std::string& unit) override;
 

@@ -50,8 +50,8 @@ struct AsksAnOwner : testing::Test {
     units->start(CommandId{++count}, ComponentId(0));
     return answer();
   }
-  Reply stop(int pid, Ending ending = Ending::kToStartAgain) {
-    units->stop(CommandId{++count}, ComponentId(0), pid, ending);
+  Reply stop(int pid, Ending ending = Ending::kToStartAgain, Hangs hangs = Hangs::kNo) {
+    units->stop(CommandId{++count}, ComponentId(0), pid, ending, hangs);
     return answer();
   }
 

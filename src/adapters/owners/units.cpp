@@ -115,9 +115,13 @@ void Units::start(CommandId command, ComponentId component) {
   add({command, component, Errand::Kind::kStart});
 }
 
-void Units::stop(CommandId command, ComponentId component, int pid, Ending ending) {
+void Units::stop(CommandId command, ComponentId component, int pid, Ending ending, Hangs hangs) {
   const auto kind = ending == Ending::kToStartAgain ? Errand::Kind::kReplace : Errand::Kind::kEnd;
-  add({command, component, kind, pid, started_at(pid)});
+  add({command, component, kind, pid, started_at(pid), hangs});
+}
+
+Duration Units::polite_for(const Errand& errand) const {
+  return errand.hangs == Hangs::kYes && is_here() ? Supervisor::kHung : kPolite;
 }
 
 void Units::add(Errand errand) {
@@ -367,12 +371,13 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
     return answer(errand, Outcome::kRefused,
                   name + " runs " + *other + ", too, and would end it; give " +
                       rules_[errand.component].name + " a unit of its own");
-  const auto asked = is_to_replace ? bus.restart(name) : bus.stop(name);
+  const auto asked =
+      is_to_replace ? bus.restart(name, polite_for(errand)) : bus.stop(name, polite_for(errand));
   if (!asked) return answer(errand, Outcome::kRefused, asked.error());
   errand.was_asked = true;
   errand.main_pid = state.main_pid;
   const bool acts = !is_here() || (!is_stopped(errand.pid) && !is_stopped(errand.main_pid));
-  errand.escalate = acts ? later(live_now(), kPolite) : live_now();
+  errand.escalate = acts ? later(live_now(), polite_for(errand)) : live_now();
   errand.until = errand.latest;
   return false;
 }
@@ -396,7 +401,7 @@ bool Units::watch_end(Errand& errand, const UnitState& state) {
   // Never the successor: only while the process is still the one that is to end.
   if (now >= errand.escalate && !is_left_by_systemd && errand.main_pid != 0 &&
       state.main_pid == errand.main_pid) {
-    errand.escalate = later(now, kPolite);
+    errand.escalate = later(now, polite_for(errand));
     if (const auto killed = owner_of(errand.component).kill(name); !killed)
       inbox_.put(LinkTrouble{killed.error()});
   }

@@ -5,7 +5,7 @@
 // To redeploy is RestartUnit: systemd starts the unit again by itself, also if culprit ends in
 // between. A unit that systemd started again already (Restart=), or is about to, is not ended and
 // not started a second time. systemd ends a process politely; a process that is stopped, or is still
-// there after kPolite, gets SIGKILL, through systemd too.
+// there after kPolite, or after Supervisor::kHung if it hangs, gets SIGKILL, through systemd too.
 //
 // Proof before harm: a process that is not of the unit is not ended by ending the unit, so nothing
 // is ended then. Where systemd cannot be asked, or refuses, that is the answer, and nothing was
@@ -76,8 +76,10 @@ class Units {
   void start(CommandId command, ComponentId component);
 
   // Ends the process `pid` of the component's unit, and the unit; 0: whichever it runs. Replies when
-  // systemd and the kernel say that it is gone.
-  void stop(CommandId command, ComponentId component, int pid, Ending ending);
+  // systemd and the kernel say that it is gone. That it hangs counts on this computer only: what does
+  // not answer from another one may be hard to reach.
+  void stop(CommandId command, ComponentId component, int pid, Ending ending,
+            Hangs hangs = Hangs::kNo);
 
  private:
   struct Errand {
@@ -87,8 +89,9 @@ class Units {
     Kind kind = Kind::kStart;
     int pid = 0;                  // that is to end; 0: not known
     std::optional<Time> began{};  // of it
-    bool was_asked = false;       // systemd was
-    int main_pid = 0;             // when it was
+    Hangs hangs = Hangs::kNo;
+    bool was_asked = false;  // systemd was
+    int main_pid = 0;        // when it was
     Time escalate = kNever;
     Time until = kNever;
     Time since{};
@@ -119,6 +122,7 @@ class Units {
   bool is_here() const { return host_.empty(); }
   bool runs_here(int pid, std::optional<Time> began) const;
   Duration idle_period() const;
+  Duration polite_for(const Errand& errand) const;
 
   void add(Errand errand);
   void run();

@@ -91,6 +91,16 @@ TEST_F(UnitsOnAStandInForSystemd, ThatDoNotEndPolitelyAreKilled) {
   EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service", "KillUnit lidar.service"));
 }
 
+TEST_F(UnitsOnAStandInForSystemd, ThatHangAreKilledSoon) {
+  systemd.add("lidar.service", {.heeds_signals = false});
+  const int old = running();
+  const Time before = live_now();
+  EXPECT_EQ(stop(old, Ending::kToStartAgain, Hangs::kYes).outcome, Outcome::kDone);
+  EXPECT_LT(live_now() - before, Units::kPolite);
+  EXPECT_TRUE(start().outcome == Outcome::kDone && now_running() != old);
+  EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service", "KillUnit lidar.service"));
+}
+
 TEST_F(UnitsOnAStandInForSystemd, ThatAreStoppedAreKilledAtOnce) {
   const int old = running();
   kill(old, SIGSTOP);
