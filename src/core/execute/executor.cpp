@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "execute/limits.h"
 #include "knowledge/ambiguity.h"
 
 namespace culprit {
@@ -144,7 +145,11 @@ bool Executor::next_goal(Run& run, Time now) {
       run.goal = 0;
     }
     if (run.goal < run.goals.size()) {
-      run.pursuit.emplace(run.goals[run.goal], adaptation.component, now);
+      execute::Goal& goal = run.goals[run.goal];
+      const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&goal);
+      if (lifecycle != nullptr && launches(adaptation))
+        goal = execute::bringing_up(adaptation, lifecycle->target, knowledge_);
+      run.pursuit.emplace(goal, adaptation.component, now);
       return true;
     }
     write_.events.tell(now, AdaptationDone{run.strategy, run.adaptation, run.remark});
@@ -159,15 +164,14 @@ bool Executor::next_goal(Run& run, Time now) {
 
 void Executor::finish_goal(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
-  const AdaptationType type = knowledge_.rules[run.strategy].adaptations[run.adaptation].type;
+  const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   // A last resort is to last: whether the failure is gone is not what it is for.
   const bool is_to_last = knowledge_.rules[run.strategy].is_last_resort;
   if (!is_to_last && pursuit.has_changed_anything() && pursuit.before()) {
-    if (auto goal = execute::undoing(pursuit.goal(), type, *pursuit.before())) {
+    if (auto goal = execute::undoing(pursuit.goal(), adaptation.type, *pursuit.before())) {
       run.undo.push_back({pursuit.component(), std::move(*goal)});
     }
   }
-  const bool launches = type == AdaptationType::kRedeploy || type == AdaptationType::kStart;
   if (pursuit.is_reached()) {
     // Where it was brought last counts; a restart takes it through another state.
     const auto rest = run.goals.begin() + static_cast<std::ptrdiff_t>(run.goal) + 1;
@@ -177,13 +181,13 @@ void Executor::finish_goal(Run& run, Time now) {
     if (is_last) note_lifecycle(pursuit, now);
     if (const auto* parameter = std::get_if<execute::ParameterGoal>(&pursuit.goal()))
       forget_owed(pursuit.component(), parameter->name);
-    if (launches) note_coming_up(pursuit, now);
+    if (launches(adaptation)) note_coming_up(pursuit, now);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
     note_mode(pursuit, now);
     ++run.goal;
   } else {
     if (pursuit.met_rival()) note_rival(run, now);
-    if (launches && pursuit.took_too_long()) note_too_long(pursuit, now);
+    if (launches(adaptation) && pursuit.took_too_long()) note_too_long(pursuit, now);
     obstruct(run, knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark(),
              pursuit.remark(), now);
   }

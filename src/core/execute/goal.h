@@ -67,7 +67,8 @@ using Goal =
 // How long after the request a goal may take.
 Duration patience(const Goal& goal);
 
-// How a node that was just started is brought to `target`: by whom, and how long that may take.
+// How a node that was just started is brought to `target`: by whom, and how long that may take. To be
+// asked for once it is there, too: how long its start took is known only then.
 LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
                           const Knowledge& knowledge);
 

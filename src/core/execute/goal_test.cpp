@@ -91,6 +91,10 @@ TEST(Goal, LeavesADriverOfWhichNothingIsKnownTheTimeToShowItself) {
   EXPECT_EQ(grace(), 1s) << "the impact";
   before = {Driver::kUnknown, 3s, {}};
   EXPECT_EQ(grace(), 3s);
+  before = {Driver::kUnknown, 400ms, {}};
+  EXPECT_EQ(grace(), 600ms) << "until the impact is over";
+  before = {Driver::kUnknown, 2min, {}};
+  EXPECT_EQ(grace(), 1min) << "for ever is too long";
   before = {Driver::kOther, 3s, 2s};
   EXPECT_EQ(grace(), 5s);
   before = {Driver::kCulprit, 3s, 2s};

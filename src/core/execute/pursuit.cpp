@@ -166,7 +166,10 @@ std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Tim
     if (state.hangs()) return give_up("it does not answer any more");
     if (state.in_graph) return give_up("its process is stopped");
     const std::string& how = state.process_remark;
-    return give_up("it is not there any more" + (how.empty() ? "" : ": " + how));
+    return give_up("it is not there any more" + (how.empty() ? "" : ": " + how) +
+                   (may_drive_itself(knowledge)
+                        ? "; does it activate itself? Then it is LIFECYCLE self, not managed"
+                        : ""));
   }
   if (must_insist(knowledge)) {
     answer_.reset();
@@ -397,6 +400,12 @@ std::optional<Pursuit::Request> Pursuit::give_up(std::string reason) {
 bool Pursuit::is_left() const {
   const auto* lifecycle = std::get_if<LifecycleGoal>(&goal_);
   return lifecycle != nullptr && lifecycle->is_left_to_others;
+}
+
+// The rules say that culprit drives it, and it ended when culprit did.
+bool Pursuit::may_drive_itself(const Knowledge& knowledge) const {
+  return std::holds_alternative<LifecycleGoal>(goal_) && has_changed_anything() &&
+         knowledge.rules[component_].lifecycle == LifecycleDriver::kManaged;
 }
 
 bool Pursuit::has_sent(Transition transition) const {

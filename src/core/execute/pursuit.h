@@ -87,6 +87,7 @@ class Pursuit {
   std::optional<Request> reach(std::string remark = "");
   std::optional<Request> give_up(std::string reason);
   bool is_left() const;
+  bool may_drive_itself(const Knowledge& knowledge) const;
   bool has_sent(Transition transition) const;
 
   Goal goal_;

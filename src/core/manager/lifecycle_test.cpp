@@ -66,6 +66,100 @@ TEST(Lifecycles, ANodeThatActivatesItselfCrashesOnceAtMost) {
   EXPECT_EQ(robot.count_asked("camera: configure"), 1u) << transcript(robot);
 }
 
+std::string active_camera_with(const std::string& clause) {
+  return camera_with(clause) +
+         "RULE Idle\n  POLICIES WARNING\n  TRIGGER lifecycle(camera) != \"active\"\n"
+         "    STRATEGY activate 90 10\n      ADAPTATION camera activate 5\n";
+}
+
+// Nobody was seen to drive it, for culprit came later.
+TEST(Lifecycles, ANodeThatActivatesItselfWithinTheImpactNeverCrashes) {
+  for (const bool is_demanded : {false, true}) {
+    TestRobot robot = robot_of(is_demanded ? active_camera_with("") : camera_with(""), 1500ms);
+    for (int kills = 1; kills <= 3; ++kills) {
+      robot.kill("camera");
+      robot.run_for(60s);
+      EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+      EXPECT_EQ(robot.count_asked("camera: start"), static_cast<std::size_t>(kills))
+          << transcript(robot);
+    }
+    EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
+    EXPECT_FALSE(robot.was_asked("camera: activate")) << transcript(robot);
+  }
+}
+
+// Of which a rule says that it must be active, too: the rule's own strategies wait as the redeploy does.
+TEST(Lifecycles, ANodeThatARuleWantsActiveCrashesOnceAtMostToo) {
+  TestRobot robot = robot_of(active_camera_with(""), 4s);
+  for (int kills = 1; kills <= 3; ++kills) {
+    robot.kill("camera");
+    robot.run_for(60s);
+    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  }
+  EXPECT_EQ(robot.count_asked("camera: start"), 4u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: configure"), 1u) << transcript(robot);
+}
+
+TEST(Lifecycles, ANodeThatStartsSlowlyIsGivenAsLongAgain) {
+  TestRobot robot = robot_of(camera_with(""), 5s);
+  robot["camera"].start_time = 6s;
+  robot.kill("camera");
+  robot.run_for(60s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
+}
+
+// It is there after 300 ms.
+TEST(Lifecycles, ANodeThatNobodyDrivesIsActivatedWhenTheImpactIsOver) {
+  for (const bool is_demanded : {false, true}) {
+    TestRobot robot = robot_of(is_demanded ? active_camera_with("") : camera_with(""));
+    robot.kill("camera");
+    while (!robot.was_asked("camera: start") && robot.now < Time(10s)) robot.run_for(10ms);
+    const Time started = robot.now;
+    while (!robot.was_asked("camera: configure") && robot.now < Time(20s)) robot.run_for(10ms);
+    EXPECT_GE(robot.now - started, 1900ms) << transcript(robot);
+    EXPECT_LE(robot.now - started, 2200ms) << transcript(robot);
+    robot.run_for(1s);
+    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+    const Time killed = robot.now;
+    robot.kill("camera");
+    while (!robot.works("camera") && robot.now < killed + 10s) robot.run_for(100ms);
+    EXPECT_LT(robot.now - killed, 1500ms) << "that culprit does it is known by now";
+  }
+}
+
+// It comes between the two requests of culprit, and does not mind.
+TEST(Lifecycles, ADriverThatShowsUpLateIsLeftAlone) {
+  TestRobot robot = robot_of(camera_with(""));
+  robot.kill("camera");
+  while (!robot.was_asked("camera: start") && robot.now < Time(10s)) robot.run_for(10ms);
+  robot.run_for(1s);
+  ASSERT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
+  robot["camera"].state = Lifecycle::kInactive;
+  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  robot.run_for(3s);
+  EXPECT_FALSE(robot.was_asked("camera: activate")) << "whoever configured it goes on";
+  robot["camera"].state = Lifecycle::kActive;
+  robot.tell(LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("camera: activate")) << transcript(robot);
+  EXPECT_EQ(robot.manager().knowledge().components[ComponentId(0)].coming_up.driver,
+            ComingUp::Driver::kOther);
+}
+
+// Its timer finds it configured, or active.
+TEST(Lifecycles, WhatIsWronglyDeclaredManagedIsToldWithWhatToDeclare) {
+  for (const Duration after : {12ms, 400ms}) {
+    TestRobot robot = robot_of(camera_with("LIFECYCLE managed"), after);
+    robot.kill("camera");
+    robot.run_for(5s);
+    EXPECT_GE(robot.count("does it activate itself? Then it is LIFECYCLE self"), 1u)
+        << transcript(robot);
+  }
+}
+
 // As a node in Python does: how its process ends is seen after culprit has told it to.
 TEST(Lifecycles, ANodeThatLeavesTheGraphBeforeItsProcessEndsCrashesOnceAtMostToo) {
   TestRobot robot = robot_of(camera_with(""), 4s);

@@ -198,6 +198,12 @@ void Monitor::note_end_of_start(ComponentId component, Time at) {
   how.driver = ComingUp::Driver::kOther;
   how.rising = at - began;
   write_.components.note_coming_up(component, how, at, write_.events);
+  const Component& declared = knowledge_.rules[component];
+  if (declared.lifecycle == LifecycleDriver::kManaged && state.culprit_raised != kLongAgo)
+    write_.events.tell(
+        at, Trouble{declared.name + " ended soon after culprit had activated it, as LIFECYCLE "
+                                    "managed says; does it activate itself? Then it is LIFECYCLE "
+                                    "self"});
 }
 
 void Monitor::on(Time at, const ProcessSeen& seen) {
@@ -329,13 +335,14 @@ bool Monitor::hangs_in_transition(ComponentId component, Time now) const {
 }
 
 // A node may have one thread, which answers nothing while it changes its lifecycle.
-// Of a node whose process is known to run, only one that answered before can cease to; and while
-// what it publishes comes, or pauses as it did when it was well, it is at work.
+// While what it publishes comes, or pauses as it did when it was well, it is at work. Of a node whose
+// process is known to run, only one that answered before can cease to.
 bool Monitor::does_not_answer(ComponentId component, Time now) const {
   const ComponentState& state = knowledge_.components[component];
   if (state.missed_probes < kMissedProbes) return false;
   if (state.changes_until != kNever && !hangs_in_transition(component, now)) return false;
-  if (state.known_pid() == 0) return true;
+  if (state.known_pid() == 0)
+    return !is_heard_of(component, knowledge_) || is_silent(component, now);
   if (!state.answers_probes) return false;
   if (state.changes_until != kNever) return true;
   return is_heard_of(component, knowledge_) ? is_silent(component, now)

@@ -440,6 +440,22 @@ TEST(Monitor, ALocalNodeIsNotAtWorkBecauseAnotherOnePublishes) {
   EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, false);
 }
 
+// As one in a container may be, or on another computer.
+TEST(Monitor, ANodeOfAnUnknownProcessIsAtWorkWhileItIsHeardToo) {
+  Watched watched(rule(kHeard));
+  watched.observe(1s, NodeAppeared{"/c", 0});
+  watched.observe(1s, EndpointAppeared{"/c", EndpointKind::kPublisher, "/t"});
+  for (Duration at = 1s; at < 5s; at += 100ms) {
+    watched.observe(at, SampleArrived{TopicId(0), 1});
+    watched.observe(at, Probed{ComponentId(0), at < 3s});
+  }
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, true) << "it is busy";
+  watched.observe(5800ms, Probed{ComponentId(0), false});
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, true);
+  watched.observe(6s, Probed{ComponentId(0), false});
+  EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, false);
+}
+
 TEST(Monitor, WhoNeverAnsweredProvesNothingByNotAnswering) {
   Watched watched(rule(kHeard));
   watched.observe(1s, NodeAppeared{"/c", 7});
