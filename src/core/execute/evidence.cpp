@@ -102,6 +102,8 @@ std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowl
                                            Time now) {
   // That it hangs is told by two questions, or three, that were not answered within 500 ms (Monitor).
   constexpr Duration kVerdict = std::chrono::milliseconds(1900);
+  // Less than it takes to be asked again.
+  constexpr Duration kWakes = std::chrono::milliseconds(250);
   if (strategy.is_last_resort) return std::nullopt;
   for (const Adaptation& adaptation : strategy.adaptations) {
     const bool disturbs =
@@ -111,9 +113,11 @@ std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowl
     if (!disturbs || !is_asked || !state.answers_probes) continue;
     const auto silent =
         silent_since(adaptation.component, knowledge.rules[strategy.rule], knowledge, now);
-    const bool is_unheard = silent && state.answered <= *silent;
-    const Time until =
-        later(state.answered, owes_answer(state, now) || is_unheard ? kVerdict : Duration::zero());
+    Duration patience{};
+    // What has just answered may have been busy: its thread, which works again, publishes next.
+    if (silent) patience = kWakes;
+    if (owes_answer(state, now) || (silent && state.answered <= *silent)) patience = kVerdict;
+    const Time until = later(state.answered, patience);
     if (now < until)
       return AnswerToCome{
           "it is seen whether " + knowledge.rules[adaptation.component].name + " still answers",

@@ -400,6 +400,9 @@ RULE Silent
     robot.run_for(299ms);
     EXPECT_FALSE(robot.was_asked("camera: ")) << transcript(robot);
     robot.tell(Probed{ComponentId(0), !hangs});
+    robot.run_for(249ms);
+    EXPECT_FALSE(robot.was_asked("camera: ")) << "it may publish next" << transcript(robot);
+    robot.run_for(11ms);
     EXPECT_EQ(robot.was_asked("camera: stop process"), !hangs) << transcript(robot);
     while (hangs && !robot.was_asked("camera: ") && robot.now < began + 5s) {
       robot.run_for(400ms);

@@ -280,7 +280,8 @@ std::vector<Decision> Manager::allowed_plan(const std::vector<RuleId>& failures,
                        [&](StrategyId chosen) { return governor_.withholds(chosen, now); });
 }
 
-// While a failure waits for its turn it is planned anew once per cycle, and when its back-off ends.
+// While a failure waits for its turn it is planned anew once per cycle, when its back-off ends, and when
+// something is no longer withheld.
 Time Manager::next_planning(Time now) const {
   Time next = kNever;
   for (const RuleId id : knowledge_.states.active()) {
@@ -288,6 +289,10 @@ Time Manager::next_planning(Time now) const {
     if (state.phase != RulePhase::kFailing || state.is_advised) continue;
     next = std::min(next, later(now, knowledge_.rules.cycle));
     if (state.search.retry_at > now) next = std::min(next, state.search.retry_at);
+    for (const StrategyId strategy : knowledge_.rules[id].strategies) {
+      const Time allowed = knowledge_.withheld[strategy.index].until;
+      if (allowed > now) next = std::min(next, allowed);
+    }
   }
   return next;
 }
