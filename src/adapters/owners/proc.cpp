@@ -14,6 +14,7 @@
 #include <system_error>
 #include <unistd.h>
 
+#include "base/tracer.h"
 #include "owners/file_descriptor.h"
 
 namespace culprit::owners {
@@ -149,6 +150,8 @@ std::optional<char> state_letter(int pid) {
   const auto end = line.rfind(')');
   return end == line.npos || end + 2 >= line.size() ? std::nullopt : std::optional(line[end + 2]);
 }
+
+bool is_held_by_debugger(int pid) { return state_letter(pid) == 't' && is_traced(pid); }
 
 std::optional<int> status_of_zombie(int pid) {
   // Of other users' processes it is 0 (proc(5)).

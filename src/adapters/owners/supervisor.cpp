@@ -12,7 +12,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/tracer.h"
 #include "owners/bounded_log.h"
 #include "owners/mark.h"
 
@@ -268,7 +267,7 @@ std::optional<std::string> Supervisor::hold_of(const Member& member) {
   std::vector<int> all{member.process.pid()};
   if (member.process.relation() != Relation::kAdopted) all = members_of_group(all.front());
   for (const int pid : all) {
-    if (state_letter(pid) == 't' && is_traced(pid))
+    if (is_held_by_debugger(pid))
       return "process " + std::to_string(pid) +
              " is not replaced while a debugger holds it: let it go on, or end it there";
   }
