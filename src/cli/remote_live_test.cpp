@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/environment.h"
+#include "base/live_clock.h"
 #include "cli/test_network.h"
 #include "owners/proc.h"
 #include "owners/test_engine.h"

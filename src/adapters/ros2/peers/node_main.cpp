@@ -1,17 +1,24 @@
 // A managed node in a process of its own, for tests to watch, steer and kill:
 //
 //     ros2_peer_node <domain> [--subnet] [--hangs-if FILE] [--container] [--keeps-if FILE]
-//                    [--active] <full name>...
+//                    [--active] [--activates-after SECONDS] [--stalls-if FILE] [--period SECONDS]
+//                    <full name>...
 //
 // It is heard on this machine only, unless --subnet.
 //
 // If there is FILE when it is activated, it takes the file away and does nothing more.
 //
-// With --active the first configures and activates itself, as many drivers do.
+// With --active the first configures and activates itself, as many drivers do. With
+// --activates-after it does so by a timer, and ends with 1 if somebody was there first, as nodes in
+// Python do whose timer raises "Transition is not registered".
+//
+// If there is the FILE of --stalls-if when it has published, it takes the file away, and its only thread
+// does nothing for as many seconds as the file says: nothing is published, nobody is answered, and no
+// polite signal is obeyed.
 //
 // Each has the parameters gain (0..10), count (not negative), label and serial (read-only), the
-// service ~/trigger, ~/value and ~/load, which is of a type of its own, at 10 Hz while it is active,
-// and one status on /diagnostics each second.
+// service ~/trigger, ~/value and ~/load, which is of a type of its own, at 10 Hz, or each --period,
+// while it is active, and one status on /diagnostics each second.
 //
 // Of several, or with --container, the first is a component container, and the others live in it. It
 // loads, unloads and lists as rclcpp_components' ComponentManager does: classes by the ament index of
@@ -19,6 +26,7 @@
 // it loads and unloads. While there is the FILE of --keeps-if it unloads nothing, and says so.
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -31,6 +39,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "ros2/lifecycle_node.h"
@@ -54,8 +63,12 @@ struct Load {
 
 class PeerNode {
  public:
-  PeerNode(Executor& executor, std::string hangs_if)
-      : executor_(executor), hangs_if_(std::move(hangs_if)) {}
+  struct Habits {
+    std::string hangs_if{};
+    std::string stalls_if{};
+    Duration period = 100ms;
+  };
+  PeerNode(Executor& executor, Habits habits) : executor_(executor), habits_(std::move(habits)) {}
 
   Expected<void> open(Context& context, NodeName name,
                       const std::vector<msg::Parameter>& overrides = {}) {
@@ -128,12 +141,19 @@ class PeerNode {
     return TransitionResult::kSuccess;
   }
   TransitionResult activate() {
-    if (std::filesystem::remove(hangs_if_)) std::this_thread::sleep_for(1h);
-    tick_.emplace(executor_, 100ms, [this] {
+    if (std::filesystem::remove(habits_.hangs_if)) std::this_thread::sleep_for(1h);
+    tick_.emplace(executor_, habits_.period, [this] {
       value_->publish({managed_->node().parameters().get<double>("gain") * ++ticks_});
       load_->publish({0.5, ticks_});
+      stall();
     });
     return TransitionResult::kSuccess;
+  }
+  void stall() const {
+    double seconds = 0;
+    if (!(std::ifstream(habits_.stalls_if) >> seconds)) return;
+    std::filesystem::remove(habits_.stalls_if);
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   }
   TransitionResult deactivate() {
     tick_.reset();
@@ -158,7 +178,7 @@ class PeerNode {
   }
 
   Executor& executor_;
-  const std::filesystem::path hangs_if_;
+  const Habits habits_;
   int triggered_ = 0;
   int ticks_ = 0;
   std::unique_ptr<LifecycleNode> managed_;
@@ -192,7 +212,7 @@ class Container {
   }
 
   Expected<std::uint64_t> add(NodeName name, const std::vector<msg::Parameter>& parameters) {
-    auto peer = std::make_unique<PeerNode>(executor_, "");
+    auto peer = std::make_unique<PeerNode>(executor_, PeerNode::Habits{});
     if (auto opened = peer->open(context_, std::move(name), parameters); !opened)
       return Error{opened.error()};
     loaded_[++last_id_] = std::move(peer);
@@ -257,6 +277,10 @@ class Container {
   std::uint64_t last_id_ = 0;
 };
 
+Duration seconds_in(const char* text) {
+  return std::chrono::milliseconds(std::lround(1000 * std::atof(text)));
+}
+
 int fail(const std::string& why) {
   std::fprintf(stderr, "ros2_peer_node: %s\n", why.c_str());
   return 1;
@@ -273,8 +297,9 @@ int main(int argc, char** argv) {
   std::from_chars(domain.data(), domain.data() + domain.size(), options.domain);
   options.reach = Reach::kLocalhost;
   options.gid_size = GidSize::kHumbleAndOlder;
-  std::string hangs_if;
+  PeerNode::Habits habits;
   std::string keeps_if;
+  std::optional<Duration> activates_after;
   bool is_container = false;
   bool is_active = false;
   std::vector<NodeName> names;
@@ -287,9 +312,17 @@ int main(int argc, char** argv) {
     } else if (argument == "--subnet") {
       options.reach = Reach::kSubnet;
     } else if (argument == "--hangs-if" && i + 1 < argc) {
-      hangs_if = argv[++i];
+      habits.hangs_if = argv[++i];
     } else if (argument == "--keeps-if" && i + 1 < argc) {
       keeps_if = argv[++i];
+    } else if (argument == "--stalls-if" && i + 1 < argc) {
+      habits.stalls_if = argv[++i];
+    } else if (argument == "--activates-after" && i + 1 < argc) {
+      activates_after = seconds_in(argv[++i]);
+      if (*activates_after <= Duration::zero()) return fail("--activates-after needs seconds");
+    } else if (argument == "--period" && i + 1 < argc) {
+      habits.period = seconds_in(argv[++i]);
+      if (habits.period <= Duration::zero()) return fail("--period needs seconds");
     } else {
       auto name = parse_node_name(argument);
       if (!name) return fail(name.error());
@@ -299,7 +332,7 @@ int main(int argc, char** argv) {
   if (names.empty()) return fail("no name");
   auto context = Context::create(executor, options);
   if (!context) return fail(context.error());
-  PeerNode first(executor, hangs_if);
+  PeerNode first(executor, habits);
   if (auto opened = first.open(**context, names.front()); !opened) return fail(opened.error());
   if (is_active && !first.bring_up()) return fail("cannot be brought up");
   std::optional<Container> container;
@@ -310,6 +343,14 @@ int main(int argc, char** argv) {
       if (auto added = container->add(names[n], {}); !added) return fail(added.error());
     }
   }
+  std::optional<Timer> activates;
+  bool was_too_late = false;
+  const auto activate = [&, is_done = false]() mutable {
+    if (std::exchange(is_done, true) || first.bring_up()) return;
+    was_too_late = true;
+    executor.stop();
+  };
+  if (activates_after) activates.emplace(executor, *activates_after, activate);
   executor.run();
-  return 0;
+  return was_too_late ? fail("Transition is not registered.") : 0;
 }
