@@ -354,10 +354,6 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
   if (!runs && errand.pid != 0 && state.main_pid == errand.pid && live_now() < errand.until)
     return false;
   const bool is_to_replace = errand.kind == Errand::Kind::kReplace;
-  if (is_to_replace && runs && is_held_by_debugger(errand.pid))
-    return answer(errand, Outcome::kRefused,
-                  "process " + std::to_string(errand.pid) +
-                      " is not replaced while a debugger holds it: let it go on, or end it there");
   if (!runs && state.is_over() && !state.has_job) return answer(errand, Outcome::kDone, "");
   const auto elsewhere = elsewhere_.find(errand.component);
   if (is_to_replace && elsewhere != elsewhere_.end() &&

@@ -5,7 +5,6 @@
 
 #include <csignal>
 #include <optional>
-#include <sys/ptrace.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -110,19 +109,6 @@ TEST_F(UnitsOnAStandInForSystemd, ThatAreStoppedAreKilledAtOnce) {
   EXPECT_EQ(stop(old).outcome, Outcome::kDone);
   EXPECT_LT(live_now() - before, Units::kPolite);
   EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service", "KillUnit lidar.service"));
-}
-
-TEST_F(UnitsOnAStandInForSystemd, ThatADebuggerHoldsAreNotReplaced) {
-  const int old = running();
-  if (ptrace(PTRACE_SEIZE, old, nullptr, nullptr) != 0)
-    GTEST_SKIP() << "no process may be traced here";
-  ptrace(PTRACE_INTERRUPT, old, nullptr, nullptr);
-  while (!is_held_by_debugger(old)) std::this_thread::sleep_for(5ms);
-  EXPECT_THAT(stop(old).text, HasSubstr("is not replaced while a debugger holds it"));
-  EXPECT_TRUE(is_alive(old));
-  EXPECT_THAT(systemd.asked(), IsEmpty());
-  waitpid(old, nullptr, __WALL);
-  ptrace(PTRACE_DETACH, old, nullptr, nullptr);
 }
 
 TEST_F(UnitsOnAStandInForSystemd, AreEndedForGood) {
