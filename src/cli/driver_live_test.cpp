@@ -31,7 +31,7 @@ COMPONENT lidar NODE /lidar LAUNCH "ros2_peer_node )" +
                              environment("ROS_DOMAIN_ID") + options + R"( /lidar"
 RULE Down
   POLICIES ERROR
-  TRIGGER alive(lidar) == false || lifecycle(lidar) != "active"
+  TRIGGER alive(lidar) == false
     STRATEGY again 90 10
       ADAPTATION lidar redeploy 15
 )";

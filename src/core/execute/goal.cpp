@@ -84,10 +84,10 @@ Duration patience(const Goal& goal) {
       goal);
 }
 
-// Who does it, in this order: the rule file says so; somebody was seen to; culprit did it before. Where
-// nothing is known, a driver gets as long as the start took to show itself, and until the impact is over
-// if that is later: two who take one node through its lifecycle make one another fail, also where a
-// rule says that it must be active.
+// Who does it, in this order: the rule file says so; somebody was seen to; a rule says where it must be,
+// which is for culprit to reach; culprit did it before. Where nothing is known, a driver gets as long as the
+// start took to show itself, and until the impact is over if that is later: two who take one node
+// through its lifecycle make one another fail.
 LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
                           const Knowledge& knowledge) {
   constexpr Duration kLongestGrace = 60s;
@@ -110,7 +110,7 @@ LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
   }
   if (before.driver == Driver::kOther) {
     goal.grace = std::min<Duration>(2 * before.rising + impact, kLongestGrace);
-  } else if (before.driver == Driver::kUnknown) {
+  } else if (before.driver == Driver::kUnknown && !demanded(adaptation.component, knowledge)) {
     goal.grace = std::min(std::max(before.joining, impact - before.joining), kLongestGrace);
   }
   return goal;

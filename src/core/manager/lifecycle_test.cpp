@@ -74,21 +74,19 @@ std::string active_camera_with(const std::string& clause) {
 
 // Nobody was seen to drive it, for culprit came later.
 TEST(Lifecycles, ANodeThatActivatesItselfWithinTheImpactNeverCrashes) {
-  for (const bool is_demanded : {false, true}) {
-    TestRobot robot = robot_of(is_demanded ? active_camera_with("") : camera_with(""), 1500ms);
-    for (int kills = 1; kills <= 3; ++kills) {
-      robot.kill("camera");
-      robot.run_for(60s);
-      EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-      EXPECT_EQ(robot.count_asked("camera: start"), static_cast<std::size_t>(kills))
-          << transcript(robot);
-    }
-    EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
-    EXPECT_FALSE(robot.was_asked("camera: activate")) << transcript(robot);
+  TestRobot robot = robot_of(camera_with(""), 1500ms);
+  for (int kills = 1; kills <= 3; ++kills) {
+    robot.kill("camera");
+    robot.run_for(60s);
+    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+    EXPECT_EQ(robot.count_asked("camera: start"), static_cast<std::size_t>(kills))
+        << transcript(robot);
   }
+  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("camera: activate")) << transcript(robot);
 }
 
-// Of which a rule says that it must be active, too: the rule's own strategies wait as the redeploy does.
+// A rule says that it must be active: culprit brings it there at once, until it knows better.
 TEST(Lifecycles, ANodeThatARuleWantsActiveCrashesOnceAtMostToo) {
   TestRobot robot = robot_of(active_camera_with(""), 4s);
   for (int kills = 1; kills <= 3; ++kills) {
@@ -112,21 +110,19 @@ TEST(Lifecycles, ANodeThatStartsSlowlyIsGivenAsLongAgain) {
 
 // It is there after 300 ms.
 TEST(Lifecycles, ANodeThatNobodyDrivesIsActivatedWhenTheImpactIsOver) {
-  for (const bool is_demanded : {false, true}) {
-    TestRobot robot = robot_of(is_demanded ? active_camera_with("") : camera_with(""));
-    robot.kill("camera");
-    while (!robot.was_asked("camera: start") && robot.now < Time(10s)) robot.run_for(10ms);
-    const Time started = robot.now;
-    while (!robot.was_asked("camera: configure") && robot.now < Time(20s)) robot.run_for(10ms);
-    EXPECT_GE(robot.now - started, 1900ms) << transcript(robot);
-    EXPECT_LE(robot.now - started, 2200ms) << transcript(robot);
-    robot.run_for(1s);
-    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
-    const Time killed = robot.now;
-    robot.kill("camera");
-    while (!robot.works("camera") && robot.now < killed + 10s) robot.run_for(100ms);
-    EXPECT_LT(robot.now - killed, 1500ms) << "that culprit does it is known by now";
-  }
+  TestRobot robot = robot_of(camera_with(""));
+  robot.kill("camera");
+  while (!robot.was_asked("camera: start") && robot.now < Time(10s)) robot.run_for(10ms);
+  const Time started = robot.now;
+  while (!robot.was_asked("camera: configure") && robot.now < Time(20s)) robot.run_for(10ms);
+  EXPECT_GE(robot.now - started, 1900ms) << transcript(robot);
+  EXPECT_LE(robot.now - started, 2200ms) << transcript(robot);
+  robot.run_for(1s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  const Time killed = robot.now;
+  robot.kill("camera");
+  while (!robot.works("camera") && robot.now < killed + 10s) robot.run_for(100ms);
+  EXPECT_LT(robot.now - killed, 1500ms) << "that culprit does it is known by now";
 }
 
 // It comes between the two requests of culprit, and does not mind.
