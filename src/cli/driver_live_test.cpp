@@ -1,5 +1,5 @@
-// Who takes a node through its lifecycle when it starts, where nobody has declared it: the node itself by a timer, or
-// nobody. A node whose timer finds that somebody was there first ends with an error, as nodes in Python do.
+// Who takes a node through its lifecycle when it starts, where nobody has declared it and no rule says where it must
+// be: the node itself by a timer, or nobody. A node whose timer finds that somebody was there first ends with an error, as nodes in Python do.
 #include <csignal>
 #include <thread>
 
@@ -31,7 +31,7 @@ COMPONENT lidar NODE /lidar LAUNCH "ros2_peer_node )" +
                              environment("ROS_DOMAIN_ID") + options + R"( /lidar"
 RULE Down
   POLICIES ERROR
-  TRIGGER alive(lidar) == false
+  TRIGGER alive(lidar) == false || lifecycle(lidar) == "finalized"
     STRATEGY again 90 10
       ADAPTATION lidar redeploy 15
 )";

@@ -73,7 +73,16 @@ Expected<void> Context::open(const ParticipantOptions& options) {
                                              .on_match = {}});
   if (!writer) return Error{writer.error()};
   info_writer_ = std::move(*writer);
+  if (const auto listens = listen_to_infos(); !listens) return listens;
+  {
+    const MutexLock lock(mutex_);
+    is_open_ = true;
+  }
+  schedule_announcement();  // the first peer may have come meanwhile
+  return {};
+}
 
+Expected<void> Context::listen_to_infos() {
   auto reader = participant_->create_reader(
       {.topic = std::string(kDiscoveryInfoTopic),
        .type = std::string(kDiscoveryInfoType),
@@ -86,12 +95,25 @@ Expected<void> Context::open(const ParticipantOptions& options) {
       });
   if (!reader) return Error{reader.error()};
   info_reader_ = std::move(*reader);
-  {
-    const MutexLock lock(mutex_);
-    is_open_ = true;
-  }
-  schedule_announcement();  // the first peer may have come meanwhile
   return {};
+}
+
+// A participant that was lost and comes back says once more which nodes it has, and its writer's number of that
+// is still the same: Fast DDS takes it for heard (2.9, RTPSReader::remove_persistence_guid()). Only a new reader
+// hears it. Others may have lost us, too.
+void Context::note_return(const DiscoveryEvent& event) {
+  constexpr std::size_t kMost = 1000;
+  constexpr auto kTogether = std::chrono::milliseconds(50);  // those of one computer
+  if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
+    if (gone->was_lost && lost_.size() < kMost) lost_.insert(gone->guid.prefix());
+  } else if (const auto* there = std::get_if<ParticipantInfo>(&event)) {
+    if (lost_.erase(there->guid.prefix()) == 0 || std::exchange(is_listening_anew_, true)) return;
+    tasks_.post_at(Executor::Clock::now() + kTogether, [this] {
+      is_listening_anew_ = false;
+      (void)listen_to_infos();  // if there is no new one, the old one stays
+      announce();
+    });
+  }
 }
 
 Context::~Context() {
@@ -146,6 +168,7 @@ void Context::on_server_left(const std::string& service) {
 
 void Context::discovered(const DiscoveryEvent& event) {
   graph_.apply(event);
+  note_return(event);
   if (discovery_listener_) discovery_listener_(event);
   const auto* endpoint = std::get_if<EndpointInfo>(&event);
   if (endpoint == nullptr || gid_size_) return;

@@ -74,9 +74,11 @@ class Context {
   Graph::Options with_context(Graph::Options options);
   FoundProcess find_process(const Graph::FindProcess& find, ParticipantInfo info);
   Expected<void> open(const ParticipantOptions& options);
+  Expected<void> listen_to_infos();
 
   // On the executor's thread.
   void discovered(const DiscoveryEvent& event);
+  void note_return(const DiscoveryEvent& event);
   void on_info(const Bytes& payload, const GuidPrefix& sender);
   void decide(GidSize size);
   void announce();
@@ -89,6 +91,8 @@ class Context {
   Graph graph_;
   std::optional<GidSize> gid_size_;
   bool is_deciding_ = false;
+  std::set<GuidPrefix> lost_;  // participants whose leases ran out
+  bool is_listening_anew_ = false;
   DiscoveryCallback discovery_listener_;  // may be empty
   // What was proven a moment ago. A process of many nodes is found once, not for each of them.
   struct Proof {

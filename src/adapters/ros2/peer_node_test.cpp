@@ -1,11 +1,14 @@
 // Our own nodes in processes of their own: what a manager sees and does across processes, and when
 // they are killed.
+#include <algorithm>
 #include <memory>
 #include <signal.h>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/live_clock.h"
 #include "ros2/live_test.h"
 #include "ros2/node.h"
 #include "ros2/peer_process.h"
@@ -48,6 +51,38 @@ TEST(PeerNode, IsSeenWithItsProcess) {
   Manager manager(domain);
   const auto peer = start_node(domain, "/ns/peer");
   EXPECT_TRUE(manager.context.sees_process("/ns/peer", peer->pid()));
+}
+
+// As one whose computer was cut off: its lease runs out, and it has said all of itself before.
+TEST(PeerNode, IsSeenAgainWhenItComesBackAfterItsLeaseRanOut) {
+  const TestDomain domain;
+  Manager manager(domain);
+  const auto peer = start_node(domain, "/peer");
+  ASSERT_TRUE(manager.context.sees_process("/peer", peer->pid()));
+  kill(peer->pid(), SIGSTOP);
+  const auto sees = [&](auto is_it, int times) {
+    const Time end = later(live_now(), std::chrono::minutes(1));  // its lease is 20 s
+    while (live_now() < end) {
+      const auto changes = manager.context.changes().all();
+      if (std::ranges::count_if(changes, is_it) >= times) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return false;
+  };
+  ASSERT_TRUE(sees(
+      [](const GraphChange& change) {
+        const auto* left = std::get_if<NodeLeft>(&change);
+        return left != nullptr && left->node == "/peer" && left->was_lost;
+      },
+      1));
+  kill(peer->pid(), SIGCONT);
+  EXPECT_TRUE(sees(
+      [](const GraphChange& change) {
+        const auto* joined = std::get_if<NodeJoined>(&change);
+        return joined != nullptr && joined->node.name == "/peer";
+      },
+      2));
+  EXPECT_TRUE(change(*manager.changes_state_of("/peer"), 1)) << "and it is as it was";
 }
 
 TEST(PeerNode, IsSteeredAcrossProcesses) {
