@@ -39,6 +39,7 @@ RULE Down
                             "culprit", "run", world.write("driven.rules", text), "--quiet", "0",
                             "--backoff", "0", "--settle", "1", "--state-dir", state_});
     ASSERT_TRUE(run_->prints("lidar is there (process ")) << run_->output();
+    ASSERT_TRUE(run_->prints("lidar is /lidar, active")) << run_->output();
     note();
   }
   void note() { all_.push_back(pid_in(run_->output(), "lidar")); }
