@@ -150,8 +150,8 @@ TEST_F(AHungNode, IsNotOneThatIsSlowOnceButWithinItsPauses) {
 
 // Its rule is true, and its answer is awaited; it comes.
 TEST_F(AHungNode, IsNotOneThatAnswersLate) {
-  watch("alive(lidar) == false || age(/lidar/value) > 250ms");
-  stall("0.6");
+  watch("alive(lidar) == false || age(/lidar/value) > 400ms");
+  stall("0.7");
   EXPECT_TRUE(run_->prints("it is seen whether lidar still answers")) << run_->output();
   EXPECT_TRUE(run_->prints("Silent went away")) << run_->output();
   expect_left_alone();
