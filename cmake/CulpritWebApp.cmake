@@ -7,10 +7,11 @@ find_program(CULPRIT_NODE node)
 
 set(CULPRIT_UI_MODULES ${PROJECT_SOURCE_DIR}/build/ui)
 
-# culprit_web_app(<target>): adds web::app() to it (web/app.h).
+# culprit_web_app(<target>): adds web::app() to it (web/app.h), and installs the licences of what is in it.
 function(culprit_web_app target)
   set(ui ${PROJECT_SOURCE_DIR}/ui)
   set(generated ${CMAKE_BINARY_DIR}/ui/app.cpp)
+  set(notices ${CMAKE_BINARY_DIR}/ui/web-app-notices.txt)
   if(NOT CULPRIT_NPM OR NOT CULPRIT_NODE)
     message(WARNING "npm is not installed: culprit is built without its web app")
     file(WRITE ${generated} "#include \"web/app.h\"\nstd::span<const culprit::web::Asset> culprit::web::app() { return {}; }\n")
@@ -29,11 +30,12 @@ function(culprit_web_app target)
     WORKING_DIRECTORY ${CULPRIT_UI_MODULES}
     COMMENT "Installing what the web app is made of")
   add_custom_command(
-    OUTPUT ${generated}
-    DEPENDS ${installed} ${sources} ${ui}/build.mjs ${ui}/bundle.mjs ${ui}/tsconfig.json
-    COMMAND ${CULPRIT_NODE} ${ui}/build.mjs ${CULPRIT_UI_MODULES} ${generated}
+    OUTPUT ${generated} ${notices}
+    DEPENDS ${installed} ${sources} ${ui}/build.mjs ${ui}/bundle.mjs ${ui}/notices.mjs ${ui}/tsconfig.json
+    COMMAND ${CULPRIT_NODE} ${ui}/build.mjs ${CULPRIT_UI_MODULES} ${generated} ${notices}
     COMMENT "Bundling the web app")
   target_sources(${target} PRIVATE ${generated})
+  install(FILES ${notices} DESTINATION share/doc/culprit COMPONENT culprit)
   set_source_files_properties(${generated} PROPERTIES COMPILE_OPTIONS -Wno-overlength-strings)
   if(CULPRIT_TESTS)
     # esbuild leaves types out; this looks at them.

@@ -1,4 +1,5 @@
-# Installs culprit::core from the build folder BUILD into a folder of its own, and builds and runs an example against that.
+# Installs culprit::core from the build folder BUILD into a folder of its own, and builds and runs an example against that. Installs culprit as packages
+# do into another one, and looks whether the licences come along of what its web app is made of.
 set(prefix ${BUILD}/installed)
 file(REMOVE_RECURSE ${prefix} ${BUILD}/examples-installed)
 function(run)
@@ -9,3 +10,26 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${BUILD}/examples-installed -G Nin
     -DCMAKE_BUILD_TYPE=Debug)
 run(${CMAKE_COMMAND} --build ${BUILD}/examples-installed --target t01_embed_the_manager)
 run(${BUILD}/examples-installed/t01_embed_the_manager)
+
+# The unit belongs to a place of its own (CulpritInstall.cmake), so this is a root.
+set(root ${BUILD}/installed-root)
+file(REMOVE_RECURSE ${root})
+run(${CMAKE_COMMAND} -E env DESTDIR=${root} ${CMAKE_COMMAND} --install ${BUILD} --component culprit --prefix /usr)
+if(WITH_WEB_APP)
+  file(READ ${root}/usr/share/doc/culprit/web-app-notices.txt notices)
+  file(READ ${SOURCE}/ui/package-lock.json lock)
+  # Those whose code is in it for sure; which others are is left to the bundler.
+  foreach(package @codemirror/state @codemirror/view @lezer/highlight @preact/signals cytoscape preact uplot)
+    string(JSON version GET ${lock} packages node_modules/${package} version)
+    string(FIND "${notices}" "\n${package} ${version} (MIT)\n" at)
+    if(at EQUAL -1)
+      message(FATAL_ERROR "web-app-notices.txt does not name ${package} ${version} with its licence")
+    endif()
+  endforeach()
+  foreach(text "Permission is hereby granted, free of charge" "Copyright (c) 2015-present Jason Miller" "Copyright (c) 2013-2014 Ralf S. Engelschall")
+    string(FIND "${notices}" "${text}" at)
+    if(at EQUAL -1)
+      message(FATAL_ERROR "web-app-notices.txt lacks '${text}'")
+    endif()
+  endforeach()
+endif()

@@ -1,13 +1,14 @@
-// Bundles the web app and writes it as one C++ file: node build.mjs <folder of node_modules> <output.cpp>
+// Bundles the web app and writes it as one C++ file, and the licences of what it is made of: node build.mjs <folder of node_modules> <output.cpp> <notices>
 import { mkdirSync, writeFileSync } from 'node:fs'
 import { dirname } from 'node:path'
 import { gzipSync } from 'node:zlib'
-import { bundle } from './bundle.mjs'
+import { bundleWithNotices } from './bundle.mjs'
 
-const [modules, output] = process.argv.slice(2)
+const [modules, output, noticesFile] = process.argv.slice(2)
 const kMostBytes = 400_000 // compressed: what a tablet in the field has to load
 
-const assets = bundle(modules).map(({ path, type, contents }) => ({ path, type, gzip: gzipSync(contents, { level: 9 }) }))
+const bundled = bundleWithNotices(modules)
+const assets = bundled.assets.map(({ path, type, contents }) => ({ path, type, gzip: gzipSync(contents, { level: 9 }) }))
 
 const size = assets.reduce((sum, asset) => sum + asset.gzip.length, 0)
 if (size > kMostBytes) throw new Error(`the app has ${size} bytes; it may have ${kMostBytes}`)
@@ -33,4 +34,5 @@ writeFileSync(
     `${parts.join('\n')}\nconstexpr Asset kAssets[] = {\n${table.join('')}};\n\n}  // namespace\n\n` +
     `std::span<const Asset> app() { return kAssets; }\n\n}  // namespace culprit::web\n`
 )
+writeFileSync(noticesFile, bundled.notices)
 console.log(`web app: ${size} bytes compressed`)

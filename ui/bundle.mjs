@@ -3,37 +3,45 @@ import { readdirSync, readFileSync } from 'node:fs'
 import { createRequire } from 'node:module'
 import { dirname, join } from 'node:path'
 import { fileURLToPath } from 'node:url'
+import { noticesOf } from './notices.mjs'
 
 const source = join(dirname(fileURLToPath(import.meta.url)), 'src')
 const rules = join(source, '../../rules')
 const rulesIn = (folder) =>
   Object.fromEntries(readdirSync(join(rules, folder)).filter((f) => f.endsWith('.rules')).sort().map((f) => [f, readFileSync(join(rules, folder, f), 'utf8')]))
 
+const isLegal = (file) => file.path.endsWith('.LEGAL.txt')
+
 // `modules` is the folder of node_modules.
-export function bundle(modules) {
+export const bundle = (modules) => bundleWithNotices(modules).assets
+
+// The files, and the licences that go with them.
+export function bundleWithNotices(modules) {
   const require = createRequire(join(modules, 'package.json'))
   const { buildSync } = require('esbuild')
-  const { outputFiles } = buildSync({
+  const { outputFiles, metafile } = buildSync({
     entryPoints: [join(source, 'app.tsx')],
     nodePaths: [join(modules, 'node_modules')],
     bundle: true,
     minify: true,
     write: false,
+    metafile: true,
     outdir: '/',
     format: 'esm',
     target: 'es2021',
     jsx: 'automatic',
     jsxImportSource: 'preact',
-    legalComments: 'none',
+    legalComments: 'external', // into the notices
     define: { kCookbook: JSON.stringify(rulesIn('cookbook')), kPacks: JSON.stringify(rulesIn('packs')) },
   })
-  return [
+  const assets = [
     ['/', 'text/html; charset=utf-8', readFileSync(join(source, 'index.html'))],
     ['/icon.svg', 'image/svg+xml', readFileSync(join(source, 'icon.svg'))],
-    ...outputFiles.map((file) =>
+    ...outputFiles.filter((file) => !isLegal(file)).map((file) =>
       file.path.endsWith('.css')
         ? ['/app.css', 'text/css; charset=utf-8', file.contents]
         : ['/app.js', 'text/javascript; charset=utf-8', file.contents]
     ),
   ].map(([path, type, contents]) => ({ path, type, contents }))
+  return { assets, notices: noticesOf(metafile, outputFiles.filter(isLegal).map((file) => file.text)) }
 }
