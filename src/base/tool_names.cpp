@@ -24,6 +24,10 @@ bool is_culprits_node(const std::string& node) {
           std::ranges::all_of(number.substr(1), [](char c) { return c >= '0' && c <= '9'; }));
 }
 
+bool is_culprits_status(const std::string& name, const std::string& hardware_id) {
+  return hardware_id == kCulpritsHardwareId && (name == "culprit" || name.starts_with("culprit: "));
+}
+
 bool is_tool_node(const std::string& node) {
   constexpr std::array kTools = {"_", "transform_listener_impl_", "launch_ros_", "rviz"};
   const std::string name = own_name(node);

@@ -1,5 +1,7 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -10,6 +12,7 @@
 #include "cli/unified_diff.h"
 #include "init/draft.h"
 #include "init/look.h"
+#include "init/marks.h"
 #include "init/update.h"
 #include "language/checker.h"
 #include "language/formatter.h"
@@ -42,8 +45,16 @@ Expected<init::LaunchDump> dump_of(const InitOptions& options) {
 
 // Beside the draft: "my.rules" has "my.params.yaml".
 std::string parameter_file(const InitOptions& options) {
-  std::filesystem::path beside = std::filesystem::absolute(options.output);
+  std::filesystem::path beside =
+      std::filesystem::absolute(options.output.empty() ? options.update : options.output);
   return beside.replace_extension("params.yaml").string();
+}
+
+void take(init::LaunchDump dump, const InitOptions& options, init::Sighting& seen) {
+  seen.dump = std::move(dump);
+  seen.has_dump = !options.launch_dump.empty();
+  if (!options.output.empty() || !options.update.empty())
+    seen.parameter_file = parameter_file(options);
 }
 
 Expected<init::Sighting> look(const InitOptions& options) {
@@ -83,8 +94,7 @@ int draft_rules(const InitOptions& options) {
                 kUsage);
   auto seen = look(options);
   if (!seen) return fail(seen.error());
-  seen->dump = std::move(*dump);
-  if (has_file) seen->parameter_file = parameter_file(options);
+  take(std::move(*dump), options, *seen);
   const auto text = format({"the draft", init::draft(*seen, options.wanted_packs())});
   if (!text) return fail(text.error());
   const Expansion rules =
@@ -145,6 +155,57 @@ ChangedText changed(const std::string& name, const std::string& before,
   return result;
 }
 
+// The file of parameters that rules which were brought up to the robot name.
+struct ParameterUpdate {
+  std::string file;
+  std::optional<std::string> before{};  // nothing: there is none
+  std::string after{};                  // empty: it stays as it is
+  std::string diff{};
+  std::string note{};
+};
+
+Expected<ParameterUpdate> parameter_update(const InitOptions& options, const init::Sighting& seen) {
+  ParameterUpdate update{seen.parameter_file};
+  std::error_code error;
+  if (std::filesystem::exists(update.file, error)) {
+    auto text = read_text(update.file);
+    if (!text) return Error{text.error()};
+    update.before = std::move(*text);
+  }
+  const bool is_ours = update.before && init::is_as_written(*update.before);
+  std::string wanted = init::parameters_text(seen, is_ours ? *update.before : "");
+  if (wanted.empty() || update.before == wanted) return update;
+  if (update.before && !options.output.empty() && options.output != options.update)
+    return Error{update.file + " is there already; name another draft, or move it away"};
+  if (update.before && !is_ours) {
+    update.note =
+        update.file +
+        " is not as culprit wrote it, and stays as it is: compare it with the launch dump yourself";
+    return update;
+  }
+  std::vector<LineEdit> edits;
+  if (update.before) {
+    for (const std::string_view line : lines_of(*update.before)) edits.push_back({'-', line});
+  }
+  for (const std::string_view line : lines_of(wanted)) edits.push_back({'+', line});
+  update.diff = unified_diff(update.file, edits);
+  update.after = std::move(wanted);
+  return update;
+}
+
+// Nothing is written over what somebody changed meanwhile.
+Expected<void> write_parameters(const ParameterUpdate& update) {
+  if (update.after.empty()) return {};
+  std::error_code error;
+  const bool is_there = std::filesystem::exists(update.file, error);
+  const auto present = is_there ? read_text(update.file) : Expected<std::string>("");
+  if (is_there != update.before.has_value() || !present ||
+      (update.before && *present != *update.before))
+    return Error{update.file +
+                 " was changed while the robot was watched, and stays as it is; run it again"};
+  return write_text(update.file, update.after);
+}
+
 int update_rules(const InitOptions& options) {
   const bool is_in_place = options.output == options.update;
   if (!options.output.empty() && !is_in_place && std::filesystem::exists(options.output))
@@ -154,25 +215,33 @@ int update_rules(const InitOptions& options) {
   if (!text) return fail(text.error(), kUsage);
   const auto rules = load_rules(options.update);
   if (!rules) return fail(options.update + " has errors, and stays as it is", kUsage);
-  const auto seen = look(options);
+  auto dump = dump_of(options);
+  if (!dump) return fail(dump.error(), kUsage);
+  auto seen = look(options);
   if (!seen) return fail(seen.error());
+  take(std::move(*dump), options, *seen);
 
+  const auto parameters = parameter_update(options, *seen);
+  if (!parameters) return fail(parameters.error(), kUsage);
   const init::Update update = init::update(*text, *rules, *seen, options.wanted_packs());
   const ChangedText now = changed(options.update, *text, update);
   const Expansion after = expand({options.update, now.after}, rule_files::load);
   if (!after.mistakes.empty()) return fail(render(after.mistakes, after.source));
   if (const Checked checked = check(after); !checked.rules)
     return fail(render(checked.diagnostics, after.source));
-  say(stdout, "{}", now.diff);
+  say(stdout, "{}{}", parameters->diff, now.diff);
   for (const std::string& note : update.notes) say(stderr, "culprit: {}\n", note);
-  if (update.changes.empty())
+  if (!parameters->note.empty()) say(stderr, "culprit: {}\n", parameters->note);
+  if (update.changes.empty() && parameters->after.empty())
     say(stderr, "culprit: {} needs no change for this robot\n", options.update);
-  if (options.output.empty() || (is_in_place && update.changes.empty())) return kOk;
+  if (options.output.empty()) return kOk;
   const auto present = read_text(options.update);
   if (is_in_place && (!present || *present != *text)) {
     return fail(options.update +
                 " was changed while the robot was watched, and stays as it is; run it again");
   }
+  if (const auto written = write_parameters(*parameters); !written) return fail(written.error());
+  if (is_in_place && update.changes.empty()) return kOk;
   if (const auto written = write_text(options.output, now.after); !written)
     return fail(written.error());
   return kOk;
@@ -192,13 +261,12 @@ void add_init(CLI::App& app, int& exit_code) {
                    "Where to write the draft (default: stdout). No file is overwritten but the one "
                    "of --update")
       ->type_name("FILE");
-  CLI::Option* launch =
-      command
-          ->add_option(
-              "--launch", options->launch_dump,
-              "How composed nodes are loaded, and what is started again: what play_launch dumps of "
-              "the robot's launch file (system_model.yaml, or record.json)")
-          ->type_name("FILE");
+  command
+      ->add_option(
+          "--launch", options->launch_dump,
+          "How composed nodes are loaded, and what is started again: what play_launch dumps of "
+          "the robot's launch file (system_model.yaml, or record.json)")
+      ->type_name("FILE");
   command->add_flag("--pack", options->packs,
                     "Include the packs of rules that fit what is found (docs/packs.md), with the "
                     "rates that were measured");
@@ -208,8 +276,7 @@ void add_init(CLI::App& app, int& exit_code) {
           "Bring this rule file up to the robot, and show how as a unified diff: what is new is "
           "added, what a draft wrote and no longer fits is replaced, and what a person wrote "
           "stays. Writes nothing without -o, which may name the same file")
-      ->type_name("FILE")
-      ->excludes(launch);
+      ->type_name("FILE");
   command->callback([options, &exit_code] {
     exit_code = options->update.empty() ? draft_rules(*options) : update_rules(*options);
   });

@@ -12,6 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using testing::HasSubstr;
+using testing::Not;
 
 struct Init : testing::Test {
   TestWorld world;
@@ -33,6 +34,41 @@ TEST_F(Init, AFileThatIsThereIsNotOverwritten) {
   const auto text = read_text(file);
   ASSERT_TRUE(text);
   EXPECT_EQ(*text, "# mine\n");
+}
+
+TEST_F(Init, BesideARunningCulpritNothingIsDraftedOfCulprit) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  const std::string rules = world.write(
+      "robot.rules",
+      "ROBOT watched\nCOMPONENT camera NODE /managed_subsystem/rgb_camera\nRULE Lost\n  POLICIES "
+      "ERROR REPORT\n  TRIGGER !alive(camera)\n");
+  const TestProgram culprit(world, {"culprit", "run", rules, "--dry-run"});
+  ASSERT_TRUE(culprit.prints("watching watched")) << culprit.output();
+  TestProgram init(world, {"culprit", "init", "--for", "5", "-o", file});
+  EXPECT_EQ(init.wait(), 0) << init.output();
+  const auto text = read_text(file);
+  ASSERT_TRUE(text);
+  EXPECT_THAT(*text, HasSubstr("\nCOMPONENT rgb_camera"));
+  EXPECT_THAT(*text, Not(HasSubstr("culprit:"))) << "its diagnostics";
+  EXPECT_THAT(*text, Not(HasSubstr("level(culprit"))) << *text;
+  EXPECT_THAT(*text, Not(HasSubstr("/culprit"))) << "its node and topics";
+}
+
+TEST_F(Init, AnUpdateTakesALaunchDump) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  TestProgram init(world, {"culprit", "init", "--for", "5", "-o", file});
+  ASSERT_EQ(init.wait(), 0) << init.output();
+  const std::string dump =
+      world.write("system_model.yaml",
+                  "structure:\n  nodes:\n    /managed_subsystem/rgb_camera: {pkg: sunset, "
+                  "exec: camera, node_name: rgb_camera, respawn: true}\n");
+  TestProgram update(
+      world, {"culprit", "init", "--for", "5", "--update", file, "--launch", dump, "-o", file});
+  EXPECT_EQ(update.wait(), 0) << update.output();
+  EXPECT_THAT(update.output(), HasSubstr(" RESPAWNED\n"));
+  const auto text = read_text(file);
+  ASSERT_TRUE(text);
+  EXPECT_THAT(*text, HasSubstr(" RESPAWNED\n"));
 }
 
 TEST_F(Init, AnUpdateIsNotWrittenOverWhatSomebodyChangedMeanwhile) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/tool_names.h"
 #include "language/checker.h"
 
 namespace culprit::live {
@@ -23,6 +24,18 @@ TEST(HealthReport, IsOkWhileAllIsQuiet) {
   const auto all = health(knowledge);
   ASSERT_EQ(all.size(), 3u);
   for (const ros2::Health& status : all) EXPECT_EQ(status.level, 0) << status.name;
+}
+
+// culprit init knows by that what is none of the robot's.
+TEST(HealthReport, IsKnownAsCulpritsOwn) {
+  RuleSet rules = two_rules();
+  rules.components[0].is_required = true;
+  Knowledge knowledge(rules);
+  knowledge.components[ComponentId(0)].alive = true;
+  const auto all = health(knowledge);
+  ASSERT_EQ(all.size(), 4u);
+  for (const ros2::Health& status : all)
+    EXPECT_TRUE(is_culprits_status(status.name, kCulpritsHardwareId)) << status.name;
 }
 
 TEST(HealthReport, WarnsOfAFailureUnderRepairAndErrsWhenNothingIsLeftToTry) {

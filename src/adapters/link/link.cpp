@@ -8,6 +8,7 @@
 #include <set>
 #include <unistd.h>
 
+#include "base/tool_names.h"
 #include "link/list_parameter.h"
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
@@ -568,13 +569,13 @@ void Link::publish_again() {
   {
     const MutexLock lock(mutex_);
     for (const Health& h : health_) {
-      msg::DiagnosticStatus status{h.level, h.name, h.message, "culprit", {}};
+      msg::DiagnosticStatus status{h.level, h.name, h.message, kCulpritsHardwareId, {}};
       for (const auto& [key, value] : h.values) status.values.push_back({key, value});
       message.status.push_back(std::move(status));
     }
     for (const auto& [node, contest] : contested_) {
       constexpr std::uint8_t kWarn = 1;
-      message.status.push_back({kWarn, "culprit: " + node, contest.text, "culprit", {}});
+      message.status.push_back({kWarn, "culprit: " + node, contest.text, kCulpritsHardwareId, {}});
     }
   }
   if (!message.status.empty()) diagnostics_->publish(message);

@@ -66,6 +66,21 @@ std::map<std::string, Recipe> usable_recipes(const Sighting& seen) {
   return usable;
 }
 
+// Of a file of parameters as culprit writes it, by the line above each: "/node:\n".
+std::map<std::string, std::string> sections_in(const std::string& text) {
+  std::map<std::string, std::string> sections;
+  std::string* section = nullptr;
+  for (std::size_t at = 0, end = 0; at < text.size(); at = end) {
+    end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    const std::string line = text.substr(at, end - at);
+    if (line.starts_with('/'))
+      section = &sections[line];
+    else if (section != nullptr)
+      *section += line;
+  }
+  return sections;
+}
+
 class Draft {
  public:
   Draft(const Sighting& seen, Packs packs, const KnownNames& known)
@@ -73,7 +88,7 @@ class Draft {
     for (const auto& [name, node] : seen_.robot.nodes) {
       if (is_tool_node(name) || !is_valid_topic_name(name)) continue;
       if (const auto why = why_not(name, node)) {
-        left_out_.push_back(name + ": " + *why);
+        if (!known.components.contains(name)) left_out_.push_back(name + ": " + *why);
       } else {
         nodes_.push_back(name);
       }
@@ -98,11 +113,11 @@ class Draft {
     }
     topics_without_rule();
     for (Part& each : limits(seen_, declared_, left_out_)) parts_.push_back(std::move(each));
-    add(Part::Kind::kComment, "", interlocks_text(seen_, declared_));
+    add(Part::Kind::kInterlock, kAll, interlocks_text(seen_, declared_));
     if (!left_out_.empty()) {
       std::string text = "# Left out, since it could not be found out:\n";
       for (const std::string& each : left_out_) text += "# " + each + "\n";
-      add(Part::Kind::kComment, "", text);
+      add(Part::Kind::kLeftOut, kAll, text);
     }
     return std::move(parts_);
   }
@@ -285,15 +300,23 @@ std::string draft(const Sighting& seen, Packs packs) {
   return text + (marks.empty() ? "" : "\n" + text_of(marks));
 }
 
-std::string parameters_text(const Sighting& seen) {
-  std::string all;
+std::string parameters_text(const Sighting& seen, const std::string& before) {
+  std::map<std::string, std::string> sections = sections_in(before);  // by the line above
+  bool names_one = false;
   for (const auto& [node, recipe] : usable_recipes(seen)) {
-    if (recipe.parameters.empty()) continue;
-    all += node + ":\n  ros__parameters:\n";
+    if (recipe.parameters.empty()) {
+      sections.erase(node + ":\n");
+      continue;
+    }
+    names_one = true;
+    std::string& section = sections[node + ":\n"] = "  ros__parameters:\n";
     for (const auto& [name, value] : recipe.parameters)
-      all += "    \"" + name + "\": " + value + "\n";
+      section += "    \"" + name + "\": " + value + "\n";
   }
-  return all;
+  if (!names_one) return "";
+  std::string all;
+  for (const auto& [node, section] : sections) all += node + section;
+  return with_mark(all);
 }
 
 }  // namespace culprit::init

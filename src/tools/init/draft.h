@@ -29,7 +29,9 @@ std::vector<Part> parts_of_draft(const Sighting& seen, Packs packs, const KnownN
 // marks by which update() knows what was drafted (marks.h).
 std::string draft(const Sighting& seen, Packs packs = Packs::kNone);
 
-// The file of parameters that the draft names, as --params-file takes it; empty: it names none.
-std::string parameters_text(const Sighting& seen);
+// The file of parameters that the draft names, as --params-file takes it, with a mark (marks.h); empty: it
+// names none. `before`: the file that is there, as culprit wrote it: what it has of nodes of which the dump says nothing now
+// stays, for these may only be ill.
+std::string parameters_text(const Sighting& seen, const std::string& before = "");
 
 }  // namespace culprit::init

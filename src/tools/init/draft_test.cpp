@@ -209,6 +209,22 @@ TEST(Draft, ADiagnosticThatIsAnErrorNowIsAskedAbout) {
   EXPECT_THAT(text, HasSubstr("# level(\"base: motor 1\"): it was an error meanwhile."));
 }
 
+TEST(Draft, WhatCulpritSaysOfItselfIsNoPartOfTheRobot) {
+  Sighting seen = robot();
+  seen.robot.nodes["/culprit"] = {.parameters = {}, .lifecycle = "", .pid = 20};
+  seen.starts["/culprit"].command = {"/usr/bin/culprit", "run", "my.rules"};
+  seen.robot.topics["/culprit/status"] = {"culprit_msgs/msg/Status", {"/culprit"}, {}, {}, {}};
+  seen.rhythms["/culprit/status"] = {301, 30s, 110ms};
+  const std::string before = draft(robot());
+  for (const char* status : {"culprit", "culprit: lidar_failed", "culprit: component lidar"}) {
+    ros2::StatusCourse& course = seen.statuses[{status, "culprit"}] = {30, 0, {}};
+    for (int i = 0; i < 30; ++i) course.keys["failing"].note(std::int64_t{i % 2});
+  }
+  EXPECT_EQ(draft(seen), before);
+  seen.statuses[{"culprit: of somebody else", "arm"}] = {30, 0, {}};
+  EXPECT_THAT(draft(seen), HasSubstr("TRIGGER level(\"culprit: of somebody else\") >= 2\n"));
+}
+
 TEST(Draft, OfTwoDiagnosticsOfOneNameRulesNameTheHardware) {
   Sighting seen = motor();
   seen.statuses[{"base: motor 1", "m2"}] = {20, 0, {}};

@@ -6,6 +6,7 @@
 
 #include "base/name_grammar.h"
 #include "base/ros_names.h"
+#include "base/tool_names.h"
 #include "base/units.h"
 #include "init/measures.h"
 
@@ -49,7 +50,9 @@ class Limits {
       : seen_(seen), names_(names), left_out_(left_out) {}
 
   std::vector<Part> parts() {
-    for (const auto& each : seen_.statuses) status(each.first, each.second);
+    for (const auto& each : seen_.statuses) {
+      if (!is_culprits_status(each.first.first, each.first.second)) status(each.first, each.second);
+    }
     return std::move(parts_);
   }
 
@@ -92,7 +95,7 @@ class Limits {
                const ros2::ValueCourse& value, const std::string& stale_after) {
     const std::string name = names_.take(base + "_" + key);
     const double span = value.most - value.least;
-    add(Part::Kind::kComment, "",
+    add(Part::Kind::kLimit, status + " " + key,
         fmt::format("# proposal: {0} of {1} was {2} to {3}, {4} times. Less than {5:.2g} % of its "
                     "values are "
                     "outside (95 % certain).\n"

@@ -10,6 +10,10 @@ namespace {
 constexpr std::string_view kIntroduction =
     "# What `culprit init` wrote itself: by these marks --update leaves alone what you change.";
 constexpr std::string_view kMarks = "# marks";
+constexpr std::string_view kFileIntroduction =
+    "# What `culprit init --launch` wrote: by this mark --update leaves it alone once you change "
+    "it.\n"
+    "# mark ";
 constexpr std::size_t kMarksInALine = 6;
 constexpr std::size_t kDigits = 8;  // of each of the two numbers
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -18,6 +22,12 @@ std::string_view trimmed(std::string_view line) {
   const std::size_t begin = line.find_first_not_of(kBlanks);
   if (begin == std::string_view::npos) return "";
   return line.substr(begin, line.find_last_not_of(kBlanks) + 1 - begin);
+}
+
+// FNV-1a.
+constexpr std::uint32_t kFirstPrint = 2166136261u;
+std::uint32_t with(std::uint32_t print, char c) {
+  return (print ^ static_cast<unsigned char>(c)) * 16777619u;
 }
 
 std::optional<std::uint32_t> number_in(std::string_view digits) {
@@ -31,8 +41,8 @@ std::optional<std::uint32_t> number_in(std::string_view digits) {
 }  // namespace
 
 std::uint32_t print_of(std::string_view text) {
-  std::uint32_t print = 2166136261u;
-  const auto add = [&](char c) { print = (print ^ static_cast<unsigned char>(c)) * 16777619u; };
+  std::uint32_t print = kFirstPrint;
+  const auto add = [&](char c) { print = with(print, c); };
   bool is_between = false;
   for (const char c : trimmed(text)) {
     if (kBlanks.find(c) != std::string_view::npos) {
@@ -46,7 +56,7 @@ std::uint32_t print_of(std::string_view text) {
 }
 
 std::optional<Mark> mark_of(const Part& part) {
-  if (part.subject.empty() || part.kind == Part::Kind::kComment) return std::nullopt;
+  if (part.subject.empty()) return std::nullopt;
   const std::string about = std::to_string(static_cast<int>(part.kind)) + part.subject;
   return Mark{print_of(about), print_of(part.text)};
 }
@@ -60,6 +70,17 @@ std::string text_of(const std::vector<Mark>& marks) {
     if (i % kMarksInALine == kMarksInALine - 1 || i + 1 == marks.size()) text += "\n";
   }
   return text;
+}
+
+std::string with_mark(std::string_view text) {
+  std::uint32_t print = kFirstPrint;
+  for (const char c : text) print = with(print, c);
+  return fmt::format("{}{:08x}\n{}", kFileIntroduction, print, text);
+}
+
+bool is_as_written(std::string_view text) {
+  const std::size_t head = kFileIntroduction.size() + kDigits + 1;
+  return text.size() >= head && with_mark(text.substr(head)) == text;
 }
 
 bool is_of_marks(std::string_view line) {

@@ -31,6 +31,11 @@ std::optional<Mark> mark_of(const Part& part);
 // As the comments at the end of a file.
 std::string text_of(const std::vector<Mark>& marks);
 
+// A whole file of culprit's, with a mark in front by which is_as_written() knows later that nobody changed it.
+// Here layout counts.
+std::string with_mark(std::string_view text);
+bool is_as_written(std::string_view text);
+
 // Whether a line is one of those comments.
 bool is_of_marks(std::string_view line);
 // The marks in it. What is no mark is passed over.

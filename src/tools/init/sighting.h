@@ -35,6 +35,7 @@ struct Sighting {
   Duration looked{};
   std::uint32_t domain = 0;
   LaunchDump dump{};             // of what started it, if somebody gave one
+  bool has_dump = false;         // somebody did
   std::string parameter_file{};  // where what the dump has of parameters is written; whole
 };
 

@@ -1,6 +1,7 @@
 #include "init/update.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <regex>
@@ -136,6 +137,47 @@ bool limits_fit(const std::string& before, const std::string& now) {
   });
 }
 
+// What was seen of a key, as its proposal says it.
+struct Range {
+  double least = 0, most = 0;
+};
+std::optional<Range> range_in(const std::string& proposal) {
+  static const std::regex kRange(R"( was ([-+.0-9e]+)\s+to\s+([-+.0-9e]+),)");
+  std::smatch found;
+  if (!std::regex_search(proposal, found, kRange)) return std::nullopt;
+  const auto number = [&](std::size_t group) {
+    return std::strtod(found[group].str().c_str(), nullptr);
+  };
+  return Range{number(1), number(2)};
+}
+
+// What was seen now would be within the limits that were proposed, as far away again as what was seen then
+// spans, and spans no small part of it.
+bool range_fits(const std::string& before, const std::string& now) {
+  const auto old = range_in(before);
+  const auto seen = range_in(now);
+  if (!old || !seen) return false;
+  const double span = old->most - old->least;
+  return seen->least >= old->least - span && seen->most <= old->most + span &&
+         seen->most - seen->least >= kTooLong * span;
+}
+
+// A list in comments as it is compared: of each line what it is about as it stands, and the rest without the
+// numbers that are never measured twice the same ("40 commands", "process 4711"). Nor is why a topic has no
+// rhythm: whether too few messages come or too irregular ones is chance.
+std::string without_measures(const std::string& list, const LiveInventory& robot) {
+  static const std::regex kNumber(R"((^|[\s(])[-+]?[0-9][-+.0-9e]*)");
+  std::string all;
+  for (const std::string& line : lines_in(list)) {
+    const std::size_t reason = std::min(line.find(": "), line.size());
+    const std::string about = line.substr(0, reason);
+    all += about;
+    if (!about.starts_with("# ") || !robot.topics.contains(about.substr(2)))
+      all += std::regex_replace(line.substr(reason), kNumber, "$1#");
+  }
+  return all;
+}
+
 class Updating {
  public:
   Updating(const std::string& text, const RuleSet& rules, const Sighting& seen, Packs packs)
@@ -148,10 +190,17 @@ class Updating {
       const std::string node = each.node.empty() ? seen_.robot.node_of(each) : each.node;
       if (!node.empty()) declared_.emplace(node, &each);
     }
+    if (seen_.has_dump) return;
+    // Only a dump says it of a node: without one it is as the file has it.
+    for (const auto& each : declared_) {
+      if (each.second->is_respawned) seen_.dump.respawned.insert(each.first);
+    }
   }
 
   Update made() {
-    for (const Part& part : parts_of_draft(seen_, packs_, names())) consider(part);
+    const std::vector<Part> parts = parts_of_draft(seen_, packs_, names());
+    for (const Part& part : parts) consider(part);
+    if (std::ranges::find(parts, Part::Kind::kLeftOut, &Part::kind) == parts.end()) end_left_out();
     add_new_ones();
     if (!update_.changes.empty()) mark();
     note_what_is_gone();
@@ -180,7 +229,10 @@ class Updating {
       return;
     }
     const auto block = written_.block(known->text);
-    if (!block) return note_other_start(part);  // somebody changed it, or took it away
+    if (!block) {  // somebody changed it, or took it away
+      note_other_start(part);
+      return note_left_out(part);
+    }
     if (fits(part, *block)) return;
     replaced_.push_back({block->at, block->lines, lines_in(part.text)});
     known->text = mark->text;
@@ -195,11 +247,30 @@ class Updating {
       case Part::Kind::kUse:
         if (!part.node.empty()) return declared_.contains(part.node);
         return written_.has_line("USE " + part.subject.substr(0, part.subject.find_first_of(",)")));
+      case Part::Kind::kComment:
+        return part.pack.empty() ||
+               written_.has_line("USE " +
+                                 part.subject.substr(0, part.subject.find_first_of(" ,()")));
       case Part::Kind::kLevel:
         return is_read(part.subject);
-      default:
-        return true;
+      case Part::Kind::kLimit:
+        return is_key_read(part.subject);
+      case Part::Kind::kInterlock:
+        return !rules_.interlocks.empty();
+      case Part::Kind::kLeftOut:
+        return false;
+      case Part::Kind::kHead:
+        break;
     }
+    return true;
+  }
+
+  // `subject`: the status and the key, as rules write them.
+  bool is_key_read(const std::string& subject) const {
+    return std::ranges::any_of(rules_.signals, [&](const Signal& each) {
+      const auto* key = std::get_if<DiagnosticKey>(&each.source);
+      return key != nullptr && as_written(key->status) + " " + as_written(key->key) == subject;
+    });
   }
 
   bool is_read(const std::string& status) const {
@@ -211,9 +282,46 @@ class Updating {
            });
   }
 
-  static bool fits(const Part& part, const Block& block) {
-    if (part.kind == Part::Kind::kComponent) return print_of(part.text) == print_of(block.text);
-    return part.kind != Part::Kind::kRule || limits_fit(block.text, part.text);
+  bool fits(const Part& part, const Block& block) const {
+    switch (part.kind) {
+      case Part::Kind::kComponent:
+        return print_of(part.text) == print_of(block.text);
+      case Part::Kind::kRule:
+        return limits_fit(block.text, part.text);
+      case Part::Kind::kLimit:
+        return range_fits(block.text, part.text);
+      case Part::Kind::kInterlock:
+      case Part::Kind::kLeftOut:
+        return without_measures(block.text, seen_.robot) ==
+               without_measures(part.text, seen_.robot);
+      default:
+        return true;
+    }
+  }
+
+  // Of a list that is a person's by now.
+  void note_left_out(const Part& part) {
+    if (part.kind != Part::Kind::kLeftOut) return;
+    for (const std::string& line : lines_in(part.text)) {
+      const std::size_t reason = line.find(": ");
+      if (reason == std::string::npos || written_.has_line(line.substr(0, reason + 1))) continue;
+      update_.notes.push_back("left out, and not in the list of the file: " +
+                              line.substr(2, line.find_last_not_of('\n') - 1));
+    }
+  }
+
+  // Nothing is left out any more.
+  void end_left_out() {
+    const auto mark = mark_of({.kind = Part::Kind::kLeftOut, .subject = kAll, .text = ""});
+    const auto known = std::ranges::find(marks_, mark->about, &Mark::about);
+    if (known == marks_.end()) return;
+    const auto block = written_.block(known->text);
+    if (!block) return;
+    const bool is_followed_by_a_blank_line =
+        block->at + block->lines < written_.lines().size() &&
+        first_word(written_.lines()[block->at + block->lines]).empty();
+    replaced_.push_back({block->at, block->lines + (is_followed_by_a_blank_line ? 1 : 0), {}});
+    marks_.erase(known);
   }
 
   void note_other_start(const Part& part) {
@@ -295,7 +403,7 @@ class Updating {
 
   const Written written_;
   const RuleSet& rules_;
-  const Sighting& seen_;
+  Sighting seen_;
   const Packs packs_;
   std::vector<Mark> marks_;
   std::map<std::string, const Component*> declared_;  // by node

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "init/marks.h"
+#include "init/measures.h"
 #include "language/checker.h"
 #include "language/formatter.h"
 
@@ -190,6 +191,179 @@ TEST(Update, ANewNodeHasAFreeName) {
                     HasSubstr("COMPONENT front  NODE /front")));
 }
 
+// ---- proposals
+
+Sighting with_motor(double least, double most) {
+  Sighting seen = two_lidars();
+  ros2::StatusCourse& motor = seen.statuses[{"motor", ""}];
+  motor.messages = 30;
+  for (int i = 0; i < 30; ++i) motor.keys["temperature"].note(i % 2 == 0 ? least : most);
+  return seen;
+}
+
+TEST(Update, AProposalIsReplacedIfWhatWasSeenNowIsNotWithinItOrASmallPartOfIt) {
+  const std::string text = file_of(with_motor(60, 64));
+  EXPECT_EQ(updated(text, with_motor(61, 66)).text, text) << "that is chance";
+  for (const auto& [least, most] :
+       {std::pair(60.0, 80.0), std::pair(20.0, 64.0), std::pair(62.0, 62.5)}) {
+    const Updated now = updated(text, with_motor(least, most));
+    EXPECT_THAT(now.text, AllOf(HasSubstr("# proposal: temperature of motor was " +
+                                          as_number(least) + " to " + as_number(most)),
+                                Not(HasSubstr("was 60 to 64"))));
+    EXPECT_EQ(updated(now.text, with_motor(least, most)).text, now.text);
+  }
+}
+
+TEST(Update, WhatWasNotThereIsProposed) {
+  const std::string text = file_of(two_lidars());
+  Sighting seen = with_motor(60, 64);
+  seen.robot.topics["/cmd_vel"].type = "geometry_msgs/msg/Twist";
+  const Updated now = updated(text, seen);
+  EXPECT_THAT(now.text, AllOf(HasSubstr("\n# proposal: temperature of motor was 60 to 64"),
+                              HasSubstr("\n#   INTERLOCK age(/cmd_vel) > 1s")));
+  EXPECT_EQ(updated(now.text, seen).text, now.text);
+  seen.fields["/cmd_vel"]["linear.x"] = {40, 0, -0.5, 0.25, 0, true, true};
+  EXPECT_THAT(updated(now.text, seen).text, HasSubstr("40 commands came, at most 0.5"));
+  seen.robot.topics["/arm/cmd_vel"].type = "geometry_msgs/msg/Twist";
+  EXPECT_THAT(updated(now.text, seen).text, HasSubstr("#   INTERLOCK age(/arm/cmd_vel) > 1s"));
+}
+
+TEST(Update, AProposalThatAPersonTookOrTookAwayIsTheirs) {
+  const std::string text = file_of(with_motor(60, 64));
+  const std::size_t at = text.find("# proposal: temperature");
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t end = text.find("\n\n", at);
+  const std::string without = text.substr(0, at) + text.substr(end + 2);
+  EXPECT_EQ(updated(without, with_motor(20, 90)).text, without);
+  std::string taken = text;
+  for (std::size_t line = taken.find("#   ", at); line < taken.find("\n\n", at);
+       line = taken.find("#   ", line))
+    taken.replace(line, 4, "");
+  EXPECT_EQ(updated(taken, with_motor(20, 90)).text, taken);
+}
+
+TEST(Update, OfWhatAPersonsFileReadsAlreadyNothingIsProposed) {
+  const std::string mine = R"(COMPONENT lidar_in_front NODE /front LAUNCH "/opt/driver /front"
+COMPONENT back NODE /back LAUNCH "/opt/driver /back"
+SIGNAL heat DIAGNOSTIC motor KEY temperature STALE 5s
+INTERLOCK age(/cmd_vel) > 1s
+RULE Mine
+  POLICIES ERROR
+  TRIGGER level(battery) > 0 || heat > 90
+    STRATEGY s 50 5
+      ADAPTATION lidar_in_front redeploy 10
+        ADAPTATION back redeploy 10
+)";
+  Sighting seen = with_motor(60, 64);
+  seen.robot.topics["/cmd_vel"].type = "geometry_msgs/msg/Twist";
+  EXPECT_THAT(updated(mine, seen).text, Not(HasSubstr("# proposal")));
+}
+
+// ---- what was left out
+
+TEST(Update, WhatIsLeftOutNowIsListedAndNothingOfWhatTheFileDeclares) {
+  Sighting seen = two_lidars();
+  seen.robot.nodes["/far"] = {};
+  const Updated now = updated(file_of(two_lidars()), seen);
+  EXPECT_THAT(now.text, HasSubstr("\n# /far: its process is not on this machine"));
+  EXPECT_EQ(updated(now.text, seen).text, now.text);
+
+  seen.robot.nodes["/farther"] = {};
+  seen.robot.nodes["/front"].pid = 0;
+  const Updated later = updated(now.text, seen);
+  EXPECT_THAT(later.text, AllOf(HasSubstr("\n# /far: "), HasSubstr("\n# /farther: "),
+                                Not(HasSubstr("# /front: "))));
+
+  const Updated over = updated(now.text, two_lidars());
+  EXPECT_EQ(over.text, file_of(two_lidars())) << "nothing is left out any more";
+}
+
+TEST(Update, WhyATopicHasNoRhythmIsNoChange) {
+  Sighting seen = two_lidars();
+  seen.rhythms["/back/scan"] = {4, 30s, 4s};
+  const std::string text = file_of(seen);
+  EXPECT_THAT(text, HasSubstr("# /back/scan: 4 messages came"));
+  for (const ros2::Rhythm& other : {ros2::Rhythm{5, 30s, 4s}, ros2::Rhythm{100, 30s, 20s}}) {
+    seen.rhythms["/back/scan"] = other;
+    EXPECT_EQ(updated(text, seen).text, text);
+  }
+}
+
+TEST(Update, AListThatAPersonChangedStaysAndWhatItLacksIsTold) {
+  Sighting seen = two_lidars();
+  seen.robot.nodes["/far"] = {};
+  seen.robot.nodes["/near"] = {};
+  const std::string mine =
+      replaced(file_of(seen), "# /near: its process", "# /near: I know; its process");
+  seen.robot.nodes["/new"] = {};
+  const Updated now = updated(mine, seen);
+  EXPECT_EQ(now.text, mine);
+  EXPECT_THAT(now.notes,
+              ElementsAre(testing::StartsWith(
+                  "left out, and not in the list of the file: /new: its process is not")));
+}
+
+// ---- launch dumps
+
+Sighting with_container(bool has_dump) {
+  Sighting seen = two_lidars();
+  for (const char* node : {"/box", "/camera"}) {
+    seen.robot.nodes[node] = {.parameters = {}, .lifecycle = "", .pid = 77};
+    seen.starts[node].command = {"/opt/component_container"};
+  }
+  if (!has_dump) return seen;
+  seen.has_dump = true;
+  seen.dump.recipes["/camera"] = {"/box", "cameras", "cameras::Driver", {{"rate", "10"}}, {}};
+  seen.dump.respawned = {"/front"};
+  seen.parameter_file = "/rules/my.params.yaml";
+  return seen;
+}
+
+TEST(Update, ALaunchDumpSaysHowNodesAreLoadedAsInADraft) {
+  const Updated now = updated(file_of(with_container(false)), with_container(true));
+  EXPECT_THAT(now.text,
+              AllOf(HasSubstr("COMPONENT camera NODE /camera IN /box PLUGIN cameras::Driver "
+                              "PARAMETERS \"/rules/my.params.yaml\"\n"),
+                    HasSubstr("COMPONENT box NODE /box LAUNCH \"/opt/component_container\"\n"),
+                    HasSubstr("LAUNCH \"/opt/driver /front\" RESPAWNED\n"),
+                    Not(HasSubstr("# /camera: it lives in"))));
+  EXPECT_EQ(updated(now.text, with_container(true)).text, now.text);
+}
+
+TEST(Update, WithoutADumpNothingIsLostThatOneSaid) {
+  const std::string text = file_of(with_container(true));
+  EXPECT_EQ(updated(text, with_container(false)).text, text);
+  Sighting seen = with_container(false);
+  seen.starts["/front"].command = {"/opt/new_driver", "/front"};
+  EXPECT_THAT(updated(text, seen).text, HasSubstr("LAUNCH \"/opt/new_driver /front\" RESPAWNED\n"));
+}
+
+TEST(Update, ADumpThatSaysOtherwiseCounts) {
+  Sighting seen = with_container(true);
+  seen.dump.respawned = {"/back"};
+  seen.dump.recipes["/camera"].plugin = "cameras::NewDriver";
+  const Updated now = updated(file_of(with_container(true)), seen);
+  EXPECT_THAT(now.text,
+              AllOf(HasSubstr("PLUGIN cameras::NewDriver"), Not(HasSubstr("cameras::Driver ")),
+                    HasSubstr("LAUNCH \"/opt/driver /back\" RESPAWNED\n"),
+                    Not(HasSubstr("LAUNCH \"/opt/driver /front\" RESPAWNED"))));
+}
+
+TEST(Update, ParametersOfWhichTheDumpSaysNothingNowStay) {
+  const Sighting before = with_container(true);
+  const std::string file = parameters_text(before);
+  EXPECT_TRUE(is_as_written(file));
+  EXPECT_EQ(parameters_text(before, file), file);
+  Sighting seen = with_container(true);
+  seen.robot.nodes.erase("/camera");
+  seen.robot.nodes["/depth"] = seen.robot.nodes["/box"];
+  seen.dump.recipes["/depth"] = {"/box", "cameras", "cameras::Depth", {{"range", "4"}}, {}};
+  const std::string now = parameters_text(seen, file);
+  EXPECT_THAT(now, AllOf(HasSubstr("/camera:\n  ros__parameters:\n    \"rate\": 10\n"),
+                         HasSubstr("/depth:\n  ros__parameters:\n    \"range\": 4\n")));
+  EXPECT_TRUE(is_as_written(now));
+}
+
 TEST(Update, WithPacksANewDriverHasItsPackAndAnOldOneItsRule) {
   Sighting seen = two_lidars();
   for (const char* node : {"/back", "/left"}) {
@@ -202,6 +376,15 @@ TEST(Update, WithPacksANewDriverHasItsPackAndAnOldOneItsRule) {
                               HasSubstr("\nUSE urg_node2(left, /left/scan, 10)\n"),
                               Not(HasSubstr("USE urg_node2(back")), Not(HasSubstr("left_failed"))));
   EXPECT_LT(now.text.find("INCLUDE"), now.text.find("COMPONENT"));
+}
+
+TEST(Marks, OfAWholeFileTellWhetherSomebodyChangedIt) {
+  const std::string file = with_mark("/a:\n  b: 1\n");
+  EXPECT_TRUE(is_as_written(file));
+  EXPECT_FALSE(is_as_written(replaced(file, "  b", "    b"))) << "in YAML layout is meaning";
+  EXPECT_FALSE(is_as_written(file + "\n"));
+  EXPECT_FALSE(is_as_written("/a:\n  b: 1\n"));
+  EXPECT_FALSE(is_as_written(""));
 }
 
 TEST(Marks, ThatADiskOrAPersonDamagedAreNone) {
