@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "cli/commands.h"
 #include "cli/diagnostic_report.h"
+#include "doctor/examine.h"
 #include "doctor/look.h"
 #include "doctor/report.h"
 #include "ros2/options.h"
@@ -56,7 +57,7 @@ void print_text(const Report& report) {
 }
 
 int exit_code_of(const Report& report) {
-  if (report.findings.empty()) return kOk;
+  if (report.findings.empty()) return report.doubtful.empty() ? kOk : kFailed;
   return report.findings.front().gravity == Gravity::kError ? kFailed : kWarnings;
 }
 
@@ -84,8 +85,12 @@ void print_changes(const Report& before, const Report& now) {
     say(stdout, "{:%H:%M:%S} ", time);
     print_finding(finding, colour);
   }
+  const auto is_doubtful = [&](const Finding& finding) {
+    return std::ranges::any_of(now.doubtful,
+                               [&](const Finding& each) { return is_same(each, finding); });
+  };
   for (const Finding& finding : before.findings) {
-    if (!is_in(finding, now))
+    if (!is_in(finding, now) && !is_doubtful(finding))
       say(stdout, "{:%H:%M:%S} gone[{}]: {}\n", time, finding.code, finding.who);
   }
 }
@@ -113,6 +118,13 @@ int watch_robot(const doctor::LookOptions& how, const doctor::Baseline* healthy,
       [&](const doctor::Picture& picture) {
         Report now = report_of(picture, healthy);
         print_again(last ? &*last : nullptr, now, options);
+        // What was told and is in doubt now has neither gone nor come again.
+        for (const Finding& each : last ? last->findings : std::vector<Finding>()) {
+          if (std::ranges::any_of(now.doubtful,
+                                  [&](const Finding& other) { return is_same(each, other); }))
+            now.findings.push_back(each);
+        }
+        doctor::put_worst_first(now.findings);
         last = std::move(now);
       },
       stop.get_token());
@@ -122,6 +134,8 @@ int watch_robot(const doctor::LookOptions& how, const doctor::Baseline* healthy,
 
 // Writes the baseline only of a robot that is healthy.
 int save_robot(const doctor::Picture& picture, const Report& report, const std::string& file) {
+  if (!report.doubtful.empty())
+    return fail("this look was not good, so " + file + " was not written; look again");
   if (const int found = exit_code_of(report); found == kFailed)
     return fail("the robot is not healthy, so " + file + " was not written");
   if (const auto written = write_text(file, to_text(baseline_of(picture))); !written)

@@ -379,6 +379,7 @@ std::vector<Graph::ParticipantView> Graph::participants() const {
       view.undiscovered += static_cast<std::size_t>(std::ranges::count_if(
           guids, [&](const Guid& guid) { return !peer.endpoints.contains(guid); }));
     }
+    view.endpoints.reserve(peer.endpoints.size());
     for (const auto& [guid, endpoint] : peer.endpoints) {
       if (!endpoint.ros) continue;
       const auto owner = owners_.find(guid);

@@ -174,7 +174,7 @@ class Reader::Impl final : public dds::DataReaderListener {
       : subscriber_(subscriber),
         topics_(topics),
         filter_(filter),
-        port_(options.payload == PayloadUse::kHeader ? patient_port : std::uint16_t{0}),
+        port_(has_time(options.payload) ? patient_port : std::uint16_t{0}),
         heard_(filter, options.qos, options.on_unheard),
         options_(std::move(options)),
         on_sample_(std::move(on_sample)) {

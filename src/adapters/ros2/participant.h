@@ -94,7 +94,12 @@ using MatchCallback = std::function<void(const Guid& remote, Match)>;
 // is most of what hearing a topic costs. They come before whatever was said later to others.
 // kBeginning: of each payload only so much that a std_msgs/Header at its beginning is whole, unless its
 // frame has an absurd name.
-enum class PayloadUse : std::uint8_t { kWhole, kHeader, kBeginning };
+// kBeginningLater: as much, and samples may come as late as those of kHeader.
+enum class PayloadUse : std::uint8_t { kWhole, kHeader, kBeginning, kBeginningLater };
+// Whether samples may come late.
+constexpr bool has_time(PayloadUse use) {
+  return use == PayloadUse::kHeader || use == PayloadUse::kBeginningLater;
+}
 inline constexpr std::size_t kBeginningSize = 512;  // bytes
 
 struct ReaderOptions {

@@ -720,11 +720,12 @@ TEST(NodesToAsk, AreAllOfASmallRobotAndSomeOfEachProcessOfALargeOne) {
     return all;
   };
   EXPECT_THAT(nodes_to_ask(nodes(3, 20), 0), SizeIs(60));
+  EXPECT_THAT(nodes_to_ask(nodes(50, 2), 0), SizeIs(60));
   EXPECT_THAT(nodes_to_ask(nodes(200, 1), 0), SizeIs(200)) << "each process may hang";
   std::set<std::string> asked;
   for (std::size_t round = 0; round < 20; ++round) {
     const auto chosen = nodes_to_ask(nodes(10, 20), round);
-    EXPECT_THAT(chosen, SizeIs(60));
+    EXPECT_THAT(chosen, SizeIs(20));
     std::set<ros2::GuidPrefix> processes;
     for (const auto& view : chosen) {
       asked.insert(view.node.name);
@@ -733,6 +734,33 @@ TEST(NodesToAsk, AreAllOfASmallRobotAndSomeOfEachProcessOfALargeOne) {
     EXPECT_THAT(processes, SizeIs(10));
   }
   EXPECT_THAT(asked, SizeIs(200)) << "everybody in turn";
+
+  const auto with_managed = [&](std::size_t how_many) {
+    auto all = nodes(10, 20);
+    for (std::size_t i = 0; i < how_many; ++i) {
+      ros2::GraphEndpoint state;
+      state.kind = EndpointKind::kServer;
+      state.name = all[i].node.name + "/get_state";
+      all[i].endpoints.push_back(state);
+    }
+    return all;
+  };
+  const auto managed = [](const std::vector<ros2::Graph::NodeView>& chosen) {
+    std::set<std::string> names;
+    for (const auto& view : chosen) {
+      if (!view.endpoints.empty()) names.insert(view.node.name);
+    }
+    return names;
+  };
+  EXPECT_THAT(managed(nodes_to_ask(with_managed(30), 0)), SizeIs(30))
+      << "nobody else knows their states";
+  std::set<std::string> in_turn;
+  for (std::size_t round = 0; round < 20; ++round) {
+    const auto chosen = nodes_to_ask(with_managed(150), round);
+    EXPECT_THAT(chosen, SizeIs(60));
+    in_turn.merge(managed(chosen));
+  }
+  EXPECT_THAT(in_turn, SizeIs(150));
 }
 
 TEST(WantedTopics, AreThoseThatARobotsNodeReadsAndThatTellSomething) {
@@ -752,7 +780,8 @@ TEST(WantedTopics, AreThoseThatARobotsNodeReadsAndThatTellSomething) {
   EXPECT_THAT(names(Extent::kFindings), ElementsAre("/map", "/scan"));
   EXPECT_THAT(names(Extent::kEverything), ElementsAre("/map", "/scan", "/text"));
   picture.nodes[1].endpoints[1].qos.deadline = 100ms;
-  EXPECT_THAT(names(Extent::kFindings), ElementsAre("/map", "/scan", "/text"));
+  EXPECT_THAT(names(Extent::kFindings), ElementsAre("/text", "/map", "/scan"))
+      << "first those whose silence is a finding";
 }
 
 }  // namespace

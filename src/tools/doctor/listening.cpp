@@ -41,9 +41,11 @@ class Listening::Ear {
                         .keys = topic.keys}
             : ros2::Qos{
                   .reliability = ros2::Reliability::kBestEffort, .depth = 1, .keys = topic.keys};
-    // Not kHeader, which has time: pauses are compared with deadlines.
+    // Pauses are compared with deadlines. All else may wait a moment, which costs less.
+    const auto use =
+        topic.has_deadline ? ros2::PayloadUse::kBeginning : ros2::PayloadUse::kBeginningLater;
     auto subscription = ros2::RawSubscription::create(
-        self, topic.name, topic.type, qos, ros2::PayloadUse::kBeginning,
+        self, topic.name, topic.type, qos, use,
         [raw = ear.get()](const ros2::Sample& sample) { raw->on_sample(sample); });
     if (!subscription) return nullptr;
     ear->subscription_ = std::move(*subscription);
@@ -174,11 +176,12 @@ void Listening::listen_to(const std::vector<WantedTopic>& topics) {
   }
 }
 
-void Listening::take_turns(Time now) {
+void Listening::take_turns(Time now, Duration left) {
+  const bool is_worth_it = left >= kWorthIt;
   std::size_t open = 0;
   for (const auto& [name, ear] : ears_) {
     if (ear->is_closed()) continue;
-    if (ear->has_much() || (!waiting_.empty() && ear->had_its_turn(now)))
+    if (ear->has_much() || (is_worth_it && !waiting_.empty() && ear->had_its_turn(now)))
       ear->close(now);
     else
       ++open;

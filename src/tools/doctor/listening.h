@@ -25,8 +25,9 @@ struct WantedTopic {
   std::string name;
   std::string type;
   ros2::Keys keys = ros2::Keys::kNone;
-  bool is_latched = false;  // all its publishers latch: what was published before is wanted, too
-  bool is_stamped = false;  // its messages begin with a header
+  bool is_latched = false;    // all its publishers latch: what was published before is wanted, too
+  bool is_stamped = false;    // its messages begin with a header
+  bool has_deadline = false;  // a node demands one: its pauses are compared with it
   bool operator==(const WantedTopic&) const = default;
 };
 
@@ -40,6 +41,8 @@ class Listening {
   static constexpr std::size_t kMuchData = 2'000'000;  // bytes
   // So long is enough of one while others wait.
   static constexpr Duration kTurn = std::chrono::seconds(5);
+  // A turn that is shorter tells less than it costs the robot and us to discover its readers.
+  static constexpr Duration kWorthIt = std::chrono::seconds(4);
 
   // `self` outlives it. `simulated_now`: what /clock shows; called on receive threads.
   Listening(ros2::NodeEntry& self, std::function<std::optional<Duration>()> simulated_now);
@@ -47,8 +50,9 @@ class Listening {
 
   // Listens to these, as soon as their turn comes, besides those that it listens to.
   void listen_to(const std::vector<WantedTopic>& topics);
-  // Ends listening where enough was heard, and begins where others waited. To be called now and then.
-  void take_turns(Time now);
+  // Ends listening where enough was heard, and begins where others waited. To be called now and then; `left`: of
+  // the look.
+  void take_turns(Time now, Duration left);
 
   std::map<std::string, Flow> flows(Time now) const;
   // How many have not had their turn.

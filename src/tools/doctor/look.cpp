@@ -11,6 +11,7 @@
 #include "base/tool_names.h"
 #include "doctor/asking.h"
 #include "doctor/clock_listening.h"
+#include "doctor/held_up.h"
 #include "doctor/listening.h"
 #include "doctor/machine.h"
 #include "doctor/nodes_to_ask.h"
@@ -49,6 +50,7 @@ class Look {
     auto node = ros2::Node::create(*context_, {"/", "_culprit_doctor"});
     if (!node) return Error{node.error()};
     node_ = std::move(*node);
+    node_name_ = node_->name().full();
     asking_.emplace(*node_);
     transforms_.emplace(node_->entry());
     clock_.emplace(node_->entry());
@@ -93,6 +95,7 @@ class Look {
 
   void begin() {
     began_ = live_now();
+    waits_ = waits_of_own_threads();
     const auto at = [&](Duration after) { return ros2::Executor::Clock::now() + after; };
     // By then who is there was discovered.
     tasks_.post_at(at(options_.time / 3), [this] { ask_all(options_.time / 2); });
@@ -123,7 +126,7 @@ class Look {
 
   void on_tick() {
     listen();
-    topics_->take_turns(live_now());
+    topics_->take_turns(live_now(), options_.time - since_begin());
     processes_.sample(nodes_, since_begin());
     if (disks_.empty()) disks_ = disks_of(nodes_);
     note_ended();
@@ -165,7 +168,7 @@ class Look {
 
   void ask_all(Duration patience) {
     std::vector<ros2::Graph::NodeView> views = context_->graph().nodes();
-    std::erase_if(views, [&](const auto& view) { return view.node.name == node_->name().full(); });
+    std::erase_if(views, [&](const auto& view) { return view.node.name == node_name_; });
     const std::size_t all = views.size();
     const auto chosen = nodes_to_ask(std::move(views), round_);
     unasked_ = all - chosen.size();
@@ -213,7 +216,7 @@ class Look {
       if (!namesakes_.contains(left->node)) on_left(*left);
       nodes_.erase(left->node);
     } else if (const auto* endpoint = std::get_if<ros2::EndpointJoined>(&change)) {
-      wiring_changed_ = true;
+      wiring_changed_ = wiring_changed_ || endpoint->node != node_name_;
       if (endpoint->endpoint.kind == EndpointKind::kPublisher)
         published_.insert(endpoint->endpoint.name);
     }
@@ -248,13 +251,16 @@ class Look {
 
   std::vector<Node> nodes_with_endpoints(
       const std::vector<ros2::Graph::ParticipantView>& participants) const {
-    std::map<ros2::GuidPrefix, const ros2::Graph::ParticipantView*> by_prefix;
-    for (const auto& each : participants) by_prefix[each.info.guid.prefix()] = &each;
     std::vector<Node> nodes;
+    std::map<std::pair<ros2::GuidPrefix, std::string>, std::size_t> places;
     for (const ros2::Graph::NodeView& view : context_->graph().nodes()) {
-      Node& node = nodes.emplace_back(Node{view.node});
-      for (const auto& owned : by_prefix.at(view.participant)->endpoints) {
-        if (owned.node == view.node.name) node.endpoints.push_back(owned.endpoint);
+      places[{view.participant, view.node.name}] = nodes.size();
+      nodes.push_back(Node{view.node});
+    }
+    for (const ros2::Graph::ParticipantView& each : participants) {
+      for (const auto& owned : each.endpoints) {
+        const auto place = places.find({each.info.guid.prefix(), owned.node});
+        if (place != places.end()) nodes[place->second].endpoints.push_back(owned.endpoint);
       }
     }
     return nodes;
@@ -266,6 +272,7 @@ class Look {
     Picture seen;
     seen.domain = options_.participant.domain;
     seen.looked = now - began_;
+    seen.waited = longest_wait(waits_, waits_of_own_threads());
     seen.nodes = nodes_with_endpoints(participants);
     seen.namesakes = namesakes_;
     for (const auto& each : participants) seen.participants.push_back(described(each));
@@ -383,12 +390,14 @@ class Look {
   const LookOptions options_;
   const std::function<void(const Picture&)> on_picture_;
   Time began_{};
+  std::map<int, Duration> waits_;     // of our threads, when the look began
   std::map<std::string, int> nodes_;  // with their processes; 0: not known
   std::map<std::string, std::vector<ros2::GraphNode>> namesakes_;
   std::map<std::string, std::vector<Dated>> comings_;
   std::map<std::string, HeardStatus> statuses_;
   std::set<std::string> published_;
   std::map<int, Time> ended_;
+  std::string node_name_;  // ours
   bool wiring_changed_ = false;
   std::size_t round_ = 0;  // of looks
   std::size_t asked_ = 0;  // nodes

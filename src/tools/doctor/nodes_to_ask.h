@@ -8,7 +8,9 @@
 
 namespace culprit::doctor {
 
-// All of up to 60; of more some of each participant, others in each `round`, and at least one.
+// All of up to 60. Of more, two of each participant, for the nodes of a process mostly hang together, and those
+// that are managed, since only they know their states: 60 in all, but at least one of each participant, and
+// others in each `round`.
 std::vector<ros2::Graph::NodeView> nodes_to_ask(std::vector<ros2::Graph::NodeView> nodes,
                                                 std::size_t round);
 

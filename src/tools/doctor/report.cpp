@@ -7,6 +7,7 @@
 
 #include "doctor/examine.h"
 #include "doctor/explanations.h"
+#include "doctor/held_up.h"
 #include "doctor/wording.h"
 
 namespace culprit::doctor {
@@ -38,16 +39,32 @@ Json sarif_result(const Finding& finding) {
           {"locations", Json::array({{{"logicalLocations", std::move(logical)}}})}};
 }
 
+void leave_out_doubtful(const Picture& picture, Report& report) {
+  const auto doubtful =
+      std::stable_partition(report.findings.begin(), report.findings.end(),
+                            [](const Finding& each) { return !is_of_absence(each.code); });
+  report.doubtful.assign(doubtful, report.findings.end());
+  report.findings.erase(doubtful, report.findings.end());
+  if (report.doubtful.empty()) return;
+  report.left_out.push_back(fmt::format(
+      "this look was not good: the machine is so busy that the doctor waited {} of {} for a "
+      "processor. {} that it "
+      "may only have been too late to hear {} not told; look again when the machine has less to do",
+      duration(picture.waited), duration(picture.looked),
+      count_of(report.doubtful.size(), "finding"), report.doubtful.size() == 1 ? "is" : "are"));
+}
+
 }  // namespace
 
 Report report_of(const Picture& picture, const Baseline* healthy) {
-  Report report{picture.domain, picture.nodes.size(), picture.looked, examine(picture),
-                picture.left_out};
+  Report report{picture.domain,   picture.nodes.size(), picture.looked,
+                examine(picture), picture.left_out,     {}};
   if (healthy != nullptr && !picture.nodes.empty()) {
     const Findings differences = compare(*healthy, baseline_of(picture));
     report.findings.insert(report.findings.end(), differences.begin(), differences.end());
     put_worst_first(report.findings);
   }
+  if (was_held_up(picture)) leave_out_doubtful(picture, report);
   return report;
 }
 
@@ -83,9 +100,11 @@ std::string summary(const Report& report) {
         std::ranges::count(report.findings, gravity, &Finding::gravity));
   };
   return fmt::format("{} on domain {}: {}", count_of(report.nodes, "node"), report.domain,
-                     report.findings.empty() ? "nothing is wrong that can be seen from outside"
-                                             : count_of(count(Gravity::kError), "error") + ", " +
-                                                   count_of(count(Gravity::kWarning), "warning"));
+                     report.findings.empty() && !report.doubtful.empty()
+                         ? "nothing can be said for sure"
+                     : report.findings.empty() ? "nothing is wrong that can be seen from outside"
+                                               : count_of(count(Gravity::kError), "error") + ", " +
+                                                     count_of(count(Gravity::kWarning), "warning"));
 }
 
 }  // namespace culprit::doctor

@@ -24,6 +24,8 @@ struct Report {
   Duration looked{};
   std::vector<Finding> findings;      // the worst first
   std::vector<std::string> left_out;  // what was not looked at, in sentences
+  // Findings that are not among them, since the doctor may only have been too late to hear (held_up.h).
+  std::vector<Finding> doubtful{};
   bool operator==(const Report&) const = default;
 };
 
@@ -38,7 +40,7 @@ nlohmann::ordered_json to_json(const Report& report);
 // locations.
 nlohmann::ordered_json to_sarif(const Report& report);
 
-// "12 nodes on domain 7: 1 error, 2 warnings".
+// "12 nodes on domain 7: 1 error, 2 warnings". Where there is a doubt, it says so instead of that nothing is wrong.
 std::string summary(const Report& report);
 
 }  // namespace culprit::doctor

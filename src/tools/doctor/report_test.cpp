@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "doctor/explanations.h"
+#include "doctor/held_up.h"
 
 namespace culprit::doctor {
 namespace {
@@ -196,6 +197,50 @@ TEST(FindingExplanations, ThePageOfTheDocumentationIsTheirs) {
   const std::string written(std::istreambuf_iterator<char>(in), {});
   EXPECT_EQ(written, findings_as_markdown())
       << "write it anew: culprit explain --markdown doctor > docs/findings.md";
+}
+
+// ---- a doctor that was held up
+
+TEST(HeldUp, IsTheThreadThatWaitedLongest) {
+  EXPECT_EQ(wait_in("527039317 2715090050 1885\n"), 2715090050ns);
+  for (const char* text : {"", "x", "12", "12 -1 3", "99999999999999999999 1 1"})
+    EXPECT_FALSE(wait_in(text)) << text;
+  EXPECT_EQ(longest_wait({{1, 5s}, {2, 1s}}, {{1, 6s}, {2, 4s}, {3, 2s}}), 3s);
+  EXPECT_EQ(longest_wait({{1, 5s}}, {}), 0s);
+  EXPECT_FALSE(waits_of_own_threads().empty());
+}
+
+TEST(HeldUp, ADoctorDoesNotTellWhatItMayOnlyHaveMissed) {
+  Picture picture;  // nobody is there: D030
+  picture.looked = 8s;
+  picture.disks = {{"/", "the logs of /a", 100'000'000'000, 10'000'000, 0}};  // D060
+  picture.waited = 2s;
+  const Report good = report_of(picture);
+  ASSERT_EQ(good.findings.size(), 2u);
+  EXPECT_TRUE(good.left_out.empty());
+  picture.waited = 2001ms;
+  const Report busy = report_of(picture);
+  ASSERT_EQ(busy.findings.size(), 1u);
+  EXPECT_EQ(busy.findings[0].code, "D060") << "that it has seen";
+  ASSERT_EQ(busy.doubtful.size(), 1u);
+  EXPECT_EQ(busy.doubtful[0].code, "D030");
+  ASSERT_EQ(busy.left_out.size(), 1u);
+  EXPECT_THAT(busy.left_out[0],
+              testing::StartsWith("this look was not good: the machine is so busy"));
+  picture.disks.clear();
+  EXPECT_THAT(summary(report_of(picture)), testing::HasSubstr("nothing can be said for sure"));
+}
+
+TEST(HeldUp, AnHealthyRobotThatWasHeardAllTheSameIsHealthy) {
+  Picture picture;
+  picture.looked = 8s;
+  picture.waited = 7s;
+  picture.nodes.push_back({{"/a", ros2::Vendor::kFastDds, "", 1}, {}});
+  const Report report = report_of(picture);
+  EXPECT_TRUE(report.findings.empty());
+  EXPECT_TRUE(report.left_out.empty());
+  EXPECT_THAT(summary(report),
+              testing::HasSubstr("nothing is wrong that can be seen from outside"));
 }
 
 }  // namespace
