@@ -1,6 +1,7 @@
 #include "init/marks.h"
 
 #include <charconv>
+#include <utility>
 
 #include <fmt/format.h>
 
