@@ -48,7 +48,9 @@ class ManagedNode(Node):
     def execute(self, context):
         self._perform_substitutions(context)
         rules = os.path.abspath(os.path.expanduser(perform_substitutions(context, self._rules)))
-        why_not = program.why_not_healed(program.find(), rules, self.node_name)
+        # A node without a namespace has that of the root.
+        node = self.node_name.replace(self.UNSPECIFIED_NODE_NAMESPACE, '')
+        why_not = program.why_not_healed(program.find(), rules, node)
         if why_not is not None:
             raise RuntimeError(why_not)
         return super().execute(context)
