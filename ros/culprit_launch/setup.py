@@ -19,4 +19,5 @@ setup(
     description="Launch actions: culprit beside a robot's nodes, and nodes that launch starts and"
                 ' culprit heals.',
     license='Apache-2.0',
+    extras_require={'test': ['pytest']},
 )

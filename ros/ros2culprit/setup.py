@@ -17,6 +17,7 @@ setup(
     maintainer_email='maintainers@example.org',
     description='ros2 culprit: asks the culprit program what is wrong with the robot.',
     license='Apache-2.0',
+    extras_require={'test': ['pytest']},
     entry_points={
         'ros2cli.command': [
             'culprit = ros2culprit.command.culprit:CulpritCommand',
