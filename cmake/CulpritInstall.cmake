@@ -9,6 +9,8 @@
 # A plain `cmake --install` installs all of them, but for what only a package has (EXCLUDE_FROM_ALL).
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/rules DESTINATION share/culprit COMPONENT culprit)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/fleet/grafana.json DESTINATION share/culprit/fleet COMPONENT culprit)
+install(FILES ${PROJECT_SOURCE_DIR}/packaging/monitoring/culprit-alerts.yaml ${PROJECT_SOURCE_DIR}/packaging/monitoring/grafana.json
+        DESTINATION share/culprit/monitoring COMPONENT culprit)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/culprit.1 DESTINATION share/man/man1 COMPONENT culprit)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/culprit-lab.1 DESTINATION share/man/man1 COMPONENT lab)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/sunset-node.1 ${PROJECT_SOURCE_DIR}/packaging/suave-node.1

@@ -176,6 +176,7 @@ std::string Metrics::text() const {
   all("culprit_orders_total", "counter", "Orders of people.", counts.orders);
   all("culprit_failures_open", "gauge", "Failures that are there now.", counts.open);
   all("culprit_components", "gauge", "Components of the rules by health.", counts.components);
+  one("culprit_hears", "gauge", "1 while the robot can be heard.", hears_ ? 1 : 0);
   one("culprit_approvals_pending", "gauge", "Strategies that wait for a person's word.",
       counts.approvals_pending);
   one("culprit_silences", "gauge", "Silences that hold now.", counts.silences);

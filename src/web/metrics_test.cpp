@@ -1,6 +1,9 @@
 // What monitoring systems read of culprit while it heals a robot.
 #include "web/metrics.h"
 
+#include <fstream>
+#include <regex>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -67,7 +70,7 @@ TEST_F(Counted, TellsOfFailuresStrategiesAndHealth) {
     EXPECT_THAT(text, HasSubstr(line));
 }
 
-// promtool has no package; these are the rules of the format that it would check.
+// The rules of the format that promtool checks.
 TEST_F(Counted, IsInPrometheusTextFormat) {
   robot.discover();
   std::istringstream text(metrics.text());
@@ -86,6 +89,39 @@ TEST_F(Counted, IsInPrometheusTextFormat) {
   }
   EXPECT_TRUE(families.contains("process_resident_memory_bytes"));
   EXPECT_TRUE(families.contains("process_start_time_seconds"));
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// What packaging/monitoring asks Prometheus for is told, under these names and with these labels.
+TEST_F(Counted, AreWhatTheDashboardAndTheAlertsAskFor) {
+  const std::string told = metrics.text();
+  for (const char* file : {"culprit-alerts.yaml", "grafana.json"}) {
+    const std::string asked = text_of(std::string("packaging/monitoring/") + file);
+    const std::regex name("\\b(culprit|process)_[a-z_]+\\b");
+    std::size_t count = 0;
+    for (std::sregex_iterator i(asked.begin(), asked.end(), name), end; i != end; ++i, ++count) {
+      const bool is_told = told.find("\n" + i->str() + "{") != std::string::npos ||
+                           told.find("\n" + i->str() + " ") != std::string::npos;
+      EXPECT_TRUE(is_told) << file << " asks for " << i->str();
+    }
+    EXPECT_GT(count, 10u) << file;
+    for (const char* each :
+         {"robot", "rule", "criticality", "health", "outcome", "strategy", "restraint", "le"}) {
+      EXPECT_NE(told.find(std::string(each) + "=\""), std::string::npos) << each;
+    }
+  }
+}
+
+TEST_F(Counted, TellsWhetherTheRobotIsHeard) {
+  robot.discover();
+  EXPECT_THAT(metrics.text(), HasSubstr("culprit_hears 1\n"));
+  robot.tell(HearingLost{"nothing comes back"});
+  robot.run_for(1s);
+  EXPECT_THAT(metrics.text(), HasSubstr("culprit_hears 0\n"));
 }
 
 TEST_F(Counted, HasEachStepInOneBucketAndInAllAbove) {
