@@ -18,6 +18,7 @@
 #include <gtest/gtest.h>
 
 #include "base/environment.h"
+#include "base/live_clock.h"
 #include "cli/test_network.h"
 #include "exemplars/sunset/node_process.h"
 #include "robot/inbox.h"

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/environment.h"
+#include "base/live_clock.h"
 #include "owners/proc.h"
 #include "ros2/options.h"
 #include "terminal/test_program.h"

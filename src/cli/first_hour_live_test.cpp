@@ -19,6 +19,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "base/live_clock.h"
 #include "base/text_file.h"
 #include "demo/test_live_sunset.h"
 #include "ros2/options.h"

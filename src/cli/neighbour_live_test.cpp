@@ -13,6 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/live_clock.h"
 #include "cli/test_network.h"
 #include "exemplars/sunset/node_process.h"
 #include "journal/reader.h"

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/environment.h"
+#include "base/live_clock.h"
 #include "owners/proc.h"
 #include "owners/test_engine.h"
 #include "owners/test_systemd.h"

@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/live_clock.h"
 #include "demo/test_live_sunset.h"
 #include "terminal/test_program.h"
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/environment.h"
+#include "base/live_clock.h"
 #include "exemplars/sunset/node_process.h"
 #include "owners/mark.h"
 #include "robot/inbox.h"
