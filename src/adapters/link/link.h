@@ -150,6 +150,12 @@ class Link {
     int pid = 0;  // 0: not known
   };
   std::map<std::string, ToProbe> probed_;  // by node
+  // Another node has the name of ours: told once, if it is still there when this is due.
+  struct Namesake {
+    std::string text;
+    Time due{};
+  };
+  std::optional<Namesake> namesake_;
   bool is_namesake_told_ = false;
   std::map<std::string, int> pids_;  // of nodes that are there; 0 where it is not known
   std::map<std::string, std::vector<std::string>> systems_;       // by the mode manager's node

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <utility>
 
+#include "base/ros_names.h"
 #include "ros2/service_mapping.h"
 
 namespace culprit::ros2 {
@@ -313,7 +314,9 @@ GraphNode Graph::describe(const std::string& name, const Peer& peer) const {
   return {name, peer.info.vendor, peer.info.host, peer.pid};
 }
 
+// Hidden nodes are what people look with, and several may look at once.
 void Graph::warn_of_duplicate(const std::string& name, const Node& node) {
+  if (own_name(name).starts_with('_')) return;
   Peer& older = peers_.at(node.claimants[node.claimants.size() - 2]);
   Peer& newer = peers_.at(node.claimants.back());
   pid_of(older);

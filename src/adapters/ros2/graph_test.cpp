@@ -10,8 +10,11 @@
 namespace culprit::ros2 {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 // Endpoint ids: the last byte says reader (4) or writer (3).
 Guid guid_of(std::uint8_t participant, std::uint8_t entity, bool is_reader) {
@@ -276,6 +279,16 @@ TEST(Graph, TwoLivingNodesOfOneNameAreTrouble) {
   watched.leaves(2);
   EXPECT_THAT(watched.told(),
               ElementsAre("-/a", "+/a in 10", "+/a publishes /t", "=/a has 0 namesakes"));
+}
+
+TEST(Graph, SeveralMayLookAtARobotByHiddenNodesOfOneName) {
+  Graph::Options options;
+  options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };
+  options.is_running = [](int) { return true; };
+  Watched watched(options);
+  watched.joins(1, 10).says(1, {node("/", "_survey")}).told();
+  watched.joins(2, 20).says(2, {node("/", "_survey")});
+  EXPECT_THAT(watched.told(), Not(Contains(HasSubstr("two nodes"))));
 }
 
 TEST(Graph, ANamesakeIsForgottenWhenItsProcessHasEnded) {
