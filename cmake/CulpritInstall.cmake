@@ -10,6 +10,7 @@
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/rules DESTINATION share/culprit COMPONENT culprit)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/fleet/grafana.json DESTINATION share/culprit/fleet COMPONENT culprit)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/monitoring/culprit-alerts.yaml ${PROJECT_SOURCE_DIR}/packaging/monitoring/grafana.json
+        ${PROJECT_SOURCE_DIR}/packaging/monitoring/foxglove.json
         DESTINATION share/culprit/monitoring COMPONENT culprit)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/culprit.1 DESTINATION share/man/man1 COMPONENT culprit)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/culprit-lab.1 DESTINATION share/man/man1 COMPONENT lab)

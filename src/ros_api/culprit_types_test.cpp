@@ -1,5 +1,8 @@
 #include "ros_api/culprit_types.h"
 
+#include <fstream>
+#include <regex>
+
 #include <gtest/gtest.h>
 
 #include "ros2/type_description.h"
@@ -76,6 +79,30 @@ TEST(CulpritTypes, AreDescribedToWhoAsksByTheirHash) {
   EXPECT_EQ(told.type_sources.size(), 4u) << "Status, Component, Incident and Strategy";
   EXPECT_FALSE(types.described({status.name, "RIHS01_" + std::string(64, '0'), false}).successful);
   EXPECT_FALSE(types.described({"std_msgs/msg/String", status.hash, false}).successful);
+}
+
+std::string text_of_file(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// What packaging/monitoring/foxglove.json shows are topics and fields that are told.
+TEST(CulpritTypes, HaveWhatTheLayoutForFoxgloveShows) {
+  const std::string layout = text_of_file("packaging/monitoring/foxglove.json");
+  const std::map<std::string, std::string> types = {
+      {"status", "Status"}, {"incidents", "Incident"}, {"decisions", "Decision"}};
+  std::set<std::string> shown;
+  const std::regex path("\"/culprit/([a-z]+)(\\.([a-z_]+))?(\\[:\\])?\"");
+  for (std::sregex_iterator i(layout.begin(), layout.end(), path), end; i != end; ++i) {
+    const std::string topic = (*i)[1], field = (*i)[3];
+    ASSERT_TRUE(types.contains(topic)) << i->str();
+    shown.insert(topic);
+    if (field.empty()) continue;
+    const std::string message = text_of_file("ros/culprit_msgs/msg/" + types.at(topic) + ".msg");
+    EXPECT_TRUE(std::regex_search(message, std::regex("\n[A-Za-z0-9_/\\[\\]]+ " + field + "\\b")))
+        << i->str();
+  }
+  EXPECT_EQ(shown.size(), types.size());
 }
 
 }  // namespace
