@@ -6,9 +6,6 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
-#include <ifaddrs.h>
-#include <memory>
-#include <netinet/in.h>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -16,22 +13,15 @@
 #include <string_view>
 #include <system_error>
 
+#include "ros2/own_addresses.h"
+
 namespace culprit::ros2 {
 namespace {
 
 namespace fs = std::filesystem;
 
 bool is_local(const std::array<std::uint8_t, 4>& ip) {
-  if (ip[0] == 127) return true;
-  ifaddrs* all = nullptr;
-  if (getifaddrs(&all) != 0) return false;
-  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(all, &freeifaddrs);
-  for (const ifaddrs* i = all; i != nullptr; i = i->ifa_next) {
-    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
-    const auto* address = reinterpret_cast<const sockaddr_in*>(i->ifa_addr);
-    if (std::memcmp(&address->sin_addr, ip.data(), ip.size()) == 0) return true;
-  }
-  return false;
+  return ip[0] == 127 || own_addresses().contains(ip);
 }
 
 std::string to_text(const UdpAddress& address) {
