@@ -1,7 +1,6 @@
 #include "ros2/process_finder.h"
 
 #include <algorithm>
-#include <arpa/inet.h>
 #include <array>
 #include <charconv>
 #include <cstring>
