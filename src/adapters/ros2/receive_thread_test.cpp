@@ -128,7 +128,9 @@ TEST(ReceiveThread, WhatHasTimeComesByItself) {
   // So many that it stops being woken by each.
   for (std::size_t i = 1; i <= 100; ++i) {
     speaker.say(patient, "x");
-    if (i % 2 == 0) ASSERT_TRUE(ears.heard.wait_for_count(i));
+    if (i % 2 == 0) {
+      ASSERT_TRUE(ears.heard.wait_for_count(i));
+    }
   }
   EXPECT_THAT(ears.heard.all(), SizeIs(100));
 }
