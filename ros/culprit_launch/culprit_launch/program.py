@@ -107,6 +107,9 @@ def why_not_healed(program, rules, node):
     names = [full_name or component['name'] for full_name, component, _ in components]
     near = difflib.get_close_matches(node, names, n=1)
     meant = f' (did you mean {near[0]}?)' if near else ''
+    # Where another component has the node's own name, its full name makes one of its own.
+    is_taken = any(component['name'] == own_name for _, component, _ in components)
+    name = node.strip('/').replace('/', '_') if is_taken else own_name
     return (
         f'no component of {rules} is {node}{meant}, so culprit does not look after it: add'
-        f' COMPONENT {own_name} NODE {node} RESPAWNED')
+        f' COMPONENT {name} NODE {node} RESPAWNED')

@@ -77,6 +77,12 @@ def test_a_mistyped_name_is_told_with_the_one_that_was_meant(exports, program, r
     assert 'no component' in out and 'did you mean /camera?' in out
 
 
+def test_what_is_to_be_added_has_a_name_of_its_own(exports):
+    culprit = exports({'name': 'camera', 'node': '/right/camera', 'respawned': True})
+    why_not = culprit_program.why_not_healed(culprit, 'my.rules', '/left/camera')
+    assert why_not.endswith('add COMPONENT left_camera NODE /left/camera RESPAWNED')
+
+
 def test_a_node_without_a_namespace_may_be_named_by_the_component(exports):
     culprit = exports({'name': 'camera', 'respawned': True})
     assert culprit_program.why_not_healed(culprit, 'my.rules', '/left/camera') is None
