@@ -35,6 +35,9 @@ constexpr int kErrorGoalTerminated = 3;
 
 // rcl_action's: services as such, the topics reliable, and who comes late gets the newest state of all goals.
 constexpr ros2::Qos kFeedbackQos{.depth = 10};
+// A client of rclcpp takes feedback before answers, and drops what is about a goal that it does not
+// know yet: so a goal's first feedback comes so long after the answer that accepts it.
+constexpr Duration kUntilKnown = std::chrono::milliseconds(100);
 constexpr ros2::Qos kStatusQos{.durability = ros2::Durability::kTransientLocal, .depth = 1};
 
 Id id_in(const Json& uuid) {
@@ -72,7 +75,7 @@ class RecoveryAction::Offer {
   std::vector<std::string> open() {
     serve("send_goal", kSendGoal, [this](const Json& request, const Answer& answer) {
       answer_with(answer, kSendGoal, begin(request));
-      tasks_.post([this] { follow(); });
+      tasks_.post_at(ros2::Executor::Clock::now() + kUntilKnown, [this] { follow(); });
     });
     serve("cancel_goal", kCancelGoal, [this](const Json& request, const Answer& answer) {
       answer_with(answer, kCancelGoal, cancel(request));
