@@ -59,8 +59,10 @@ export function expect(condition, message) {
 // Waits until `holds`.
 export async function expectSoon(holds, message) {
   const end = Date.now() + kPatience
-  while (!holds() && Date.now() < end) await new Promise((resolve) => setTimeout(resolve, 10))
-  expect(holds(), message)
+  while (!(await holds())) {
+    expect(Date.now() < end, message)
+    await new Promise((resolve) => setTimeout(resolve, 10))
+  }
 }
 
 // Runs `steps` with a page of `culprit <args>`, and what it prints.
