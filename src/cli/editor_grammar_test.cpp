@@ -8,6 +8,7 @@
 
 #include "language/functions.h"
 #include "language/line_reader.h"
+#include "language/parser.h"
 #include "language/syntax.h"
 
 namespace culprit {
@@ -78,6 +79,27 @@ TEST(EditorGrammar, IsTheOneThatTheExtensionNames) {
   EXPECT_EQ(entry.at("language"), contributes.at("languages").at(0).at("id"));
   EXPECT_EQ(entry.at("path"), "./syntaxes/culprit-rules.tmLanguage.json");
   EXPECT_EQ(read_json("language-configuration.json").at("comments").at("lineComment"), "#");
+}
+
+// A snippet as it stands in the file when nothing is typed into it.
+std::string as_inserted(const nlohmann::json& snippet) {
+  std::string text;
+  for (const auto& line : snippet.at("body")) text += line.get<std::string>() + "\n";
+  text = std::regex_replace(text, std::regex(R"(\$\{\d+:([^}]*)\})"), "$1");
+  text = std::regex_replace(text, std::regex(R"(\$\{\d+\|([^,|]*)[^}]*\})"), "$1");
+  return std::regex_replace(text, std::regex(R"(\$0)"), "");
+}
+
+TEST(EditorSnippets, AreWellFormed) {
+  const nlohmann::json snippets = read_json("snippets/culprit-rules.json");
+  EXPECT_GT(snippets.size(), 5u);
+  for (const auto& [name, snippet] : snippets.items()) {
+    std::string text = as_inserted(snippet);
+    if (text.starts_with("    ")) text = "RULE R\n  POLICIES ERROR\n  TRIGGER 1 > 0\n" + text;
+    std::vector<Diagnostic> said;
+    parse(Source(name, text), said);
+    EXPECT_TRUE(said.empty()) << name << ": " << said.front().cause << "\n" << text;
+  }
 }
 
 }  // namespace

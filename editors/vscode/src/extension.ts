@@ -1,5 +1,7 @@
-// Starts `culprit lsp` for rule files, and again when its settings change.
-import { commands, ExtensionContext, window, workspace } from "vscode";
+// Starts `culprit lsp` for rule files, and again when its settings change. Of files that end in .rules only those are taken
+// for ours that begin as ours do: udev has such files, too.
+import { dirname } from "path";
+import { commands, ExtensionContext, languages, TextDocument, window, workspace } from "vscode";
 import { LanguageClient } from "vscode-languageclient/node";
 
 let client: LanguageClient | undefined;
@@ -36,9 +38,54 @@ async function restart(): Promise<void> {
   await start();
 }
 
+const kLanguage = "culprit-rules";
+const kMostLines = 1000; // of comments in front
+const kStatements = /^\s*(ROBOT|CYCLE|COMPONENT|DEPENDENCY|IGNORE|INTERLOCK|CONST|SIGNAL|RULE|INCLUDE|TEMPLATE|USE)\b/;
+
+// Its first line that is neither empty nor a comment is one of the language.
+function isOurs(document: TextDocument): boolean {
+  for (let i = 0; i < Math.min(document.lineCount, kMostLines); ++i) {
+    const line = document.lineAt(i).text;
+    if (line.trim() !== "" && !line.trim().startsWith("#")) return kStatements.test(line);
+  }
+  return false;
+}
+
+function claim(document: TextDocument): void {
+  if (document.languageId === kLanguage || !document.fileName.endsWith(".rules")) return;
+  if (isOurs(document)) void languages.setTextDocumentLanguage(document, kLanguage);
+}
+
+// In a terminal, as the program of that terminal: no shell reads the file's name.
+async function runInTerminal(name: string, args: (file: string) => string[]): Promise<void> {
+  const document = window.activeTextEditor?.document;
+  if (document === undefined || document.languageId !== kLanguage || document.isUntitled) {
+    void window.showErrorMessage("Open a rule file of culprit first, and save it.");
+    return;
+  }
+  if (!(await document.save())) return;
+  const file = document.fileName;
+  const shellPath = workspace.getConfiguration("culprit").get<string>("path", "culprit");
+  window.createTerminal({ name, shellPath, shellArgs: args(file), cwd: dirname(file) }).show();
+}
+
+async function runOnRobot(): Promise<void> {
+  const kRun = "Run";
+  const detail = "culprit watches the robot of this computer's ROS_DOMAIN_ID and changes it by these rules until its terminal is closed.";
+  const answer = await window.showWarningMessage("Run culprit with these rules?", { modal: true, detail }, kRun);
+  if (answer === kRun) await runInTerminal("culprit run", (file) => ["run", file]);
+}
+
 export async function activate(context: ExtensionContext): Promise<void> {
+  workspace.textDocuments.forEach(claim);
   context.subscriptions.push(
+    workspace.onDidOpenTextDocument(claim),
+    workspace.onDidSaveTextDocument(claim),
     commands.registerCommand("culprit.restart", restart),
+    commands.registerCommand("culprit.test", () => runInTerminal("culprit test", (file) => ["test", dirname(file)])),
+    commands.registerCommand("culprit.plan", () => runInTerminal("culprit plan", (file) => ["plan", file, "--robot"])),
+    commands.registerCommand("culprit.web", () => runInTerminal("culprit web", (file) => ["web", file])),
+    commands.registerCommand("culprit.run", runOnRobot),
     workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("culprit")) void restart();
     }),
