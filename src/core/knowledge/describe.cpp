@@ -93,7 +93,8 @@ class Describer {
   }
   std::string operator()(const RoundSpent& e) const {
     return rules_[e.rule].name +
-           ": all strategies were tried and none helped; they are tried anew after a while";
+           ": all strategies were tried and none helped for good; they are tried anew after a "
+           "while";
   }
   std::string operator()(const RuleExhausted& e) const {
     const Rule& rule = rules_[e.rule];
