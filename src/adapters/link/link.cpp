@@ -366,20 +366,13 @@ void Link::remind() {
     }
   }
   for (std::string& text : due) inbox_.put(LinkTrouble{std::move(text)});
-  // When rules are reloaded our own node of before is just leaving: that is nobody else.
-  if (namesake_ && namesake_->due <= now && !std::exchange(is_namesake_told_, true))
-    inbox_.put(LinkTrouble{namesake_->text});
+  if (auto text = namesake_.due(now)) inbox_.put(LinkTrouble{std::move(*text)});
 }
 
 void Link::on_joined(const GraphNode& node) {
   inbox_.put(NodeAppeared{node.name, node.pid});
   pids_[node.name] = node.pid;
-  if (node.name == node_->name().full())
-    namesake_ = {"another node is called " + node.name + ", too" +
-                     (node.host.empty() ? "" : ", on " + printable(node.host)) +
-                     ": who asks for one of them may reach the other; start one culprit "
-                     "with --node-name",
-                 later(live_now(), kSettles)};
+  if (node.name == node_->name().full()) namesake_.joined(node, live_now());
   for (auto& [manager, systems] : systems_) std::erase(systems, node.name);
   const auto component = binding_.bind(node.name);
   if (!component) return;
@@ -398,7 +391,7 @@ void Link::on_left(const std::string& node, bool was_lost) {
   for (auto& [topic, nodes] : publishers_) nodes.erase(node);
   probed_.erase(node);
   pids_.erase(node);
-  if (node == node_->name().full()) namesake_.reset();
+  if (node == node_->name().full()) namesake_.left();
   const auto managed = systems_.extract(node);
   if (managed) {
     for (const std::string& system : managed.mapped()) inbox_.put(NodeVanished{system});

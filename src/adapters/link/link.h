@@ -23,6 +23,7 @@
 #include "link/component_link.h"
 #include "link/diagnostics_watch.h"
 #include "link/lease_link.h"
+#include "link/namesake.h"
 #include "link/neighbour_hosts.h"
 #include "link/simulated_clock.h"
 #include "link/topic_watch.h"
@@ -150,13 +151,7 @@ class Link {
     int pid = 0;  // 0: not known
   };
   std::map<std::string, ToProbe> probed_;  // by node
-  // Another node has the name of ours: told once, if it is still there when this is due.
-  struct Namesake {
-    std::string text;
-    Time due{};
-  };
-  std::optional<Namesake> namesake_;
-  bool is_namesake_told_ = false;
+  Namesake namesake_;
   std::map<std::string, int> pids_;  // of nodes that are there; 0 where it is not known
   std::map<std::string, std::vector<std::string>> systems_;       // by the mode manager's node
   std::map<std::string, std::multiset<std::string>> publishers_;  // nodes, by watched topic

@@ -309,23 +309,6 @@ TEST(Link, TellsOfANodeThatHasItsName) {
   }));
 }
 
-// As the own node of before, when rules are reloaded.
-TEST(Link, SaysNothingOfANodeOfItsNameThatIsLeaving) {
-  const TestDomain domain;
-  auto other = std::make_unique<LiveContext>(domain.options());
-  auto namesake = std::make_unique<NodeEntry>(**other, NodeName{"/", "culprit"});
-  const Time begun = live_now();
-  Linked linked(domain);
-  ASSERT_TRUE(linked.sees("/culprit"));
-  namesake.reset();
-  other.reset();
-  EXPECT_TRUE(
-      linked.wait<NodeVanished>([](const NodeVanished& v) { return v.node == "/culprit"; }));
-  if (live_now() - begun > 2s) GTEST_SKIP() << "it stayed too long to be one that is leaving";
-  EXPECT_FALSE(linked.wait<LinkTrouble>(
-      [](const LinkTrouble& t) { return t.text.find("another node") != std::string::npos; }, 3s));
-}
-
 TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
   const TestDomain domain;
   Robot robot(domain);

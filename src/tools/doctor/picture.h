@@ -149,8 +149,8 @@ struct OtherDomain {
 struct Picture {
   std::uint32_t domain = 0;
   Duration looked{};
-  Duration
-      waited{};  // by that thread of the doctor that waited longest for a processor (held_up.h)
+  // How long that thread of the doctor waited for a processor that waited longest (held_up.h).
+  Duration waited{};
   std::vector<Node> nodes{};  // of one name, the newest
   // All nodes of a name that more than one has, in processes that are not known to have ended.
   std::map<std::string, std::vector<ros2::GraphNode>> namesakes{};

@@ -1,0 +1,21 @@
+#include "link/namesake.h"
+
+#include <utility>
+
+#include "base/name_grammar.h"
+
+namespace culprit::ros2 {
+
+void Namesake::joined(const GraphNode& node, Time now) {
+  text_ = "another node is called " + node.name + ", too" +
+          (node.host.empty() ? "" : ", on " + printable(node.host)) +
+          ": who asks for one of them may reach the other; start one culprit with --node-name";
+  since_ = now;
+}
+
+std::optional<std::string> Namesake::due(Time now) {
+  if (!text_ || now < later(since_, kLeaves) || std::exchange(is_told_, true)) return std::nullopt;
+  return text_;
+}
+
+}  // namespace culprit::ros2

@@ -1,0 +1,29 @@
+// Another node that has the name of ours. It may be our own of before, which is just leaving when rules are
+// reloaded: then it is nobody else.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/time.h"
+#include "ros2/graph.h"
+
+namespace culprit::ros2 {
+
+class Namesake {
+ public:
+  // Who is there for longer stays.
+  static constexpr Duration kLeaves = std::chrono::seconds(2);
+
+  void joined(const GraphNode& node, Time now);
+  void left() { text_.reset(); }
+  // What a person has to know of it, once.
+  std::optional<std::string> due(Time now);
+
+ private:
+  std::optional<std::string> text_;  // while one is there
+  Time since_{};
+  bool is_told_ = false;
+};
+
+}  // namespace culprit::ros2
