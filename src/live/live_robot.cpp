@@ -41,6 +41,15 @@ std::optional<int> other_of(const std::vector<int>& processes, const std::set<in
 
 }  // namespace
 
+LiveRobot::LiveRobot(const RuleSet& rules)
+    : rules_(rules), binding_(rules), containers_(rules), units_(rules, inbox_) {}
+
+LiveRobot::~LiveRobot() = default;
+
+void LiveRobot::report(std::string trouble) { inbox_.put(LinkTrouble{std::move(trouble)}); }
+
+void LiveRobot::tell(PriorsTold priors) { inbox_.put(std::move(priors)); }
+
 Expected<std::unique_ptr<LiveRobot>> LiveRobot::open(const RuleSet& rules, Options options) {
   std::unique_ptr<LiveRobot> robot(new LiveRobot(rules));
   robot->supervisor_ =

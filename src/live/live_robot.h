@@ -25,6 +25,8 @@ class LiveRobot : public Robot {
     owners::Supervisor::Options supervisor;
   };
 
+  ~LiveRobot() override;
+
   // `rules` must outlive the robot. Errors: the DDS domain cannot be joined.
   static Expected<std::unique_ptr<LiveRobot>> open(const RuleSet& rules, Options options);
 
@@ -55,17 +57,16 @@ class LiveRobot : public Robot {
   std::optional<Time> deaf_since() const { return deaf_since_; }
 
   // Something about culprit itself that a person should know. From any thread.
-  void report(std::string trouble) { inbox_.put(LinkTrouble{std::move(trouble)}); }
+  void report(std::string trouble);
 
   // What the fleet learned. From any thread.
-  void tell(PriorsTold priors) { inbox_.put(std::move(priors)); }
+  void tell(PriorsTold priors);
 
   ros2::Link& link() { return *link_; }
   owners::Supervisor& supervisor() { return *supervisor_; }
 
  private:
-  explicit LiveRobot(const RuleSet& rules)
-      : rules_(rules), binding_(rules), containers_(rules), units_(rules, inbox_) {}
+  explicit LiveRobot(const RuleSet& rules);
 
   void listen(Time until, std::vector<Observation>& observations);
   void prove_hearing(std::vector<Observation>& observations);

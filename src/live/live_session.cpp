@@ -198,9 +198,22 @@ Expected<std::unique_ptr<LiveSession>> LiveSession::open(const Frame& frame, Loa
   return session;
 }
 
+LiveSession::LiveSession(const Frame& frame, LoadedRules rules)
+    : frame_(frame), rules_(std::move(rules.rules)), source_(std::move(rules.source)) {}
+
 LiveSession::~LiveSession() {
   leave_fleet();
   if (is_observed_) frame_.observer->leaves();
+}
+
+void LiveSession::submit(Order order) { runtime_->submit(std::move(order)); }
+
+KnownRobot LiveSession::known_robot() const { return manager_->knowledge().known_robot(); }
+
+LoadedRules LiveSession::loaded_rules() const { return {rules_, source_, ""}; }
+
+void LiveSession::say_lease() {
+  if (ros2::LeaseLink* lease = robot_->link().lease()) lease->say();
 }
 
 RunBeginning LiveSession::look_back() {

@@ -95,14 +95,14 @@ class LiveSession {
   // From any thread.
   void leave();
   void interrupt() { robot_->interrupt(); }
-  void submit(Order order) { runtime_->submit(std::move(order)); }
+  void submit(Order order);
 
   // Nothing more is done; the journal is whole. What is to go on with `next`.
   Handover hand_over(const RuleSet& next, std::string occasion);
   // Likewise, but nothing goes on; `ending`: why.
   void end(journal::Ending ending = journal::Ending::kStopped);
   // What was seen of the robot.
-  KnownRobot known_robot() const { return manager_->knowledge().known_robot(); }
+  KnownRobot known_robot() const;
 
   // Says it to people, wherever they look (announcements.h).
   void announce(const EventWords& words, const std::string& text);
@@ -114,14 +114,12 @@ class LiveSession {
 
   const RuleSet& rules() const { return rules_; }
   // For a session with the same.
-  LoadedRules loaded_rules() const { return {rules_, source_, ""}; }
+  LoadedRules loaded_rules() const;
   // Null: this one would never manage.
   const ros2::LeaseLink* lease() const { return robot_->link().lease(); }
   owners::Supervisor& supervisor() { return robot_->supervisor(); }
   // The last word to other culprits, of who steps back or ends.
-  void say_lease() {
-    if (ros2::LeaseLink* lease = robot_->link().lease()) lease->say();
-  }
+  void say_lease();
   Time now() const { return robot_->now(); }
   // Since when the robot cannot be heard; nothing: it can. On the thread of run().
   std::optional<Time> deaf_since() const { return robot_->deaf_since(); }
@@ -129,8 +127,7 @@ class LiveSession {
   bool is_adapting() const;
 
  private:
-  LiveSession(const Frame& frame, LoadedRules rules)
-      : frame_(frame), rules_(std::move(rules.rules)), source_(std::move(rules.source)) {}
+  LiveSession(const Frame& frame, LoadedRules rules);
 
   RunBeginning look_back();
   void hold(RunBeginning& beginning);

@@ -12,6 +12,11 @@ namespace culprit {
 using execute::Goal;
 using execute::Pursuit;
 
+Executor::Executor(const Knowledge& knowledge, Writes writes)
+    : knowledge_(knowledge), write_(writes) {}
+
+Executor::~Executor() = default;
+
 void Executor::begin(StrategyId strategy, Time now) {
   [[maybe_unused]] const auto& components = knowledge_.rules[strategy].components;
   assert(std::none_of(components.begin(), components.end(),

@@ -29,7 +29,8 @@ class Executor {
   };
 
   // `knowledge` must outlive the executor.
-  Executor(const Knowledge& knowledge, Writes writes) : knowledge_(knowledge), write_(writes) {}
+  Executor(const Knowledge& knowledge, Writes writes);
+  ~Executor();
 
   // The rule's attempt begins. @pre none of the rule is under way, none has its components
   void begin(StrategyId strategy, Time now);

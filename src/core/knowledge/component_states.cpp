@@ -20,6 +20,9 @@ std::string_view to_string(Lifecycle state) {
   return "";
 }
 
+ComponentStates::ComponentStates(const RuleSet& rules)
+    : components_(rules.components.size()), parameters_(rules.parameters.size()) {}
+
 void ComponentStates::set_known_dead(ComponentId component, std::optional<Time> since) {
   std::optional<Time>& known = components_[component.index].known_dead;
   known_dead_ += static_cast<int>(since.has_value()) - static_cast<int>(known.has_value());

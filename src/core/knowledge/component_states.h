@@ -68,8 +68,7 @@ struct ComponentState {
 
 class ComponentStates {
  public:
-  explicit ComponentStates(const RuleSet& rules)
-      : components_(rules.components.size()), parameters_(rules.parameters.size()) {}
+  explicit ComponentStates(const RuleSet& rules);
 
   ComponentState& operator[](ComponentId id) { return components_[id.index]; }
   const ComponentState& operator[](ComponentId id) const { return components_[id.index]; }

@@ -9,6 +9,8 @@ bool is_before(const Couplings::Learned& learned, RuleId cause) { return learned
 
 }  // namespace
 
+Couplings::Couplings(const RuleSet& rules) : by_effect_(rules.rules.size()) {}
+
 Coupling Couplings::of(RuleId cause, RuleId effect) const {
   const auto& all = by_effect_[effect.index];
   const auto found = std::lower_bound(all.begin(), all.end(), cause, is_before);

@@ -35,7 +35,7 @@ struct Coupling {
 class Couplings {
  public:
   // With forgetting below 1, what was counted before weighs that much less with each new outcome.
-  explicit Couplings(const RuleSet& rules) : by_effect_(rules.rules.size()) {}
+  explicit Couplings(const RuleSet& rules);
   void set_forgetting(double forgetting) { forgetting_ = forgetting; }
 
   void cleared(RuleId cause, RuleId effect) { learn(cause, effect, {1, 0}); }

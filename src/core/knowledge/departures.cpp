@@ -5,6 +5,8 @@
 
 namespace culprit {
 
+Departures::Departures(const RuleSet& rules) : members_(rules.components.size()) {}
+
 const Departures::Launch* Departures::launch_of(ComponentId component) const {
   const int launcher = members_[component.index].launcher;
   const auto found = std::ranges::find(launches_, launcher, &Launch::launcher);

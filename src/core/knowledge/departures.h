@@ -30,7 +30,7 @@ class Departures {
   static constexpr Duration kTogether = std::chrono::seconds(11);
   static constexpr Duration kBack = std::chrono::seconds(10);
 
-  explicit Departures(const RuleSet& rules) : members_(rules.components.size()) {}
+  explicit Departures(const RuleSet& rules);
 
   // A process of the component began. Who started it is not known, or it is culprit.
   void arrived(ComponentId component, Time at);

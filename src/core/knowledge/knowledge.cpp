@@ -42,6 +42,36 @@ void note_heard(const Knowledge& knowledge, KnownRobot& known) {
 
 }  // namespace
 
+Knowledge::Knowledge(const RuleSet& rule_set)
+    : rules(rule_set),
+      signals(rules),
+      graph(rules),
+      components(rules),
+      departures(rules),
+      sightings(rules),
+      states(rules),
+      beliefs(rules),
+      couplings(rules),
+      withheld(rules.strategies.size()) {}
+
+Knowledge::Knowledge(const RuleSet& rule_set, const Knowledge& other)
+    : rules(rule_set),
+      signals(rules, other.signals),
+      graph(other.graph),
+      components(other.components),
+      departures(other.departures),
+      sightings(other.sightings),
+      states(rules, other.states),
+      beliefs(other.beliefs),
+      couplings(other.couplings),
+      withheld(other.withheld),
+      outcomes(other.outcomes),
+      rivals(other.rivals),
+      finding(other.finding),
+      now(other.now) {}
+
+Knowledge::~Knowledge() = default;
+
 std::string value_name(const Input& input, const RuleSet& rules) {
   switch (input.kind) {
     case Input::Kind::kRate:

@@ -22,36 +22,12 @@ namespace culprit {
 
 struct Knowledge {
   // `rule_set` must outlive the knowledge and keep its address.
-  explicit Knowledge(const RuleSet& rule_set)
-      : rules(rule_set),
-        signals(rules),
-        graph(rules),
-        components(rules),
-        departures(rules),
-        sightings(rules),
-        states(rules),
-        beliefs(rules),
-        couplings(rules),
-        withheld(rules.strategies.size()) {}
-
+  explicit Knowledge(const RuleSet& rule_set);
   // What `other` knows, for `rule_set`: a copy of its rules. Its events, and the names that only
   // reports need, are left out.
-  Knowledge(const RuleSet& rule_set, const Knowledge& other)
-      : rules(rule_set),
-        signals(rules, other.signals),
-        graph(other.graph),
-        components(other.components),
-        departures(other.departures),
-        sightings(other.sightings),
-        states(rules, other.states),
-        beliefs(other.beliefs),
-        couplings(other.couplings),
-        withheld(other.withheld),
-        outcomes(other.outcomes),
-        rivals(other.rivals),
-        finding(other.finding),
-        now(other.now) {}
+  Knowledge(const RuleSet& rule_set, const Knowledge& other);
   Knowledge(const Knowledge&) = delete;
+  ~Knowledge();
 
   const RuleSet& rules;
   SignalStore signals;

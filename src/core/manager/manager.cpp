@@ -73,6 +73,8 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
   knowledge_.outcomes.healthy = options.governor.limits.backoff.healthy;
 }
 
+Manager::~Manager() = default;
+
 void Manager::remember(const History& past) {
   monitor_.remember(past);
   governor_.remember(past);

@@ -45,6 +45,7 @@ class Manager : public ManagingSystem {
 
   // `rules` must outlive the manager and keep its address.
   Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Options options);
+  ~Manager() override;
 
   // Never throws, never blocks; allocates nothing while nothing is wrong.
   std::vector<Command> step(Time now, std::span<const Observation> observations) override;

@@ -4,6 +4,8 @@ namespace culprit::replay {
 
 using journal::Entry;
 
+Recording::Recording(const journal::Reader& journal) : journal_(&journal) {}
+
 Expected<Recording> Recording::open(const journal::Reader& journal, std::int64_t session) {
   const auto row = session == 0 ? journal.newest(journal::kind::kSession) : journal.entry(session);
   if (!row) return Error{row.error()};

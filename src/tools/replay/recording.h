@@ -33,7 +33,7 @@ class Recording {
   bool has_gap() const { return has_gap_; }
 
  private:
-  explicit Recording(const journal::Reader& journal) : journal_(&journal) {}
+  explicit Recording(const journal::Reader& journal);
 
   const journal::Reader* journal_;
   journal::Session session_;
