@@ -151,7 +151,11 @@ std::optional<char> state_letter(int pid) {
   return end == line.npos || end + 2 >= line.size() ? std::nullopt : std::optional(line[end + 2]);
 }
 
-bool is_held_by_debugger(int pid) { return state_letter(pid) == 't' && is_traced(pid); }
+std::optional<std::string> hold_of_debugger(int pid) {
+  if (state_letter(pid) != 't' || !is_traced(pid)) return std::nullopt;
+  return "process " + std::to_string(pid) +
+         " is not replaced while a debugger holds it: let it go on, or end it there";
+}
 
 std::optional<int> status_of_zombie(int pid) {
   // Of other users' processes it is 0 (proc(5)).

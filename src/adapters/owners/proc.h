@@ -13,8 +13,8 @@ namespace culprit::owners {
 // 'R', 'S', 'T' (stopped), 'Z' (ended, not reaped) ...; nothing if there is no such process.
 std::optional<char> state_letter(int pid);
 
-// A debugger holds it, so that it does nothing until that lets it go on.
-bool is_held_by_debugger(int pid);
+// Why it is not replaced: a debugger holds it, and whoever debugs it would lose it. Nothing: none does.
+std::optional<std::string> hold_of_debugger(int pid);
 
 // What its parent will be told of its end, as of wait(2). Nothing: it has not ended, its parent was told,
 // or it is another user's.

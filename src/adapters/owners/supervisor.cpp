@@ -262,14 +262,12 @@ std::optional<std::string> Supervisor::doubt(const Member& member) const {
          "; if that is right, start culprit anew";
 }
 
-// Who debugs it would lose it. What it started may be the node.
+// What it started may be the node.
 std::optional<std::string> Supervisor::hold_of(const Member& member) {
   std::vector<int> all{member.process.pid()};
   if (member.process.relation() != Relation::kAdopted) all = members_of_group(all.front());
   for (const int pid : all) {
-    if (is_held_by_debugger(pid))
-      return "process " + std::to_string(pid) +
-             " is not replaced while a debugger holds it: let it go on, or end it there";
+    if (auto hold = hold_of_debugger(pid)) return hold;
   }
   return std::nullopt;
 }

@@ -330,6 +330,16 @@ std::optional<std::string> Units::who_else_would_end(ComponentId component) {
   return std::nullopt;
 }
 
+// What is to end for good does, whoever looks at it.
+std::optional<std::string> Units::hold_of(const Errand& errand, const UnitState& state) const {
+  if (errand.kind != Errand::Kind::kReplace || !is_here()) return std::nullopt;
+  for (const int pid : {errand.pid, state.main_pid}) {
+    auto hold = pid == 0 ? std::nullopt : hold_of_debugger(pid);
+    if (hold) return hold;
+  }
+  return std::nullopt;
+}
+
 bool Units::begin_end(Errand& errand, const UnitState& state) {
   const std::string& name = name_of(errand.component);
   ServiceOwner& bus = owner_of(errand.component);
@@ -367,6 +377,8 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
                          found->second == std::pair(errand.pid, state.main_pid);
     if (!is_left) return answer(errand, Outcome::kDone, bus.name() + " starts it again");
   }
+  if (auto hold = hold_of(errand, state))
+    return answer(errand, Outcome::kRefused, std::move(*hold));
   if (const auto other = who_else_would_end(errand.component))
     return answer(errand, Outcome::kRefused,
                   name + " runs " + *other + ", too, and would end it; give " +

@@ -8,7 +8,7 @@
 // there after kPolite, or after Supervisor::kHung if it hangs, gets SIGKILL, through systemd too.
 //
 // Proof before harm: a process that is not of the unit is not ended by ending the unit, so nothing
-// is ended then. Where systemd cannot be asked, or refuses, that is the answer, and nothing was
+// is ended then; nor is what a debugger holds replaced. Where systemd cannot be asked, or refuses, that is the answer, and nothing was
 // ended.
 //
 // What was started is said to work, until its node is there, as long as it does (ProcessWorked): what
@@ -136,6 +136,7 @@ class Units {
   // Gives whether the errand is done.
   bool advance(Errand& errand);
   bool begin_start(Errand& errand, const UnitState& state);
+  std::optional<std::string> hold_of(const Errand& errand, const UnitState& state) const;
   bool begin_end(Errand& errand, const UnitState& state);
   bool watch_start(Errand& errand, const UnitState& state);
   bool watch_end(Errand& errand, const UnitState& state);

@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <optional>
+#include <sys/ptrace.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -109,6 +110,32 @@ TEST_F(UnitsOnAStandInForSystemd, ThatAreStoppedAreKilledAtOnce) {
   EXPECT_EQ(stop(old).outcome, Outcome::kDone);
   EXPECT_LT(live_now() - before, Units::kPolite);
   EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service", "KillUnit lidar.service"));
+}
+
+// A person looks at it.
+TEST_F(UnitsOnAStandInForSystemd, ThatADebuggerHoldsAreNotReplaced) {
+  const int held = running();
+  const int debugger = fork();
+  if (debugger == 0) {
+    if (ptrace(PTRACE_SEIZE, held, nullptr, nullptr) != 0) _exit(1);
+    ptrace(PTRACE_INTERRUPT, held, nullptr, nullptr);
+    while (true) pause();
+  }
+  bool may_trace = true;
+  while (may_trace && state_letter(held) != 't') {
+    std::this_thread::sleep_for(5ms);
+    may_trace = waitpid(debugger, nullptr, WNOHANG) == 0;
+  }
+  if (!may_trace) GTEST_SKIP() << "no process may be traced here";
+  const Reply refused = stop(held, Ending::kToStartAgain, Hangs::kYes);
+  EXPECT_EQ(refused.outcome, Outcome::kRefused);
+  EXPECT_THAT(refused.text, HasSubstr("is not replaced while a debugger holds it"));
+  EXPECT_TRUE(is_alive(held));
+  EXPECT_THAT(systemd.asked(), IsEmpty());
+  kill(debugger, SIGKILL);  // and it goes on
+  waitpid(debugger, nullptr, 0);
+  EXPECT_EQ(stop(held).outcome, Outcome::kDone);
+  EXPECT_THAT(systemd.asked(), ElementsAre("RestartUnit lidar.service"));
 }
 
 TEST_F(UnitsOnAStandInForSystemd, AreEndedForGood) {
