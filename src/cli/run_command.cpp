@@ -11,6 +11,7 @@
 #include "live/observers.h"
 #include "live/robot_names.h"
 #include "live/rule_trust.h"
+#include "live/snapshots.h"
 #include "ros_api/ros_api.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
@@ -167,6 +168,8 @@ int run(const RunOptions& options) {
   const auto recording = open_recording(options, rules->rules.robot, *session);
   if (!recording) return fail(recording.error());
   if (*recording) onlookers.push_back(&(*recording)->observer());
+  live::Snapshots snapshots({.recorder = options.recording.snapshot_of, .say = say_of_recording});
+  if (!options.recording.snapshot_of.empty()) onlookers.push_back(&snapshots);
   live::Observers observers(std::move(onlookers));
   live::LiveRun live({std::move(*session), options.dry_run, options.improvise, fleet->get()},
                      std::move(*role), keeper, *listener, &observers);

@@ -1,15 +1,17 @@
 #include "cli/run_recording.h"
 
+#include "base/name_grammar.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {
+
+void say_of_recording(const std::string& text) { say(stderr, "culprit: {}\n", text); }
+
 namespace {
 
 constexpr std::uint64_t kLeastMemory = 1'000'000;
 constexpr std::uint64_t kMostMemory = 100'000'000'000;
 constexpr double kMostSeconds = 600;
-
-void say_of_recording(const std::string& text) { say(stderr, "culprit: {}\n", text); }
 
 void add_bytes(CLI::App& command, const std::string& name, std::uint64_t& value,
                const std::string& what, const std::string& usual) {
@@ -45,6 +47,18 @@ void RecordingOptions::add_to(CLI::App& command) {
       .add_option("--record-folder", folder,
                   "Where recordings go (default: recordings in the state folder)")
       ->type_name("FOLDER");
+  command
+      .add_option("--snapshot", snapshot_of,
+                  "Have this recorder's node write what it has in memory, about each incident: "
+                  "that of 'ros2 bag record "
+                  "--snapshot-mode' is /rosbag2_recorder (docs/recording.md)")
+      ->type_name("NODE")
+      ->check([](const std::string& name) {
+        return is_valid_topic_name(name)
+                   ? std::string()
+                   : "it has to be the full name of a node, as /rosbag2_recorder is";
+      })
+      ->group(kGroup);
   command.get_option("--record-budget")->check(CLI::Range(kLeastMemory, kMostMemory));
   for (CLI::Option* option : command.get_options()) {
     const std::string name = option->get_name();

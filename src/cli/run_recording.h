@@ -22,13 +22,17 @@ struct RecordingOptions {
   std::uint64_t memory = recorder::Recorder::Options().memory;  // bytes
   std::uint64_t disk = recorder::Recorder::Options().disk;      // bytes
   std::string folder;                                           // empty: in the state folder
+  std::string snapshot_of;  // a recorder's node, absolute; empty: nobody is asked for snapshots
 
   std::filesystem::path folder_in(const std::filesystem::path& state) const {
     return folder.empty() ? state / "recordings" : std::filesystem::path(folder);
   }
-  // --record and what begins with it. The options must live as long as `command`.
+  // --record and what begins with it, and --snapshot. The options must live as long as `command`.
   void add_to(CLI::App& command);
 };
+
+// What people should know of it, from any thread.
+void say_of_recording(const std::string& text);
 
 class RunRecording {
  public:

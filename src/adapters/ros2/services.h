@@ -149,6 +149,16 @@ struct SetBool {
   };
 };
 
+// A recorder with `ros2 bag record --snapshot-mode`, at ~/snapshot (Humble and newer).
+struct Snapshot {
+  static constexpr std::string_view kType = "rosbag2_interfaces/srv/Snapshot";
+  struct Request {};
+  struct Response {
+    bool success = false;
+    static void visit(auto& self, auto& each) { each(self.success); }
+  };
+};
+
 // A component container (rclcpp_components). Answered once the node has been made.
 struct LoadNode {
   static constexpr std::string_view kType = "composition_interfaces/srv/LoadNode";
