@@ -81,6 +81,16 @@ TEST(EditorGrammar, IsTheOneThatTheExtensionNames) {
   EXPECT_EQ(read_json("language-configuration.json").at("comments").at("lineComment"), "#");
 }
 
+// A picture in PNG begins with a header of its width and height (w3.org/TR/png, 11.2.1); the marketplace wants 128 pixels.
+TEST(EditorExtension, HasAnIcon) {
+  std::ifstream file("editors/vscode/" + read_json("package.json").at("icon").get<std::string>(),
+                     std::ios::binary);
+  std::string bytes(24, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  EXPECT_EQ(bytes.substr(0, 16), std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16));
+  EXPECT_EQ(bytes.substr(16), std::string("\0\0\0\x80\0\0\0\x80", 8));
+}
+
 // A snippet as it stands in the file when nothing is typed into it.
 std::string as_inserted(const nlohmann::json& snippet) {
   std::string text;
