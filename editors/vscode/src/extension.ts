@@ -1,20 +1,50 @@
 // Starts `culprit lsp` for rule files, and again when its settings change. Of files that end in .rules only those are taken
 // for ours that begin as ours do: udev has such files, too.
+import { execFile } from "child_process";
 import { dirname } from "path";
-import { commands, ExtensionContext, languages, TextDocument, window, workspace } from "vscode";
+import { commands, Diagnostic, ExtensionContext, languages, TextDocument, Uri, window, workspace } from "vscode";
 import { LanguageClient } from "vscode-languageclient/node";
 
 let client: LanguageClient | undefined;
 
+const program = () => workspace.getConfiguration("culprit").get<string>("path", "culprit");
+
+// The code of a mistake leads to what it means: a document that `culprit explain` writes.
+const kExplained = "culprit-explain";
+const kCode = /^[A-Z]\d{3}$/;
+
+function link(diagnostics: Diagnostic[]): void {
+  for (const diagnostic of diagnostics) {
+    const code = diagnostic.code;
+    if (typeof code === "string" && kCode.test(code))
+      diagnostic.code = { value: code, target: Uri.from({ scheme: kExplained, path: code }) };
+  }
+}
+
+function explain({ path }: Uri): Promise<string> {
+  if (!kCode.test(path)) return Promise.resolve(`${path} is not the code of a mistake.`);
+  return new Promise((resolve) =>
+    execFile(program(), ["explain", path], (error, said, trouble) => resolve(error ? trouble || error.message : said)),
+  );
+}
+
 async function start(): Promise<void> {
   const settings = workspace.getConfiguration("culprit");
-  const command = settings.get<string>("path", "culprit");
+  const command = program();
   const args = settings.get<boolean>("robot", false) ? ["lsp", "--robot"] : ["lsp"];
   client = new LanguageClient(
     "culprit",
     "culprit",
     { command, args },
-    { documentSelector: [{ language: "culprit-rules" }] },
+    {
+      documentSelector: [{ language: "culprit-rules" }],
+      middleware: {
+        handleDiagnostics: (uri, diagnostics, next) => {
+          link(diagnostics);
+          next(uri, diagnostics);
+        },
+      },
+    },
   );
   try {
     await client.start();
@@ -65,8 +95,7 @@ async function runInTerminal(name: string, args: (file: string) => string[]): Pr
   }
   if (!(await document.save())) return;
   const file = document.fileName;
-  const shellPath = workspace.getConfiguration("culprit").get<string>("path", "culprit");
-  window.createTerminal({ name, shellPath, shellArgs: args(file), cwd: dirname(file) }).show();
+  window.createTerminal({ name, shellPath: program(), shellArgs: args(file), cwd: dirname(file) }).show();
 }
 
 async function runOnRobot(): Promise<void> {
@@ -81,6 +110,7 @@ export async function activate(context: ExtensionContext): Promise<void> {
   context.subscriptions.push(
     workspace.onDidOpenTextDocument(claim),
     workspace.onDidSaveTextDocument(claim),
+    workspace.registerTextDocumentContentProvider(kExplained, { provideTextDocumentContent: explain }),
     commands.registerCommand("culprit.restart", restart),
     commands.registerCommand("culprit.test", () => runInTerminal("culprit test", (file) => ["test", dirname(file)])),
     commands.registerCommand("culprit.plan", () => runInTerminal("culprit plan", (file) => ["plan", file, "--robot"])),
