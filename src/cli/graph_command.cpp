@@ -20,8 +20,13 @@ struct GraphOptions {
 
 using Edges = std::vector<DependencyGraph::Edge>;
 
+struct Place {
+  int pid = 0;       // of a process of this computer; 0: not known
+  std::string host;  // another computer; empty: this one, or not known
+};
+
 struct Picture {
-  std::map<std::string, int> nodes;  // name -> process, 0 = not known
+  std::map<std::string, Place> nodes;  // by name
   Edges edges;
 };
 
@@ -57,9 +62,19 @@ Expected<Picture> look(Duration wait) {
     }
   }
   Picture picture;
-  for (const std::string& node : graph.nodes()) picture.nodes[node] = processes[node];
+  const auto elsewhere = (*robot)->link().nodes_elsewhere();
+  for (const std::string& node : graph.nodes()) {
+    const auto host = elsewhere.find(node);
+    picture.nodes[node] = {processes[node], host == elsewhere.end() ? "" : host->second};
+  }
   picture.edges = graph.edges();
   return picture;
+}
+
+// "  (process 4711)", "  (on rover2)", or nothing.
+std::string in_words(const Place& place) {
+  if (place.pid != 0) return fmt::format("  (process {})", place.pid);
+  return place.host.empty() ? "" : fmt::format("  (on {})", place.host);
 }
 
 void print_text(const Picture& picture) {
@@ -67,8 +82,8 @@ void print_text(const Picture& picture) {
     fmt::print("no nodes; is ROS_DOMAIN_ID the robot's?\n");
     return;
   }
-  for (const auto& [node, pid] : picture.nodes) {
-    fmt::print("{}{}\n", node, pid == 0 ? "" : fmt::format("  (process {})", pid));
+  for (const auto& [node, place] : picture.nodes) {
+    fmt::print("{}{}\n", node, in_words(place));
     std::map<std::string, std::string> needs;
     for (const auto& edge : picture.edges) {
       if (edge.consumer != node) continue;
@@ -83,9 +98,10 @@ void print_text(const Picture& picture) {
 void print_json(const Picture& picture) {
   nlohmann::json document{{"nodes", nlohmann::json::array()},
                           {"dependencies", nlohmann::json::array()}};
-  for (const auto& [node, pid] : picture.nodes) {
+  for (const auto& [node, place] : picture.nodes) {
     nlohmann::json entry{{"name", node}};
-    if (pid != 0) entry["pid"] = pid;
+    if (place.pid != 0) entry["pid"] = place.pid;
+    if (!place.host.empty()) entry["host"] = place.host;
     document["nodes"].push_back(std::move(entry));
   }
   for (const auto& edge : picture.edges) {
@@ -95,10 +111,20 @@ void print_json(const Picture& picture) {
   fmt::print("{}\n", document.dump(2));
 }
 
-// Names were checked against the ROS grammar when they came in, so nothing in them needs escaping.
+std::string in_dot(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+// Names of nodes were checked against the ROS grammar when they came in, those of computers were not.
 void print_dot(const Picture& picture) {
   fmt::print("digraph robot {{\n  rankdir=LR;\n  node [shape=box];\n");
-  for (const auto& [node, pid] : picture.nodes) fmt::print("  \"{}\";\n", node);
+  for (const auto& [node, place] : picture.nodes)
+    fmt::print("  \"{}\" [label={}];\n", node, in_dot(node + in_words(place)));
   for (const auto& edge : picture.edges) {
     fmt::print("  \"{}\" -> \"{}\" [label=\"{}\"];\n", edge.producer, edge.consumer, edge.channel);
   }

@@ -12,6 +12,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "base/live_clock.h"
 #include "cli/test_network.h"
@@ -226,6 +227,24 @@ struct TwoMachines : Neighbours {
     std::this_thread::sleep_for(5s);  // as long as an elder is looked for
   }
 
+  // What `culprit graph` on the second computer knows of where the node runs: its "pid" there, or its "host".
+  std::string place_on_desk(const std::string& node) {
+    const TestNetwork::Visit visit(*network, TestNetwork::kDesk);
+    TestProgram graph(world, {"culprit", "graph", "--json"});
+    EXPECT_EQ(graph.wait(), 0) << graph.output();
+    const std::string said =
+        graph.output();  // what it could not see of other computers stands first
+    const auto json =
+        nlohmann::json::parse(said.substr(std::min(said.find('{'), said.size())), nullptr, false);
+    for (const auto& each :
+         json.is_object() ? json.value("nodes", nlohmann::json::array()) : nlohmann::json()) {
+      if (each.value("name", "") != node) continue;
+      EXPECT_NE(each.contains("pid"), each.contains("host")) << each;
+      return each.contains("pid") ? "pid" : "host";
+    }
+    return "it is not there: " + said;
+  }
+
   std::string rules = rules_of("robot");
   std::string secret;
   std::unique_ptr<TestNetwork> network;
@@ -361,6 +380,8 @@ RULE DepthGone
     ASSERT_TRUE(each->prints("camera is there")) << each->output();
     ASSERT_TRUE(each->prints("depth is there")) << each->output();
   }
+  EXPECT_EQ(place_on_desk("/managed_subsystem/camera"), "host");
+  EXPECT_EQ(place_on_desk("/managed_subsystem/depth"), "pid");
   network->set({.is_cut = true});
   ASSERT_TRUE(second->prints("this one manages the robot from now on")) << second->output();
   ASSERT_TRUE(second->prints("nothing is heard of ")) << second->output();

@@ -309,6 +309,11 @@ std::map<std::string, std::string> Link::contested() const {
   return all;
 }
 
+std::map<std::string, std::string> Link::nodes_elsewhere() const {
+  const MutexLock lock(mutex_);
+  return nodes_elsewhere_;
+}
+
 std::optional<std::string> Link::cut_off(ComponentId component) {
   look_at_hosts();
   const MutexLock lock(mutex_);
@@ -370,6 +375,12 @@ void Link::remind() {
 }
 
 void Link::on_joined(const GraphNode& node) {
+  const std::string host = node.pid == 0 ? printable(node.host) : "";
+  {
+    const MutexLock lock(mutex_);
+    nodes_elsewhere_.erase(node.name);
+    if (!host.empty()) nodes_elsewhere_.emplace(node.name, host);
+  }
   inbox_.put(NodeAppeared{node.name, node.pid});
   pids_[node.name] = node.pid;
   if (node.name == node_->name().full()) namesake_.joined(node, live_now());
@@ -377,7 +388,7 @@ void Link::on_joined(const GraphNode& node) {
   const auto component = binding_.bind(node.name);
   if (!component) return;
   make_link(*component, node.name)->lives_in(node.pid);
-  lives_on(*component, node.pid == 0 ? printable(node.host) : "");
+  lives_on(*component, host);
   if (node.pid == 0 || needs_of(*component, rules_).is_to_answer) {
     probed_[node.name] = {*component, node.pid};
   } else {
@@ -386,6 +397,10 @@ void Link::on_joined(const GraphNode& node) {
 }
 
 void Link::on_left(const std::string& node, bool was_lost) {
+  {
+    const MutexLock lock(mutex_);
+    nodes_elsewhere_.erase(node);
+  }
   if (const auto component = was_lost ? std::nullopt : binding_.bind(node))
     lives_on(*component, "");
   for (auto& [topic, nodes] : publishers_) nodes.erase(node);

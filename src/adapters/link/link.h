@@ -77,6 +77,10 @@ class Link {
   // machine, or not proven. From any thread.
   std::map<std::string, std::vector<int>> doubled() const;
 
+  // The other computers that nodes of the graph run on, as their middleware says, by the nodes' full
+  // names. From any thread.
+  std::map<std::string, std::string> nodes_elsewhere() const;
+
   // The other computer where the component ran when it was seen last, if nothing is heard of it now:
   // nobody knows whether it still runs there. What was found is told (HostHeard) before this returns.
   // From any thread.
@@ -173,8 +177,9 @@ class Link {
     std::string text;
     Time due{};  // to be told
   };
-  std::map<std::string, Contest> contested_ CULPRIT_GUARDED_BY(mutex_);         // by node
-  std::map<std::string, std::vector<int>> doubled_ CULPRIT_GUARDED_BY(mutex_);  // by node
+  std::map<std::string, Contest> contested_ CULPRIT_GUARDED_BY(mutex_);            // by node
+  std::map<std::string, std::vector<int>> doubled_ CULPRIT_GUARDED_BY(mutex_);     // by node
+  std::map<std::string, std::string> nodes_elsewhere_ CULPRIT_GUARDED_BY(mutex_);  // by node
   std::map<ComponentId, std::string> elsewhere_
       CULPRIT_GUARDED_BY(mutex_);  // the other computer where it ran last, if it said no good-bye
   std::set<std::string> silent_hosts_ CULPRIT_GUARDED_BY(mutex_);  // that were told of
