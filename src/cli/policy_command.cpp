@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -10,9 +11,11 @@
 #include "base/environment.h"
 #include "base/text_file.h"
 #include "cli/commands.h"
+#include "cli/run_recording.h"
 #include "cli/unit_settings.h"
 #include "link/policy.h"
 #include "live/rule_file.h"
+#include "live/snapshots.h"
 #include "ros2/options.h"
 
 namespace culprit::cli {
@@ -26,6 +29,7 @@ struct PolicyOptions {
   int days = 3650;
   bool improvise = false;
   bool other_users = false;
+  std::string snapshot_of;  // a recorder's node; empty: nobody is asked for snapshots
 };
 
 const ros2::NodeName kSelf{"/", "culprit"};
@@ -44,11 +48,20 @@ Expected<std::uint32_t> domain() {
   return options ? Expected<std::uint32_t>(options->domain) : Error{options.error()};
 }
 
+ros2::Rights rights(const RuleSet& rules, const PolicyOptions& options) {
+  ros2::Rights rights = ros2::rights_of(rules, kSelf);
+  if (!options.snapshot_of.empty()) {
+    rights.calls.push_back(live::Snapshots::service_of(options.snapshot_of));
+    std::ranges::sort(rights.calls);
+  }
+  return rights;
+}
+
 Expected<std::string> sros2_form(const RuleSet& rules, const PolicyOptions& options) {
   advise(
       fmt::format("make signed permissions of it: ros2 security create_permission KEYSTORE {} {}",
                   options.enclave, file_of(options, "FILE")));
-  return ros2::sros2_policy(ros2::rights_of(rules, kSelf), kSelf, options.enclave);
+  return ros2::sros2_policy(rights(rules, options), kSelf, options.enclave);
 }
 
 Expected<std::string> permissions_form(const RuleSet& rules, const PolicyOptions& options) {
@@ -63,7 +76,7 @@ Expected<std::string> permissions_form(const RuleSet& rules, const PolicyOptions
       "-out permissions.p7s -signer KEYSTORE/public/permissions_ca.cert.pem -inkey "
       "KEYSTORE/private/permissions_ca.key.pem",
       file_of(options, "permissions.xml")));
-  return ros2::permissions(ros2::rights_of(rules, kSelf), options.enclave, *number,
+  return ros2::permissions(rights(rules, options), options.enclave, *number,
                            {day(now), day(now + std::chrono::hours(24) * options.days)});
 }
 
@@ -123,6 +136,7 @@ void add_policy(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 36500))
       ->capture_default_str();
   command->add_flag("--improvise", options->improvise, "For culprit run --improvise");
+  add_snapshot(*command, options->snapshot_of, "For culprit run --snapshot");
   command->add_flag("--other-users", options->other_users,
                     "systemd: the robot's nodes run as other users than culprit");
   command->add_option("-o,--output", options->output, "Where to write it (default: stdout)")

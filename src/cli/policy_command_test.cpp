@@ -65,6 +65,13 @@ TEST_F(PolicyCommand, RefusesWhatIsNoEnclave) {
   EXPECT_EQ(written, "");
 }
 
+TEST_F(PolicyCommand, WhoeverWantsSnapshotsMayAskForThem) {
+  ASSERT_EQ(run({"rules/sunset.rules"}), kOk);
+  EXPECT_THAT(written, Not(HasSubstr("snapshot")));
+  ASSERT_EQ(run({"rules/sunset.rules", "--snapshot", "/rosbag2_recorder"}), kOk);
+  EXPECT_THAT(written, HasSubstr("<service>/rosbag2_recorder/snapshot</service>"));
+}
+
 TEST_F(PolicyCommand, ImprovisedRulesNeedMore) {
   const std::string rules = (folder / "my.rules").string();
   std::ofstream(rules) << "COMPONENT camera NODE /camera LAUNCH \"camera\"\n";

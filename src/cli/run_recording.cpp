@@ -24,6 +24,16 @@ void add_bytes(CLI::App& command, const std::string& name, std::uint64_t& value,
 
 }  // namespace
 
+CLI::Option* add_snapshot(CLI::App& command, std::string& node, const std::string& what) {
+  return command.add_option("--snapshot", node, what)
+      ->type_name("NODE")
+      ->check([](const std::string& name) {
+        return is_valid_topic_name(name)
+                   ? std::string()
+                   : "it has to be the full name of a node, as /rosbag2_recorder is";
+      });
+}
+
 void RecordingOptions::add_to(CLI::App& command) {
   const std::string kGroup = "Recording";
   CLI::Option* on = command.add_flag(
@@ -47,17 +57,10 @@ void RecordingOptions::add_to(CLI::App& command) {
       .add_option("--record-folder", folder,
                   "Where recordings go (default: recordings in the state folder)")
       ->type_name("FOLDER");
-  command
-      .add_option("--snapshot", snapshot_of,
-                  "Have this recorder's node write what it has in memory, about each incident: "
-                  "that of 'ros2 bag record "
-                  "--snapshot-mode' is /rosbag2_recorder (docs/recording.md)")
-      ->type_name("NODE")
-      ->check([](const std::string& name) {
-        return is_valid_topic_name(name)
-                   ? std::string()
-                   : "it has to be the full name of a node, as /rosbag2_recorder is";
-      })
+  add_snapshot(command, snapshot_of,
+               "Have this recorder's node write what it has in memory, about each incident: that "
+               "of 'ros2 bag record "
+               "--snapshot-mode' is /rosbag2_recorder (docs/recording.md)")
       ->group(kGroup);
   command.get_option("--record-budget")->check(CLI::Range(kLeastMemory, kMostMemory));
   for (CLI::Option* option : command.get_options()) {

@@ -14,6 +14,9 @@
 
 namespace culprit::cli {
 
+// --snapshot NODE: of whom snapshots are wanted (live/snapshots.h). `node` must live as long as `command`.
+CLI::Option* add_snapshot(CLI::App& command, std::string& node, const std::string& what);
+
 struct RecordingOptions {
   bool is_on = false;
   double before_seconds = seconds(recorder::Recorder::Options().before);

@@ -8,7 +8,7 @@
 namespace culprit::live {
 
 Snapshots::Snapshots(Options options)
-    : options_(std::move(options)), service_(options_.recorder + "/snapshot") {}
+    : options_(std::move(options)), service_(service_of(options_.recorder)) {}
 
 void Snapshots::joined(ros2::NodeEntry& node) {
   auto client =

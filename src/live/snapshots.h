@@ -29,6 +29,9 @@ class Snapshots : public Observer {
   // So long it may take to be discovered before that is said.
   static constexpr Duration kDiscovery = std::chrono::seconds(10);
 
+  // What such a recorder offers.
+  static std::string service_of(const std::string& recorder) { return recorder + "/snapshot"; }
+
   explicit Snapshots(Options options);
 
   void joined(ros2::NodeEntry& node) override;
