@@ -36,6 +36,7 @@
 #include <net/if.h>
 
 #include "base/live_clock.h"
+#include "base/mutex.h"
 #include "ros2/datagram_filter.h"
 #include "ros2/datagram_sources.h"
 #include "ros2/receive_thread.h"
@@ -46,6 +47,8 @@ namespace culprit::ros2::fast_dds {
 struct Reception {
   // Whether anything is sent.
   std::shared_ptr<std::atomic<bool>> speaks = std::make_shared<std::atomic<bool>>(false);
+  // Of those who want nothing to be sent for a moment (Participant::Hold).
+  std::shared_ptr<std::atomic<int>> holds = std::make_shared<std::atomic<int>>(0);
   std::shared_ptr<DatagramSources> sources = std::make_shared<DatagramSources>();
   std::shared_ptr<DatagramFilter> filter = std::make_shared<DatagramFilter>();
   std::shared_ptr<ReceiveThread> thread = std::make_shared<ReceiveThread>();
@@ -112,7 +115,24 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return true;
   }
 
+  // Asked for each reader that has time, and the answer asks the system for all its interfaces.
+  eprosima::fastrtps::rtps::LocatorList_t NormalizeLocator(const Locator& locator) override {
+    constexpr Duration kLasts = std::chrono::seconds(1);
+    const MutexLock lock(mutex_);
+    const Time now = live_now();
+    if (!(locator == normalized_) || later(normalized_at_, kLasts) <= now) {
+      normal_ = low_level_transport_->NormalizeLocator(locator);
+      normalized_ = locator;
+      normalized_at_ = now;
+    }
+    return normal_;
+  }
+
   void update_network_interfaces() override {
+    {
+      const MutexLock lock(mutex_);
+      normalized_ = {};
+    }
     ChainingTransport::update_network_interfaces();
     for (const Locator& group : groups_) join(group);
   }
@@ -122,7 +142,8 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
             eprosima::fastrtps::rtps::LocatorsIterator* begin,
             eprosima::fastrtps::rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
-    return !*reception_.speaks || sender->send(bytes, size, begin, end, timeout);
+    const bool is_quiet = !*reception_.speaks || *reception_.holds > 0;
+    return is_quiet || sender->send(bytes, size, begin, end, timeout);
   }
 
   // The thread is our own: nothing comes this way.
@@ -236,6 +257,10 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
   const std::uint32_t domain_;
   std::vector<std::uint16_t> ports_;  // that were opened
   std::vector<Locator> groups_;       // that were joined
+  Mutex mutex_;
+  Locator normalized_ CULPRIT_GUARDED_BY(mutex_);  // what was asked for last, and when
+  Time normalized_at_ CULPRIT_GUARDED_BY(mutex_){};
+  eprosima::fastrtps::rtps::LocatorList_t normal_ CULPRIT_GUARDED_BY(mutex_);
   // Of the port for those that have time; written before the receiver.
   Locator patient_locator_;
   std::atomic<Receiver*> patient_ = nullptr;

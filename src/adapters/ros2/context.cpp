@@ -60,9 +60,8 @@ FoundProcess Context::find_process(const Graph::FindProcess& find, ParticipantIn
 
 Expected<void> Context::open(const ParticipantOptions& options) {
   gid_size_ = options.gid_size;
-  auto participant = Participant::create(options, [this](DiscoveryEvent event) {
-    tasks_.post([this, event = std::move(event)] { discovered(event); });
-  });
+  auto participant =
+      Participant::create(options, [this](DiscoveryEvent event) { hear(std::move(event)); });
   if (!participant) return Error{participant.error()};
   participant_ = std::move(*participant);
 
@@ -90,8 +89,8 @@ Expected<void> Context::listen_to_infos() {
        .user_data = {},
        .on_match = {}},
       [this](const Sample& sample) {
-        tasks_.post([this, payload = Bytes(sample.payload.begin(), sample.payload.end()),
-                     sender = sample.identity.writer.prefix()] { on_info(payload, sender); });
+        hear(RawInfo{Bytes(sample.payload.begin(), sample.payload.end()),
+                     sample.identity.writer.prefix()});
       });
   if (!reader) return Error{reader.error()};
   info_reader_ = std::move(*reader);
@@ -163,6 +162,33 @@ void Context::on_server_left(const std::string& service) {
   const MutexLock lock(mutex_);
   for (const auto& [owner, watch] : watches_) {
     if (watch.service == service) watch.on_left();
+  }
+}
+
+// Robots are discovered in bursts of hundreds of endpoints: what came meanwhile is taken in together. Never
+// later than a task that was posted after it, for who is told of a match looks into the graph.
+void Context::hear(Heard heard) {
+  {
+    const MutexLock lock(mutex_);
+    heard_.push_back(std::move(heard));
+    if (heard_.size() > 1) return;
+  }
+  tasks_.post([this] { take_in(); });
+}
+
+void Context::take_in() {
+  std::vector<Heard> all;
+  {
+    const MutexLock lock(mutex_);
+    all.swap(heard_);
+  }
+  for (const Heard& each : all) {
+    if (const auto* event = std::get_if<DiscoveryEvent>(&each)) {
+      discovered(*event);
+    } else {
+      const RawInfo& info = std::get<RawInfo>(each);
+      on_info(info.payload, info.sender);
+    }
   }
 }
 

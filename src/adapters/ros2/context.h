@@ -76,7 +76,17 @@ class Context {
   Expected<void> open(const ParticipantOptions& options);
   Expected<void> listen_to_infos();
 
+  // Of a participant: what it said of its nodes, as it came.
+  struct RawInfo {
+    Bytes payload;
+    GuidPrefix sender;
+  };
+  using Heard = std::variant<DiscoveryEvent, RawInfo>;
+  // From any thread, in the order in which it is to be taken in.
+  void hear(Heard heard);
+
   // On the executor's thread.
+  void take_in();
   void discovered(const DiscoveryEvent& event);
   void note_return(const DiscoveryEvent& event);
   void on_info(const Bytes& payload, const GuidPrefix& sender);
@@ -109,6 +119,7 @@ class Context {
   std::map<const void*, ServerWatch> watches_ CULPRIT_GUARDED_BY(mutex_);
   bool is_scheduled_ CULPRIT_GUARDED_BY(mutex_) = false;
   std::uint32_t next_id_ CULPRIT_GUARDED_BY(mutex_) = 1;
+  std::vector<Heard> heard_ CULPRIT_GUARDED_BY(mutex_);  // and not taken in yet
 
   TaskGroup tasks_;  // outlives those that post to it
   std::unique_ptr<Participant> participant_;

@@ -60,6 +60,15 @@ class DatagramFilter::Submessage {
     const auto low = read<std::uint32_t>();
     return static_cast<std::int64_t>((std::uint64_t{high} << 32) | low);
   }
+  // Nothing: what was sent before does not count, and no other time is said.
+  std::optional<std::chrono::sys_time<std::chrono::nanoseconds>> read_time() {
+    if ((flags & 2) != 0) return std::nullopt;
+    const auto seconds = read<std::uint32_t>();
+    const std::uint64_t fraction = read<std::uint32_t>();  // of 2^32 (RTPS 2.3 §9.3.2)
+    const auto ns = (fraction * 1'000'000'000 + (std::uint64_t{1} << 31)) >> 32;
+    return std::chrono::sys_time<std::chrono::nanoseconds>(
+        std::chrono::seconds(seconds) + std::chrono::nanoseconds(static_cast<std::int64_t>(ns)));
+  }
   // A writer of the participant that sent the datagram.
   Guid read_writer() {
     Guid guid;
@@ -95,12 +104,15 @@ class DatagramFilter::Submessage {
 
 ByteView DatagramFilter::pass(std::span<std::uint8_t> datagram, Clock::time_point now) {
   std::vector<OnUnheard> unheard;
+  std::vector<Handed> handed;
   ByteView passed;
   {
     const MutexLock lock(mutex_);
     passed = look_at(datagram, now);
     unheard.swap(unheard_);
+    handed.swap(handed_);
   }
+  for (const Handed& each : handed) (*each.to)(each.sample);
   for (const OnUnheard& each : unheard) (*each)();
   return passed;
 }
@@ -110,7 +122,8 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
     refused_ = {refused_.count + 1, "it is no RTPS message"};
     return {};
   }
-  GuidPrefix source;
+  Course course{};
+  GuidPrefix& source = course.source;
   std::copy_n(datagram.data() + 8, source.bytes.size(), source.bytes.begin());
   const bool addresses = addresses_ && changes_ == 0;
   bool is_for_nobody = false;  // something of it
@@ -134,14 +147,21 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
       } else {
         const ByteView body = rest.subspan(rtps::kSubmessageHeader, length);
         objection = this->objection(Submessage(rest, body, source), now);
-        if (rest[0] == rtps::kInfoSource && objection == nullptr)
+        if (rest[0] == rtps::kInfoSource && objection == nullptr) {
           std::copy_n(body.data() + 8, source.bytes.size(), source.bytes.begin());
+          course.sent.reset();
+        }
+        if (rest[0] == rtps::kInfoDestination && objection == nullptr)
+          std::copy_n(body.data(), course.destination.bytes.size(),
+                      course.destination.bytes.begin());
+        if (rest[0] == rtps::kInfoTime && objection == nullptr)
+          course.sent = Submessage(rest, body, source).read_time();
       }
     }
     if (objection != nullptr) refused_ = {refused_.count + 1, objection};
     const bool is_passed =
         objection == nullptr &&
-        (!addresses || address(rest.first(rtps::kSubmessageHeader + length), source, now));
+        (!addresses || address(rest.first(rtps::kSubmessageHeader + length), course, now));
     is_for_somebody = is_for_somebody || (is_passed && !rtps::is_about_others(rest[0]));
     is_for_nobody = is_for_nobody || (objection == nullptr && !is_passed);
     if (!is_passed) {
@@ -159,8 +179,9 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
   return datagram.first(end);
 }
 
-// To the one reader that hears its writer, if it is addressed to all. Gives whether there is a reader.
-bool DatagramFilter::address(std::span<std::uint8_t> submessage, const GuidPrefix& source,
+// To the one reader that hears its writer, if it is addressed to all. Gives whether the middleware has a
+// reader for it.
+bool DatagramFilter::address(std::span<std::uint8_t> submessage, const Course& course,
                              Clock::time_point now) {
   const std::uint8_t kind = submessage[0];
   const bool is_sample = kind == rtps::kData || kind == rtps::kDataFragment;
@@ -170,21 +191,52 @@ bool DatagramFilter::address(std::span<std::uint8_t> submessage, const GuidPrefi
   // Nothing was objected to it: it is long enough.
   const std::span<std::uint8_t, 4> to{
       submessage.data() + rtps::kSubmessageHeader + (is_sample ? 4 : 0), 4};
-  if (std::ranges::any_of(to, [](std::uint8_t byte) { return byte != 0; })) return true;
+  const bool is_addressed = std::ranges::any_of(to, [](std::uint8_t byte) { return byte != 0; });
+  if (is_addressed && kind != rtps::kData) return true;
   Guid writer;
-  std::ranges::copy(source.bytes, writer.bytes.begin());
+  std::ranges::copy(course.source.bytes, writer.bytes.begin());
   std::copy_n(to.data() + 4, 4, writer.bytes.begin() + 12);
   if (!is_of_user(writer)) return true;
   const auto found = readers_.find(writer);
-  if (found == readers_.end()) return tries(writer, now);
-  const Readers::Reader* only = nullptr;
-  for (const Readers::Reader& each : found->second.all) {
+  if (found == readers_.end()) return is_addressed || tries(writer, now);
+  Readers::Reader* only = nullptr;
+  for (Readers::Reader& each : found->second.all) {
     if (!is_sample && each.how == Reading::kBestEffort) continue;  // to which they mean nothing
+    if (is_addressed && !std::equal(to.begin(), to.end(), each.guid.bytes.begin() + 12)) continue;
     if (only != nullptr) return true;
     only = &each;
   }
-  if (only == nullptr) return false;
+  if (only == nullptr) return is_addressed;
   std::copy_n(only->guid.bytes.begin() + 12, 4, to.begin());
+  if (kind != rtps::kData) return true;
+  const std::size_t before = handed_.size();
+  if (!hand_over(*only, submessage, course)) return true;
+  if (handed_.size() > before) found->second.unheard = 0;
+  return false;
+}
+
+// What the middleware would deliver as it is. Whatever is not plain is left to it: what has inline
+// parameters, what disposes of a key, what does not say when it was sent.
+bool DatagramFilter::hand_over(Readers::Reader& reader, std::span<const std::uint8_t> submessage,
+                               const Course& course) {
+  constexpr std::uint8_t kMeaning = 0x1e;  // of the flags: all but the order of bytes
+  constexpr std::uint8_t kPayloadOnly = 0x04;
+  if (!reader.on_whole || !course.sent || (submessage[1] & kMeaning) != kPayloadOnly) return false;
+  if (course.destination != GuidPrefix{} && course.destination != reader.guid.prefix())
+    return false;
+  // Nothing was objected to it: its lengths fit.
+  Submessage body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
+  body.skip(2);
+  const auto to_parameters = body.read<std::uint16_t>();
+  const std::size_t counted_from = body.at();
+  body.skip(4);
+  const Guid writer = body.read_writer();
+  const std::int64_t sequence = body.read_sequence();
+  body.skip(to_parameters - (body.at() - counted_from));
+  if (sequence <= reader.last) return true;  // best effort readers pass over what is older
+  reader.last = sequence;
+  handed_.push_back(
+      {reader.on_whole, {writer, sequence, *course.sent, submessage.last(body.left())}});
   return true;
 }
 
@@ -423,11 +475,11 @@ void DatagramFilter::drop(const Guid& guid) {
 }
 
 void DatagramFilter::begin_hearing(const Guid& writer, const Guid& reader, Reading how,
-                                   OnUnheard on_unheard) {
+                                   OnUnheard on_unheard, OnWhole on_whole) {
   const MutexLock lock(mutex_);
   if (how == Reading::kReliable && !is_reliable(writer)) drop(writer);
   Readers& readers = readers_[writer];
-  readers.all.push_back({reader, how});
+  readers.all.push_back({reader, how, std::move(on_whole)});
   strangers_.erase(writer);
   if (on_unheard) readers.on_unheard = std::move(on_unheard);
 }

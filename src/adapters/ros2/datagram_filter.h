@@ -20,6 +20,9 @@
 // DDS asks each reader of the participant whether that is it. Here it is known who hears whom: what one
 // reader hears is addressed to that reader. Of a writer that no reader is known to hear most is taken
 // out; a little is passed on, for what is delivered all the same shows who hears it.
+//
+// Who only wants to know what is said, and when, is handed it here and the middleware never sees it:
+// whole samples to one best effort reader, without inline parameters (OnWhole).
 #pragma once
 
 #include <algorithm>
@@ -29,6 +32,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -70,10 +74,20 @@ class DatagramFilter {
   // So much is passed on in a second of a writer that no reader is known to hear.
   static constexpr int kTries = 8;
   enum class Reading : std::uint8_t { kBestEffort, kReliable };
+  // A sample that came whole. `payload` is gone when the callback returns.
+  struct Whole {
+    Guid writer;
+    std::int64_t sequence = 0;
+    std::chrono::sys_time<std::chrono::nanoseconds> sent;  // by the writer's clock
+    ByteView payload;                                      // with its encapsulation
+  };
+  using OnWhole = std::shared_ptr<const std::function<void(const Whole&)>>;
   // Best effort: `on_unheard` is called from pass(), without locks, for each further sample of
   // which something came by after kUnheard others of which none was delivered. So the writer lives.
-  void begin_hearing(const Guid& writer, const Guid& reader, Reading how,
-                     OnUnheard on_unheard = {});
+  // Likewise `on_whole`, if there is one, for each newer sample that the middleware would hand to this
+  // reader alone, and does not get; what it does get, as fragments, it delivers itself.
+  void begin_hearing(const Guid& writer, const Guid& reader, Reading how, OnUnheard on_unheard = {},
+                     OnWhole on_whole = {});
   void end_hearing(const Guid& writer, const Guid& reader);
   // From now on it addresses; not before, for in a secured domain it is not clear who hears whom. While
   // readers are being made or unmade, it is not clear either: then everything stays as it is.
@@ -115,10 +129,16 @@ class DatagramFilter {
     std::size_t reserved = 0;                     // bytes
   };
   class Submessage;
+  // What a datagram says of the submessages that follow.
+  struct Course {
+    GuidPrefix source;
+    GuidPrefix destination;  // zero: all
+    std::optional<std::chrono::sys_time<std::chrono::nanoseconds>> sent;
+  };
 
   ByteView look_at(std::span<std::uint8_t> datagram, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
-  bool address(std::span<std::uint8_t> submessage, const GuidPrefix& source, Clock::time_point now)
+  bool address(std::span<std::uint8_t> submessage, const Course& course, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
   bool tries(const Guid& stranger, Clock::time_point now) CULPRIT_REQUIRES(mutex_);
   const char* objection(const Submessage& submessage, Clock::time_point now)
@@ -139,6 +159,8 @@ class DatagramFilter {
     struct Reader {
       Guid guid;
       Reading how;
+      OnWhole on_whole{};
+      std::int64_t last = 0;  // that was handed to it
     };
     std::vector<Reader> all{};
     bool is_reliable() const {
@@ -148,6 +170,8 @@ class DatagramFilter {
     std::int64_t sample = 0;  // of which something came by last
     int unheard = 0;          // so many in a row were not delivered
   };
+  bool hand_over(Readers::Reader& reader, std::span<const std::uint8_t> submessage,
+                 const Course& course) CULPRIT_REQUIRES(mutex_);
   bool is_heard(const Guid& writer) const CULPRIT_REQUIRES(mutex_);
   bool is_reliable(const Guid& writer) const CULPRIT_REQUIRES(mutex_);
   bool is_far(const Guid& writer, std::int64_t sequence, Clock::time_point now) const
@@ -176,8 +200,13 @@ class DatagramFilter {
   std::unordered_map<Guid, Stranger> strangers_ CULPRIT_GUARDED_BY(mutex_);
   bool addresses_ CULPRIT_GUARDED_BY(mutex_) = false;
   std::atomic<int> changes_ = 0;  // that are under way
-  std::vector<OnUnheard> unheard_
-      CULPRIT_GUARDED_BY(mutex_);  // to be called when this datagram was looked at
+  // To be called when this datagram was looked at.
+  std::vector<OnUnheard> unheard_ CULPRIT_GUARDED_BY(mutex_);
+  struct Handed {
+    OnWhole to;
+    Whole sample;
+  };
+  std::vector<Handed> handed_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 }  // namespace culprit::ros2

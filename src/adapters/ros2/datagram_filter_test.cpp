@@ -1,5 +1,8 @@
 #include "ros2/datagram_filter.h"
 
+#include <memory>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "ros2/test_datagram.h"
@@ -339,6 +342,120 @@ TEST_F(Filter, TheLastSubmessageCanBeForNobody) {
   Bytes bytes = from(kCamera).data(kCamera, 1).heartbeat(kCamera, 1, 1).bytes();
   bytes[20 + 32 + 2] = 0;
   EXPECT_EQ(pass(bytes), 20u + 32u);
+}
+
+// One reader has time, and is handed what is plain.
+class HandingFilter : public Filter {
+ protected:
+  HandingFilter() {
+    filter.begin_hearing(kScan, kScans, DatagramFilter::Reading::kBestEffort, {},
+                         std::make_shared<const std::function<void(const DatagramFilter::Whole&)>>(
+                             [this](const DatagramFilter::Whole& sample) {
+                               EXPECT_EQ(sample.writer, kScan);
+                               handed.push_back(sample.sequence);
+                               sent = sample.sent;
+                               payload.assign(sample.payload.begin(), sample.payload.end());
+                             }));
+    filter.begin_to_address();
+  }
+  // At 5.5 s.
+  TestDatagram timed() const { return from(kScan).submessage(0x09, 0, kTime); }
+
+  const Bytes kTime{5, 0, 0, 0, 0, 0, 0, 0x80};
+  const Guid kScan = writer(0x03, 4);
+  const Guid kScans = reader(3);
+  std::vector<std::int64_t> handed;
+  std::chrono::sys_time<std::chrono::nanoseconds> sent;
+  Bytes payload;
+};
+
+TEST_F(HandingFilter, WhatIsPlainIsHandedOverAndTheMiddlewareNeverSeesIt) {
+  EXPECT_EQ(pass(timed().data(kScan, 7)), 0u);
+  EXPECT_EQ(handed, std::vector<std::int64_t>{7});
+  EXPECT_EQ(sent.time_since_epoch(), 5500ms);
+  EXPECT_EQ(payload, (Bytes{0, 1, 0, 0, 7, 0, 0, 0}));
+  EXPECT_EQ(filter.refused().count, 0u);
+}
+
+TEST_F(HandingFilter, WhatElseIsInTheDatagramIsPassedOn) {
+  const auto mixed = timed().data(kScan, 1).data(kCamera, 1).bytes();
+  EXPECT_EQ(pass(timed()
+                     .data(kScan, 1)
+                     .submessage(0x0c, 0,
+                                 [] {
+                                   Bytes source(20);
+                                   std::copy_n(kCamera.bytes.begin(), 12, source.begin() + 8);
+                                   return source;
+                                 }())
+                     .data(kCamera, 1)),
+            mixed.size() + 24);
+  EXPECT_EQ(handed.size(), 1u);
+}
+
+TEST_F(HandingFilter, EachIsHandedOverOnceAndNoneThatIsOlder) {
+  for (const std::int64_t number : {1, 2, 2, 5, 3, 6})
+    EXPECT_EQ(pass(timed().data(kScan, number)), 0u);
+  EXPECT_EQ(handed, (std::vector<std::int64_t>{1, 2, 5, 6}));
+}
+
+TEST_F(HandingFilter, WhatIsNotPlainIsLeftToTheMiddleware) {
+  EXPECT_GT(pass(from(kScan).data(kScan, 1)), 0u) << "without a time";
+  EXPECT_GT(pass(from(kScan).submessage(0x09, 2, {}).data(kScan, 2)), 0u) << "its time is invalid";
+  EXPECT_GT(pass(timed().fragment(kScan, 3, 1, 1000, 1500)), 0u);
+  Bytes disposed = timed().data(kScan, 4).bytes();
+  disposed[20 + 12 + 1] = 1 | 8;
+  EXPECT_GT(pass(disposed), 0u) << "a key";
+  {
+    const DatagramFilter::Change change(filter);
+    EXPECT_GT(pass(timed().data(kScan, 5)), 0u) << "readers change";
+  }
+  EXPECT_TRUE(handed.empty());
+}
+
+TEST_F(HandingFilter, WhatIsForAnotherParticipantIsNotHandedOver) {
+  Bytes other(12, 3);
+  EXPECT_GT(pass(timed().submessage(0x0e, 0, other).data(kScan, 1)), 0u);
+  EXPECT_TRUE(handed.empty());
+  Bytes own(kScans.bytes.begin(), kScans.bytes.begin() + 12);
+  EXPECT_EQ(pass(timed().submessage(0x0e, 0, own).data(kScan, 1)), 0u);
+  EXPECT_EQ(handed.size(), 1u);
+}
+
+TEST_F(HandingFilter, WhatASecondReaderHearsIsLeftToTheMiddleware) {
+  filter.begin_hearing(kScan, kPictures, DatagramFilter::Reading::kBestEffort);
+  EXPECT_GT(pass(timed().data(kScan, 1)), 0u);
+  EXPECT_TRUE(handed.empty());
+  filter.end_hearing(kScan, kPictures);
+  EXPECT_EQ(pass(timed().data(kScan, 2)), 0u);
+  filter.end_hearing(kScan, kScans);
+  (void)pass(timed().data(kScan, 3));
+  EXPECT_EQ(handed, std::vector<std::int64_t>{2}) << "it hears no more";
+}
+
+// A forged number made its reader deaf to it.
+TEST_F(HandingFilter, AWriterWhoseSamplesArePassedOverIsNotSilent) {
+  const Guid forged = writer(0x03, 5);
+  int told = 0;
+  filter.begin_hearing(forged, kScans, DatagramFilter::Reading::kBestEffort,
+                       std::make_shared<const std::function<void()>>([&told] { ++told; }),
+                       std::make_shared<const std::function<void(const DatagramFilter::Whole&)>>(
+                           [](const DatagramFilter::Whole&) {}));
+  const auto say = [&](std::int64_t number) {
+    (void)pass(from(forged).submessage(0x09, 0, kTime).data(forged, number));
+  };
+  say(1);
+  say(200);
+  for (std::int64_t number = 2; number < 2 + DatagramFilter::kUnheard; ++number) say(number);
+  EXPECT_EQ(told, 0);
+  say(20);
+  EXPECT_EQ(told, 1);
+}
+
+TEST_F(HandingFilter, AnAbsurdNumberIsNotHandedOver) {
+  EXPECT_EQ(pass(timed().data(kScan, 1)), 0u);
+  (void)pass(timed().data(kScan, kAbsurd));
+  EXPECT_EQ(handed, std::vector<std::int64_t>{1});
+  EXPECT_EQ(filter.refused().count, 1u);
 }
 
 }  // namespace

@@ -20,11 +20,12 @@ std::string logger_name(const NodeName& node) {
 
 }  // namespace
 
-Expected<std::unique_ptr<Node>> Node::create(Context& context, NodeName name) {
+Expected<std::unique_ptr<Node>> Node::create(Context& context, NodeName name, Extent extent) {
   if (!is_valid_namespace(name.name_space) || !is_valid_node_name(name.name)) {
     return Error{"'" + printable(name.full()) + "' cannot be the name of a node"};
   }
   std::unique_ptr<Node> node(new Node(context, std::move(name)));
+  if (extent == Extent::kOnlooker) return node;
   if (auto opened = node->open(); !opened) return Error{opened.error()};
   return node;
 }
@@ -33,7 +34,7 @@ Node::Node(Context& context, NodeName name)
     : entry_(context, std::move(name)),
       parameters_(entry_.name().full(), [this](msg::ParameterEvent event) {
         event.stamp = now();
-        parameter_events_->publish(event);
+        if (parameter_events_) parameter_events_->publish(event);
       }) {}
 
 Node::~Node() = default;
@@ -99,6 +100,7 @@ Expected<void> Node::open_parameter_services() {
 }
 
 void Node::log(Severity severity, std::string text) {
+  if (!rosout_) return;
   rosout_->publish({.stamp = now(),
                     .level = static_cast<std::uint8_t>(severity),
                     .name = logger_name(entry_.name()),

@@ -75,8 +75,12 @@ class Client {
 
 class Node {
  public:
+  // Who only looks has a name, and what it creates: nothing of its own that every other process would have
+  // to discover. It says nothing to /rosout, and its parameters are nobody's.
+  enum class Extent : std::uint8_t { kWhole, kOnlooker };
   // The context outlives the node, the node everything that it created.
-  static Expected<std::unique_ptr<Node>> create(Context& context, NodeName name);
+  static Expected<std::unique_ptr<Node>> create(Context& context, NodeName name,
+                                                Extent extent = Extent::kWhole);
   ~Node();
 
   Context& context() { return entry_.context(); }
@@ -84,7 +88,7 @@ class Node {
   const NodeName& name() const { return entry_.name(); }
   ParameterStore& parameters() { return parameters_; }
 
-  // To /rosout. From any thread.
+  // To /rosout, unless it only looks. From any thread.
   void log(Severity severity, std::string text);
 
   template <class Message>

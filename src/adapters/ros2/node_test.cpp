@@ -60,6 +60,24 @@ TEST(Node, AppearsWithEverythingThatToolsExpect) {
   }
 }
 
+TEST(Node, AnOnlookerHasNothingThatOthersWouldHaveToDiscover) {
+  const TestDomain domain;
+  LiveContext watcher(domain.options());
+  LiveContext looking(domain.options());
+  std::unique_ptr<Node> node;
+  looking.run([&] {
+    node = std::move(*Node::create(*looking, {"/", "_onlooker"}, Node::Extent::kOnlooker));
+    node->log(Severity::kInfo, "nobody hears it");
+  });
+  EXPECT_TRUE(watcher.sees_node("/_onlooker"));
+  watcher.run([&] {
+    for (const auto& each : watcher->graph().participants()) {
+      for (const auto& owned : each.endpoints) EXPECT_NE(owned.node, "/_onlooker");
+    }
+  });
+  looking.run([&] { node.reset(); });
+}
+
 TEST(Node, RefusesABadName) {
   const TestDomain domain;
   LiveContext context(domain.options());

@@ -1,5 +1,6 @@
 #include "ros2/participant.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
@@ -95,14 +96,16 @@ class Gate {
 // The writers that one reader hears, which the filter has to know.
 class HeardWriters {
  public:
-  HeardWriters(DatagramFilter& filter, const Qos& qos, std::function<void()> on_unheard)
+  HeardWriters(DatagramFilter& filter, const Qos& qos, std::function<void()> on_unheard,
+               DatagramFilter::OnWhole on_whole)
       : filter_(filter),
         how_(qos.reliability == Reliability::kReliable ? DatagramFilter::Reading::kReliable
                                                        : DatagramFilter::Reading::kBestEffort),
         on_unheard_(on_unheard
                         ? std::make_shared<const std::function<void()>>(
                               [gate = gate_, call = std::move(on_unheard)] { gate->pass(call); })
-                        : nullptr) {}
+                        : nullptr),
+        on_whole_(std::move(on_whole)) {}
   ~HeardWriters() {
     gate_->close();
     end();
@@ -140,13 +143,15 @@ class HeardWriters {
 
  private:
   void begin(const Guid& writer) CULPRIT_REQUIRES(mutex_) {
-    if (writers_.insert(writer).second) filter_.begin_hearing(writer, reader_, how_, on_unheard_);
+    if (writers_.insert(writer).second)
+      filter_.begin_hearing(writer, reader_, how_, on_unheard_, on_whole_);
   }
 
   DatagramFilter& filter_;
   const DatagramFilter::Reading how_;
   const std::shared_ptr<Gate> gate_ = std::make_shared<Gate>();
   const DatagramFilter::OnUnheard on_unheard_;
+  const DatagramFilter::OnWhole on_whole_;
   Mutex mutex_;
   Guid reader_ CULPRIT_GUARDED_BY(mutex_);
   std::set<Guid> writers_ CULPRIT_GUARDED_BY(mutex_);
@@ -175,7 +180,7 @@ class Reader::Impl final : public dds::DataReaderListener {
         topics_(topics),
         filter_(filter),
         port_(has_time(options.payload) ? patient_port : std::uint16_t{0}),
-        heard_(filter, options.qos, options.on_unheard),
+        heard_(filter, options.qos, options.on_unheard, on_whole(options)),
         options_(std::move(options)),
         on_sample_(std::move(on_sample)) {
     incoming_.use = options_.payload;
@@ -199,7 +204,7 @@ class Reader::Impl final : public dds::DataReaderListener {
   }
 
   ~Impl() override {
-    gate_.close();
+    gate_->close();
     if (reader_ != nullptr) {
       const DatagramFilter::Change change(filter_);
       reader_->set_listener(nullptr);
@@ -210,7 +215,7 @@ class Reader::Impl final : public dds::DataReaderListener {
   }
 
   void on_data_available(dds::DataReader* reader) noexcept override {
-    gate_.pass([&] {
+    gate_->pass([&] {
       dds::SampleInfo info;
       while (fast_dds::ok(reader->take_next_sample(&incoming_, &info))) {
         if (info.valid_data) deliver(info, fast_dds::to_guid(reader->guid()));
@@ -224,12 +229,35 @@ class Reader::Impl final : public dds::DataReaderListener {
         fast_dds::to_guid(fast_dds::rtps::iHandle2GUID(status.last_publication_handle));
     heard_.note(writer, fast_dds::to_guid(reader->guid()), status.current_count_change);
     if (!options_.on_match) return;
-    gate_.pass([&] { options_.on_match(writer, match_of(status)); });
+    gate_->pass([&] { options_.on_match(writer, match_of(status)); });
   }
 
   const Guid& guid() const { return guid_; }
 
  private:
+  // What has time is handed over without the middleware, which has nothing to add to it: that is most of
+  // what hearing it costs.
+  DatagramFilter::OnWhole on_whole(const ReaderOptions& options) {
+    const Qos& qos = options.qos;
+    const bool is_plain = qos.reliability == Reliability::kBestEffort && qos.keys == Keys::kNone &&
+                          qos.ownership == Ownership::kShared && qos.liveliness_lease == kInfinite;
+    if (!has_time(options.payload) || !is_plain) return nullptr;
+    return std::make_shared<const std::function<void(const DatagramFilter::Whole&)>>(
+        [this, gate = gate_](const DatagramFilter::Whole& sample) {
+          gate->pass([&] { hand(sample); });
+        });
+  }
+
+  void hand(const DatagramFilter::Whole& sample) {
+    const std::size_t most = options_.payload == PayloadUse::kHeader ? 0 : kBeginningSize;
+    on_sample_({.payload = sample.payload.first(std::min(sample.payload.size(), most)),
+                .size = sample.payload.size(),
+                .sent = sample.sent,
+                .received = std::chrono::system_clock::now(),
+                .identity = {sample.writer, sample.sequence},
+                .related = {}});
+  }
+
   void deliver(const dds::SampleInfo& info, const Guid& guid) {
     heard_.delivered(fast_dds::to_identity(info.sample_identity).writer, guid);
     on_sample_({.payload = options_.payload == PayloadUse::kHeader ? ByteView()
@@ -245,10 +273,10 @@ class Reader::Impl final : public dds::DataReaderListener {
   Topics& topics_;
   DatagramFilter& filter_;
   const std::uint16_t port_;
+  const std::shared_ptr<Gate> gate_ = std::make_shared<Gate>();
   HeardWriters heard_;  // outlives the middleware's reader
   const ReaderOptions options_;
   const SampleCallback on_sample_;
-  Gate gate_;
   fast_dds::Incoming incoming_;  // inside the gate; keeps its capacity from sample to sample
   bool has_topic_ = false;
   dds::DataReader* reader_ = nullptr;
@@ -365,6 +393,7 @@ class Participant::Impl {
     }
     *reception_.speaks = true;
     if (!options.security) reception_.filter->begin_to_address();
+    is_secured_ = options.security.has_value();
     likely_refusal_ = likely_refusal(options.security);
     guid_ = fast_dds::to_guid(participant_->guid());
     reception_.sources->begin(guid_.prefix());
@@ -398,6 +427,8 @@ class Participant::Impl {
   }
 
   void leave() { *reception_.speaks = false; }
+  void hold() { *reception_.holds += is_secured_ ? 0 : 1; }
+  void release() { *reception_.holds -= is_secured_ ? 0 : 1; }
 
   const Guid& guid() const { return guid_; }
   const DatagramSources& sources() const { return *reception_.sources; }
@@ -418,8 +449,14 @@ class Participant::Impl {
   dds::Subscriber* subscriber_ = nullptr;
   std::optional<Topics> topics_;
   std::string likely_refusal_;
+  bool is_secured_ = false;
   Guid guid_;
 };
+
+Participant::Hold::Hold(Participant& participant) : participant_(*participant.impl_) {
+  participant_.hold();
+}
+Participant::Hold::~Hold() { participant_.release(); }
 
 Participant::Participant(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Participant::~Participant() = default;

@@ -172,6 +172,22 @@ class Participant {
   // and writers at once: for who has many, and ends. @pre nothing more is created or written.
   void leave();
 
+  // While one of these lives nothing is sent. What is created meanwhile is announced together, a tenth of a
+  // second after the next endpoint is created, which the others are told of at once: they ask for what
+  // they missed, and get it in few datagrams instead of one for each endpoint and participant. For who
+  // creates many endpoints in one go, and has time. It must be short. In a secured domain it does
+  // nothing.
+  class Hold {
+   public:
+    explicit Hold(Participant& participant);
+    ~Hold();
+    Hold(const Hold&) = delete;
+    Hold& operator=(const Hold&) = delete;
+
+   private:
+    Impl& participant_;
+  };
+
   // Where the datagrams of another participant came from so far.
   DatagramSources::Origin origin_of(const GuidPrefix& participant) const;
   // When its last one came; kLongAgo: it is not there.

@@ -157,6 +157,50 @@ TEST(Participant, AReaderOfBeginningsCopiesOnlyThose) {
   EXPECT_EQ(pair.received.all()[1].payload, kSmall);
 }
 
+// Most of it comes past the middleware, and as it would come through it.
+TEST(Participant, WhoHasTimeHearsAllThatIsWrittenInItsOrder) {
+  Pair pair({.reliability = Reliability::kBestEffort}, PayloadUse::kBeginningLater);
+  Bytes large(5000, 7);
+  large[0] = 0;
+  const SystemTime before = std::chrono::system_clock::now();
+  for (int i = 0; i < 50; ++i) pair.writer->write(i % 2 == 0 ? large : kSmall);
+  ASSERT_TRUE(pair.received.wait_for_count(50));
+  const SystemTime after = std::chrono::system_clock::now();
+  large.resize(kBeginningSize);
+  const auto all = pair.received.all();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].payload, i % 2 == 0 ? large : kSmall);
+    EXPECT_EQ(all[i].size, i % 2 == 0 ? 5000u : kSmall.size());
+    EXPECT_EQ(all[i].identity.writer, pair.writer->guid());
+    EXPECT_EQ(all[i].identity.sequence, static_cast<std::int64_t>(i + 1));
+    EXPECT_LE(before, all[i].sent + std::chrono::microseconds(1));
+    EXPECT_LE(all[i].received, after + std::chrono::seconds(1));
+  }
+  EXPECT_EQ(all.size(), 50u);
+}
+
+TEST(Participant, WhatIsCreatedWhileItIsHeldIsDiscoveredAllTheSame) {
+  const TestDomain domain;
+  EventLog<EndpointInfo> endpoints;
+  const auto watcher = join(domain, [&](const DiscoveryEvent& event) {
+    if (const auto* endpoint = std::get_if<EndpointInfo>(&event)) endpoints.add(*endpoint);
+  });
+  const auto sender = join(domain);
+  auto first = sender->create_writer({"first", "T", {}, "", {}});
+  ASSERT_TRUE(endpoints.wait_for_one([](const auto& each) { return each.topic == "first"; }));
+  std::vector<std::unique_ptr<Reader>> readers;
+  std::optional<Participant::Hold> hold(*sender);
+  for (int i = 0; i < 20; ++i) {
+    if (i == 19) hold.reset();
+    readers.push_back(std::move(*sender->create_reader(
+        {"t" + std::to_string(i), "T", {}, PayloadUse::kWhole, "", {}}, [](const Sample&) {})));
+  }
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_TRUE(endpoints.wait_for_one(
+        [&](const auto& each) { return each.topic == "t" + std::to_string(i); }));
+  }
+}
+
 TEST(Participant, LargePayloadsArriveWhole) {
   Pair pair;
   Bytes large(4'000'000);

@@ -186,7 +186,10 @@ void Listening::take_turns(Time now, Duration left) {
     else
       ++open;
   }
+  std::optional<ros2::Participant::Hold> hold(self_.context().participant());
   for (; open < kMostAtOnce && !waiting_.empty(); ++open, waiting_.pop_front()) {
+    const bool is_last = open + 1 == kMostAtOnce || waiting_.size() == 1;
+    if (is_last) hold.reset();
     const WantedTopic& topic = waiting_.front();
     if (auto ear = Ear::open(self_, topic, simulated_now_, now))
       ears_.insert_or_assign(topic.name, std::move(ear));

@@ -47,7 +47,8 @@ class Look {
     auto context = ros2::Context::create(executor_, options_.participant, std::move(graph));
     if (!context) return Error{context.error()};
     context_ = std::move(*context);
-    auto node = ros2::Node::create(*context_, {"/", "_culprit_doctor"});
+    auto node =
+        ros2::Node::create(*context_, {"/", "_culprit_doctor"}, ros2::Node::Extent::kOnlooker);
     if (!node) return Error{node.error()};
     node_ = std::move(*node);
     node_name_ = node_->name().full();
