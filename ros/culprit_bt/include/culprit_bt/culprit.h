@@ -1,0 +1,79 @@
+// What a running culprit tells of the robot, and whether it still runs.
+//
+//     auto culprit = Culprit::of(config, "/culprit");
+//     const Knowledge known = culprit->knowledge();
+//     if (!known.status) say(known.why_not);
+//
+// A status is told only when something changed, so an old one is as good as a new one, as long as the
+// culprit that told it is there. A culprit that was killed looks as if it were, until its lease in DDS is
+// over (20 s). So it is asked once a second, by a service that it has as every node has it, and what does
+// not answer for kPatience is not there. Nothing that an earlier culprit told is kept then.
+//
+// Its functions may be called on any thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "behaviortree_cpp/tree_node.h"
+#include "culprit_bt/ros_thread.h"
+#include "culprit_msgs/msg/status.hpp"
+#include "rcl_interfaces/srv/get_parameters.hpp"
+#include "rclcpp/rclcpp.hpp"
+
+namespace culprit_bt {
+
+struct Knowledge {
+  std::shared_ptr<const culprit_msgs::msg::Status> status;  // null: nothing is known
+  std::string why_not;     // why nothing is, for people; empty where something is
+  std::uint64_t life = 0;  // of which culprit: another number once it was started again
+};
+
+class Culprit {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kPatience{3};
+  static constexpr std::chrono::seconds kAskEvery{1};
+
+  // The culprit with this node name ("/culprit"), for the tree that a leaf with this configuration belongs
+  // to; its leaves share it. Throws as RosThread::of does, and rclcpp's exceptions for what is no name.
+  static std::shared_ptr<Culprit> of(const BT::NodeConfig& config, const std::string& name);
+
+  Culprit(std::shared_ptr<RosThread> thread, std::string name);
+
+  const std::string& name() const { return name_; }
+  RosThread& thread() const { return *thread_; }
+  Knowledge knowledge() const;
+
+ private:
+  using Status = culprit_msgs::msg::Status;
+  using Ask = rcl_interfaces::srv::GetParameters;
+
+  void heard(std::shared_ptr<const Status> status, const rclcpp::MessageInfo& info);
+  void look();
+  void forget(std::string why_not);  // with the mutex held
+
+  const std::shared_ptr<RosThread> thread_;
+  const std::string name_;
+
+  mutable std::mutex mutex_;
+  std::shared_ptr<const Status> status_;
+  std::string why_not_;
+  std::uint64_t life_ = 0;
+  std::optional<rmw_gid_t> writer_;  // of the status
+  bool answers_ = false;
+  bool is_asked_ = false;
+  std::int64_t request_ = 0;  // that is open, if it is asked
+  Clock::time_point asked_{};
+
+  // They go first: their callbacks use what is above.
+  rclcpp::Client<Ask>::SharedPtr client_;
+  rclcpp::Subscription<Status>::SharedPtr subscription_;
+  rclcpp::TimerBase::SharedPtr timer_;
+};
+
+}  // namespace culprit_bt
