@@ -21,19 +21,23 @@ Culprit::Culprit(std::shared_ptr<RosThread> thread, std::string name)
     : thread_(std::move(thread)),
       name_(std::move(name)),
       why_not_("culprit is not heard as " + name_ + ": does `culprit run` run?") {
+  subscribe();
   rclcpp::Node& node = thread_->node();
+  client_ = node.create_client<Ask>(name_ + "/get_parameters", rmw_qos_profile_services_default,
+                                    thread_->group());
+  timer_ = node.create_wall_timer(
+      std::chrono::milliseconds(100), [this] { look(); }, thread_->group());
+}
+
+void Culprit::subscribe() {
   rclcpp::SubscriptionOptions options;
   options.callback_group = thread_->group();
-  subscription_ = node.create_subscription<Status>(
+  subscription_ = thread_->node().create_subscription<Status>(
       name_ + "/status", rclcpp::QoS(1).reliable().transient_local(),
       [this](std::shared_ptr<const Status> status, const rclcpp::MessageInfo& info) {
         heard(std::move(status), info);
       },
       options);
-  client_ = node.create_client<Ask>(name_ + "/get_parameters", rmw_qos_profile_services_default,
-                                    thread_->group());
-  timer_ = node.create_wall_timer(
-      std::chrono::milliseconds(100), [this] { look(); }, thread_->group());
 }
 
 Knowledge Culprit::knowledge() const {
@@ -63,6 +67,9 @@ void Culprit::look() {
   if (is_asked_ && now - asked_ > kPatience) {
     client_->remove_pending_request(request_);
     is_asked_ = false;
+    // If it goes on, what it told last may still hold, and it does not tell that again; if another one takes
+    // its place, it does not hold. A new subscription is told by whoever is there.
+    if (status_) subscribe();
     forget(name_ + " does not answer: it was killed, is stopped, or cannot be reached");
   }
   const bool is_due = !answers_ || now - asked_ >= kAskEvery;

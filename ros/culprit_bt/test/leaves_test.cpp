@@ -58,6 +58,7 @@ class Played {
   Played& operator=(const Played&) = delete;
 
   void hold() { is_held_ = true; }
+  void let_go() { is_held_ = false; }
 
   const rclcpp::Node::SharedPtr node;
 
@@ -106,6 +107,7 @@ class PlayedCulprit {
 
   void tell(const Status& status) { publisher_->publish(status); }
   void hold() { played_.hold(); }
+  void let_go() { played_.let_go(); }
 
   // The goal that was asked for last; null: none was.
   std::shared_ptr<Handle> goal() {
@@ -229,6 +231,9 @@ TEST(IsHealthy, FailsOnceCulpritDoesNotAnswerThoughItsLastWordWasGood) {
   culprit.hold();
   EXPECT_TRUE(mission.becomes(NodeStatus::FAILURE));
   EXPECT_NE(mission.says("reason").find("/culprit does not answer"), std::string::npos);
+  // It has nothing new to tell when it goes on.
+  culprit.let_go();
+  EXPECT_TRUE(mission.becomes(NodeStatus::SUCCESS));
 }
 
 TEST(IsHealthy, BelievesNothingOfACulpritThatHasEnded) {

@@ -53,6 +53,7 @@ class Culprit {
   using Status = culprit_msgs::msg::Status;
   using Ask = rcl_interfaces::srv::GetParameters;
 
+  void subscribe();
   void heard(std::shared_ptr<const Status> status, const rclcpp::MessageInfo& info);
   void look();
   void forget(std::string why_not);  // with the mutex held
