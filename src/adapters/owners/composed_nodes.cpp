@@ -288,6 +288,8 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
     return Answer{answer.outcome, container.node + " did not unload " + part.name +
                                       (answer.text.empty() ? "" : ": " + answer.text)};
   };
+  // A process that is stopped by a signal answers nobody, however long it is waited for.
+  if (state_letter(pid) == 'T') return stuck({Outcome::kTimedOut, "its process is stopped"});
   ContainerAnswer has = list(container, pid, patience);
   if (!has_process(pid)) return {};
   if (has.outcome == Outcome::kRefused) return {Outcome::kRefused, has.text};

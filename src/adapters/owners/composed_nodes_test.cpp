@@ -4,6 +4,7 @@
 #include <csignal>
 #include <random>
 #include <sys/wait.h>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include "base/live_clock.h"
 #include "base/test_folder.h"
 #include "language/checker.h"
+#include "owners/proc.h"
 #include "owners/spawn.h"
 
 namespace culprit::owners {
@@ -247,6 +249,21 @@ TEST(ComposedNodes, AContainerThatDoesNotUnloadIsReplacedWithAllThatItHadInOrder
                                                    "load detector", "load tracker"));
     EXPECT_THAT(robot.told_last, HasSubstr("its container is replaced, with all that it has"));
   }
+}
+
+TEST(ComposedNodes, AContainerThatIsStoppedIsNotWaitedForAndReplaced) {
+  OneContainer box;
+  box.begin({"/detector", "/tracker"});
+  box.what_was_done();
+  // It would say all that it is asked for: what is not asked cannot be waited for.
+  kill(box.pid, SIGSTOP);
+  while (state_letter(box.pid) != 'T') std::this_thread::sleep_for(1ms);
+  EXPECT_EQ(box.stop(kDetector).outcome, Outcome::kDone);
+  EXPECT_THAT(box.what_was_done(), ElementsAre("end"));
+  EXPECT_THAT(box.told_last, HasSubstr("/box did not unload detector: its process is stopped"));
+  EXPECT_EQ(box.start(kDetector).outcome, Outcome::kDone);
+  box.composed.reset();
+  EXPECT_THAT(box.what_was_done(), ElementsAre("begin", "load detector", "load tracker"));
 }
 
 TEST(ComposedNodes, AContainerThatHasEndedIsStartedOnceForAll) {
