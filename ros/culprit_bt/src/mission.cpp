@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <string>
 
 #include "culprit_bt/register.h"
@@ -86,7 +87,8 @@ BT::NodeStatus run(const std::string& file, int values, char** value) {
       throw BT::RuntimeError("'", text, "' is not NAME=VALUE");
     blackboard->set(text.substr(0, equals), text.substr(equals + 1));
   }
-  BT::Tree tree = factory.createTreeFromFile(file, blackboard);
+  // BehaviorTree.CPP cannot read a file of this folder by its mere name.
+  BT::Tree tree = factory.createTreeFromFile(std::filesystem::absolute(file), blackboard);
   BT::NodeStatus status = BT::NodeStatus::RUNNING;
   while (rclcpp::ok() && status == BT::NodeStatus::RUNNING) {
     status = tree.tickOnce();

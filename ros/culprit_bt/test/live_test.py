@@ -165,6 +165,15 @@ def test_without_culprit_it_never_drives_and_fails(processes):
     assert any('does `culprit run` run?' in line for line in drives.lines)
 
 
+def test_a_tree_of_the_working_folder_is_read_by_its_name(alone, tmp_path):
+    (tmp_path / 'my.xml').write_text(
+        '<root BTCPP_format="4"><BehaviorTree ID="M"><AlwaysSuccess/></BehaviorTree></root>')
+    ran = subprocess.run(
+        [os.environ['MISSION'], 'my.xml'], cwd=tmp_path, capture_output=True, text=True,
+        timeout=PATIENCE_S)
+    assert ran.stdout.splitlines()[-1:] == ['the mission SUCCESS'], ran.stderr
+
+
 def test_a_mistyped_component_fails_the_mission(processes, robot):
     robot()
     tree = os.path.join(os.environ['TREES'], 'stop_while_repaired.xml')
