@@ -55,7 +55,7 @@ void Culprit::heard(std::shared_ptr<const Status> status, const rclcpp::MessageI
   if (!is_same) ++life_;
   writer_ = writer;
   status_ = std::move(status);
-  if (!answers_) why_not_ = name_ + " has not answered yet";
+  if (!answers_ && !is_silent_) why_not_ = name_ + " has not answered yet";
 }
 
 // On the thread of the callbacks.
@@ -63,13 +63,17 @@ void Culprit::look() {
   const bool is_there = subscription_->get_publisher_count() > 0;
   const auto now = Clock::now();
   const std::scoped_lock lock(mutex_);
-  if (!is_there) forget("culprit is not heard as " + name_ + ": does `culprit run` run?");
+  if (!is_there) {
+    is_silent_ = false;
+    forget("culprit is not heard as " + name_ + ": does `culprit run` run?");
+  }
   if (is_asked_ && now - asked_ > kPatience) {
     client_->remove_pending_request(request_);
     is_asked_ = false;
     // If it goes on, what it told last may still hold, and it does not tell that again; if another one takes
     // its place, it does not hold. A new subscription is told by whoever is there.
     if (status_) subscribe();
+    is_silent_ = true;
     forget(name_ + " does not answer: it was killed, is stopped, or cannot be reached");
   }
   const bool is_due = !answers_ || now - asked_ >= kAskEvery;
@@ -81,6 +85,7 @@ void Culprit::look() {
                                                    const std::scoped_lock answered(mutex_);
                                                    is_asked_ = false;
                                                    answers_ = true;
+                                                   is_silent_ = false;
                                                  });
   request_ = asked.request_id;
 }

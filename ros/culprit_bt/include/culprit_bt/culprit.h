@@ -67,6 +67,7 @@ class Culprit {
   std::uint64_t life_ = 0;
   std::optional<rmw_gid_t> writer_;  // of the status
   bool answers_ = false;
+  bool is_silent_ = false;  // it is there, and did not answer when it was asked last
   bool is_asked_ = false;
   std::int64_t request_ = 0;  // that is open, if it is asked
   Clock::time_point asked_{};
