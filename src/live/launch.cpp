@@ -74,7 +74,13 @@ class Starting {
     if (!part(component).trouble.empty()) return part(component).trouble;
     if (driver == LifecycleDriver::kSelf || driver == LifecycleDriver::kLauncher)
       return std::nullopt;
-    if (!joined || !is_managed(component)) return std::nullopt;  // the manager will see
+    if (!joined) return std::nullopt;  // the manager will see
+    if (!is_managed(component))
+      return driver == LifecycleDriver::kManaged && !part(component).has_ended
+                 ? std::optional<std::string>(
+                       "LIFECYCLE says that culprit brings it up, but it offers no "
+                       "lifecycle services")
+                 : std::nullopt;
     const bool may_drive_itself =
         driver == LifecycleDriver::kUndeclared && !part(component).is_left_halfway;
     if (may_drive_itself && moves(component)) return std::nullopt;
@@ -169,22 +175,32 @@ class Starting {
     return part(component).joined && !part(component).has_ended;
   }
 
-  // A node announces its services together with itself; what comes later comes soon.
+  // A node announces its services together with itself, but on a machine on which much starts at once they come as late as it
+  // did. The file can say that there will be some.
   bool is_managed(ComponentId component) {
-    return observe_until(std::min(end_, later(*part(component).joined, times_.least_grace)),
-                         [&] { return part(component).has_lifecycle; });
+    const Part& it = part(component);
+    const Duration least = rules_[component].lifecycle == LifecycleDriver::kManaged
+                               ? times_.transition
+                               : times_.least_grace;
+    observe_until(std::min(end_, later(*it.joined, std::max(least, start_of(it)))),
+                  [&] { return it.has_lifecycle || it.has_ended; });
+    return it.has_lifecycle && !it.has_ended;
+  }
+
+  // From the order to start it until its node was there; 0: it was not started here.
+  static Duration start_of(const Part& it) {
+    return it.began ? *it.joined - *it.began : Duration::zero();
   }
 
   // Whether it leaves the state in which every lifecycle node begins, and nobody asked it here.
   bool moves(ComponentId component) {
     const Part& it = part(component);
-    const Duration start = it.began ? *it.joined - *it.began : Duration::zero();
     using Driver = ComingUp::Driver;
     const bool is_ours = it.before.driver == Driver::kCulprit;
     const Duration others =
         it.before.driver == Driver::kOther ? 2 * it.before.rising : Duration::zero();
     const Duration grace =
-        is_ours ? Duration::zero() : std::max({times_.least_grace, start, others});
+        is_ours ? Duration::zero() : std::max({times_.least_grace, start_of(it), others});
     return observe_until(std::min(end_, later(*it.joined, grace)), [&] {
       return it.state != Lifecycle::kUnknown && it.state != Lifecycle::kUnconfigured;
     });

@@ -18,7 +18,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 struct ScriptedNode {
-  Duration start = 2s;  // from the launch until it is in the graph
+  Duration start = 2s;        // from the launch until it is in the graph
+  Duration services_after{};  // until its lifecycle services are
   bool has_lifecycle = true;
   Duration activates_itself_after{};  // being there; 0: it does not
   bool refuses = false;
@@ -87,8 +88,11 @@ class ScriptedRobot : public Robot {
     out.push_back({now_, NodeAppeared{node, 7}});
     ScriptedNode& it = nodes[rules_[component].name];
     if (!it.has_lifecycle) return;
-    out.push_back({now_, EndpointAppeared{node, EndpointKind::kServer, node + "/change_state"}});
-    out.push_back({now_, LifecycleRead{component, it.state}});
+    in(it.services_after, [=, this](auto& later) {
+      later.push_back(
+          {now_, EndpointAppeared{node, EndpointKind::kServer, node + "/change_state"}});
+      later.push_back({now_, LifecycleRead{component, nodes[rules_[component].name].state}});
+    });
   }
   template <class Happens>
   void in(Duration after, Happens happens) {
@@ -140,6 +144,9 @@ class Launching : public testing::Test {
 struct LaunchingDriven : Launching {
   LaunchingDriven() : Launching("LIFECYCLE launcher") {}
 };
+struct LaunchingManaged : Launching {
+  LaunchingManaged() : Launching("LIFECYCLE managed") {}
+};
 
 TEST_F(Launching, BringsUpWhatStandsStillProducersFirst) {
   launch_all();
@@ -181,6 +188,29 @@ TEST_F(Launching, WaitsForWhoActivatedItselfBefore) {
   launch_all();
   EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
   EXPECT_LT(robot.now() - begin, 13s) << "the planner is culprit's, and nobody is waited for";
+}
+
+// On a machine on which much starts at once.
+TEST_F(Launching, WaitsForServicesThatComeAsLateAsTheNodeDid) {
+  robot.nodes["lidar"].services_after = 1900ms;
+  launch_all();
+  EXPECT_EQ(robot.nodes["lidar"].state, Lifecycle::kActive);
+}
+
+TEST_F(LaunchingManaged, WaitsForServicesThatTheFilePromises) {
+  robot.nodes["lidar"].services_after = 9s;
+  launch_all();
+  EXPECT_EQ(robot.nodes["lidar"].state, Lifecycle::kActive);
+  EXPECT_THAT(remarks.text, testing::Not(HasSubstr("is not up")));
+}
+
+TEST_F(LaunchingManaged, TellsThatANodeHasNotWhatTheFilePromisesAndGoesOn) {
+  robot.nodes["lidar"].has_lifecycle = false;
+  launch_all();
+  EXPECT_THAT(remarks.text,
+              HasSubstr("lidar was started and is not up: LIFECYCLE says that culprit brings it "
+                        "up, but it offers no lifecycle services"));
+  EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
 }
 
 TEST_F(LaunchingDriven, LeavesANodeAloneThatTheFileGivesToOthers) {
