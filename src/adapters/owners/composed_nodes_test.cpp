@@ -48,14 +48,15 @@ class OneContainer : public ContainerServices {
     composed.reset();
     composed = std::make_unique<ComposedNodes>(
         rules, std::vector{kBox, kDetector, kTracker}, *this,
-        ComposedNodes::ContainerOwner{[this](CommandId id, ComponentId) {
-                                        begin({});
-                                        tell(Reply{id, Outcome::kDone, {}, ""});
-                                      },
-                                      [this](CommandId id, ComponentId, int, Ending, Hangs) {
-                                        end();
-                                        tell(Reply{id, Outcome::kDone, {}, ""});
-                                      }},
+        ComposedNodes::ContainerOwner{
+            [this](CommandId id, ComponentId) {
+              begin({});
+              tell(Reply{id, Outcome::kDone, Value(std::int64_t{pid}), ""});
+            },
+            [this](CommandId id, ComponentId, int, Ending, Hangs) {
+              end();
+              tell(Reply{id, Outcome::kDone, {}, ""});
+            }},
         inbox);
     asked = composed.get();
     if (pid == 0) return;
@@ -70,6 +71,7 @@ class OneContainer : public ContainerServices {
   }
 
   void begin(const std::vector<std::string>& loaded) {
+    const std::lock_guard lock(happens);
     const auto started =
         spawn({.arguments = {"sleep", "300"}, .search_first = {}, .log = folder.path() / "log"});
     ASSERT_TRUE(started) << started.error();
@@ -83,6 +85,7 @@ class OneContainer : public ContainerServices {
     ++began;
   }
   void end() {
+    const std::lock_guard lock(happens);
     if (pid == 0) return;
     kill(pid, SIGKILL);
     waitpid(pid, nullptr, 0);
@@ -127,6 +130,7 @@ class OneContainer : public ContainerServices {
     return {Outcome::kDone, "", nodes};
   }
   ContainerAnswer load(const Component& component, int of, Duration) override {
+    const std::lock_guard lock(happens);
     if (of != pid) return {Outcome::kTimedOut, "it has ended"};
     did("load " + component.name);
     if (ContainerAnswer refused = loading_now(); refused.outcome != Outcome::kDone) return refused;
@@ -135,10 +139,11 @@ class OneContainer : public ContainerServices {
     return {Outcome::kDone, "", {node}};
   }
   ContainerAnswer unload(const std::string&, int of, std::uint64_t id, Duration) override {
+    const std::lock_guard lock(happens);
     if (of != pid) return {Outcome::kTimedOut, "it has ended"};
     std::string name;
     {
-      const std::lock_guard lock(mutex);
+      const std::lock_guard its_nodes(mutex);
       const auto node = std::find_if(nodes.begin(), nodes.end(),
                                      [&](const LoadedNode& each) { return each.id == id; });
       if (node == nodes.end()) return {Outcome::kRefused, "no such id"};
@@ -208,6 +213,8 @@ class OneContainer : public ContainerServices {
   std::atomic<int> ended = 0;
   std::vector<LoadedNode> nodes;
   std::mutex mutex;
+  std::mutex
+      happens;  // one thing after the other: nothing is loaded into a process that ends meanwhile
   std::vector<std::string> done;
   std::unique_ptr<ComposedNodes> composed;
   ComposedNodes* asked = nullptr;  // the same, also while it ends
