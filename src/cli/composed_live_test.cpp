@@ -189,7 +189,9 @@ TEST_F(Composed, WhatAKilledCulpritLeftUnfinishedIsFinishedOnce) {
 
 // Whoever is on the network can offer services of these names.
 TEST_F(Composed, WhoOnlyOffersTheServicesOfAContainerIsNotBelieved) {
-  auto container = box();
+  const std::string stalls = (world.folder() / "stalls").string();
+  TestProgram container(world, {"ros2_peer_node", domain(), "--active", "--stalls-if", stalls,
+                                "/box", "/detector", "/tracker"});
   ros2::Executor executor;
   auto context = ros2::Context::create(executor, *ros2::options_from_environment());
   ASSERT_TRUE(context) << context.error();
@@ -208,12 +210,11 @@ TEST_F(Composed, WhoOnlyOffersTheServicesOfAContainerIsNotBelieved) {
       });
   ASSERT_TRUE(unload) << unload.error();
   std::thread thread([&] { executor.run(); });
-  const std::string gone = kGone;
-  const auto culprit = run(rules("") + gone.substr(0, gone.find("RULE TrackerGone")));
-  ASSERT_TRUE(culprit.prints("tracker is there (process ")) << culprit.output();
-  container.signal(SIGSTOP);  // so that only the forger answers
+  const auto culprit = run(rules("") + kWeak, {"--quiet", "10s"});
+  ASSERT_TRUE(culprit.prints("DetectorWeak detected")) << culprit.output();
+  std::filesystem::rename(world.write("seconds", "300"), stalls);  // only the forger answers
+  ASSERT_TRUE(comes([&] { return !std::filesystem::exists(stalls); }));
   EXPECT_TRUE(culprit.prints("somebody else answers for the container /box")) << culprit.output();
-  container.signal(SIGCONT);
   EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
   EXPECT_EQ(asked, 0);
   executor.stop();
