@@ -204,10 +204,15 @@ void LiveRobot::redeploy(Member member) {
 }
 
 std::optional<Value> LiveRobot::get(Member member, const std::string& parameter) {
-  const auto value = ask<Value>([&](Then<Value> then) {
-    watcher_->control(member).get_parameter(parameter, std::move(then));
-  });
-  return value ? std::optional(*value) : std::nullopt;
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (std::chrono::steady_clock::now() < until) {
+    const auto value = ask<Value>([&](Then<Value> then) {
+      watcher_->control(member).get_parameter(parameter, std::move(then));
+    });
+    if (value) return *value;
+    std::this_thread::sleep_for(20ms);
+  }
+  return std::nullopt;
 }
 
 bool LiveRobot::becomes(Member member, LifecycleState state) {
