@@ -115,6 +115,7 @@ class Starting {
     CommandId start{};
     std::optional<Time> began;
     std::optional<Time> joined;
+    Time news{};  // when it joined, or showed another end of its
     bool has_lifecycle = false;
     bool has_ended = false;
     ComingUp before{};             // how it came up last
@@ -144,10 +145,14 @@ class Starting {
   void take(const Observation& observation) {
     if (const auto* node = std::get_if<NodeAppeared>(&observation.what)) {
       const auto component = binding_.bind(node->node);
-      if (component && !part(*component).joined) part(*component).joined = observation.at;
+      if (component && !part(*component).joined)
+        part(*component).joined = part(*component).news = observation.at;
     } else if (const auto* end = std::get_if<EndpointAppeared>(&observation.what)) {
-      if (end->kind != EndpointKind::kServer || end->name != end->node + "/change_state") return;
-      if (const auto component = binding_.bind(end->node)) part(*component).has_lifecycle = true;
+      const auto component = binding_.bind(end->node);
+      if (!component) return;
+      part(*component).news = observation.at;
+      if (end->kind == EndpointKind::kServer && end->name == end->node + "/change_state")
+        part(*component).has_lifecycle = true;
     } else if (const auto* read = std::get_if<LifecycleRead>(&observation.what)) {
       Part& it = part(read->component);
       it.has_lifecycle = true;
@@ -175,15 +180,20 @@ class Starting {
     return part(component).joined && !part(component).has_ended;
   }
 
-  // A node announces its services together with itself, but on a machine on which much starts at once they come as late as it
-  // did. The file can say that there will be some.
+  // A node announces its services together with itself; on a busy machine they come one after the other. The
+  // file can say that there will be some.
   bool is_managed(ComponentId component) {
     const Part& it = part(component);
-    const Duration least = rules_[component].lifecycle == LifecycleDriver::kManaged
-                               ? times_.transition
-                               : times_.least_grace;
-    observe_until(std::min(end_, later(*it.joined, std::max(least, start_of(it)))),
-                  [&] { return it.has_lifecycle || it.has_ended; });
+    const bool is_told = rules_[component].lifecycle == LifecycleDriver::kManaged;
+    const auto is_known = [&] { return it.has_lifecycle || it.has_ended; };
+    const auto until = [&] {
+      return std::min(end_, is_told ? later(*it.joined, times_.transition)
+                                    : later(it.news, times_.least_grace));
+    };
+    for (Time last{}; !is_known() && !stop_ && last != until();) {
+      last = until();
+      observe_until(last, is_known);
+    }
     return it.has_lifecycle && !it.has_ended;
   }
 

@@ -1,7 +1,7 @@
 // `run --launch`: starts what is missing, and brings up what stands still after its start.
 //
-// A node is one with a lifecycle if its services are there as long after it as its start took, or 10 s where the file says
-// LIFECYCLE managed. A lifecycle node that nobody drives stays unconfigured for ever: it is configured and activated,
+// A node is one with a lifecycle if it shows the services of one within a second after all else that it shows, or within 10 s
+// where the file says LIFECYCLE managed. A lifecycle node that nobody drives stays unconfigured for ever: it is configured and activated,
 // in the order of the DEPENDENCY lines, and where they say nothing in that of the file. A node that
 // does it itself, or has somebody who does, is left alone: the file says so (LIFECYCLE), or it moved
 // within its time. That is twice as long as it took when somebody else brought it up before; none where

@@ -88,6 +88,10 @@ class ScriptedRobot : public Robot {
     out.push_back({now_, NodeAppeared{node, 7}});
     ScriptedNode& it = nodes[rules_[component].name];
     if (!it.has_lifecycle) return;
+    in(it.services_after / 2, [=, this](auto& later) {
+      later.push_back(
+          {now_, EndpointAppeared{node, EndpointKind::kServer, node + "/get_parameters"}});
+    });
     in(it.services_after, [=, this](auto& later) {
       later.push_back(
           {now_, EndpointAppeared{node, EndpointKind::kServer, node + "/change_state"}});
@@ -191,10 +195,18 @@ TEST_F(Launching, WaitsForWhoActivatedItselfBefore) {
 }
 
 // On a machine on which much starts at once.
-TEST_F(Launching, WaitsForServicesThatComeAsLateAsTheNodeDid) {
+TEST_F(Launching, WaitsForServicesThatComeOneAfterTheOther) {
   robot.nodes["lidar"].services_after = 1900ms;
   launch_all();
   EXPECT_EQ(robot.nodes["lidar"].state, Lifecycle::kActive);
+}
+
+TEST_F(Launching, DoesNotWaitForServicesOfANodeThatIsOnlySlow) {
+  robot.nodes["lidar"] = {.start = 24s, .has_lifecycle = false};
+  const Time begin = robot.now();
+  launch_all();
+  EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
+  EXPECT_LT(robot.now() - begin, 30s);
 }
 
 TEST_F(LaunchingManaged, WaitsForServicesThatTheFilePromises) {
