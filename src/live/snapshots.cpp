@@ -1,6 +1,7 @@
 #include "live/snapshots.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/time.h"
 #include "ros2/services.h"
@@ -19,12 +20,11 @@ void Snapshots::joined(ros2::NodeEntry& node) {
 
 void Snapshots::begins(const Manager& manager, std::function<Remarks()> /*remarks*/,
                        Time /*start*/) {
-  const bool is_first = manager_ == nullptr;
   manager_ = &manager;
-  if (is_first) looks_ = later(manager.knowledge().now, kDiscovery);
 }
 
 void Snapshots::stepped(const Runtime::Step& step) {
+  if (!std::exchange(is_looked_for_, true)) looks_ = later(step.now, kDiscovery);
   look_for_recorder(step.now);
   const Knowledge& knowledge = manager_->knowledge();
   for (const Event& event : step.events) {

@@ -53,6 +53,7 @@ class Snapshots : public Observer {
   bool is_ill_ = false;
   Time due_ = kNever;           // of the snapshot after all is well
   Time not_before_ = kLongAgo;  // of the next one about a detection
+  bool is_looked_for_ = false;
   Time looks_ = kNever;  // when it says that there is no recorder; kNever: that was looked at
 };
 

@@ -57,7 +57,7 @@ struct HotRobot {
   const RuleSet rules = *check(Source("test", kHotRules)).rules;
   std::optional<Manager> manager{std::in_place, rules, std::make_unique<BayesPlanner>(),
                                  Manager::Options()};
-  Time now{};
+  Time now{1h};  // of a computer that was started before
   ros2::EventLog<std::string> said;
   Snapshots snapshots{{.recorder = "/rosbag2_recorder",
                        .say = [this](const std::string& text) { said.add(text); }}};
