@@ -81,6 +81,16 @@ TEST_F(Start, RunSaysWhatTheRobotHasOfTheRulesAndWhatNot) {
   EXPECT_THAT(plan.output(), HasSubstr("did you mean '/managed_subsystem/rgb_camera'?"));
 }
 
+// What it finds under a number in that /proc is not what it would signal under that number.
+TEST_F(Start, NothingIsManagedByTheProcOfAnotherNamespace) {
+  TestProgram run(world, {"unshare", "--pid", "--fork", own_folder() / "culprit", "run", rules,
+                          "--state-dir", state()});
+  EXPECT_EQ(run.wait(), 1);
+  if (run.output().find("unshare failed") != std::string::npos)
+    GTEST_SKIP() << "no right to make namespaces";
+  EXPECT_THAT(run.output(), HasSubstr("it is of another PID namespace"));
+}
+
 TEST_F(Start, RunSaysThatNobodyIsThereAndWaits) {
   const std::string nobody = "no nodes were seen on domain " + std::to_string(domain());
   auto run = culprit({"run", rules, "--state-dir", state(), "--dry-run"});

@@ -51,6 +51,7 @@ void LiveRobot::report(std::string trouble) { inbox_.put(LinkTrouble{std::move(t
 void LiveRobot::tell(PriorsTold priors) { inbox_.put(std::move(priors)); }
 
 Expected<std::unique_ptr<LiveRobot>> LiveRobot::open(const RuleSet& rules, Options options) {
+  if (auto seen = owners::proc_is_of_our_processes(); !seen) return Error{seen.error()};
   std::unique_ptr<LiveRobot> robot(new LiveRobot(rules));
   robot->supervisor_ =
       std::make_unique<owners::Supervisor>(rules, std::move(options.supervisor), robot->inbox_);

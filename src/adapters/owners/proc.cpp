@@ -45,6 +45,19 @@ std::vector<int> all_processes() {
   return pids;
 }
 
+// The numbers that a process has, from the PID namespace of this /proc to the innermost that it is in (NSpid). `process` is a
+// number, or "self". Empty if there is no such process.
+std::vector<int> numbers_of(const std::string& process) {
+  std::vector<int> numbers;
+  std::ifstream file("/proc/" + process + "/status");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("NSpid:")) continue;
+    std::istringstream rest(line.substr(6));
+    for (int each = 0; rest >> each;) numbers.push_back(each);
+  }
+  return numbers;
+}
+
 struct Family {
   char state = 'X';
   int parent = 0;
@@ -245,15 +258,19 @@ std::string pid_namespace_of(int pid) {
 }
 
 int own_number_of(int pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/status");
-  for (std::string line; std::getline(file, line);) {
-    if (!line.starts_with("NSpid:")) continue;
-    std::istringstream numbers(line.substr(6));
-    int number = 0;
-    for (int each = 0; numbers >> each;) number = each;  // the innermost is the last
-    return number;
-  }
-  return 0;
+  const std::vector<int> numbers = numbers_of(std::to_string(pid));
+  return numbers.empty() ? 0 : numbers.back();
+}
+
+Expected<void> proc_is_of_our_processes() {
+  const std::vector<int> numbers = numbers_of("self");
+  if (numbers == std::vector{static_cast<int>(getpid())}) return {};
+  return Error{
+      "/proc does not show culprit's own process: it is of another PID namespace, or there is "
+      "none, "
+      "and whoever goes by its numbers ends the wrong processes. Mount culprit's own (mount -t "
+      "proc "
+      "proc /proc); in a container take no /proc of the host's, but its namespace (--pid host)"};
 }
 
 std::optional<Identity> identity_of(int pid) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/expected.h"
 #include "base/time.h"
 #include "language/rule_set.h"
 
@@ -49,6 +50,8 @@ std::vector<int> processes_with(const std::string& variable);
 std::string pid_namespace_of(int pid);
 // The number that a process has in the innermost namespace that it is in; 0 if it cannot be told.
 int own_number_of(int pid);
+// An error where /proc counts processes in another PID namespace than this process is in: its numbers are those of others here.
+Expected<void> proc_is_of_our_processes();
 
 // What a process runs: `script` is what an interpreter was given, as `ros2 run` is Python's.
 struct Identity {
