@@ -8,7 +8,7 @@ set(CULPRIT_PACKAGE_VERSION ${PROJECT_VERSION}-${revision})
 set(texts ${PROJECT_BINARY_DIR}/package-texts)
 configure_file(${PROJECT_SOURCE_DIR}/packaging/debian/changelog.in ${texts}/changelog.Debian @ONLY)
 configure_file(${PROJECT_SOURCE_DIR}/CHANGELOG.md ${texts}/changelog COPYONLY)
-set(packages culprit:culprit lab:culprit-lab core:libculprit-dev doc:culprit-doc)
+set(packages culprit:culprit lab:culprit-lab libs:culprit-libs core:libculprit-dev doc:culprit-doc)
 foreach(each ${packages})
   string(REPLACE ":" ";" each ${each})
   list(GET each 0 component)
@@ -30,7 +30,6 @@ set(CPACK_SET_DESTDIR ON) # the unit does not belong under /usr
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/CulpritPackagesStage.cmake)
-set(CPACK_OUTPUT_FILE_PREFIX ${PROJECT_SOURCE_DIR}/build/packages)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
@@ -59,6 +58,13 @@ set(CPACK_DEBIAN_LAB_DESCRIPTION "laboratory of culprit
 Demonstrations of culprit on live robots of real processes, studies on models
 of them and on random robots, and torture. The commands demo, study and
 torture of culprit start it.")
+# The stage puts the libraries in. Programs look for them there first (CMAKE_INSTALL_RPATH of the preset), and scripts/package lets them depend on
+# them or on Debian's.
+set(CPACK_DEBIAN_LIBS_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBS_DESCRIPTION "libraries of culprit that Ubuntu does not have
+Fast DDS and other libraries of Debian 12 that Ubuntu 22.04 and 24.04 have not, or
+have of another version, in a folder that only culprit's programs look into. On
+Debian 12 nothing needs it.")
 set(CPACK_DEBIAN_CORE_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_CORE_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_CORE_PACKAGE_DEPENDS "libstdc++-12-dev | libstdc++-dev")

@@ -1,5 +1,23 @@
 # Run by CPack when all files of the packages are in their folders, before these become packages: what Debian asks of files, and one time for all of them.
 file(GLOB packages ${CPACK_TEMPORARY_DIRECTORY}/*)
+
+# culprit-libs: the libraries that Ubuntu 22.04 or 24.04 lacks, with whatever these need of one another, and their licences. Each is found beside the other.
+set(own_folder ${CPACK_TEMPORARY_DIRECTORY}/libs/usr/lib/culprit)
+execute_process(COMMAND ldd ${CPACK_TEMPORARY_DIRECTORY}/culprit/usr/bin/culprit ${CPACK_TEMPORARY_DIRECTORY}/lab/usr/bin/culprit-lab
+                OUTPUT_VARIABLE linked COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "/[^ ]*/lib(cpp-httplib|fastcdr|fastrtps|fmt|foonathan_memory|tinyxml2|yaml-cpp|zstd)\\.so\\.[0-9.]+" libraries ${linked})
+list(REMOVE_DUPLICATES libraries)
+foreach(library ${libraries})
+  get_filename_component(name ${library} NAME)
+  get_filename_component(file ${library} REALPATH)
+  execute_process(COMMAND dpkg-query --search ${file} OUTPUT_VARIABLE owner COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX REPLACE "[: ].*" "" owner ${owner})
+  file(MAKE_DIRECTORY ${own_folder})
+  file(COPY_FILE ${file} ${own_folder}/${name})
+  execute_process(COMMAND patchelf --set-rpath $ORIGIN ${own_folder}/${name} COMMAND_ERROR_IS_FATAL ANY)
+  file(COPY_FILE /usr/share/doc/${owner}/copyright ${CPACK_TEMPORARY_DIRECTORY}/libs/usr/share/doc/culprit-libs/${owner}.copyright)
+endforeach()
+
 foreach(package ${packages})
   if(NOT IS_DIRECTORY ${package})
     continue()
