@@ -62,9 +62,9 @@ torture of culprit start it.")
 # them or on Debian's.
 set(CPACK_DEBIAN_LIBS_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBS_DESCRIPTION "libraries of culprit that Ubuntu does not have
-Fast DDS and other libraries of Debian 12 that Ubuntu 22.04 and 24.04 have not, or
-have of another version, in a folder that only culprit's programs look into. On
-Debian 12 nothing needs it.")
+Fast DDS and other libraries of Debian 12 that Ubuntu 22.04 and 24.04 have not,
+or have of another version, in a folder that only culprit's programs look into.
+On Debian 12 nothing needs it.")
 set(CPACK_DEBIAN_CORE_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_CORE_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_CORE_PACKAGE_DEPENDS "libstdc++-12-dev | libstdc++-dev")

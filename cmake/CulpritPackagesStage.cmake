@@ -2,7 +2,7 @@
 file(GLOB packages ${CPACK_TEMPORARY_DIRECTORY}/*)
 
 # culprit-libs: the libraries that Ubuntu 22.04 or 24.04 lacks, with whatever these need of one another, and their licences. Each is found beside the other.
-set(own_folder ${CPACK_TEMPORARY_DIRECTORY}/libs/usr/lib/culprit)
+set(own_folder ${CPACK_TEMPORARY_DIRECTORY}/libs/usr/lib/culprit/debian-12) # one deeper than where CPack would have ldconfig look
 execute_process(COMMAND ldd ${CPACK_TEMPORARY_DIRECTORY}/culprit/usr/bin/culprit ${CPACK_TEMPORARY_DIRECTORY}/lab/usr/bin/culprit-lab
                 OUTPUT_VARIABLE linked COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "/[^ ]*/lib(cpp-httplib|fastcdr|fastrtps|fmt|foonathan_memory|tinyxml2|yaml-cpp|zstd)\\.so\\.[0-9.]+" libraries ${linked})
