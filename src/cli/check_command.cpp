@@ -67,13 +67,9 @@ Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait)
 // most likely not the robot's: then one of them is told.
 void check_launches(const Expansion& file, Checked& checked) {
   const RuleSet& rules = *checked.rules;
-  std::vector<LiveInventory::LaunchTrouble> troubles;
-  std::ptrdiff_t launches = 0;
-  for (const Component& component : rules.components) {
-    if (component.launch.empty()) continue;
-    ++launches;
-    if (auto trouble = live::launch_trouble(component)) troubles.push_back(std::move(*trouble));
-  }
+  const auto troubles = live::launch_troubles(rules);
+  const auto launches = std::ranges::count_if(
+      rules.components, [](const Component& each) { return !each.launch.empty(); });
   if (troubles.empty()) return;
   if (std::ssize(troubles) == launches) {
     fmt::print(

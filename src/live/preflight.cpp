@@ -1,6 +1,7 @@
 #include "live/preflight.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include <fmt/core.h>
@@ -196,9 +197,8 @@ LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& s
     for (const Component& component : each->components) {
       if (stop.stop_requested()) break;
       if (component.composed) find_composition_troubles(component, robot);
-      if (auto trouble = launch_trouble(component))
-        robot.launch_troubles.push_back(std::move(*trouble));
     }
+    std::ranges::move(launch_troubles(*each, stop), std::back_inserter(robot.launch_troubles));
   }
   return robot;
 }

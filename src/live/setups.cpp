@@ -1,8 +1,10 @@
 #include "live/setups.h"
 
 #include <map>
+#include <optional>
 #include <poll.h>
 #include <system_error>
+#include <tuple>
 
 #include "base/environment.h"
 #include "live/rule_trust.h"
@@ -30,6 +32,28 @@ Expected<void> could_run(const owners::Program& program) {
   return Error{"its start was tried and hung; does the file system of its program answer?"};
 }
 
+using Trouble = LiveInventory::LaunchTrouble;
+
+std::optional<Trouble> trouble_of(const Component& component) {
+  if (!component.setup.empty()) {
+    const auto trusted = trust_setup(component.setup);
+    if (!trusted)
+      return Trouble{component.name, Trouble::Clause::kSetup, component.setup, trusted.error()};
+  }
+  std::error_code error;
+  if (!component.folder.empty() && !std::filesystem::is_directory(component.folder, error))
+    return Trouble{component.name, Trouble::Clause::kFolder, component.folder,
+                   "there is no folder " + component.folder};
+  if (!component.setup.empty()) return std::nullopt;
+  // Looked for where culprit run looks for it.
+  owners::Program program{component.launch, {own_folder()}, "/dev/null", component.environment};
+  program.folder = component.folder;
+  if (const auto could = could_run(program); !could)
+    return Trouble{component.name, Trouble::Clause::kLaunch, component.launch.front(),
+                   could.error()};
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<Environment> environments_of(const RuleSet& rules) {
@@ -44,25 +68,23 @@ std::vector<Environment> environments_of(const RuleSet& rules) {
   return all;
 }
 
-std::optional<LiveInventory::LaunchTrouble> launch_trouble(const Component& component) {
-  using Found = LiveInventory::LaunchTrouble;
-  if (component.launch.empty()) return std::nullopt;
-  if (!component.setup.empty()) {
-    const auto trusted = trust_setup(component.setup);
-    if (!trusted)
-      return Found{component.name, Found::Clause::kSetup, component.setup, trusted.error()};
+std::vector<Trouble> launch_troubles(const RuleSet& rules, const std::stop_token& stop) {
+  // All that a trouble depends on: of many components of one program there is one answer.
+  using Asked = std::tuple<const std::string&, const std::string&, const std::string&,
+                           const std::vector<std::string>&>;
+  std::map<Asked, std::optional<Trouble>> answers;
+  std::vector<Trouble> all;
+  for (const Component& component : rules.components) {
+    if (stop.stop_requested()) break;
+    if (component.launch.empty()) continue;
+    const auto [answer, is_new] = answers.try_emplace(
+        Asked(component.launch.front(), component.setup, component.folder, component.environment));
+    if (is_new) answer->second = trouble_of(component);
+    if (!answer->second) continue;
+    all.push_back(*answer->second);
+    all.back().component = component.name;
   }
-  std::error_code error;
-  if (!component.folder.empty() && !std::filesystem::is_directory(component.folder, error))
-    return Found{component.name, Found::Clause::kFolder, component.folder,
-                 "there is no folder " + component.folder};
-  if (!component.setup.empty()) return std::nullopt;
-  // Looked for where culprit run looks for it.
-  owners::Program program{component.launch, {own_folder()}, "/dev/null", component.environment};
-  program.folder = component.folder;
-  if (const auto could = could_run(program); !could)
-    return Found{component.name, Found::Clause::kLaunch, component.launch.front(), could.error()};
-  return std::nullopt;
+  return all;
 }
 
 }  // namespace culprit::live

@@ -1,7 +1,7 @@
 // What LAUNCH commands need beside themselves: their SETUP, ENV and CWD, and whether they could run.
 #pragma once
 
-#include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -16,9 +16,11 @@ namespace culprit::live {
 // fails.
 std::vector<Expected<std::vector<std::string>>> environments_of(const RuleSet& rules);
 
-// Why the component's LAUNCH could not run here, as far as that can be told without running anything
-// of what may be somebody else's rule file: its SETUP is only looked at, and where there is one, the
-// program is not looked for. Nothing: nothing is known against it, or it has none.
-std::optional<LiveInventory::LaunchTrouble> launch_trouble(const Component& component);
+// The components whose LAUNCH could not run here, and why, as far as that can be told without running
+// anything of what may be somebody else's rule file: a SETUP is only looked at, and where there is one,
+// the program is not looked for. Each program is looked for once in each folder and environment, which
+// takes a process. What comes after a request to stop is left out.
+std::vector<LiveInventory::LaunchTrouble> launch_troubles(const RuleSet& rules,
+                                                          const std::stop_token& stop = {});
 
 }  // namespace culprit::live

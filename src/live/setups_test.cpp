@@ -28,8 +28,8 @@ struct Setups : testing::Test {
   }
   // Of a component with these clauses.
   static std::optional<LiveInventory::LaunchTrouble> trouble(const std::string& clauses) {
-    const RuleSet set = rules("COMPONENT c " + clauses + "\n");
-    return launch_trouble(set.components[0]);
+    const auto all = launch_troubles(rules("COMPONENT c " + clauses + "\n"));
+    return all.empty() ? std::nullopt : std::optional(all.front());
   }
   void add_program(const char* name) const {
     std::filesystem::create_symlink("/bin/sleep", folder / name);
@@ -59,6 +59,20 @@ TEST_F(Setups, AProgramIsLookedForWhereTheRulesSay) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->clause, Clause::kLaunch);
   EXPECT_EQ(found->why, "there is no program 'only_there' in PATH");
+}
+
+TEST_F(Setups, AProgramIsLookedForOnceAndMissedByAllThatNeedIt) {
+  add_program("only_there");
+  const std::string there = " ENV \"PATH=" + folder.string() + "\"\n";
+  const auto found = launch_troubles(
+      rules("COMPONENT a LAUNCH \"only_there 1\"\nCOMPONENT b LAUNCH \"only_there 2\"" + there +
+            "COMPONENT c LAUNCH \"only_there 3\"\nCOMPONENT d LAUNCH \"other\"\nCOMPONENT e\n"));
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].component, "a");
+  EXPECT_EQ(found[1].component, "c");
+  EXPECT_EQ(found[1].why, found[0].why);
+  EXPECT_EQ(found[2].component, "d");
+  EXPECT_THAT(found[2].why, HasSubstr("'other'"));
 }
 
 // culprit's own folder, which is hardly in PATH.

@@ -257,34 +257,52 @@ const std::vector<ComponentId>& DependencyGraph::downstream(ComponentId componen
   return reach(component, Direction::kDownstream);
 }
 
-const std::vector<ComponentId>& DependencyGraph::reach(ComponentId from,
-                                                       Direction direction) const {
+std::optional<ComponentId> DependencyGraph::first_upstream(ComponentId component,
+                                                           const Predicate& is_it) const {
+  std::optional<ComponentId> first;
+  reach(component, Direction::kUpstream, [&](ComponentId each) {
+    if (is_it(each)) first = each;
+    return first.has_value();
+  });
+  return first;
+}
+
+const std::vector<ComponentId>& DependencyGraph::reach(ComponentId from, Direction direction,
+                                                       const Predicate& is_last) const {
   found_.clear();
   const auto start = nodes_of_components_[from.index];
   if (!start) return found_;
-  visited_.resize(nodes_.size(), 0);
+  visited_.resize(nodes_.size() + channels_.size(), 0);
   ++search_;
   frontier_.assign(1, *start);
   visited_[start->index] = search_;
+  bool is_over = false;
   const auto visit = [&](NodeId node) {
-    if (visited_[node.index] == search_) return;
+    if (is_over || visited_[node.index] == search_) return;
     visited_[node.index] = search_;
     frontier_.push_back(node);
-    if (nodes_[node.index].component) found_.push_back(*nodes_[node.index].component);
+    const auto& component = nodes_[node.index].component;
+    if (!component) return;
+    found_.push_back(*component);
+    is_over = is_last && is_last(*component);
   };
   const bool up = direction == Direction::kUpstream;
-  while (!frontier_.empty()) {
+  while (!frontier_.empty() && !is_over) {
     const NodeId id = frontier_.back();
     const Node& here = nodes_[id.index];
     frontier_.pop_back();
     for (const NodeId declared : up ? here.declared_producers : here.declared_consumers)
       visit(declared);
     for (const ChannelId channel_id : up ? here.consumes : here.produces) {
+      // Whoever shares a channel with many is led on by it once.
+      std::uint32_t& passed = visited_[nodes_.size() + channel_id.index];
+      if (passed == search_) continue;
       const Channel& channel = channels_[channel_id.index];
       const auto& near = up ? channel.consumers : channel.producers;
       const auto own =
           std::find_if(near.begin(), near.end(), [&](const End& e) { return e.node == id; });
       if (!counts(*own, channel, !up)) continue;
+      passed = search_;
       for (const End& far : up ? channel.producers : channel.consumers) {
         if (counts(far, channel, up)) visit(far.node);
       }

@@ -11,6 +11,7 @@
 // made (a subscription moved elsewhere) counts at once.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -82,6 +83,10 @@ class DependencyGraph {
   const std::vector<ComponentId>& upstream(ComponentId component) const;
   // The components that depend on it, likewise.
   const std::vector<ComponentId>& downstream(ComponentId component) const;
+  // The first of upstream() that is it, without a look at those behind it. `is_it` does not search
+  // the graph.
+  using Predicate = std::function<bool(ComponentId)>;
+  std::optional<ComponentId> first_upstream(ComponentId component, const Predicate& is_it) const;
 
   // All that counts now, with circles drawn together. Found anew when it is asked for after a change
   // (docs/performance.md says what that costs); the reference is valid until the next change.
@@ -146,7 +151,9 @@ class DependencyGraph {
   // Appends those that count.
   void find_ends(const Channel& channel, std::vector<Vertex>& producers,
                  std::vector<Vertex>& consumers) const;
-  const std::vector<ComponentId>& reach(ComponentId from, Direction direction) const;
+  // Up to the first one that is `last`; null: all.
+  const std::vector<ComponentId>& reach(ComponentId from, Direction direction,
+                                        const Predicate& is_last = nullptr) const;
 
   ComponentBinding binding_;
   std::vector<Node> nodes_;
@@ -160,7 +167,7 @@ class DependencyGraph {
 
   mutable std::optional<Condensation> condensation_;  // nothing: something changed
 
-  // Scratch of reach(): who was visited in which search.
+  // Scratch of reach(): who was visited in which search; first the nodes, then the channels.
   mutable std::vector<std::uint32_t> visited_;
   mutable std::uint32_t search_ = 0;
   mutable std::vector<NodeId> frontier_;

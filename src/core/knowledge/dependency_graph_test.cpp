@@ -67,6 +67,27 @@ Graph pipeline() {
   return graph;
 }
 
+TEST(DependencyGraph, FindsTheFirstUpstreamWithoutTheRest) {
+  Graph graph = pipeline();
+  graph.link("/camera", "/tf", "/fusion")
+      .link("/camera", "/tf", "/seg")
+      .link("/fusion", "/tf", "/seg");
+  const ComponentId seg(2);
+  const std::vector<ComponentId> all = (*graph).upstream(seg);
+  ASSERT_EQ(all.size(), 2u);
+  std::vector<ComponentId> asked;
+  for (const ComponentId wanted : all) {
+    const auto first = (*graph).first_upstream(seg, [&](ComponentId each) {
+      asked.push_back(each);
+      return each == wanted;
+    });
+    EXPECT_EQ(first, wanted);
+  }
+  EXPECT_EQ(asked, (std::vector<ComponentId>{all[0], all[0], all[1]}));
+  EXPECT_FALSE((*graph).first_upstream(seg, [](ComponentId) { return false; }));
+  EXPECT_EQ((*graph).upstream(seg), all) << "what ended early is not remembered";
+}
+
 TEST(DependencyGraph, FollowsTopicsAgainstTheFlowOfData) {
   Graph graph = pipeline();
   EXPECT_EQ(graph.upstream("seg"), (Names{"camera", "fusion"}));

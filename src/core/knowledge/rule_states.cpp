@@ -129,7 +129,8 @@ std::optional<RuleId> RuleStates::worst_at(ComponentId component, Criticality le
     if (id == except || rule.policies.criticality < level) continue;
     if (!std::binary_search(rule.components.begin(), rule.components.end(), component)) continue;
     const auto rank = [&](RuleId r) {
-      return std::pair(-static_cast<int>(rules_[r].policies.criticality), rules_[r].name);
+      return std::pair<int, const std::string&>(-static_cast<int>(rules_[r].policies.criticality),
+                                                rules_[r].name);
     };
     if (!worst || rank(id) < rank(*worst)) worst = id;
   }

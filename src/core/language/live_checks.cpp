@@ -42,6 +42,8 @@ class LiveChecks {
     for (const Signal& s : rules.signals) {
       if (std::holds_alternative<LookedUp>(s.source)) looked_up_.emplace(s.name, &s);
     }
+    for (const LiveInventory::LaunchTrouble& each : robot.launch_troubles)
+      launch_troubles_[each.component].push_back(&each);
   }
 
   std::vector<Diagnostic> find_owner_troubles() {
@@ -116,18 +118,19 @@ class LiveChecks {
       if (each.host == c->host() && written.host)
         warn(Code::kNoSuchHost, written.host->span, each.why, "");
     }
-    for (const LiveInventory::LaunchTrouble& each : robot_.launch_troubles) {
-      if (each.component != c->name) continue;
+    const auto launch_troubles = launch_troubles_.find(c->name);
+    if (launch_troubles == launch_troubles_.end()) return;
+    for (const LiveInventory::LaunchTrouble* each : launch_troubles->second) {
       using Clause = LiveInventory::LaunchTrouble::Clause;
       const std::string program = c->launch.empty() ? "" : c->launch.front();
       const Composition composed = c->composed.value_or(Composition{});
       const auto& [place, text] =
-          each.clause == Clause::kSetup        ? std::pair(written.setup, c->setup)
-          : each.clause == Clause::kFolder     ? std::pair(written.folder, c->folder)
-          : each.clause == Clause::kPlugin     ? std::pair(written.plugin, composed.plugin)
-          : each.clause == Clause::kParameters ? std::pair(written.parameters, composed.parameters)
-                                               : std::pair(written.launch, program);
-      if (place && text == each.text) warn(Code::kCannotLaunch, place->span, each.why, "");
+          each->clause == Clause::kSetup        ? std::pair(written.setup, c->setup)
+          : each->clause == Clause::kFolder     ? std::pair(written.folder, c->folder)
+          : each->clause == Clause::kPlugin     ? std::pair(written.plugin, composed.plugin)
+          : each->clause == Clause::kParameters ? std::pair(written.parameters, composed.parameters)
+                                                : std::pair(written.launch, program);
+      if (place && text == each->text) warn(Code::kCannotLaunch, place->span, each->why, "");
     }
   }
 
@@ -400,6 +403,9 @@ class LiveChecks {
   std::unordered_map<std::string, const syntax::Component*> declarations_;
   std::unordered_map<std::string, const Component*> components_;  // by name and by node
   std::unordered_map<std::string, const Signal*> looked_up_;
+  // By component.
+  std::unordered_map<std::string, std::vector<const LiveInventory::LaunchTrouble*>>
+      launch_troubles_;
   std::set<std::pair<OccurrenceKind, std::string>> said_;
   Names own_names_;
   std::vector<Diagnostic> found_;

@@ -119,25 +119,27 @@ bool PaperPlanner::depends_on_cause(Candidate& candidate, Criticality level,
                                     const Knowledge& knowledge) const {
   const Strategy& strategy = knowledge.rules[candidate.strategy];
   if (strategy.is_last_resort) return false;
+  const RuleStates& states = knowledge.states;
   for (const ComponentId component : strategy.components) {
-    for (const ComponentId upstream : knowledge.graph.upstream(component)) {
-      if (!knowledge.states.is_sick(upstream, level, strategy.rule)) continue;
-      candidate.component = upstream;
-      candidate.failure = knowledge.states.sickness(upstream, level, strategy.rule);
-      return true;
-    }
+    const auto sick = knowledge.graph.first_upstream(component, [&](ComponentId upstream) {
+      return states.is_sick(upstream, level, strategy.rule);
+    });
+    if (!sick) continue;
+    candidate.component = *sick;
+    candidate.failure = states.sickness(*sick, level, strategy.rule);
+    return true;
   }
-  const bool has_to_wait = !knowledge.states.exhausted().empty() &&
+  const bool has_to_wait = !states.exhausted().empty() &&
                            !plan::may_be_tried_beside_exhausted(candidate.strategy, knowledge);
   if (!has_to_wait) return false;
   for (const ComponentId component : strategy.components) {
-    for (const ComponentId upstream : knowledge.graph.upstream(component)) {
-      const auto cause = knowledge.states.awaiting_person_at(upstream, level, strategy.rule);
-      if (!cause) continue;
-      candidate.component = upstream;
-      candidate.failure = cause;
-      return true;
-    }
+    const auto waiting = knowledge.graph.first_upstream(component, [&](ComponentId upstream) {
+      return states.awaiting_person_at(upstream, level, strategy.rule).has_value();
+    });
+    if (!waiting) continue;
+    candidate.component = *waiting;
+    candidate.failure = states.awaiting_person_at(*waiting, level, strategy.rule);
+    return true;
   }
   return false;
 }
