@@ -1,5 +1,5 @@
 // Bags: whatever their bytes say, they are read to their end or refused, the times of their
-// messages never go back, and rules can be replayed on them.
+// messages never go back, rules can be replayed on them, and their numbers drawn.
 //
 // The first line of the input is what the file's name ends with (`mcap`, `db3`, `mcap.zstd`), the
 // rest its bytes. To reach what stands behind checksums, MCAP is also read with each checksum of a
@@ -13,6 +13,7 @@
 
 #include "bag/bag_file.h"
 #include "bag/bag_reading.h"
+#include "incidents/recorded_curves.h"
 #include "language/checker.h"
 
 namespace {
@@ -36,6 +37,19 @@ RULE R
   return set;
 }
 
+// What is drawn of it is bounded, too.
+void check_curves(const std::string& path) {
+  incidents::CurveLimits limits;
+  limits.most_memory = std::size_t{1} << 20;
+  const auto shown =
+      incidents::recorded_curves(path, {rules(), {"R"}, {"camera", "gripper"}}, limits);
+  if (!shown) return;
+  if (shown->curves.size() > limits.most_curves || shown->end < shown->begin) std::abort();
+  for (const incidents::Curve& each : shown->curves) {
+    if (each.points.size() > 2 * bag::ThinnedCurve::kMostBuckets) std::abort();
+  }
+}
+
 void read(const std::string& path) {
   const bag::BagFile::Limits limits{std::size_t{1} << 20};
   auto file = bag::BagFile::open(path, limits);
@@ -51,6 +65,7 @@ void read(const std::string& path) {
     reading.read(message, observations);
   }
   (void)reading.missing();
+  check_curves(path);
   if (file->contents().losses().size() > 30) std::abort();
 }
 

@@ -35,6 +35,7 @@ void add_lsp(CLI::App& app, const std::string& version, int& exit_code);
 void add_web(CLI::App& app, int& exit_code);
 void add_import(CLI::App& app, int& exit_code);
 void add_log(CLI::App& app, int& exit_code);
+void add_incident(CLI::App& app, int& exit_code);
 void add_audit(CLI::App& app, int& exit_code);
 void add_beliefs(CLI::App& app, int& exit_code);
 void add_replay(CLI::App& app, int& exit_code);

@@ -59,7 +59,7 @@ void group_commands(CLI::App& app) {
        {"status", "top", "pause", "resume", "silence", "approve", "refuse", "run-strategy",
         "record", "alerts"}},
       {"Rules", {"check", "explain", "fmt", "test", "import", "export", "policy", "web", "lsp"}},
-      {"What was", {"log", "audit", "beliefs", "replay"}},
+      {"What was", {"log", "incident", "audit", "beliefs", "replay"}},
 #ifdef CULPRIT_FLEET
       {"A fleet", {"fleet"}},
 #endif

@@ -65,6 +65,8 @@ TEST(ExitStatus, IsOneWhereAFileCannotBeRead) {
                                              {"plan", "--state", missing, "rules/sunset.rules"},
                                              {"plan", "--state", missing, missing},
                                              {"log", "--journal", missing},
+                                             {"incident", "--journal", missing},
+                                             {"incident", "mfx2kk1c", "--journal", missing},
                                              {"explain", "--last", "--journal", missing},
                                              {"beliefs", "show", "--journal", missing},
                                              {"audit", "verify", "--journal", missing},

@@ -8,6 +8,7 @@
 #include "bag/bag_file.h"
 #include "base/environment.h"
 #include "base/live_clock.h"
+#include "base/text_file.h"
 #include "recorder/recording_folder.h"
 #include "ros2/cdr.h"
 #include "ros2/messages.h"
@@ -130,6 +131,68 @@ TEST_F(BlackBoxes, RecordAnIncidentFromBeforeItBegan) {
       << with_others.output();
   culprit.signal(SIGINT);
   EXPECT_EQ(culprit.wait(), 0);
+}
+
+// Without a running culprit: from the journal and the recording.
+TEST_F(BlackBoxes, BecomeAPageOfTheIncidentThatShowsWhatTheRulesRead) {
+  TestProgram culprit = run({"--record", "--record-after", "1s"});
+  ASSERT_TRUE(culprit.prints("lidar is there")) << culprit.output();
+  wait_until_heard(culprit, "/lidar/value");
+  if (HasFatalFailure()) return;
+  std::filesystem::remove_all(state() + "/recordings");  // those of the trial, a moment before
+  kill(lidar->pid(), SIGKILL);
+  ASSERT_TRUE(culprit.prints("_LidarDead.mcap")) << culprit.output();
+  culprit.signal(SIGINT);
+  EXPECT_EQ(culprit.wait(), 0);
+  const std::string journal = state() + "/rover.journal";
+
+  TestProgram list(world, {"culprit", "incident", "--journal", journal, "--json"});
+  EXPECT_EQ(list.wait(), 0) << list.output();
+  const auto all = nlohmann::json::parse(list.output(), nullptr, false);
+  ASSERT_TRUE(all.contains("incidents")) << list.output();
+  ASSERT_THAT(all["incidents"], SizeIs(1)) << list.output();
+  EXPECT_EQ(all["incidents"][0]["recordings"][0]["path"], recording_of("LidarDead").string());
+  const std::string id = all["incidents"][0]["id"];
+  TestProgram table(world, {"culprit", "incident", "--journal", journal});
+  EXPECT_EQ(table.wait(), 0);
+  EXPECT_THAT(table.output(),
+              AllOf(HasSubstr(id), HasSubstr("lidar_redeploy"), HasSubstr("_LidarDead.mcap")));
+
+  const std::string file = (world.folder() / "page.html").string();
+  TestProgram page(world, {"culprit", "incident", id, "--journal", journal, "-o", file, "--json"});
+  EXPECT_EQ(page.wait(), 0) << page.output();
+  EXPECT_THAT(page.output(), HasSubstr("\"curves\":[{\"name\":\"time between messages of "
+                                       "/lidar/value\",\"about\":\"read by LidarDead\""));
+  const auto html = read_text(file);
+  ASSERT_TRUE(html) << html.error();
+  EXPECT_THAT(*html,
+              AllOf(HasSubstr("<h1>lidar, "), HasSubstr("lidar_redeploy"),
+                    HasSubstr("<b>time between messages of /lidar/value</b>"),
+                    HasSubstr("class=\"mark detected\""), HasSubstr("class=\"mark decided\""),
+                    HasSubstr("class=\"mark resolved\""), HasSubstr("A rule's limit is 0.7 s")));
+
+  // Damaged, and gone: the page is made all the same, and says it.
+  std::filesystem::resize_file(recording_of("LidarDead"), 1000);
+  TestProgram damaged(world, {"culprit", "incident", id, "--journal", journal, "-o", file});
+  EXPECT_EQ(damaged.wait(), 0) << damaged.output();
+  EXPECT_THAT(damaged.output(), HasSubstr("is not whole"));
+  std::filesystem::remove(recording_of("LidarDead"));
+  TestProgram gone(world, {"culprit", "incident", id, "--journal", journal});
+  EXPECT_EQ(gone.wait(), 0);
+  EXPECT_THAT(gone.output(),
+              AllOf(HasSubstr("<h1>lidar, "), HasSubstr("There is no recording of it"),
+                    Not(HasSubstr("<figure>"))));
+
+  TestProgram unknown(world, {"culprit", "incident", "1", "--journal", journal});
+  EXPECT_EQ(unknown.wait(), 1);
+  EXPECT_THAT(unknown.output(), HasSubstr("there is no incident '1' in"));
+  TestProgram nonsense(world, {"culprit", "incident", "no id", "--journal", journal});
+  EXPECT_EQ(nonsense.wait(), 2);
+  EXPECT_THAT(nonsense.output(), HasSubstr("culprit incident lists them"));
+  TestProgram nowhere(world,
+                      {"culprit", "incident", id, "--journal", journal, "-o", "/no/such/folder/x"});
+  EXPECT_EQ(nowhere.wait(), 1);
+  EXPECT_THAT(nowhere.output(), HasSubstr("/no/such/folder/x"));
 }
 
 TEST_F(BlackBoxes, LeaveARecordingThatCanBeReadWhenCulpritIsKilled) {

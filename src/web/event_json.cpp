@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "incidents/incident_json.h"
 #include "journal/event_json.h"
 #include "knowledge/describe.h"
 #include "rule_test/plan_report.h"
@@ -47,12 +48,7 @@ Json time_to_json(Time at, Time start) {
   return std::round(seconds(at - start) * 1000) / 1000;
 }
 
-Json to_json(const EventWords& words) {
-  return {{"type", words.name},
-          {"label", words.label},
-          {"severity", culprit::to_string(words.severity)},
-          {"tone", culprit::to_string(words.tone)}};
-}
+Json to_json(const EventWords& words) { return incidents::to_json(words); }
 
 Json to_json(const Event& event, const RuleSet& rules, Time start) {
   Json json{{"t", time_to_json(event.at, start)}};

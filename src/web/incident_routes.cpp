@@ -3,61 +3,29 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <set>
 
-#include "incidents/journal_incidents.h"
-#include "knowledge/describe.h"
+#include "base/environment.h"
+#include "base/live_clock.h"
+#include "base/mutex.h"
+#include "base/text_file.h"
+#include "incidents/incident_json.h"
+#include "incidents/incident_report.h"
 #include "recorder/recording_folder.h"
+#include "web/aside.h"
 
 namespace culprit::web {
 namespace {
 
 using incidents::Incident;
 
-Json to_json(const Incident& incident) {
-  return {{"id", incident.id()},
-          {"first", incident.first_row},
-          {"last", incident.last_row},
-          {"clock", std::round(incident.began * 1000) / 1000},
-          {"seconds", std::round(incident.seconds * 1000) / 1000},
-          {"over", incident.is_over},
-          {"cut", incident.is_cut},
-          {"given_up", incident.is_given_up},
-          {"worst", culprit::to_string(incident.worst)},
-          {"causes", incident.causes},
-          {"rules", incident.rules},
-          {"consequences", incident.consequences},
-          {"helped", incident.helped}};
-}
-
-// Those that were written while it lasted, or were begun then.
-Json recordings_of(const Incident& incident,
-                   const std::vector<recorder::StoredRecording>& recordings) {
-  constexpr double kMargin = 2;  // s: between what begins an incident and what begins its recording
-  constexpr double kNanosecond = 1e-9;
-  Json list = Json::array();
-  for (const recorder::StoredRecording& each : recordings) {
-    const bool is_later = incident.is_over && static_cast<double>(each.when) * kNanosecond >
-                                                  incident.began + incident.seconds + kMargin;
-    const bool is_earlier =
-        static_cast<double>(std::max(each.when, each.ended)) * kNanosecond + kMargin <
-        incident.began;
-    if (is_later || is_earlier) continue;
-    list.push_back({{"name", each.path.filename().string()},
-                    {"path", each.path.string()},
-                    {"bytes", each.bytes}});
-  }
-  return list;
-}
-
 Json to_json(const std::vector<Incident>& all, const std::filesystem::path& folder) {
   const auto recordings =
       folder.empty() ? std::vector<recorder::StoredRecording>() : recorder::recordings_in(folder);
   Json list = Json::array();
-  for (const Incident& incident : all) {
-    list.push_back(to_json(incident));
-    list.back()["recordings"] = recordings_of(incident, recordings);
-  }
+  for (const Incident& incident : all)
+    list.push_back(incidents::to_json(incident, incidents::recordings_of(incident, recordings)));
   return list;
 }
 
@@ -71,34 +39,6 @@ std::optional<Number> number_of(const Json& query, const char* name) {
   const auto read = std::from_chars(text->data(), end, number);
   if (read.ec != std::errc() || read.ptr != end) return std::nullopt;
   return number;
-}
-
-// Candidates as the stream tells them (event_json.h): the journal has a word and a sentence.
-void tell_exclusions(Json& event) {
-  const auto candidates = event.find("candidates");
-  if (candidates == event.end() || !candidates->is_array()) return;
-  for (Json& candidate : *candidates) {
-    if (!candidate.is_object()) continue;
-    const auto condition = text_of(candidate, "excluded");
-    candidate["excluded"] = nullptr;
-    if (condition)
-      candidate["excluded"] = {{"condition", *condition},
-                               {"text", text_of(candidate, "because").value_or("")}};
-    candidate.erase("because");
-  }
-}
-
-Json to_json(incidents::ToldEvent& told) {
-  const double wall = std::round(told.wall * 1e6) / 1e6;
-  Json json{{"t", wall}, {"clock", wall}};
-  const auto type = text_of(told.event, "type");
-  if (const auto kind = kind_named(type.value_or(""))) json.update(web::to_json(words_of(*kind)));
-  if (text_of(told.event, "criticality") == "ERROR") json["severity"] = "error";
-  told.event.erase("time");
-  json.update(told.event);
-  if (!told.components.empty()) json["components"] = told.components;
-  tell_exclusions(json);
-  return json;
 }
 
 // Of what the stream still has.
@@ -129,6 +69,7 @@ class Recent {
     }
     return builder.incidents();
   }
+  std::string robot() const { return text_of(robot_, "robot").value_or(""); }
   Json events(std::int64_t first, std::int64_t last) const {
     Json list = Json::array();
     for (const auto& [number, event] : events_) {
@@ -207,8 +148,65 @@ Answer events(Hub& hub, const std::filesystem::path& path, const Json& query) {
   auto told = incidents::events_of(*journal, *first, *last);
   if (!told) return refuse(503, told.error());
   Json list = Json::array();
-  for (incidents::ToldEvent& each : *told) list.push_back(to_json(each));
+  for (incidents::ToldEvent& each : *told) list.push_back(incidents::to_json(std::move(each)));
   return {200, {{"events", list}}};
+}
+
+Answer as_page(std::string html) {
+  Answer answer;
+  answer.text = {"text/html; charset=utf-8", std::move(html),
+                 "default-src 'none'; style-src 'unsafe-inline'"};
+  return answer;
+}
+
+constexpr const char* kNoSuchIncident =
+    "there is no such incident any more; GET /api/incidents tells those that there are";
+
+Answer page_of_stream(Hub& hub, const std::string& id) {
+  constexpr double kNanosecond = 1e-9;
+  const Recent recent(hub);
+  for (const Incident& incident : recent.incidents()) {
+    if (incident.id() != id) continue;
+    incidents::PageContent content;
+    content.incident = incident;
+    content.robot = recent.robot();
+    for (const Json& event : recent.events(incident.first_row, incident.last_row))
+      content.events.push_back(event);
+    content.remarks.emplace_back(
+        "There are no plots here: they need a journal, and none is written.");
+    content.written_at = kNanosecond * static_cast<double>(wall_now());
+    if (!incident.is_over)
+      content.incident.seconds = std::max(incident.seconds, content.written_at - incident.began);
+    return as_page(incidents::incident_page(content));
+  }
+  return refuse(404, kNoSuchIncident);
+}
+
+// Recordings are large: a process of its own reads them, one at a time.
+Answer page(Hub& hub, const std::filesystem::path& journal, const std::filesystem::path& recordings,
+            Mutex& making, const Json& query) {
+  constexpr int kMostSecondsOfPage = 60;
+  const auto id = text_of(query, "id");
+  if (!id || !incidents::began_by_id(*id))
+    return refuse(400, "say which, as GET /api/incidents tells them: ?id=...");
+  if (journal.empty() || text_of(query, "from") == "stream") return page_of_stream(hub, *id);
+  if (!making.try_lock()) return refuse(409, "another page is being made; ask again in a moment");
+  const MutexLock lock(making, std::adopt_lock);
+  const AsideFolder folder;
+  const std::string file = folder.file("incident.html");
+  std::vector<std::string> command = {(own_folder() / "culprit").string(),
+                                      "incident",
+                                      *id,
+                                      "--journal",
+                                      journal.string(),
+                                      "-o",
+                                      file};
+  if (!recordings.empty()) command.insert(command.end(), {"--record-folder", recordings.string()});
+  const auto made = run_aside(std::move(command), folder, kMostSecondsOfPage);
+  if (!made) return refuse(503, "the page could not be made: " + made.error());
+  if (made->status != 0) return refuse(404, made->text);
+  auto html = read_text(file);
+  return html ? as_page(std::move(*html)) : refuse(503, html.error());
 }
 
 // What is asked for is compared with what is there, and never becomes part of a path.
@@ -232,6 +230,10 @@ std::vector<Route> incident_routes(Hub& hub, std::filesystem::path journal,
            }},
           {Method::kGet, "/api/incidents/events",
            [&hub, journal](const Json& query) { return events(hub, journal, query); }},
+          {Method::kGet, "/api/incidents/page",
+           [&hub, journal, recordings, making = std::make_shared<Mutex>()](const Json& query) {
+             return page(hub, journal, recordings, *making, query);
+           }},
           {Method::kGet, "/api/incidents/recording",
            [recordings](const Json& query) { return recording(recordings, query); }}};
 }

@@ -1,4 +1,5 @@
-// The calls about what went wrong so far: the times that the robot was not well, and what happened in one of them.
+// The calls about what went wrong so far: the times that the robot was not well, what happened in one of them, and a page
+// about it to send.
 #pragma once
 
 #include <filesystem>

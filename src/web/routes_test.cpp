@@ -436,6 +436,16 @@ TEST_F(Routes, TellIncidentsOfTheStreamWhereThereIsNoJournal) {
   const Json told = ask("get /api/incidents/events", range).body["events"];
   ASSERT_EQ(told.size(), 3u);
   EXPECT_EQ(told[2]["t"], 1'800'000'012);
+  const Answer page = ask("get /api/incidents/page", {{"id", incident["id"]}, {"from", "stream"}});
+  ASSERT_TRUE(page.text) << page.body;
+  EXPECT_EQ(page.text->type, "text/html; charset=utf-8");
+  EXPECT_THAT(page.text->content,
+              testing::AllOf(HasSubstr("<h1>camera, 2027-01-1"), HasSubstr("need a journal"),
+                             HasSubstr("strategy_chosen")));
+  EXPECT_EQ(ask("get /api/incidents/page", {{"id", "abc"}, {"from", "stream"}}).status, 404);
+  for (const char* wrong : {"", "--help", "-o", "a b", "../x", "zzzzzzzzzzzzzzzzzzzzzzzz"})
+    EXPECT_EQ(ask("get /api/incidents/page", {{"id", wrong}}).status, 400) << wrong;
+  EXPECT_EQ(ask("get /api/incidents/page").status, 400);
 }
 
 TEST_F(Routes, TellIncidentsOfTheJournalAsTheStreamWould) {

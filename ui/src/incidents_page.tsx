@@ -1,6 +1,6 @@
 // What went wrong so far: a list and a timeline of days, and each with its own timeline, its decisions and what was not
 // chosen; to look at, to link to, and to send to somebody.
-import { computed, signal } from '@preact/signals'
+import { computed, signal, useSignal } from '@preact/signals'
 import { useEffect, useRef } from 'preact/hooks'
 import { fileAt } from './api'
 import { byTheClock, lasting, when } from './clock'
@@ -9,10 +9,8 @@ import { Candidates, Suspects } from './explain'
 import { nowByTheClock } from './freshness'
 import { viewOf } from './history'
 import { listed } from './incidents'
-import { incidentAsHtml } from './incident_export'
 import { answer, chosen, chosenId, followIncidents, incidents, kPeriods, type PastIncident, period, told, trouble } from './past_incidents'
 import { kSigns, type Tone } from './status'
-import { robot } from './store'
 import { EventLog, Timeline } from './timeline'
 import type { ManagerEvent } from './types'
 
@@ -148,10 +146,17 @@ function Recordings({ incident }: { incident: PastIncident }) {
 }
 
 function Details({ incident }: { incident: PastIncident }) {
-  const send = () => {
-    const facts = { cause: causeOf(incident), outcome: outcomeOf(incident), seconds: lastingOf(incident) }
-    const html = incidentAsHtml({ incident, ...facts, events: told.value.events, robot: robot.value?.robot ?? '', at: nowByTheClock() })
-    download(`incident-${incident.id}.html`, html, 'text/html')
+  const isMaking = useSignal(false)
+  // Reading a recording takes a while.
+  const send = async () => {
+    isMaking.value = true
+    const from = answer.value?.journal === null ? '&from=stream' : ''
+    try {
+      download(`incident-${incident.id}.html`, await fileAt(`/api/incidents/page?id=${incident.id}${from}`), 'text/html')
+    } catch (error) {
+      trouble.value = (error as Error).message
+    }
+    isMaking.value = false
   }
   return (
     <section class="incident-details" aria-label="Incident">
@@ -159,8 +164,8 @@ function Details({ incident }: { incident: PastIncident }) {
         <h2>
           {causeOf(incident)}, {when(incident.clock)}
         </h2>
-        <button type="button" onClick={send}>
-          Save as a page to send …
+        <button type="button" disabled={isMaking.value} onClick={() => void send()}>
+          {isMaking.value ? 'Making it …' : 'Save as a page to send …'}
         </button>
       </div>
       <p>

@@ -16,7 +16,7 @@ RULE CameraGone
 const path = file('operator.rules')
 writeFileSync(path, kRules)
 writeFileSync(file('token'), 'a-token-that-lasts\n', { mode: 0o600 })
-const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--healthy', '0', '--state-dir', file('state'), '--token-file', file('token')]
+const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--healthy', '0', '--record', '--record-after', '0', '--state-dir', file('state'), '--token-file', file('token')]
 
 // The process that culprit says the camera to be, newest last.
 const cameras = (said) => [...said.matchAll(/camera is there \(process (\d+)/g)].map((m) => Number(m[1]))
@@ -88,6 +88,26 @@ async function lookBack(page, program) {
   await incident.getByText('What helped: camera_redeploy').waitFor()
 }
 
+// One file for somebody who has neither the robot nor culprit, made by a process of its own from journal and recording.
+async function send(page) {
+  const incident = page.getByRole('region', { name: 'Incident', exact: true })
+  const saving = page.waitForEvent('download')
+  await incident.getByRole('button', { name: 'Save as a page to send …' }).click()
+  const html = readFileSync(await (await saving).path(), 'utf8')
+  expect(!/<script|src=|href=|@import|url\(/.test(html), 'the file needs something beside itself')
+  const reader = await page.context().newPage()
+  await reader.setContent(html)
+  await reader.getByRole('heading', { name: /^camera, / }).waitFor()
+  await reader.getByRole('heading', { name: 'What was recorded' }).waitFor()
+  await reader.getByText(/The plots are from one-camera_.*_CameraGone\.mcap/).waitFor()
+  await reader.getByRole('cell', { name: 'CameraGone resolved by camera_redeploy' }).waitFor()
+  await isAccessible(reader)
+  await picture(reader, 'incident-page')
+  await reader.setViewportSize({ width: 390, height: 844 })
+  expect(await reader.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'on a phone the file is wider than the screen')
+  await reader.close()
+}
+
 // Before a rule is saved: what it would have done when the camera died.
 async function hindsight(page) {
   await page.getByRole('link', { name: 'Rules' }).click()
@@ -148,6 +168,7 @@ await suite(() =>
       await beliefs(page)
       await examine(page)
       await lookBack(page, program)
+      await send(page)
       await hindsight(page)
       await isHarmless(page)
     } finally {

@@ -4,6 +4,7 @@
 
 #include "base/test_expected.h"
 #include "base/test_folder.h"
+#include "incidents/incident_report.h"
 #include "incidents/journal_incidents.h"
 #include "journal/session.h"
 #include "journal/writer.h"
@@ -172,6 +173,42 @@ TEST(Incident, HasAnIdOfItsBeginning) {
   EXPECT_EQ(incident.id(), "mywpiwzf");
   incident.began = -5;
   EXPECT_EQ(incident.id(), "0");
+}
+
+// With the rules of its time, and what is said where nothing was recorded.
+TEST_F(JournalIncidents, AreReportedByTheirIds) {
+  session(0);
+  detected(1, "FusionSilent", "WARNING");
+  resolved(2, "FusionSilent");
+  tell(9.5, {{"type", "component_lost"}, {"component", "camera"}});
+  detected(10, "CameraDead");
+  chosen(10.5, "CameraDead", "replace");
+  const auto reader = journal();
+  const auto all = value_of(incidents_of(reader, kNoon)).incidents;
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_NEAR(began_by_id(all[1].id()).value_or(0), kNoon + 10, 1e-3);
+  const auto content = value_of(report_of(reader, all[1].id(), folder / "recordings", kNoon + 100));
+  ASSERT_TRUE(content);
+  EXPECT_THAT(content->incident.causes, ElementsAre("camera"));
+  ASSERT_EQ(content->events.size(), 3u);
+  EXPECT_EQ(content->events[1]["label"], "detected");
+  EXPECT_FALSE(content->curves);
+  EXPECT_THAT(content->remarks, ElementsAre(testing::HasSubstr("culprit run --record")));
+  for (const char* other :
+       {"0", "1", "zzzzzzzzzzzz", "zzzzzzzzzzzzzzzzzzzzzzzzzzzz", "", "-o", "mgh k"})
+    EXPECT_FALSE(value_of(report_of(reader, other, folder / "recordings", kNoon))) << other;
+}
+
+// What is not over has lasted as long as the journal tells, and not until somebody looks a week later.
+TEST_F(JournalIncidents, ThatAreNotOverHaveLastedAsLongAsTheJournalTells) {
+  session(0);
+  detected(10, "CameraDead");
+  add(journal::kind::kEvent, 25, {{"type", "trouble"}, {"text", "a disk is full"}, {"time", 0}});
+  const auto reader = journal();
+  const std::string id = value_of(incidents_of(reader, kNoon)).incidents.at(0).id();
+  const auto content = value_of(report_of(reader, id, folder / "none", kNoon + 7 * 86'400));
+  ASSERT_TRUE(content);
+  EXPECT_NEAR(content->incident.seconds, 15, 1e-3);
 }
 
 }  // namespace

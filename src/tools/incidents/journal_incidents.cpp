@@ -140,6 +140,9 @@ Expected<Found> incidents_of(const Reader& journal, double since,
   const auto oldest = journal.database().number(
       "SELECT coalesce(min(at), 0) FROM (SELECT at FROM entry ORDER BY id LIMIT 1)");
   if (!oldest) return Error{oldest.error()};
+  const auto newest = journal.database().number(
+      "SELECT coalesce(max(at), 0) FROM (SELECT at FROM entry ORDER BY id DESC LIMIT 1)");
+  if (!newest) return Error{newest.error()};
   auto from = first_row_after(journal, since);
   if (!from) return Error{from.error()};
   // What began before and ended after `since` is told from its beginning. Before that something else may have begun.
@@ -158,9 +161,19 @@ Expected<Found> incidents_of(const Reader& journal, double since,
       earlier = std::min(earlier, *row);
     }
     if (earlier == *from || i == kMostSteps)
-      return Found{builder->incidents(), kNanosecond * static_cast<double>(*oldest)};
+      return Found{builder->incidents(), kNanosecond * static_cast<double>(*oldest),
+                   kNanosecond * static_cast<double>(*newest)};
     from = earlier;
   }
+}
+
+Expected<std::optional<journal::Session>> session_at(const Reader& journal, std::int64_t row) {
+  const auto found = journal.newest(journal::kind::kSession, row);
+  if (!found) return Error{found.error()};
+  if (!*found) return std::optional<journal::Session>();
+  auto session = journal::session_from_json(journal::from_text((*found)->body));
+  if (!session) return std::optional<journal::Session>();
+  return std::optional(std::move(*session));
 }
 
 Expected<std::vector<ToldEvent>> events_of(const Reader& journal, std::int64_t first,

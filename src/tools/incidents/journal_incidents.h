@@ -8,18 +8,24 @@
 
 #include "incidents/incident.h"
 #include "journal/reader.h"
+#include "journal/session.h"
 
 namespace culprit::incidents {
 
 struct Found {
   std::vector<Incident> incidents;  // in the order of their beginnings
   double oldest = 0;                // seconds since 1970: from when on the journal tells
+  double newest = 0;                // until when; so long what is not over has lasted at least
 };
 
 // Those that were not over at `since`, in seconds since 1970, or began after it. `failing_now`: rules that see a failure,
 // which may have said nothing for days. Errors: the journal cannot be read.
 Expected<Found> incidents_of(const journal::Reader& journal, double since,
                              const std::set<std::string>& failing_now = {});
+
+// The run of culprit that tells row `row`; nothing: the journal does not say. Errors: the journal cannot be read.
+Expected<std::optional<journal::Session>> session_at(const journal::Reader& journal,
+                                                     std::int64_t row);
 
 // One event of a journal as people are to be told it.
 struct ToldEvent {

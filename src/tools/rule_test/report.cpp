@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/xml.h"
 #include "knowledge/describe.h"
-#include "rule_test/xml.h"
 
 namespace culprit::rule_test {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/xml.h"
 #include "rule_test/test_suite.h"
-#include "rule_test/xml.h"
 
 namespace culprit::rule_test {
 namespace {

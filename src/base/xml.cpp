@@ -1,8 +1,8 @@
-#include "rule_test/xml.h"
+#include "base/xml.h"
 
 #include <cstdint>
 
-namespace culprit::rule_test {
+namespace culprit {
 namespace {
 
 // How many bytes the character of more than one byte at the front has; 0 if there is none that XML
@@ -60,4 +60,4 @@ std::string xml_escaped(std::string_view text) {
   return out;
 }
 
-}  // namespace culprit::rule_test
+}  // namespace culprit

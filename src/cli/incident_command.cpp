@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <memory>
+
+#include <fmt/core.h>
+
+#include "base/live_clock.h"
+#include "base/name_grammar.h"
+#include "base/text_file.h"
+#include "cli/commands.h"
+#include "cli/journal_file.h"
+#include "incidents/incident_json.h"
+#include "incidents/incident_report.h"
+#include "incidents/incident_words.h"
+#include "terminal/console.h"
+
+namespace culprit::cli {
+namespace {
+
+using incidents::Incident;
+
+constexpr double kNanosecondInSeconds = 1e-9;
+
+struct IncidentOptions {
+  JournalOption journal;
+  std::string id;
+  std::string output;
+  std::string since;
+  std::string recordings;  // the folder; empty: that beside the journal
+  bool json = false;
+};
+
+std::filesystem::path recordings_beside(const IncidentOptions& options,
+                                        const std::filesystem::path& journal) {
+  if (options.recordings.empty()) return journal.parent_path() / "recordings";
+  return options.recordings;
+}
+
+void print_incident(const Incident& incident,
+                    const std::vector<recorder::StoredRecording>& recordings) {
+  std::string names;
+  for (const recorder::StoredRecording& each : recordings)
+    names += "  " + each.path.filename().string();
+  const auto began = static_cast<std::int64_t>(incident.began / kNanosecondInSeconds);
+  fmt::print("{:<10} {:<24} {:>12}  {:<24} {}{}\n", incident.id(), local_time(began),
+             incidents::lasting_text(incident.seconds), incidents::cause_of(incident),
+             incidents::outcome_of(incident), without_controls(names));
+}
+
+int list_incidents(const IncidentOptions& options) {
+  double since = 0;
+  if (!options.since.empty()) {
+    const auto age = parse_duration(options.since);
+    if (!age) return fail("--since: " + age.error(), kUsage);
+    since = kNanosecondInSeconds *
+            static_cast<double>(std::max<std::int64_t>(0, wall_now() - age->count()));
+  }
+  const auto path = options.journal.file();
+  if (!path) return fail(path.error());
+  const auto journal = journal::Reader::open(*path);
+  if (!journal) return fail(journal.error());
+  auto found = incidents::incidents_of(*journal, since);
+  if (!found) return fail(found.error());
+  const auto recordings = recorder::recordings_in(recordings_beside(options, *path));
+  journal::Json list = journal::Json::array();
+  if (!options.json && !found->incidents.empty())
+    fmt::print("{:<10} {:<24} {:>12}  {:<24} {}\n", "id", "when", "for", "cause",
+               "how it ended, and its recordings");
+  for (Incident& incident : found->incidents) {
+    if (!incident.is_over)
+      incident.seconds = std::max(incident.seconds, found->newest - incident.began);
+    const auto own = incidents::recordings_of(incident, recordings);
+    if (options.json) {
+      list.push_back(incidents::to_json(incident, own));
+    } else {
+      print_incident(incident, own);
+    }
+  }
+  if (options.json) {
+    fmt::print("{}\n", journal::to_text({{"journal", path->string()},
+                                         {"oldest", found->oldest},
+                                         {"incidents", std::move(list)}}));
+  } else if (found->incidents.empty()) {
+    fmt::print("nothing went wrong{}, as far as {} tells\n",
+               options.since.empty() ? "" : " in the last " + options.since, path->string());
+  }
+  return kOk;
+}
+
+// {"name", "about", "unit", "limits", "points": [[seconds since 1970, value] …]}
+journal::Json curve_as_json(const incidents::Curve& curve) {
+  journal::Json points = journal::Json::array();
+  for (const auto& point : curve.points)
+    points.push_back({kNanosecondInSeconds * static_cast<double>(point.at), point.value});
+  return {{"name", curve.name},
+          {"about", curve.about},
+          {"unit", curve.unit},
+          {"limits", curve.limits},
+          {"points", std::move(points)}};
+}
+
+journal::Json report_as_json(const incidents::PageContent& content,
+                             const std::vector<recorder::StoredRecording>& recordings) {
+  journal::Json json =
+      incidents::to_json(content.incident, incidents::recordings_of(content.incident, recordings));
+  json["robot"] = content.robot;
+  json["events"] = content.events;
+  json["curves"] = journal::Json::array();
+  json["remarks"] = content.remarks;
+  if (!content.curves) return json;
+  for (const incidents::Curve& curve : content.curves->curves)
+    json["curves"].push_back(curve_as_json(curve));
+  for (const std::string& each : content.curves->remarks) json["remarks"].push_back(each);
+  return json;
+}
+
+int write_incident(const IncidentOptions& options) {
+  if (!incidents::began_by_id(options.id))
+    return fail(
+        "'" + printable(options.id) + "' is no id of an incident; culprit incident lists them",
+        kUsage);
+  const auto path = options.journal.file();
+  if (!path) return fail(path.error());
+  const auto journal = journal::Reader::open(*path);
+  if (!journal) return fail(journal.error());
+  const std::filesystem::path recordings = recordings_beside(options, *path);
+  const auto content = incidents::report_of(*journal, options.id, recordings,
+                                            kNanosecondInSeconds * static_cast<double>(wall_now()));
+  if (!content) return fail(content.error());
+  if (!*content)
+    return fail("there is no incident '" + options.id + "' in '" + path->string() +
+                "'; culprit incident --journal '" + path->string() + "' lists them");
+  if (!options.json || !options.output.empty()) {
+    const auto written = write_text(options.output, incidents::incident_page(**content));
+    if (!written) return fail(written.error());
+  }
+  if (options.json)
+    fmt::print("{}\n",
+               journal::to_text(report_as_json(**content, recorder::recordings_in(recordings))));
+  std::vector<std::string> remarks = (*content)->remarks;
+  if ((*content)->curves)
+    remarks.insert(remarks.end(), (*content)->curves->remarks.begin(),
+                   (*content)->curves->remarks.end());
+  for (const std::string& each : remarks) say(stderr, "culprit: {}\n", without_controls(each));
+  return kOk;
+}
+
+}  // namespace
+
+void add_incident(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<IncidentOptions>();
+  CLI::App* command = app.add_subcommand(
+      "incident",
+      "List the times that the robot was not well; or write one as an HTML file that needs nothing "
+      "else, with plots of what was recorded meanwhile");
+  CLI::Option* id =
+      command->add_option("ID", options->id, "Which, as the list says (default: list them)");
+  options->journal.add_to(*command);
+  command
+      ->add_option("--record-folder", options->recordings,
+                   "Where the recordings are (default: recordings beside the journal)")
+      ->type_name("FOLDER");
+  command->add_option("-o,--output", options->output, "Where to write the file (default: stdout)")
+      ->type_name("FILE")
+      ->needs(id);
+  command
+      ->add_option("--since", options->since,
+                   "List those of so long ago until now, and what lasted then: 10min, 2h")
+      ->excludes(id);
+  command->add_flag("--json", options->json,
+                    "The list, or the incident with what happened and was recorded, as JSON");
+  command->callback([options, &exit_code] {
+    exit_code = options->id.empty() ? list_incidents(*options) : write_incident(*options);
+  });
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,25 @@
+// Incidents as JSON: what the page and programs are told of them (docs/web.md, GET /api/incidents), and what
+// `culprit incident --json` prints.
+#pragma once
+
+#include <vector>
+
+#include "incidents/journal_incidents.h"
+#include "knowledge/event_words.h"
+#include "recorder/recording_folder.h"
+
+namespace culprit::incidents {
+
+// Those of `all` that were written while it lasted, or were begun then.
+std::vector<recorder::StoredRecording> recordings_of(
+    const Incident& incident, const std::vector<recorder::StoredRecording>& all);
+
+// {"id", "first", "last", "clock", "seconds", …, "recordings": [{"name", "path", "bytes"}]}
+journal::Json to_json(const Incident& incident,
+                      const std::vector<recorder::StoredRecording>& recordings);
+// What people are told beside an event: {"type": ..., "label": ..., "severity": ..., "tone": ...}
+journal::Json to_json(const EventWords& words);
+// As the stream tells it (web/event_json.h); `t` is `clock`.
+journal::Json to_json(ToldEvent told);
+
+}  // namespace culprit::incidents

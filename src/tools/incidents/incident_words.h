@@ -1,0 +1,18 @@
+// An incident in words, for lists and for whoever is sent one.
+#pragma once
+
+#include <string>
+
+#include "incidents/incident.h"
+
+namespace culprit::incidents {
+
+// "camera and fusion": who caused it; the first rule that failed where nobody is known.
+std::string cause_of(const Incident& incident);
+// How it ended: what helped, "went away by itself", "given up: a person must look", "not over" ...
+std::string outcome_of(const Incident& incident);
+
+// "40 ms", "0.4 s", "12 s", "3 min 5 s", "2 h 10 min", "1 d 3 h": two figures are enough to act on.
+std::string lasting_text(double seconds);
+
+}  // namespace culprit::incidents
