@@ -632,14 +632,17 @@ TEST_F(DiscoveringFilter, WhatCannotBeReadIsTheMiddlewares) {
 
 // The network decides how many there are.
 TEST_F(DiscoveringFilter, NoMoreAreKeptThanIsAllowed) {
+  constexpr std::size_t kSequence = 20 + 20;  // where it is in the datagram, its lower half
+  constexpr std::size_t kEndpoint = kSequence + 4 + 4 + 4 + 12;
+  const Bytes one = announced(1, 0, "never").bytes();
   std::size_t taken = 0;
-  Guid guid = endpoint(0);
   for (std::size_t i = 0; i < DatagramFilter::kMostAnnounced + 10; ++i) {
-    guid.bytes[12] = static_cast<std::uint8_t>(i >> 16);
-    guid.bytes[13] = static_cast<std::uint8_t>(i >> 8);
-    guid.bytes[14] = static_cast<std::uint8_t>(i);
-    pass(from(kWriters).announcement(kWriters, static_cast<std::int64_t>(i + 1),
-                                     said(guid, "never")));
+    Bytes each = one;
+    for (std::size_t byte = 0; byte < 3; ++byte) {
+      each[kSequence + byte] = static_cast<std::uint8_t>((i + 1) >> (8 * byte));
+      each[kEndpoint + byte] = static_cast<std::uint8_t>(i >> (8 * byte));
+    }
+    pass(std::move(each));
     taken += passed[20] == 0x08 ? 1 : 0;
   }
   EXPECT_EQ(taken, DatagramFilter::kMostAnnounced);
