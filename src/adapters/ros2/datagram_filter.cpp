@@ -4,6 +4,7 @@
 #include <cstring>
 #include <optional>
 
+#include "ros2/announcement.h"
 #include "ros2/rtps_submessage.h"
 
 namespace culprit::ros2 {
@@ -11,6 +12,13 @@ namespace {
 
 constexpr std::uint16_t kSentinel = 1;  // of a list of parameters
 constexpr std::size_t kMostFragments = 1 << 16;
+// Flags of samples and fragments (RTPS 2.3 §9.4.5.3.1); the last two of samples only.
+constexpr std::uint8_t kHasParameters = 0x02;
+constexpr std::uint8_t kHasPayload = 0x04;
+constexpr std::uint8_t kHasKey = 0x08;
+
+// Of a gap without a bitmap, with its header.
+constexpr std::size_t kGapSize = 32;
 
 bool is_header(ByteView datagram) {
   return datagram.size() >= rtps::kHeader && std::memcmp(datagram.data(), "RTPS", 4) == 0 &&
@@ -84,18 +92,52 @@ class DatagramFilter::Submessage {
     skip((bits + 31) / 32 * 4);
     return ok();
   }
-  // Whether a list of parameters follows that ends within the body.
-  bool skip_parameters() {
+  // The head of a sample, or of fragments of one (RTPS 2.3 §9.4.5.3, §9.4.5.4), from the beginning of the body
+  // on. What follows is the payload.
+  struct Sample {
+    Guid writer;
+    std::int64_t sequence = 0;
+    std::uint32_t first = 0;  // of the fragments, from 1 on
+    std::uint32_t count = 0;
+    std::uint16_t fragment_size = 0;  // bytes
+    std::uint32_t size = 0;           // of all of them
+    ByteView parameters{};            // inline
+  };
+  Sample read_sample() {
+    Sample sample;
+    skip(2);
+    const auto to_parameters = read<std::uint16_t>();
+    const std::size_t counted_from = at_;
+    skip(4);
+    sample.writer = read_writer();
+    sample.sequence = read_sequence();
+    if (kind == rtps::kDataFragment) {
+      sample.first = read<std::uint32_t>();
+      sample.count = read<std::uint16_t>();
+      sample.fragment_size = read<std::uint16_t>();
+      sample.size = read<std::uint32_t>();
+    }
+    is_ok_ = is_ok_ && to_parameters >= at_ - counted_from;
+    if (is_ok_) skip(to_parameters - (at_ - counted_from));
+    const std::size_t begin = at_;
+    if ((flags & kHasParameters) != 0) skip_parameters();
+    if (is_ok_) sample.parameters = body_.subspan(begin, at_ - begin);
+    return sample;
+  }
+  ByteView rest() const { return is_ok_ ? body_.subspan(at_) : ByteView(); }
+  Endianness order() const { return (flags & 1) != 0 ? Endianness::kLittle : Endianness::kBig; }
+
+ private:
+  // A list of parameters that has to end within the body.
+  void skip_parameters() {
     while (is_ok_) {
       const auto id = read<std::uint16_t>();
       const auto length = read<std::uint16_t>();
-      if (id == kSentinel) return ok();
+      if (id == kSentinel) return;
       skip((length + 3u) & ~3u);
     }
-    return false;
   }
 
- private:
   const ByteView body_;
   const GuidPrefix& source_;
   std::size_t at_ = 0;
@@ -105,13 +147,18 @@ class DatagramFilter::Submessage {
 ByteView DatagramFilter::pass(std::span<std::uint8_t> datagram, Clock::time_point now) {
   std::vector<OnUnheard> unheard;
   std::vector<Handed> handed;
+  std::vector<EndpointNews> news;
+  std::shared_ptr<const Discovery> discovery;
   ByteView passed;
   {
     const MutexLock lock(mutex_);
     passed = look_at(datagram, now);
     unheard.swap(unheard_);
     handed.swap(handed_);
+    news.swap(news_);
+    if (!news.empty()) discovery = discovery_;
   }
+  for (const EndpointNews& each : news) discovery->on_news(each);
   for (const Handed& each : handed) (*each.to)(each.sample);
   for (const OnUnheard& each : unheard) (*each)();
   return passed;
@@ -128,6 +175,7 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
   const bool addresses = addresses_ && changes_ == 0;
   bool is_for_nobody = false;  // something of it
   bool is_for_somebody = false;
+  Gap gap{};
   std::size_t end = datagram.size();
   for (std::size_t at = rtps::kHeader; at < end;) {
     const std::span<std::uint8_t> rest = datagram.subspan(at, end - at);
@@ -159,9 +207,12 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
       }
     }
     if (objection != nullptr) refused_ = {refused_.count + 1, objection};
-    const bool is_passed =
-        objection == nullptr &&
-        (!addresses || address(rest.first(rtps::kSubmessageHeader + length), course, now));
+    const std::size_t size = rtps::kSubmessageHeader + length;
+    Announcement announcement = Announcement::kOfMiddleware;
+    if (objection == nullptr && discovery_ != nullptr && rest[0] == rtps::kData)
+      announcement = take(rest.first(size), course, gap);
+    const bool is_passed = objection == nullptr && announcement != Announcement::kInGapBefore &&
+                           (!addresses || address(rest.first(size), course, now));
     is_for_somebody = is_for_somebody || (is_passed && !rtps::is_about_others(rest[0]));
     is_for_nobody = is_for_nobody || (objection == nullptr && !is_passed);
     if (!is_passed) {
@@ -172,12 +223,105 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
       }
       rest[0] = rtps::kPad;
     }
-    at += rtps::kSubmessageHeader + ((length + 3) & ~std::size_t{3});
+    const std::size_t next = at + rtps::kSubmessageHeader + ((length + 3) & ~std::size_t{3});
+    if (announcement == Announcement::kGap) {
+      // It is shorter than what was there.
+      constexpr std::size_t kPadHeader = rtps::kSubmessageHeader;
+      if (is_last || next >= end) {
+        end = at + kGapSize;
+        break;
+      }
+      const std::size_t padding = next - at - kGapSize - kPadHeader;
+      const std::span<std::uint8_t> pad = rest.subspan(kGapSize, kPadHeader);
+      pad[0] = rtps::kPad;
+      pad[1] = 1;  // little endian
+      pad[2] = static_cast<std::uint8_t>(padding);
+      pad[3] = static_cast<std::uint8_t>(padding >> 8);
+    }
+    at = next;
   }
   if (end <= rtps::kHeader && datagram.size() > rtps::kHeader) return {};
   if (is_for_nobody && !is_for_somebody) return {};
   return datagram.first(end);
 }
+
+// ---- endpoints that this participant never meets
+
+void DatagramFilter::discover(const GuidPrefix& self, NeverMeets never_meets,
+                              std::function<void(const EndpointNews&)> on_news) {
+  const MutexLock lock(mutex_);
+  discovery_ = std::make_shared<const Discovery>(
+      Discovery{self, std::move(never_meets), std::move(on_news)});
+}
+
+// Nothing was objected to it: its lengths fit. For the middleware there is a gap in its place, or the one before
+// becomes longer.
+DatagramFilter::Announcement DatagramFilter::take(std::span<std::uint8_t> submessage,
+                                                  const Course& course, Gap& last) {
+  const bool is_for_us =
+      course.destination == GuidPrefix{} || course.destination == discovery_->self;
+  if (!is_for_us || course.source == discovery_->self || !participants_.contains(course.source) ||
+      submessage.size() < kGapSize + 2 * rtps::kSubmessageHeader)
+    return Announcement::kOfMiddleware;
+  Submessage body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
+  if (!tell_of_announcement(body)) return Announcement::kOfMiddleware;
+  const Submessage::Sample sample = body.read_sample();
+  const bool is_little = body.order() == Endianness::kLittle;
+  const auto write = [](std::span<std::uint8_t> to, std::int64_t sequence, bool little) {
+    const auto bits = static_cast<std::uint64_t>(sequence);
+    const std::uint64_t high_first = bits << 32 | bits >> 32;  // two halves, the high one first
+    for (std::size_t i = 0; i < 8; ++i)
+      to[i] = static_cast<std::uint8_t>(little ? high_first >> (8 * i) : bits >> (8 * (7 - i)));
+  };
+  if (sample.writer == last.writer && sample.sequence == last.next) {
+    write(last.base, ++last.next, last.is_little);
+    return Announcement::kInGapBefore;
+  }
+  // Its reader and writer move to the front; then where the gap begins, what follows it, and an empty bitmap.
+  std::copy_n(submessage.begin() + 8, 8, submessage.begin() + 4);
+  submessage[0] = rtps::kGap;
+  submessage[1] &= 1;
+  submessage[is_little ? 2 : 3] = kGapSize - rtps::kSubmessageHeader;
+  submessage[is_little ? 3 : 2] = 0;
+  write(submessage.subspan(12, 8), sample.sequence, is_little);
+  write(submessage.subspan(20, 8), sample.sequence + 1, is_little);
+  std::ranges::fill(submessage.subspan(28, 4), std::uint8_t{0});
+  last = {submessage.subspan(20, 8), sample.writer, sample.sequence + 1, is_little};
+  return Announcement::kGap;
+}
+
+// Gives whether the middleware need not see it.
+bool DatagramFilter::tell_of_announcement(const Submessage& submessage) {
+  constexpr std::array<std::uint8_t, 4> kOfWriters = {0, 0, 3, 0xc2};  // RTPS 2.3 §9.3.1.3
+  constexpr std::array<std::uint8_t, 4> kOfReaders = {0, 0, 4, 0xc2};
+  Submessage body = submessage;
+  const Submessage::Sample sample = body.read_sample();
+  const std::span<const std::uint8_t> announcer(sample.writer.bytes.data() + 12, 4);
+  const bool is_of_writers = std::ranges::equal(announcer, kOfWriters);
+  if (!is_of_writers && !std::ranges::equal(announcer, kOfReaders)) return false;
+  if ((body.flags & kHasPayload) == 0) {
+    const auto ended = read_end(sample.parameters, body.order(), body.rest());
+    if (!ended) return false;
+    const auto known = announced_.find(*ended);
+    if (known == announced_.end() || known->second >= sample.sequence) return false;
+    known->second = sample.sequence;
+    news_.push_back(EndpointGone{*ended});
+    return false;
+  }
+  const EndpointRole role = is_of_writers ? EndpointRole::kWriter : EndpointRole::kReader;
+  const auto topic = announced_topic(body.rest());
+  if (!topic || !discovery_->never_meets(*topic, role)) return false;
+  auto info = read_announcement(body.rest(), role);
+  if (!info || info->guid.prefix() != sample.writer.prefix()) return false;
+  const auto known = announced_.find(info->guid);
+  if (known != announced_.end() && known->second >= sample.sequence) return true;
+  if (known == announced_.end() && announced_.size() >= kMostAnnounced) return false;
+  announced_.insert_or_assign(info->guid, sample.sequence);
+  news_.push_back(std::move(*info));
+  return true;
+}
+
+// ---- who hears what
 
 // To the one reader that hears its writer, if it is addressed to all. Gives whether the middleware has a
 // reader for it.
@@ -220,23 +364,15 @@ bool DatagramFilter::address(std::span<std::uint8_t> submessage, const Course& c
 bool DatagramFilter::hand_over(Readers::Reader& reader, std::span<const std::uint8_t> submessage,
                                const Course& course) {
   constexpr std::uint8_t kMeaning = 0x1e;  // of the flags: all but the order of bytes
-  constexpr std::uint8_t kPayloadOnly = 0x04;
-  if (!reader.on_whole || !course.sent || (submessage[1] & kMeaning) != kPayloadOnly) return false;
+  if (!reader.on_whole || !course.sent || (submessage[1] & kMeaning) != kHasPayload) return false;
   if (course.destination != GuidPrefix{} && course.destination != reader.guid.prefix())
     return false;
   // Nothing was objected to it: its lengths fit.
   Submessage body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
-  body.skip(2);
-  const auto to_parameters = body.read<std::uint16_t>();
-  const std::size_t counted_from = body.at();
-  body.skip(4);
-  const Guid writer = body.read_writer();
-  const std::int64_t sequence = body.read_sequence();
-  body.skip(to_parameters - (body.at() - counted_from));
-  if (sequence <= reader.last) return true;  // best effort readers pass over what is older
-  reader.last = sequence;
-  handed_.push_back(
-      {reader.on_whole, {writer, sequence, *course.sent, submessage.last(body.left())}});
+  const Submessage::Sample sample = body.read_sample();
+  if (sample.sequence <= reader.last) return true;  // best effort readers pass over what is older
+  reader.last = sample.sequence;
+  handed_.push_back({reader.on_whole, {sample.writer, sample.sequence, *course.sent, body.rest()}});
   return true;
 }
 
@@ -286,22 +422,15 @@ const char* DatagramFilter::objection(const Submessage& submessage, Clock::time_
 const char* DatagramFilter::objection_to_data(const Submessage& submessage, Clock::time_point now) {
   constexpr const char* kDamaged = "a damaged sample";
   Submessage body = submessage;
-  body.skip(2);
-  const auto to_parameters = body.read<std::uint16_t>();
-  const std::size_t counted_from = body.at();
-  body.skip(4);
-  const Guid writer = body.read_writer();
-  const std::int64_t sequence = body.read_sequence();
-  if (!body.ok() || to_parameters < body.at() - counted_from) return kDamaged;
-  body.skip(to_parameters - (body.at() - counted_from));
-  if ((body.flags & 2) != 0 && !body.skip_parameters()) return kDamaged;
-  const bool has_payload = (body.flags & 4) != 0;
-  const bool has_key = (body.flags & 8) != 0;
+  const Submessage::Sample sample = body.read_sample();
+  const bool has_payload = (body.flags & kHasPayload) != 0;
+  const bool has_key = (body.flags & kHasKey) != 0;
   if (!body.ok() || (has_payload && has_key)) return kDamaged;
   if ((has_payload || has_key) && body.left() < kEncapsulationSize) return kDamaged;
-  if (sequence < 1 || is_far(writer, sequence, now)) return "a sample with an absurd number";
-  learn(writer, sequence, now);
-  came_by(writer, sequence);
+  if (sample.sequence < 1 || is_far(sample.writer, sample.sequence, now))
+    return "a sample with an absurd number";
+  learn(sample.writer, sample.sequence, now);
+  came_by(sample.writer, sample.sequence);
   return nullptr;
 }
 
@@ -309,34 +438,30 @@ const char* DatagramFilter::objection_to_fragment(const Submessage& submessage,
                                                   Clock::time_point now) {
   constexpr const char* kDamaged = "a damaged fragment";
   Submessage body = submessage;
-  body.skip(2);
-  const auto to_parameters = body.read<std::uint16_t>();
-  const std::size_t counted_from = body.at();
-  body.skip(4);
-  const Guid writer = body.read_writer();
-  const std::int64_t sequence = body.read_sequence();
-  const auto first = body.read<std::uint32_t>();
-  const std::uint32_t count = body.read<std::uint16_t>();
-  Assembly assembly;
-  assembly.fragment_size = body.read<std::uint16_t>();
-  assembly.size = body.read<std::uint32_t>();
-  if (!body.ok() || to_parameters < body.at() - counted_from) return kDamaged;
-  body.skip(to_parameters - (body.at() - counted_from));
-  if ((body.flags & 2) != 0 && !body.skip_parameters()) return kDamaged;
-  if (!body.ok() || first < 1 || count < 1 || assembly.fragment_size < 1 || assembly.size < 1)
+  const Submessage::Sample sample = body.read_sample();
+  if (!body.ok() || sample.first < 1 || sample.count < 1 || sample.fragment_size < 1 ||
+      sample.size < 1)
     return kDamaged;
-  const std::size_t all = (assembly.size + assembly.fragment_size - 1) / assembly.fragment_size;
-  const std::size_t last = std::size_t{first} - 1 + count;
+  const std::size_t size = sample.size;
+  const std::size_t all = (size + sample.fragment_size - 1) / sample.fragment_size;
+  const std::size_t before = std::size_t{sample.first} - 1;
+  const std::size_t last = before + sample.count;
   if (all > kMostFragments || last > all) return kDamaged;
-  const std::size_t bytes = std::min(assembly.size, last * assembly.fragment_size) -
-                            (std::size_t{first} - 1) * assembly.fragment_size;
+  const std::size_t bytes =
+      std::min(size, last * sample.fragment_size) - before * sample.fragment_size;
   // No more than was announced, but for the padding of the last one.
   if (body.left() < bytes || body.left() > bytes + 3) return kDamaged;
-  if (sequence < 1 || is_far(writer, sequence, now)) return "a fragment with an absurd number";
-  came_by(writer, sequence);
+  if (sample.sequence < 1 || is_far(sample.writer, sample.sequence, now))
+    return "a fragment with an absurd number";
+  came_by(sample.writer, sample.sequence);
+  Assembly assembly;
+  assembly.size = size;
+  assembly.fragment_size = sample.fragment_size;
   assembly.missing = all;
-  if (const char* reason = reserve(writer, sequence, assembly, first, count)) return reason;
-  learn(writer, sequence, now);
+  if (const char* reason =
+          reserve(sample.writer, sample.sequence, assembly, sample.first, sample.count))
+    return reason;
+  learn(sample.writer, sample.sequence, now);
   return nullptr;
 }
 
@@ -517,6 +642,7 @@ void DatagramFilter::forget(const GuidPrefix& participant) {
     return true;
   });
   std::erase_if(readers_, [&](const auto& each) { return each.first.prefix() == participant; });
+  std::erase_if(announced_, [&](const auto& each) { return each.first.prefix() == participant; });
   participants_.erase(participant);
 }
 

@@ -23,6 +23,11 @@
 //
 // Who only wants to know what is said, and when, is handed it here and the middleware never sees it:
 // whole samples to one best effort reader, without inline parameters (OnWhole).
+//
+// Likewise readers and writers of others that no endpoint of this participant will ever meet
+// (discover()). The middleware would keep all that each of them announced, and compare it with each endpoint of its
+// own: that is most of what it costs to discover a large robot. It is told instead that there is a gap, and so
+// acknowledges the announcement as any other. What ends is told to both.
 #pragma once
 
 #include <algorithm>
@@ -35,12 +40,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
 #include "base/mutex.h"
 #include "ros2/cdr.h"
+#include "ros2/endpoint_info.h"
 #include "ros2/guid.h"
 
 namespace culprit::ros2 {
@@ -103,6 +110,14 @@ class DatagramFilter {
   };
   // A sample of the writer reached its reader.
   void delivered(const Guid& writer);
+  // From now on `on_news`, from pass(), without locks, tells of the endpoints of other participants that
+  // `never_meets` is true of: once when they are announced, again when they announce something else, and of their end,
+  // but not of the end of their participant. Of more than kMostAnnounced the middleware hears as of all others, and
+  // so of what comes in fragments. Not in a secured domain, where announcements cannot be seen.
+  static constexpr std::size_t kMostAnnounced = 1 << 16;
+  using NeverMeets = std::function<bool(std::string_view topic, EndpointRole role)>;
+  void discover(const GuidPrefix& self, NeverMeets never_meets,
+                std::function<void(const EndpointNews&)> on_news);
   // The participant is there: its discovery is heard. Or it is gone, and what it took is free
   // again.
   void know(const GuidPrefix& participant);
@@ -140,6 +155,17 @@ class DatagramFilter {
       CULPRIT_REQUIRES(mutex_);
   bool address(std::span<std::uint8_t> submessage, const Course& course, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
+  // What was made a gap last, in the datagram that is looked at.
+  struct Gap {
+    std::span<std::uint8_t> base;  // the number that follows it
+    Guid writer;
+    std::int64_t next = 0;
+    bool is_little = true;
+  };
+  enum class Announcement : std::uint8_t { kOfMiddleware, kGap, kInGapBefore };
+  Announcement take(std::span<std::uint8_t> submessage, const Course& course, Gap& last)
+      CULPRIT_REQUIRES(mutex_);
+  bool tell_of_announcement(const Submessage& submessage) CULPRIT_REQUIRES(mutex_);
   bool tries(const Guid& stranger, Clock::time_point now) CULPRIT_REQUIRES(mutex_);
   const char* objection(const Submessage& submessage, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
@@ -207,6 +233,15 @@ class DatagramFilter {
     Whole sample;
   };
   std::vector<Handed> handed_ CULPRIT_GUARDED_BY(mutex_);
+  struct Discovery {
+    GuidPrefix self;
+    NeverMeets never_meets;
+    std::function<void(const EndpointNews&)> on_news;
+  };
+  std::shared_ptr<const Discovery> discovery_ CULPRIT_GUARDED_BY(mutex_);  // null: not here
+  // In which announcement each endpoint was told of last, or its end: older ones may come later.
+  std::unordered_map<Guid, std::int64_t> announced_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<EndpointNews> news_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 }  // namespace culprit::ros2

@@ -1,6 +1,9 @@
 #include "ros2/datagram_filter.h"
 
+#include <algorithm>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -456,6 +459,194 @@ TEST_F(HandingFilter, AnAbsurdNumberIsNotHandedOver) {
   (void)pass(timed().data(kScan, kAbsurd));
   EXPECT_EQ(handed, std::vector<std::int64_t>{1});
   EXPECT_EQ(filter.refused().count, 1u);
+}
+
+// ---- what is never met
+
+class DiscoveringFilter : public Filter {
+ protected:
+  DiscoveringFilter() {
+    filter.discover(
+        reader(0).prefix(),
+        [](std::string_view topic, EndpointRole) { return topic.starts_with("never"); },
+        [this](const EndpointNews& news) {
+          if (const auto* info = std::get_if<EndpointInfo>(&news)) {
+            told.push_back("+" + info->topic);
+            last = *info;
+          } else {
+            told.push_back("-" + std::to_string(std::get<EndpointGone>(news).guid.bytes[14]));
+          }
+        });
+    filter.begin_to_address();
+  }
+
+  static Guid announcer(EndpointRole role, std::uint8_t participant = 1) {
+    Guid guid = writer(0xc2, participant);
+    guid.bytes[14] = role == EndpointRole::kReader ? 4 : 3;
+    return guid;
+  }
+  static Guid endpoint(std::uint8_t number, std::uint8_t kind = 0x03) {
+    Guid guid = writer(kind);
+    guid.bytes[14] = number;
+    return guid;
+  }
+  static Bytes said(const Guid& endpoint, std::string_view topic) {
+    return TestParameters().endpoint(endpoint).add(0x05, topic).add(0x07, "T").end();
+  }
+  TestDatagram announced(std::int64_t sequence, std::uint8_t number, std::string_view topic) const {
+    return from(kWriters).announcement(kWriters, sequence, said(endpoint(number), topic));
+  }
+  // Of each gap that is passed on: where it begins, and what follows it.
+  std::vector<std::pair<int, int>> gaps() const {
+    std::vector<std::pair<int, int>> all;
+    std::size_t at = 20;
+    while (at < passed.size()) {
+      if (passed[at] == 0x08) {
+        EXPECT_EQ(passed[at + 2], 28) << "bytes";
+        EXPECT_EQ(passed[at + 28], 0) << "no bitmap";
+        all.emplace_back(passed[at + 16], passed[at + 24]);
+      }
+      at += 4u + (passed[at + 2] | passed[at + 3] << 8);
+    }
+    EXPECT_EQ(at, passed.size());
+    return all;
+  }
+
+  const Guid kWriters = announcer(EndpointRole::kWriter);
+  const Guid kReaders = announcer(EndpointRole::kReader);
+  std::vector<std::string> told;
+  EndpointInfo last;
+};
+
+using Told = std::vector<std::string>;
+using Gaps = std::vector<std::pair<int, int>>;
+
+TEST_F(DiscoveringFilter, WhatIsNeverMetIsToldHereAndIsAGapForTheMiddleware) {
+  EXPECT_EQ(pass(announced(7, 1, "never")), 20u + 32u);
+  EXPECT_EQ(gaps(), (Gaps{{7, 8}}));
+  EXPECT_EQ(passed[20 + 10], 3) << "its writer";
+  EXPECT_EQ(told, Told{"+never"});
+  EXPECT_EQ(last.guid, endpoint(1));
+  EXPECT_EQ(last.type, "T");
+  EXPECT_EQ(filter.refused().count, 0u);
+}
+
+TEST_F(DiscoveringFilter, WhatMayBeMetIsTheMiddlewares) {
+  EXPECT_TRUE(passes(announced(1, 1, "met")));
+  EXPECT_EQ(passed[20], 0x15);
+  EXPECT_TRUE(passes(from(kDiscovery).data(kDiscovery, 1))) << "no announcement of an endpoint";
+  EXPECT_TRUE(told.empty());
+}
+
+TEST_F(DiscoveringFilter, WhatElseIsInTheDatagramStaysAsItIs) {
+  auto datagram = announced(1, 1, "never");
+  const std::size_t taken = datagram.bytes().size();
+  datagram.announcement(kWriters, 2, said(endpoint(2), "met")).heartbeat(kWriters, 1, 2);
+  EXPECT_EQ(pass(datagram), datagram.bytes().size());
+  EXPECT_EQ(gaps(), (Gaps{{1, 2}}));
+  EXPECT_EQ(passed[20 + 32], 0x01) << "padding";
+  EXPECT_TRUE(std::ranges::equal(passed.subspan(taken), ByteView(datagram.bytes()).subspan(taken)));
+}
+
+TEST_F(DiscoveringFilter, SeveralInARowAreOneGap) {
+  auto datagram = announced(1, 1, "never");
+  datagram.announcement(kWriters, 2, said(endpoint(2), "never_2"))
+      .announcement(kWriters, 4, said(endpoint(4), "never_4"))
+      .announcement(kReaders, 5, said(endpoint(5, 0x04), "never_5"));
+  pass(datagram);
+  EXPECT_EQ(gaps(), (Gaps{{1, 3}, {4, 5}, {5, 6}}));
+  EXPECT_EQ(told, (Told{"+never", "+never_2", "+never_4", "+never_5"}));
+}
+
+TEST_F(DiscoveringFilter, WhatIsSaidAgainIsAGapAgainAndNotTold) {
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(pass(announced(7, 1, "never")), 20u + 32u) << "the middleware may have missed it";
+    EXPECT_EQ(gaps(), (Gaps{{7, 8}}));
+  }
+  EXPECT_EQ(told, Told{"+never"});
+  pass(announced(9, 1, "never_more"));
+  pass(announced(8, 1, "never"));  // came late
+  EXPECT_EQ(told, (Told{"+never", "+never_more"}));
+}
+
+TEST_F(DiscoveringFilter, AnEndIsToldToBothAndIsFinal) {
+  EXPECT_TRUE(passes(from(kWriters).farewell(kWriters, 1, endpoint(1)))) << "of nobody";
+  pass(announced(2, 1, "never"));
+  const auto farewell = from(kWriters).farewell(kWriters, 5, endpoint(1));
+  EXPECT_TRUE(passes(farewell));
+  EXPECT_TRUE(passes(farewell));
+  pass(announced(2, 1, "never"));  // came late
+  EXPECT_EQ(told, (Told{"+never", "-1"}));
+  pass(announced(6, 1, "never"));
+  EXPECT_EQ(told, (Told{"+never", "-1", "+never"}));
+}
+
+TEST_F(DiscoveringFilter, NobodySpeaksForAnotherParticipant) {
+  const Guid other = announcer(EndpointRole::kWriter, 9);
+  EXPECT_TRUE(passes(from(other).announcement(other, 1, said(endpoint(1), "never"))))
+      << "who is not known";
+  filter.know(other.prefix());
+  EXPECT_TRUE(passes(from(other).announcement(other, 2, said(endpoint(1), "never"))));
+  const Guid self = reader(0);
+  filter.know(self.prefix());
+  Guid own = kWriters;
+  std::ranges::copy(self.prefix().bytes, own.bytes.begin());
+  EXPECT_TRUE(passes(from(own).announcement(own, 1, said(reader(1), "never"))));
+  EXPECT_TRUE(told.empty());
+}
+
+TEST_F(DiscoveringFilter, WhatIsForAnotherParticipantIsLeftAlone) {
+  const auto to = [&](const Bytes& prefix) {
+    return from(kWriters)
+        .submessage(0x0e, 0, prefix)
+        .announcement(kWriters, 1, said(endpoint(1), "never"));
+  };
+  EXPECT_TRUE(passes(to(Bytes(12, 3))));
+  EXPECT_TRUE(told.empty());
+  const Guid self = reader(0);
+  EXPECT_FALSE(passes(to(Bytes(self.bytes.begin(), self.bytes.begin() + 12))));
+  EXPECT_EQ(told, Told{"+never"});
+}
+
+TEST_F(DiscoveringFilter, WhoComesAgainIsToldOfAgain) {
+  pass(announced(3, 1, "never"));
+  filter.forget(kWriters.prefix());
+  EXPECT_TRUE(passes(announced(3, 1, "never"))) << "it is not there";
+  filter.know(kWriters.prefix());
+  pass(announced(3, 1, "never"));
+  EXPECT_EQ(told, (Told{"+never", "+never"}));
+}
+
+TEST_F(DiscoveringFilter, WhatCannotBeReadIsTheMiddlewares) {
+  const Bytes whole = said(endpoint(1), "never");
+  for (std::size_t length = 0; length < whole.size(); length += 4) {
+    const Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
+    EXPECT_TRUE(passes(from(kWriters).announcement(kWriters, 1, part))) << length;
+  }
+  EXPECT_TRUE(passes(from(kReaders).announcement(kReaders, 1, whole))) << "a writer is no reader";
+  EXPECT_TRUE(passes(from(kWriters).announcement(
+      kWriters, 1, TestParameters().endpoint(endpoint(1)).add(0x05, "never").end())))
+      << "it has no type";
+  EXPECT_TRUE(told.empty());
+}
+
+// The network decides how many there are.
+TEST_F(DiscoveringFilter, NoMoreAreKeptThanIsAllowed) {
+  constexpr std::size_t kSequence = 20 + 20;  // where it is in the datagram, its lower half
+  constexpr std::size_t kEndpoint = kSequence + 4 + 4 + 4 + 12;
+  const Bytes one = announced(1, 0, "never").bytes();
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i < DatagramFilter::kMostAnnounced + 10; ++i) {
+    Bytes each = one;
+    for (std::size_t byte = 0; byte < 3; ++byte) {
+      each[kSequence + byte] = static_cast<std::uint8_t>((i + 1) >> (8 * byte));
+      each[kEndpoint + byte] = static_cast<std::uint8_t>(i >> (8 * byte));
+    }
+    pass(std::move(each));
+    taken += passed[20] == 0x08 ? 1 : 0;
+  }
+  EXPECT_EQ(taken, DatagramFilter::kMostAnnounced);
+  EXPECT_EQ(told.size(), taken) << "of the others the middleware tells";
 }
 
 }  // namespace

@@ -82,10 +82,8 @@ inline SystemTime to_time(const rtps::Time_t& time) {
   return SystemTime(std::chrono::nanoseconds(time.to_ns()));
 }
 
-inline std::string cut(std::string_view text) {
-  constexpr std::size_t kLongest = 1024;  // what a hostile peer can make us keep for each string
-  return std::string(text.substr(0, kLongest));
-}
+// A hostile peer can make us keep no more.
+inline std::string cut(std::string_view text) { return std::string(text.substr(0, kLongestSaid)); }
 
 // What a DataReader fills in.
 struct Incoming {
@@ -367,7 +365,6 @@ EndpointInfo to_info(const ProxyData& data) {
   out.qos.liveliness_lease = from_duration(qos.m_liveliness.lease_duration);
   out.qos.ownership = qos.m_ownership.kind == dds::EXCLUSIVE_OWNERSHIP_QOS ? Ownership::kExclusive
                                                                            : Ownership::kShared;
-  constexpr std::size_t kMostPartitions = 32;
   for (const std::string& partition : qos.m_partition.getNames()) {
     if (out.partitions.size() < kMostPartitions) out.partitions.push_back(cut(partition));
   }

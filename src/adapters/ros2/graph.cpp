@@ -68,6 +68,7 @@ void Graph::apply(const DiscoveryInfo& info, std::optional<GidSize> form) {
   if (found == peers_.end()) return;  // it has left, or there was no room for it
   Peer& peer = found->second;
   peer.form = form;
+  looked_for_ = nullptr;
   const Claims before = std::exchange(peer.claims, {});
   for (const auto& [name, guids] : before) claim_count_ -= guids.size();
   Claims after = read_claims(info, peer);
@@ -297,9 +298,10 @@ bool Graph::has_ended(const Peer& peer) const {
   return options_.find_process && options_.find_process(peer.info).has_ended;
 }
 
-// For a node that it comes to hold. Of an ended process nothing can be proven any more: what was
-// known of it stays known.
+// For a node that it comes to hold, of several at once for the first. Of an ended process nothing can be proven
+// any more: what was known of it stays known.
 void Graph::look_for_process(const std::string& name, Peer& peer) {
+  if (std::exchange(looked_for_, &peer) == &peer) return;
   if (!options_.find_process || (peer.pid != 0 && has_ended(peer))) return;
   FoundProcess found = options_.find_process(peer.info);
   peer.pid = found.pid;

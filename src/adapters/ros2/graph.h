@@ -216,8 +216,9 @@ class Graph {
   std::size_t claim_count_ = 0;                   // claimed, of all peers
   std::unordered_map<Guid, std::string> owners_;  // endpoint -> the node that claims it
   std::map<std::string, Node> nodes_;
-  std::set<const char*> exceeded_;  // limits that trouble was told of
-  bool is_losing_ = false;          // who leaves now said no good-bye
+  std::set<const char*> exceeded_;    // limits that trouble was told of
+  bool is_losing_ = false;            // who leaves now said no good-bye
+  const Peer* looked_for_ = nullptr;  // whose process was looked for last, by one apply()
 };
 
 }  // namespace culprit::ros2

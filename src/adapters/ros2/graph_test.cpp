@@ -327,6 +327,21 @@ TEST(Graph, AnUnprovenNamesakeIsForgottenWhenItsSocketsAreGone) {
   EXPECT_THAT(watched.told(), ElementsAre("-/a", "+/a")) << "a restart";
 }
 
+TEST(Graph, TheProcessOfManyNodesIsLookedForOnce) {
+  int looks = 0;
+  Graph::Options options;
+  options.find_process = [&](const ParticipantInfo& info) {
+    ++looks;
+    return FoundProcess{info.pid, ""};
+  };
+  options.is_running = [](int) { return true; };
+  Watched watched(options);
+  watched.joins(1, 10).says(1, {node("/", "a"), node("/", "b"), node("/", "c")});
+  EXPECT_EQ(looks, 1);
+  watched.says(1, {node("/", "a"), node("/", "b"), node("/", "c"), node("/", "d")});
+  EXPECT_EQ(looks, 2) << "it says something else";
+}
+
 TEST(Graph, AnEndedProcessIsGoneAtOnce) {
   Graph::Options options;
   options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };

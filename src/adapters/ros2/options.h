@@ -7,10 +7,12 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/expected.h"
 #include "ros2/discovery_info.h"
+#include "ros2/endpoint_info.h"
 #include "ros2/security.h"
 
 namespace culprit::ros2 {
@@ -39,6 +41,11 @@ struct ParticipantOptions {
   // net.core.rmem_max caps it.
   std::uint32_t socket_buffer_bytes = 4 * 1024 * 1024;
   std::optional<Security> security{};  // nothing: in the clear
+  // Others' readers, or writers, of which topics (DDS names) this participant never meets, for it never writes, or
+  // reads, those: what it creates there is refused. They are discovered all the same, but the middleware does not get to
+  // know them, which is most of what it costs to discover a large robot. Without effect in a secured domain and through
+  // servers. Called from any thread. Empty: it may meet all.
+  std::function<bool(std::string_view topic, EndpointRole role)> never_meets{};
 };
 
 // The value of a variable, or null.

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "base/mutex.h"
 #include "ros2/fast_dds.h"
@@ -355,17 +356,8 @@ bool Writer::is_acknowledged() const { return impl_->is_acknowledged(); }
 class Participant::Impl {
  public:
   explicit Impl(DiscoveryCallback on_discovery)
-      : listener_([this, callback = std::move(on_discovery)](DiscoveryEvent event) {
-          if (const auto* there = std::get_if<ParticipantInfo>(&event)) {
-            reception_.sources->keep(there->guid.prefix());
-            reception_.filter->know(there->guid.prefix());
-          }
-          if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
-            reception_.sources->forget(gone->guid.prefix());
-            reception_.filter->forget(gone->guid.prefix());
-          }
-          gate_.pass([&] { callback(std::move(event)); });
-        }) {}
+      : on_discovery_(std::move(on_discovery)),
+        listener_([this](DiscoveryEvent event) { on_event(std::move(event)); }) {}
 
   Expected<void> open(ParticipantOptions options) {
     std::vector<std::string> peers;
@@ -391,11 +383,13 @@ class Participant::Impl {
                               "; are they of one keystore, signed and not expired?"
                         : "; is there a network interface, and a free UDP port for it?")};
     }
+    guid_ = fast_dds::to_guid(participant_->guid());
+    never_meets_ = options.never_meets;
+    if (never_meets_ && !options.security && options.servers.empty()) discover_past_middleware();
     *reception_.speaks = true;
     if (!options.security) reception_.filter->begin_to_address();
     is_secured_ = options.security.has_value();
     likely_refusal_ = likely_refusal(options.security);
-    guid_ = fast_dds::to_guid(participant_->guid());
     reception_.sources->begin(guid_.prefix());
     publisher_ = participant_->create_publisher(dds::PublisherQos());
     subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
@@ -404,7 +398,7 @@ class Participant::Impl {
   }
 
   ~Impl() {
-    gate_.close();
+    gate_->close();
     if (participant_ == nullptr) return;
     participant_->set_listener(nullptr);
     participant_->delete_contained_entities();
@@ -413,6 +407,8 @@ class Participant::Impl {
   }
 
   Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample) {
+    if (never_meets_ && never_meets_(options.topic, EndpointRole::kWriter))
+      return Error{"this participant was to read nothing of " + printable(options.topic)};
     auto reader = std::make_unique<Reader::Impl>(*subscriber_, *topics_, *reception_.filter,
                                                  *reception_.patient_port, std::move(options),
                                                  std::move(on_sample));
@@ -421,6 +417,8 @@ class Participant::Impl {
   }
 
   Expected<std::unique_ptr<Writer>> create_writer(WriterOptions options) {
+    if (never_meets_ && never_meets_(options.topic, EndpointRole::kReader))
+      return Error{"this participant was to write nothing to " + printable(options.topic)};
     auto writer = std::make_unique<Writer::Impl>(*publisher_, *topics_, std::move(options));
     if (auto opened = writer->open(likely_refusal_); !opened) return Error{opened.error()};
     return std::make_unique<Writer>(std::move(writer));
@@ -440,7 +438,38 @@ class Participant::Impl {
   Time receivers_attended() const { return watch_.attended(); }
 
  private:
-  Gate gate_;
+  // Who is there announces itself again and again, mostly as it was.
+  void on_event(DiscoveryEvent event) {
+    if (const auto* there = std::get_if<ParticipantInfo>(&event)) {
+      reception_.sources->keep(there->guid.prefix());
+      reception_.filter->know(there->guid.prefix());
+    }
+    if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
+      reception_.sources->forget(gone->guid.prefix());
+      reception_.filter->forget(gone->guid.prefix());
+    }
+    gate_->pass([&] {
+      if (const auto* there = std::get_if<ParticipantInfo>(&event)) {
+        ParticipantInfo& told = told_[there->guid];
+        if (told == *there) return;
+        told = *there;
+      }
+      if (const auto* gone = std::get_if<ParticipantGone>(&event)) told_.erase(gone->guid);
+      on_discovery_(std::move(event));
+    });
+  }
+
+  void discover_past_middleware() {
+    reception_.filter->discover(
+        guid_.prefix(), never_meets_, [this, gate = gate_](const EndpointNews& news) {
+          gate->pass([&] { std::visit([this](const auto& each) { on_discovery_(each); }, news); });
+        });
+  }
+
+  const std::shared_ptr<Gate> gate_ = std::make_shared<Gate>();
+  const DiscoveryCallback on_discovery_;
+  std::map<Guid, ParticipantInfo> told_;  // of those that are there; inside the gate
+  std::function<bool(std::string_view, EndpointRole)> never_meets_;
   const fast_dds::Reception reception_;
   ReceiveWatch watch_;
   fast_dds::DiscoveryListener listener_;

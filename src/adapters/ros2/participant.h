@@ -24,6 +24,7 @@
 #include "ros2/cdr.h"
 #include "ros2/datagram_filter.h"
 #include "ros2/datagram_sources.h"
+#include "ros2/endpoint_info.h"
 #include "ros2/guid.h"
 #include "ros2/options.h"
 #include "ros2/qos.h"
@@ -44,30 +45,15 @@ struct ParticipantInfo {
   bool is_secured = false;              // it has an identity, signed by somebody
   // Not its word: where its datagrams came from. Filled in when its process is looked for.
   DatagramSources::Origin origin{};
-};
-
-// What a remote reader or writer says of itself. DDS names; strings as above. History depth is not
-// announced.
-struct EndpointInfo {
-  Guid guid;
-  std::string topic;
-  std::string type;
-  std::string user_data;
-  Qos qos;
-  // Only who has one in common is heard (DDS 1.4 §2.2.3.13); none is the one that is called "". ROS 2
-  // has no word for it; XML profiles of the middleware have.
-  std::vector<std::string> partitions{};
+  bool operator==(const ParticipantInfo&) const = default;
 };
 
 struct ParticipantGone {
   Guid guid;
   bool was_lost = false;  // it said no good-bye: its lease ran out
 };
-struct EndpointGone {
-  Guid guid;
-};
 
-// Also sent again when what is known changes.
+// Also sent again when what is known changes, and only then.
 using DiscoveryEvent = std::variant<ParticipantInfo, EndpointInfo, ParticipantGone, EndpointGone>;
 using DiscoveryCallback = std::function<void(DiscoveryEvent)>;
 

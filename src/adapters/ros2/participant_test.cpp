@@ -1,6 +1,7 @@
 #include "ros2/participant.h"
 
 #include <atomic>
+#include <map>
 #include <numeric>
 #include <thread>
 #include <unistd.h>
@@ -8,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/live_clock.h"
 #include "ros2/live_test.h"
 
 namespace culprit::ros2 {
@@ -353,6 +355,141 @@ TEST(Participant, DiscoversOthersTheirEndpointsAndTheirEnd) {
     const auto* gone = std::get_if<ParticipantGone>(&event);
     return gone != nullptr && gone->guid == participant && !gone->was_lost;
   }));
+}
+
+// ---- what it never meets
+
+ParticipantOptions meeting_only(const TestDomain& domain, std::string_view met) {
+  ParticipantOptions options = domain.options();
+  options.never_meets = [met](std::string_view topic, EndpointRole) { return topic != met; };
+  return options;
+}
+
+std::unique_ptr<Participant> join(const ParticipantOptions& options,
+                                  DiscoveryCallback on_discovery) {
+  auto participant = Participant::create(options, std::move(on_discovery));
+  if (!participant) throw std::runtime_error(participant.error());
+  return std::move(*participant);
+}
+
+// Of the endpoints of all others, what is known now.
+class Known {
+ public:
+  DiscoveryCallback listener() {
+    return [this](const DiscoveryEvent& event) {
+      const MutexLock lock(mutex_);
+      if (const auto* info = std::get_if<EndpointInfo>(&event)) all_[info->guid] = *info;
+      if (const auto* gone = std::get_if<EndpointGone>(&event)) all_.erase(gone->guid);
+      changed_.notify_all();
+    };
+  }
+  std::map<Guid, EndpointInfo> wait_for_count(std::size_t count) {
+    MutexLock lock(mutex_);
+    changed_.wait_for(lock, kPatience,
+                      [&]() CULPRIT_REQUIRES(mutex_) { return all_.size() == count; });
+    return all_;
+  }
+
+ private:
+  Mutex mutex_;
+  ConditionVariable changed_;
+  std::map<Guid, EndpointInfo> all_ CULPRIT_GUARDED_BY(mutex_);
+};
+
+TEST(Participant, WhatItNeverMeetsIsDiscoveredAsAllElse) {
+  const TestDomain domain;
+  Known past, through;
+  const auto others = join(domain);
+  std::vector<std::unique_ptr<Writer>> writers;
+  std::vector<std::unique_ptr<Reader>> readers;
+  const Qos full{.durability = Durability::kTransientLocal,
+                 .deadline = std::chrono::milliseconds(123),
+                 .lifespan = std::chrono::seconds(10),
+                 .keys = Keys::kSome,
+                 .liveliness = Liveliness::kManualByTopic,
+                 .liveliness_lease = std::chrono::milliseconds(3100),
+                 .ownership = Ownership::kExclusive};
+  const auto create = [&] {
+    for (const Qos& qos : {Qos{}, qos::kSensorData, qos::kRosout, full}) {
+      const std::string topic = "t" + std::to_string(writers.size());
+      const std::string type = "T" + std::to_string(writers.size());
+      writers.push_back(std::move(*others->create_writer({topic, type, qos, "key=value;", {}})));
+      readers.push_back(std::move(*others->create_reader(
+          {topic, type, qos, PayloadUse::kWhole, "", {}}, [](const Sample&) {})));
+    }
+  };
+  create();  // before, and after it comes
+  const auto never = join(meeting_only(domain, "met"), past.listener());
+  const auto may = join(domain.options(), through.listener());
+  create();
+  EXPECT_EQ(past.wait_for_count(16).size(), 16u);
+  EXPECT_EQ(past.wait_for_count(16), through.wait_for_count(16));
+  writers.pop_back();
+  readers.pop_back();
+  EXPECT_EQ(past.wait_for_count(14).size(), 14u);
+  EXPECT_EQ(past.wait_for_count(14), through.wait_for_count(14));
+}
+
+// Announcements are taken in by the middleware in the order of their numbers: nothing may be missing.
+TEST(Participant, WhatItNeverMeetsHoldsUpNothingElse) {
+  const TestDomain domain;
+  const auto sender = join(domain);
+  const auto receiver = join(meeting_only(domain, "met"), [](DiscoveryEvent) {});
+  EventLog<Received> received;
+  EventLog<MatchEvent> matches;
+  const auto reader =
+      receiver->create_reader({"met", "T", qos::kDiscoveryInfoReader, PayloadUse::kWhole, "",
+                               [&](const Guid& remote, Match match) {
+                                 matches.add({remote, match});
+                               }},
+                              into(received));
+  ASSERT_TRUE(reader);
+  std::vector<std::unique_ptr<Writer>> writers;
+  for (std::size_t i = 1; i <= 5; ++i) {
+    for (const char* topic : {"never", "more", "met"})
+      writers.push_back(
+          std::move(*sender->create_writer({topic, "T", qos::kDiscoveryInfoWriter, "", {}})));
+    writers.back()->write(kSmall);
+    EXPECT_TRUE(received.wait_for_count(i)) << i;
+    writers.erase(writers.begin(), writers.begin() + 2);
+  }
+  EXPECT_TRUE(matches.wait_for_count(5));
+}
+
+TEST(Participant, WhatItIsNeverToMeetCannotBeCreated) {
+  const TestDomain domain;
+  ParticipantOptions options = domain.options();
+  options.never_meets = [](std::string_view topic, EndpointRole role) {
+    return topic == "read" && role == EndpointRole::kReader;
+  };
+  const auto participant = join(options, [](DiscoveryEvent) {});
+  EXPECT_TRUE(participant->create_reader({"read", "T", {}, PayloadUse::kWhole, "", {}},
+                                         [](const Sample&) {}));
+  const auto writer = participant->create_writer({"read", "T", {}, "", {}});
+  ASSERT_FALSE(writer);
+  EXPECT_THAT(writer.error(), HasSubstr("this participant was to write nothing to read"));
+  EXPECT_TRUE(participant->create_writer({"written", "T", {}, "", {}}));
+}
+
+// It announces itself every second.
+TEST(Participant, WhoStaysAsItIsIsToldOfOnce) {
+  const TestDomain domain;
+  EventLog<Guid> told;
+  const auto watcher = join(domain, [&](const DiscoveryEvent& event) {
+    if (const auto* info = std::get_if<ParticipantInfo>(&event)) told.add(info->guid);
+  });
+  const auto other = join(domain);
+  ASSERT_TRUE(told.wait_for_count(1));
+  const Time joined = live_now();
+  const auto announced = [&] { return watcher->heard_last(other->guid().prefix()); };
+  for (int i = 0; i < 2; ++i) {  // without endpoints it says nothing else
+    const Time before = std::max(joined, announced());
+    const Time end = later(live_now(), kPatience);
+    while (later(before, std::chrono::milliseconds(500)) >= announced() && live_now() < end)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_LT(before, announced());
+  }
+  EXPECT_EQ(told.all().size(), 1u);
 }
 
 TEST(Participant, DomainsDoNotHearEachOther) {

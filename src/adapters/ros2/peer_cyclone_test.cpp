@@ -108,6 +108,32 @@ TEST(PeerCyclone, IsANodeOfTheGraph) {
   });
 }
 
+// Announcements of another implementation, read by us and by Fast DDS.
+TEST(PeerCyclone, IsDiscoveredAsAllOthersByWhoNeverMeetsIt) {
+  const TestDomain domain;
+  ParticipantOptions never = domain.options();
+  never.never_meets = [](std::string_view topic, EndpointRole) {
+    return topic.starts_with("rq/") || topic.starts_with("rr/");
+  };
+  LiveContext past(never), through(domain.options());
+  const auto endpoints = [](LiveContext& context) {
+    std::vector<EndpointInfo> all;
+    context.run([&] {
+      for (const auto& participant : context->graph().participants()) {
+        for (const auto& each : participant.endpoints)
+          all.push_back(*context->graph().endpoint(each.id));
+      }
+    });
+    return all;
+  };
+  const auto peer = start_cyclone(domain, {"serve", "/cyclone"});
+  for (LiveContext* each : {&past, &through}) {
+    ASSERT_TRUE(each->sees_endpoint("/cyclone", EndpointKind::kServer, "/cyclone/change_state"));
+    ASSERT_TRUE(each->sees_endpoint("/cyclone", EndpointKind::kServer, "/cyclone/get_state"));
+  }
+  EXPECT_EQ(endpoints(past), endpoints(through));
+}
+
 TEST(PeerCyclone, ServesUs) {
   const TestDomain domain;
   LiveContext manager(domain.options());

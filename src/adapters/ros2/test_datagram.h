@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string_view>
+#include <utility>
 
 #include "ros2/cdr.h"
 #include "ros2/guid.h"
@@ -38,6 +40,23 @@ class TestDatagram {
     const std::size_t begin = std::size_t{number - 1} * size;
     bytes_.resize(bytes_.size() + (begin < whole ? std::min<std::size_t>(size, whole - begin) : 0));
     return end();
+  }
+  // By the participant's announcer of readers or of writers (kAnnouncesReaders, kAnnouncesWriters).
+  TestDatagram& announcement(const Guid& announcer, std::int64_t sequence,
+                             const Bytes& parameters) {
+    begin(0x15, 4).u16(0).u16(16).readers().entity(announcer).sequence(sequence);
+    append(Bytes{0, 3, 0, 0});
+    append(parameters);
+    return end();
+  }
+  // That the endpoint has ended, as Fast DDS says it: all of it in inline parameters.
+  TestDatagram& farewell(const Guid& announcer, std::int64_t sequence, const Guid& endpoint) {
+    begin(0x15, 2).u16(0).u16(16).readers().entity(announcer).sequence(sequence);
+    u16(0x70).u16(16);
+    append(endpoint.bytes);
+    u16(0x71).u16(4);
+    append(Bytes{0, 0, 0, 3});
+    return u16(1).u16(0).end();
   }
   // Anything.
   TestDatagram& submessage(std::uint8_t kind, std::uint8_t flags, const Bytes& body) {
@@ -84,6 +103,37 @@ class TestDatagram {
 
   Bytes bytes_;
   std::size_t start_ = 0;
+};
+
+// What is announced of an endpoint, little endian and without its encapsulation.
+class TestParameters {
+ public:
+  TestParameters& add(std::uint16_t id, Bytes value) {
+    while (value.size() % 4 != 0) value.push_back(0);
+    for (const std::size_t number : {std::size_t{id}, value.size()}) {
+      bytes_.push_back(static_cast<std::uint8_t>(number));
+      bytes_.push_back(static_cast<std::uint8_t>(number >> 8));
+    }
+    bytes_.insert(bytes_.end(), value.begin(), value.end());
+    return *this;
+  }
+  TestParameters& add(std::uint16_t id, std::string_view text) {
+    Bytes value{static_cast<std::uint8_t>(text.size() + 1), 0, 0, 0};
+    value.insert(value.end(), text.begin(), text.end());
+    value.push_back(0);
+    return add(id, std::move(value));
+  }
+  TestParameters& endpoint(const Guid& guid) {
+    return add(0x5a, Bytes(guid.bytes.begin(), guid.bytes.end()));
+  }
+  Bytes end() {
+    Bytes all = bytes_;
+    all.insert(all.end(), {1, 0, 0, 0});
+    return all;
+  }
+
+ private:
+  Bytes bytes_;
 };
 
 }  // namespace culprit::ros2

@@ -14,6 +14,7 @@
 #include "doctor/held_up.h"
 #include "doctor/listening.h"
 #include "doctor/machine.h"
+#include "doctor/never_met.h"
 #include "doctor/nodes_to_ask.h"
 #include "doctor/process_watch.h"
 #include "doctor/transform_listening.h"
@@ -44,7 +45,9 @@ class Look {
       return ros2::ProcessFinder().find(info);
     };
     graph.is_running = [](int pid) { return ros2::ProcessFinder().is_running(pid); };
-    auto context = ros2::Context::create(executor_, options_.participant, std::move(graph));
+    ros2::ParticipantOptions participant = options_.participant;
+    participant.never_meets = never_meets;
+    auto context = ros2::Context::create(executor_, participant, std::move(graph));
     if (!context) return Error{context.error()};
     context_ = std::move(*context);
     auto node =
@@ -110,7 +113,7 @@ class Look {
 
   void end() {
     listen();
-    processes_.sample(nodes_, since_begin());
+    sample();
     on_picture_(picture());
     const Time now = live_now();
     asking_->begin_anew([this](const std::string& node) { return nodes_.contains(node); });
@@ -128,19 +131,13 @@ class Look {
   void on_tick() {
     listen();
     topics_->take_turns(live_now(), options_.time - since_begin());
-    processes_.sample(nodes_, since_begin());
+    sample();
     if (disks_.empty()) disks_ = disks_of(nodes_);
-    note_ended();
   }
 
-  void note_ended() {
-    std::set<int> processes;  // of many nodes, some
-    for (const auto& [node, pid] : nodes_) processes.insert(pid);
-    processes.erase(0);
-    const ros2::ProcessFinder finder;
-    for (const int pid : processes) {
-      if (!finder.is_running(pid)) ended_.try_emplace(pid, live_now());
-    }
+  void sample() {
+    for (const int pid : processes_.sample(nodes_, since_begin()))
+      ended_.try_emplace(pid, live_now());
   }
 
   Duration since_begin() const { return live_now() - began_; }

@@ -25,7 +25,8 @@ using testing::Pair;
 
 TEST(ProcessWatch, SeesMemoryAndProcessorTimeOfAProcess) {
   ProcessWatch watch;
-  watch.sample({{"/me", getpid()}, {"/remote", 0}, {"/gone", 4'000'000}}, 0s);
+  EXPECT_EQ(watch.sample({{"/me", getpid()}, {"/remote", 0}, {"/gone", 4'000'000}}, 0s),
+            std::set<int>{4'000'000});
   volatile double work = 1;
   const auto until = std::chrono::steady_clock::now() + 200ms;
   while (std::chrono::steady_clock::now() < until) work = work * 1.0001;

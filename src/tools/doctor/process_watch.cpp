@@ -34,6 +34,7 @@ struct Use {
   Duration processor{};
   std::int64_t bytes = 0;
 };
+// Nothing: it has ended, whether its parent has taken note of that or not.
 std::optional<Use> use_of(const fs::path& folder) {
   std::ifstream file(folder / "stat");
   std::string line;
@@ -41,8 +42,11 @@ std::optional<Use> use_of(const fs::path& folder) {
   const auto end = line.rfind(')');  // the command before it may hold anything
   if (end == std::string::npos) return std::nullopt;
   std::istringstream rest(line.substr(end + 1));
+  char state = 0;
+  rest >> state;
+  if (state == 'Z' || state == 'X') return std::nullopt;
   std::string skipped;
-  for (int i = 0; i < 11; ++i) rest >> skipped;
+  for (int i = 0; i < 10; ++i) rest >> skipped;
   std::int64_t user = 0, system = 0, pages = 0;
   rest >> user >> system;
   for (int i = 0; i < 8; ++i) rest >> skipped;
@@ -118,14 +122,18 @@ std::int64_t free_memory() {
   return 0;
 }
 
-void ProcessWatch::sample(const std::map<std::string, int>& nodes, Offset at) {
+std::set<int> ProcessWatch::sample(const std::map<std::string, int>& nodes, Offset at) {
+  std::set<int> ended;
   std::map<int, std::vector<std::string>> by_process;
   for (const auto& [node, pid] : nodes) {
     if (pid != 0) by_process[pid].push_back(node);
   }
   for (const auto& [pid, names] : by_process) {
     const auto use = use_of(folder_of(pid));
-    if (!use) continue;
+    if (!use) {
+      ended.insert(pid);
+      continue;
+    }
     const auto known = processes_.find(pid);
     Process& process =
         known != processes_.end() ? known->second : processes_[pid] = started(pid, names);
@@ -133,6 +141,7 @@ void ProcessWatch::sample(const std::map<std::string, int>& nodes, Offset at) {
     look_at_threads(pid, process, at);
   }
   std::erase_if(processes_, [&](const auto& entry) { return !by_process.contains(entry.first); });
+  return ended;
 }
 
 // Only of processes that used nearly a whole core since they were looked at last.

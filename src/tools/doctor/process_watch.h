@@ -12,8 +12,9 @@ namespace culprit::doctor {
 
 class ProcessWatch {
  public:
-  // Looks at `nodes` (by name, with their processes) at `at`. Cheap: two small files for each process.
-  void sample(const std::map<std::string, int>& nodes, Offset at);
+  // Looks at `nodes` (by name, with their processes) at `at`, and gives the processes that have ended. Cheap: one
+  // small file for each.
+  std::set<int> sample(const std::map<std::string, int>& nodes, Offset at);
 
   // All that were there, without those that ended meanwhile.
   const std::map<int, Process>& processes() const { return processes_; }

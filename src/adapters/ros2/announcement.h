@@ -1,0 +1,27 @@
+// What participants announce of their readers and writers (RTPS 2.3 §8.5.4.3): lists of parameters, each
+// a number, a length and a value of so many bytes (§9.4.2.11), the numbers in §9.6.2.2.2.
+//
+// The middleware reads the same lists. These functions are for announcements that it does not get to see
+// (datagram_filter.h), and find in them what it would: what is left out has the same value here as there.
+// They never read outside of their bytes.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "ros2/cdr.h"
+#include "ros2/endpoint_info.h"
+
+namespace culprit::ros2 {
+
+// `payload` starts with its encapsulation. Nothing: there is no topic, or the list is damaged before it.
+std::optional<std::string_view> announced_topic(ByteView payload);
+
+// Nothing: the list is damaged or incomplete, or not of an endpoint of this role.
+std::optional<EndpointInfo> read_announcement(ByteView payload, EndpointRole role);
+
+// Which endpoint ends. `parameters` are those of its submessage, whose order of bytes this is; `payload` is
+// its key, with its encapsulation, and may be empty. Nothing: none ends, or it is not said which.
+std::optional<Guid> read_end(ByteView parameters, Endianness order, ByteView payload);
+
+}  // namespace culprit::ros2
