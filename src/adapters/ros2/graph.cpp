@@ -160,6 +160,7 @@ void Graph::add(const EndpointInfo& info) {
 }
 
 void Graph::remove_participant(const GuidPrefix& prefix) {
+  looked_for_ = nullptr;
   const auto found = peers_.find(prefix);
   if (found == peers_.end()) return;
   // As if it had said that it holds nothing, and then left.

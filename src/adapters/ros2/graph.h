@@ -218,7 +218,7 @@ class Graph {
   std::map<std::string, Node> nodes_;
   std::set<const char*> exceeded_;    // limits that trouble was told of
   bool is_losing_ = false;            // who leaves now said no good-bye
-  const Peer* looked_for_ = nullptr;  // whose process was looked for last, by one apply()
+  const Peer* looked_for_ = nullptr;  // whose process was looked for last, in one change
 };
 
 }  // namespace culprit::ros2

@@ -342,6 +342,22 @@ TEST(Graph, TheProcessOfManyNodesIsLookedForOnce) {
   EXPECT_EQ(looks, 2) << "it says something else";
 }
 
+TEST(Graph, TheProcessOfANodeThatCountsAgainIsLookedForAnew) {
+  int looks = 0;
+  Graph::Options options;
+  options.find_process = [&](const ParticipantInfo&) {
+    ++looks;
+    return FoundProcess{};
+  };
+  Watched watched(options);
+  watched.joins(1, 10).says(1, {node("/", "a")});
+  watched.joins(2, 20).says(2, {node("/", "a")});
+  watched.says(1, {node("/", "a"), node("/", "b")});  // the last that was looked for
+  const int before = looks;
+  watched.leaves(2);
+  EXPECT_GT(looks, before);
+}
+
 TEST(Graph, AnEndedProcessIsGoneAtOnce) {
   Graph::Options options;
   options.find_process = [](const ParticipantInfo& info) { return FoundProcess{info.pid, ""}; };
