@@ -9,7 +9,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/environment.h"
 #include "terminal/test_program.h"
 
 namespace culprit::lab {
@@ -76,38 +75,6 @@ TEST_F(LiveCampaign, EndsItsRobotsWhenItIsAskedTo) {
   EXPECT_EQ(stopped.wait(1min), 1) << stopped.output();
   EXPECT_THAT(stopped.output(), testing::HasSubstr("the same command goes on from there"));
   EXPECT_EQ(processes(), 0);
-}
-
-// examples/cluster as it stands, with a small campaign.
-TEST(ClusterCampaign, OfGnuParallelGoesOnAndMendsAShardThatIsDamaged) {
-  namespace fs = std::filesystem;
-  if (!fs::exists("/usr/bin/parallel")) GTEST_SKIP() << "there is no GNU parallel here";
-  const TestWorld world;
-  const auto campaign = [&] {
-    TestProgram program(world,
-                        {"sh", "-c",
-                         "cd '" + world.folder().string() + "' && exec env HOME=. CULPRIT='" +
-                             (own_folder() / "culprit-lab").string() +
-                             "' CULPRIT_STUDY='sunset --ablation --runs 8' '" +
-                             fs::absolute("examples/cluster/campaign.sh").string() + "'"});
-    EXPECT_EQ(program.wait(2min), 0) << program.output();
-    return program.output();
-  };
-  const fs::path third = world.folder() / "shards" / "sunset-3.shard";
-  campaign();
-  const std::string whole = contents(third);
-  ASSERT_GT(whole.size(), 200u);
-  std::string damaged = whole;
-  damaged[damaged.size() / 2] ^= 1;
-  std::ofstream(third, std::ios::binary) << damaged;
-  EXPECT_THAT(campaign(), testing::HasSubstr("sunset-3.shard was damaged; it is kept as"));
-  EXPECT_EQ(contents(third), whole);
-  std::vector<std::string> merge = {"culprit-lab", "study", "merge"};
-  for (int shard = 8; shard >= 1; --shard)
-    merge.push_back(
-        (third.parent_path() / ("sunset-" + std::to_string(shard) + ".shard")).string());
-  TestProgram merged(world, merge);
-  EXPECT_EQ(merged.wait(), 0) << merged.output();
 }
 
 }  // namespace
