@@ -24,10 +24,12 @@
 #include <cstring>
 #include <ifaddrs.h>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <fastdds/rtps/common/LocatorList.hpp>
 #include <fastdds/rtps/network/SenderResource.h>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
@@ -40,8 +42,12 @@
 #include "ros2/datagram_filter.h"
 #include "ros2/datagram_sources.h"
 #include "ros2/receive_thread.h"
+#include "ros2/udp_sockets.h"
 
 namespace culprit::ros2::fast_dds {
+
+// So many participants of one machine are announced to, as ROS 2 Iron and newer do.
+inline constexpr std::uint32_t kAnnouncedTo = 32;
 
 // What a participant and its transport share.
 struct Reception {
@@ -142,8 +148,13 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
             eprosima::fastrtps::rtps::LocatorsIterator* begin,
             eprosima::fastrtps::rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
-    const bool is_quiet = !*reception_.speaks || *reception_.holds > 0;
-    return is_quiet || sender->send(bytes, size, begin, end, timeout);
+    if (!*reception_.speaks || *reception_.holds > 0) return true;
+    std::vector<Locator> wanted;
+    for (; *begin != *end; ++*begin) wanted.push_back(**begin);
+    if (wanted.size() > kAnnouncedTo) wanted = those_of_somebody(wanted);
+    Locators first(wanted.cbegin());
+    Locators last(wanted.cend());
+    return sender->send(bytes, size, &first, &last, timeout);
   }
 
   // The thread is our own: nothing comes this way.
@@ -151,6 +162,28 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
                const Locator&) override {}
 
  private:
+  using Locators = eprosima::fastdds::rtps::Locators;
+
+  // An announcement goes to each port that a participant of this machine may have, most of which nobody
+  // has; the system needs as long for those as for others. They are left out where it tells who has
+  // which, and knows ours among them. A port that is opened meanwhile is told a moment later.
+  std::vector<Locator> those_of_somebody(const std::vector<Locator>& all) {
+    constexpr Duration kLasts = std::chrono::milliseconds(200);
+    const MutexLock lock(mutex_);
+    const Time now = live_now();
+    if (later(bound_at_, kLasts) <= now) {
+      bound_ = bound_udp_ports();
+      bound_at_ = now;
+    }
+    if (!bound_.contains(*reception_.patient_port)) return all;
+    std::vector<Locator> those;
+    for (const Locator& each : all) {
+      const bool is_here = each.kind == LOCATOR_KIND_UDPv4 && IpLocator::isLocal(each);
+      if (!is_here || bound_.contains(IpLocator::getPhysicalPort(each))) those.push_back(each);
+    }
+    return those;
+  }
+
   const eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp() const {
     return *static_cast<const eprosima::fastdds::rtps::UDPv4TransportDescriptor*>(
         low_level_transport_->get_configuration());
@@ -261,6 +294,9 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
   Locator normalized_ CULPRIT_GUARDED_BY(mutex_);  // what was asked for last, and when
   Time normalized_at_ CULPRIT_GUARDED_BY(mutex_){};
   eprosima::fastrtps::rtps::LocatorList_t normal_ CULPRIT_GUARDED_BY(mutex_);
+  std::set<std::uint16_t> bound_
+      CULPRIT_GUARDED_BY(mutex_);  // ports of this machine, and since when
+  Time bound_at_ CULPRIT_GUARDED_BY(mutex_){};
   // Of the port for those that have time; written before the receiver.
   Locator patient_locator_;
   std::atomic<Receiver*> patient_ = nullptr;

@@ -295,8 +295,7 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
   if (options.reach == Reach::kLocalhost) udp->interfaceWhiteList.emplace_back("127.0.0.1");
   udp->receiveBufferSize = options.socket_buffer_bytes;
   udp->sendBufferSize = options.socket_buffer_bytes;
-  udp->maxInitialPeersRange =
-      32;  // participants of one machine that are announced to, as ROS 2 Iron and newer
+  udp->maxInitialPeersRange = kAnnouncedTo;
   out.transport().use_builtin_transports = false;
   out.transport().user_transports.push_back(
       std::make_shared<CarefulTransportDescriptor>(std::move(udp), reception, options.domain));

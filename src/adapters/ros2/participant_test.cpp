@@ -2,7 +2,10 @@
 
 #include <atomic>
 #include <map>
+#include <netinet/in.h>
 #include <numeric>
+#include <poll.h>
+#include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
 
@@ -490,6 +493,41 @@ TEST(Participant, WhoStaysAsItIsIsToldOfOnce) {
     EXPECT_LT(before, announced());
   }
   EXPECT_EQ(told.all().size(), 1u);
+}
+
+// A port where a participant of this machine may be found (RTPS 2.3 §9.6.1.1), held by somebody who only listens.
+class Eavesdropper {
+ public:
+  Eavesdropper(std::uint32_t domain, int participant) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port =
+        htons(static_cast<std::uint16_t>(7400 + 250 * domain + 10 + 2 * participant));
+    EXPECT_EQ(bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  }
+  ~Eavesdropper() { close(descriptor_); }
+  Eavesdropper(const Eavesdropper&) = delete;
+  Eavesdropper& operator=(const Eavesdropper&) = delete;
+
+  // Waits until something comes. False if nothing does.
+  bool hears() const {
+    pollfd what{descriptor_, POLLIN, 0};
+    return poll(&what, 1, static_cast<int>(std::chrono::milliseconds(kPatience).count())) == 1;
+  }
+
+ private:
+  const int descriptor_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+};
+
+// Whether it was there before the participant, or comes when that has announced itself for a while.
+TEST(Participant, IsAnnouncedToEachPortOfThisMachineThatSomebodyHas) {
+  const TestDomain domain;
+  const Eavesdropper before(domain.options().domain, 29);
+  const auto participant = join(domain);
+  EXPECT_TRUE(before.hears());
+  const Eavesdropper after(domain.options().domain, 31);
+  EXPECT_TRUE(after.hears());
 }
 
 TEST(Participant, DomainsDoNotHearEachOther) {

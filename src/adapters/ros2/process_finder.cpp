@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstring>
 #include <fstream>
-#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <system_error>
 
 #include "ros2/own_addresses.h"
+#include "ros2/udp_sockets.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -30,60 +28,12 @@ std::string to_text(const UdpAddress& address) {
   return text + ":" + std::to_string(address.port);
 }
 
-struct BoundSocket {
-  UdpAddress address;  // of the form 0.0.0.0:port: it is bound to no address
-  unsigned user = 0;   // that made it
-  std::string link;    // as the link of a file descriptor shows it: "socket:[12345]"
-};
-
-// "0100007F" is 127.0.0.1: four bytes at a time, as the machine keeps them. Of IPv6 the last four
-// count: an IPv4 address inside one, or none.
-std::optional<UdpAddress> parse_address(std::string_view text) {
-  const auto colon = text.find(':');
-  if (colon == std::string_view::npos || colon < 8) return std::nullopt;
-  std::uint32_t ip = 0;
-  UdpAddress address;
-  const char* begin = text.data() + colon - 8;
-  if (std::from_chars(begin, begin + 8, ip, 16).ec != std::errc()) return std::nullopt;
-  std::memcpy(address.ip.data(), &ip, address.ip.size());
-  begin = text.data() + colon + 1;
-  if (std::from_chars(begin, text.data() + text.size(), address.port, 16).ec != std::errc())
-    return std::nullopt;
-  return address;
-}
-
-// Adds what a table such as /proc/net/udp knows.
-void add_sockets(const fs::path& table, std::vector<BoundSocket>& sockets) {
-  std::ifstream file(table);
-  std::string line;
-  std::getline(file, line);  // the headings
-  while (std::getline(file, line)) {
-    std::istringstream columns(line);
-    std::string skipped, local, inode;
-    BoundSocket socket;
-    columns >> skipped >> local;
-    for (int i = 0; i < 5; ++i) columns >> skipped;
-    columns >> socket.user >> skipped >> inode;
-    const auto address = parse_address(local);
-    if (!columns || !address) continue;
-    socket.address = *address;
-    socket.link = "socket:[" + inode + "]";
-    sockets.push_back(std::move(socket));
-  }
-}
-
-std::vector<BoundSocket> all_sockets(const fs::path& proc) {
-  std::vector<BoundSocket> sockets;
-  for (const char* table : {"net/udp", "net/udp6"}) add_sockets(proc / table, sockets);
-  return sockets;
-}
-
 // The sockets that one address may belong to: several where they share a port.
-using Candidates = std::vector<BoundSocket>;
+using Candidates = std::vector<UdpSocket>;
 
-Candidates bound_to(const UdpAddress& address, const std::vector<BoundSocket>& sockets) {
+Candidates bound_to(const UdpAddress& address, const std::vector<UdpSocket>& sockets) {
   Candidates found;
-  for (const BoundSocket& socket : sockets) {
+  for (const UdpSocket& socket : sockets) {
     const bool fits =
         socket.address.ip == std::array<std::uint8_t, 4>{} || socket.address.ip == address.ip;
     if (fits && socket.address.port == address.port) found.push_back(socket);
@@ -119,7 +69,7 @@ bool holds(const fs::path& process, const std::vector<Candidates>& needed) {
   const std::set<std::string> links = descriptors_of(process);
   if (links.empty()) return false;
   const std::vector<unsigned> users = users_of(process);
-  const auto is_its = [&](const BoundSocket& socket) {
+  const auto is_its = [&](const UdpSocket& socket) {
     return links.contains(socket.link) &&
            std::find(users.begin(), users.end(), socket.user) != users.end();
   };
@@ -179,7 +129,7 @@ bool ProcessFinder::has_ended(const ParticipantInfo& participant) const {
   const std::vector<UdpAddress>& from = participant.origin.addresses;
   const auto is_here = [](const UdpAddress& each) { return is_local(each.ip); };
   if (!std::all_of(from.begin(), from.end(), is_here)) return false;
-  const std::vector<BoundSocket> sockets = all_sockets(proc_);
+  const std::vector<UdpSocket> sockets = udp_sockets(proc_);
   if (sockets.empty()) return false;  // there is at least the one that this was heard by
   const auto is_nobodys = [&](const UdpAddress& each) { return bound_to(each, sockets).empty(); };
   return std::any_of(participant.metatraffic.begin(), participant.metatraffic.end(), is_nobodys) ||
@@ -202,7 +152,7 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
     addresses.push_back(each);
   }
 
-  const std::vector<BoundSocket> sockets = all_sockets(proc_);
+  const std::vector<UdpSocket> sockets = udp_sockets(proc_);
   std::vector<Candidates> needed;
   for (const UdpAddress& each : addresses) {
     needed.push_back(bound_to(each, sockets));

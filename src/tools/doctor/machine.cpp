@@ -1,17 +1,15 @@
 #include "doctor/machine.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 
 #include "owners/proc.h"
 #include "owners/start_of.h"
+#include "ros2/udp_sockets.h"
 
 namespace culprit::doctor {
 namespace {
@@ -75,25 +73,11 @@ constexpr int kMostDomains = 233;
 // The domains that sockets wait on, with the sockets.
 std::map<std::uint32_t, std::set<std::string>> sockets_by_domain() {
   std::map<std::uint32_t, std::set<std::string>> found;
-  for (const char* table : {"/proc/net/udp", "/proc/net/udp6"}) {
-    std::ifstream file(table);
-    std::string line;
-    std::getline(file, line);  // the headings
-    while (std::getline(file, line)) {
-      std::istringstream columns(line);
-      std::string skipped, local, inode;
-      columns >> skipped >> local;
-      for (int i = 0; i < 7; ++i) columns >> skipped;
-      columns >> inode;
-      int port = 0;
-      const std::size_t colon = local.find(':');
-      if (!columns || colon == std::string::npos) continue;
-      std::from_chars(local.data() + colon + 1, local.data() + local.size(), port, 16);
-      const int above = port - kFirstPort;
-      if (above < 0 || above % kPortsOfDomain != 0 || above / kPortsOfDomain >= kMostDomains)
-        continue;
-      found[static_cast<std::uint32_t>(above / kPortsOfDomain)].insert("socket:[" + inode + "]");
-    }
+  for (const ros2::UdpSocket& socket : ros2::udp_sockets()) {
+    const int above = socket.address.port - kFirstPort;
+    if (above < 0 || above % kPortsOfDomain != 0 || above / kPortsOfDomain >= kMostDomains)
+      continue;
+    found[static_cast<std::uint32_t>(above / kPortsOfDomain)].insert(socket.link);
   }
   return found;
 }

@@ -1,0 +1,27 @@
+// The UDP sockets of this machine, as the kernel's tables tell them: /proc/net/udp and udp6 (proc(5)).
+// They are those of the caller's network namespace; of all of its processes, whoever they run as.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "ros2/datagram_sources.h"
+
+namespace culprit::ros2 {
+
+struct UdpSocket {
+  UdpAddress address;  // ip 0.0.0.0: it is bound to none; of IPv6 the last four bytes
+  unsigned user = 0;   // that made it
+  std::string link;    // as the link of a file descriptor shows it: "socket:[12345]"
+};
+
+// What cannot be read is left out: nothing where there are no such tables.
+std::vector<UdpSocket> udp_sockets(const std::filesystem::path& proc = "/proc");
+
+// The ports that they are bound to.
+std::set<std::uint16_t> bound_udp_ports();
+
+}  // namespace culprit::ros2
