@@ -136,6 +136,10 @@ Expected<void> Link::start() {
     return finder.find(participant);
   };
   graph.is_running = [finder = ProcessFinder()](int pid) { return finder.is_running(pid); };
+  graph.is_ended_by_others = [this](const std::string& node) {
+    const auto component = binding_.bind(node);
+    return component && rules_[*component].has_owner();
+  };
   auto context = Context::create(executor_, options_.participant, std::move(graph));
   if (!context) return Error{context.error()};
   context_ = std::move(*context);

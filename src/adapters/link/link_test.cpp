@@ -19,6 +19,7 @@
 #include "ros2/live_test.h"
 #include "ros2/services.h"
 #include "ros2/test_datagram.h"
+#include "ros2/test_forger.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -151,6 +152,31 @@ TEST(Link, AsksLocalNodesTooWhetherTheyAnswer) {
   EXPECT_TRUE(answers(false)) << "its callback hangs";
   goes_on.set_value();
   hung.join();
+}
+
+// As with nodes of other users, in containers or not: nobody that can be seen holds their sockets.
+TEST(Link, MissesNoProofOfWhatAnEngineOrSystemdEnds) {
+  const TestDomain domain;
+  Linked linked(domain, {},
+                "COMPONENT slam NODE /slam CONTAINER docker slam\n"
+                "COMPONENT lidar NODE /lidar UNIT lidar.service\n"
+                "COMPONENT robot NODE /robot\n");
+  const auto is_missed = [](const std::string& node) {
+    return [=](const LinkTrouble& told) {
+      return told.text.find("the process of " + node + " is not proven") != std::string::npos;
+    };
+  };
+  Forger slam(domain.options(), free_port());
+  Forger lidar(domain.options(), free_port());
+  Forger robot(domain.options(), free_port());
+  slam.says_that_it_holds({"/", "slam", {}, {}});
+  ASSERT_TRUE(linked.sees("/slam"));
+  lidar.says_that_it_holds({"/", "lidar", {}, {}});
+  ASSERT_TRUE(linked.sees("/lidar"));
+  robot.says_that_it_holds({"/", "robot", {}, {}});
+  EXPECT_TRUE(linked.wait<LinkTrouble>(is_missed("/robot")));
+  EXPECT_FALSE(linked.has_seen<LinkTrouble>(is_missed("/slam")));
+  EXPECT_FALSE(linked.has_seen<LinkTrouble>(is_missed("/lidar")));
 }
 
 // Who answers a client that was made after the reader has been told of the reader, too.

@@ -302,15 +302,24 @@ bool Graph::has_ended(const Peer& peer) const {
 // For a node that it comes to hold, of several at once for the first. Of an ended process nothing can be proven
 // any more: what was known of it stays known.
 void Graph::look_for_process(const std::string& name, Peer& peer) {
-  if (std::exchange(looked_for_, &peer) == &peer) return;
-  if (!options_.find_process || (peer.pid != 0 && has_ended(peer))) return;
-  FoundProcess found = options_.find_process(peer.info);
-  peer.pid = found.pid;
-  peer.pid_is_known = true;
-  if (!found.missing.empty() && found.missing != peer.told_missing)
-    tell(GraphTrouble{"the process of " + name +
-                      " is not proven, so it is not ended: " + found.missing});
-  peer.told_missing = std::move(found.missing);
+  const bool is_next = std::exchange(looked_for_, &peer) == &peer;
+  if (!is_next && options_.find_process && (peer.pid == 0 || !has_ended(peer))) {
+    FoundProcess found = options_.find_process(peer.info);
+    peer.pid = found.pid;
+    peer.pid_is_known = true;
+    peer.missing = std::move(found.missing);
+    if (peer.missing.empty()) peer.told_missing.clear();
+  }
+  tell_of_missing(name, peer);
+}
+
+// Once for all nodes of a process, by the first one that lacks it.
+void Graph::tell_of_missing(const std::string& name, Peer& peer) {
+  if (peer.missing == peer.told_missing) return;
+  if (options_.is_ended_by_others && options_.is_ended_by_others(name)) return;
+  tell(GraphTrouble{"the process of " + name +
+                    " is not proven, so it is not ended: " + peer.missing});
+  peer.told_missing = peer.missing;
 }
 
 GraphNode Graph::describe(const std::string& name, const Peer& peer) const {

@@ -104,12 +104,15 @@ class Graph {
   // since it was asked last.
   using FindProcess = std::function<FoundProcess(const ParticipantInfo&)>;
   using IsRunning = std::function<bool(int pid)>;
+  // Whether somebody else ends what this node runs in: then nothing is missing without a proof.
+  using IsEndedByOthers = std::function<bool(const std::string& node)>;
   using Listener = std::function<void(const GraphChange&)>;  // must not call back into the graph
 
   struct Options {
     Listener listener;
-    FindProcess find_process;  // may be empty
-    IsRunning is_running;      // may be empty
+    FindProcess find_process;            // may be empty
+    IsRunning is_running;                // may be empty
+    IsEndedByOthers is_ended_by_others;  // may be empty
     Limits limits;
   };
 
@@ -166,6 +169,7 @@ class Graph {
     ParticipantInfo info;
     int pid = 0;
     bool pid_is_known = false;
+    std::string missing;       // for a proof of its process
     std::string told_missing;  // what was told of last
     bool told_of_invalid_name = false;
     bool told_of_duplicate = false;
@@ -204,6 +208,7 @@ class Graph {
   int pid_of(Peer& peer);
   bool has_ended(const Peer& peer) const;
   void look_for_process(const std::string& name, Peer& peer);
+  void tell_of_missing(const std::string& name, Peer& peer);
   GraphNode describe(const std::string& name, const Peer& peer) const;
   void warn_of_duplicate(const std::string& name, const Node& node);
   void count_namesakes(const std::string& name, Node& node);

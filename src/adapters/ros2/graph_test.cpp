@@ -342,6 +342,38 @@ TEST(Graph, TheProcessOfManyNodesIsLookedForOnce) {
   EXPECT_EQ(looks, 2) << "it says something else";
 }
 
+TEST(Graph, TellsOnceWhatIsMissingForTheProofOfAProcess) {
+  Graph::Options options;
+  options.find_process = [](const ParticipantInfo&) {
+    return FoundProcess{0, "its user is another"};
+  };
+  Watched watched(options);
+  watched.joins(1, 10).says(1, {node("/", "a"), node("/", "b")});
+  watched.says(1, {node("/", "a"), node("/", "b"), node("/", "c")});
+  EXPECT_THAT(
+      watched.told(),
+      ElementsAre("!the process of /a is not proven, so it is not ended: its user is another",
+                  "+/a", "+/b", "+/c"));
+}
+
+// Of several nodes in a process one may be somebody else's to end, and another ours.
+TEST(Graph, NothingIsMissingForANodeThatOthersEnd) {
+  Graph::Options options;
+  options.find_process = [](const ParticipantInfo&) {
+    return FoundProcess{0, "its user is another"};
+  };
+  options.is_ended_by_others = [](const std::string& node) { return node == "/a"; };
+  Watched watched(options);
+  watched.joins(1, 10).says(1, {node("/", "a")});
+  EXPECT_THAT(watched.told(), ElementsAre("+/a"));
+  watched.joins(2, 20).says(2, {node("/", "a"), node("/", "b")});
+  EXPECT_THAT(watched.told(), Contains("!the process of /b is not proven, so it is not ended: "
+                                       "its user is another"));
+  watched.says(1, {node("/", "a"), node("/", "c")});
+  EXPECT_THAT(watched.told(), Contains(HasSubstr("the process of /c is not proven")))
+      << "it came later";
+}
+
 TEST(Graph, TheProcessOfANodeThatCountsAgainIsLookedForAnew) {
   int looks = 0;
   Graph::Options options;
@@ -445,6 +477,7 @@ TEST(Graph, TellsWhetherWhoLeftSaidGoodBye) {
                    },
                .find_process = {},
                .is_running = {},
+               .is_ended_by_others = {},
                .limits = {}});
   for (const bool was_lost : {true, false}) {
     ParticipantInfo info;
