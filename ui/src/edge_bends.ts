@@ -1,6 +1,5 @@
 // How far an edge has to bend so that it leads through no node.
-import { kNode } from './graph_style'
-import type { Point } from './layout'
+import { kNode, type Point } from './layout'
 
 const kGap = 8 // between an edge and a node that it passes
 const kBends = [0, 90, -90, 150, -150, 220, -220, 300, -300]

@@ -1,9 +1,9 @@
 // How nodes and edges look, in the colours of the scheme.
 import type cytoscape from 'cytoscape'
+import { kNode } from './layout'
 import { colour } from './theme'
 import type { Health } from './types'
 
-export const kNode = { width: 192, height: 58 }
 export const kLeastText = 7 // pixels: what is smaller is no text
 export const kLeastZoom = 0.5 // at which the names of nodes can be read
 

@@ -3,10 +3,9 @@
 // Cytoscape for nodes within nodes pays for that with each change.
 import type cytoscape from 'cytoscape'
 import { cascade, kMarks, type Shown } from './graph_model'
-import { kNode } from './graph_style'
 import { groupOf } from './grouping'
 import { level } from './history'
-import type { Point } from './layout'
+import { kNode, type Point } from './layout'
 import { culprits, health } from './store'
 import type { Graph, Health } from './types'
 

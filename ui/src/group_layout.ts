@@ -1,13 +1,12 @@
 // Where the nodes of a graph stand that is looked at by groups: each group is a block of its own, the blocks stand as nodes
 // would (layout.ts), so that nothing moves when one comes nearer.
-import { kLayer, kRow, layered, type Point } from './layout'
+import { kLayer, kNode, kRow, layered, type Point } from './layout'
 
 const kMostRows = 6 // of a block that is laid out along its data
 const kColumn = 240 // of a block of many nodes
 const kLine = 96
 const kTall = 1.4 // rows for each column of it
 const kBetween = { x: 150, y: 110 } // blocks; their names stand there
-const kNode = { width: 192, height: 58 }
 
 interface Block {
   points: Map<string, Point> // from its upper left node

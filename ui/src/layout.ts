@@ -8,6 +8,7 @@ export interface Point {
 
 export const kLayer = 340
 export const kRow = 132
+export const kNode = { width: 192, height: 58 } // what stands at a point, which is its middle
 const kSweeps = 4
 
 // `edges` lead from a producer to a consumer. `before` is the last layout.
