@@ -1,18 +1,23 @@
 #include <map>
+#include <unistd.h>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/rule_graph.h"
 #include "knowledge/dependency_graph.h"
 #include "live/live_robot.h"
+#include "live/rule_file.h"
 #include "ros2/options.h"
+#include "terminal/console.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
 
 struct GraphOptions {
+  std::string rules;  // of this file; empty: of the live robot
   double wait_seconds = 3;
   bool json = false;
   bool dot = false;
@@ -111,15 +116,6 @@ void print_json(const Picture& picture) {
   fmt::print("{}\n", document.dump(2));
 }
 
-std::string in_dot(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 // Names of nodes were checked against the ROS grammar when they came in, those of computers were not.
 void print_dot(const Picture& picture) {
   fmt::print("digraph robot {{\n  rankdir=LR;\n  node [shape=box];\n");
@@ -131,7 +127,18 @@ void print_dot(const Picture& picture) {
   fmt::print("}}\n");
 }
 
+int show_rule_graph(const GraphOptions& options) {
+  const auto loaded =
+      live::read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
+  if (!loaded) return fail(loaded.error());
+  fmt::print(stderr, "{}", loaded->remarks);
+  const RuleGraph graph = graph_of(loaded->rules, loaded->source);
+  fmt::print("{}", options.json ? as_json(graph) : options.dot ? as_dot(graph) : as_text(graph));
+  return kOk;
+}
+
 int show_graph(const GraphOptions& options) {
+  if (!options.rules.empty()) return show_rule_graph(options);
   if (const auto robot = ros2::options_from_environment(); !robot)
     return fail(robot.error(), kUsage);
   const auto picture = look(from_seconds(options.wait_seconds));
@@ -154,12 +161,20 @@ int show_graph(const GraphOptions& options) {
 void add_graph(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<GraphOptions>();
   CLI::App* command =
-      app.add_subcommand("graph", "Show the live robot: its nodes, and who depends on whom");
+      app.add_subcommand("graph",
+                         "Show the live robot: its nodes, and who depends on whom; or what a rule "
+                         "file says of it");
+  auto* rules = command
+                    ->add_option("RULES", options->rules,
+                                 "A rule file: show its components, what it declares of who "
+                                 "depends on whom, and its rules, without a robot")
+                    ->type_name("FILE");
   auto* json = command->add_flag("--json", options->json, "As one JSON object");
   command
       ->add_flag("--dot", options->dot, "For Graphviz: culprit graph --dot | dot -Tsvg > robot.svg")
       ->excludes(json);
-  add_seconds(*command, "--wait", options->wait_seconds, "How long to look", 0.1, 600);
+  add_seconds(*command, "--wait", options->wait_seconds, "How long to look", 0.1, 600)
+      ->excludes(rules);
   command->callback([options, &exit_code] { exit_code = show_graph(*options); });
 }
 

@@ -1,0 +1,185 @@
+#include "cli/rule_graph.h"
+
+#include <algorithm>
+#include <map>
+#include <variant>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/diagnostic_report.h"
+#include "knowledge/describe.h"
+#include "language/occurrences.h"
+#include "language/parser.h"
+
+namespace culprit::cli {
+namespace {
+
+using GraphJson = nlohmann::ordered_json;
+
+RuleGraph::Place place_of(Span span, const Source& source) {
+  const auto written = source.origin(span).place;
+  const Source& file = source.file(written.file);
+  return {file.name(), file.position(written.span.begin)};
+}
+
+// Where each component is declared, or else named first.
+std::map<std::string, Span> spans_of_components(const Source& source) {
+  std::vector<Diagnostic> known;  // whoever checked the rules has said so
+  std::map<std::string, Span> spans;
+  std::map<std::string, Span> declared;
+  for (const Occurrence& each : occurrences(parse(source, known), source)) {
+    if (each.kind != Occurrence::Kind::kComponent) continue;
+    (each.declares ? declared : spans).emplace(each.name, each.span);
+  }
+  for (const auto& [name, span] : declared) spans[name] = span;
+  return spans;
+}
+
+std::vector<ComponentId> read_by(const Rule& rule, const RuleSet& rules) {
+  std::vector<ComponentId> all;
+  const auto of_parameter = [&](ParameterId id) { all.push_back(rules[id].component); };
+  for (const InputId id : rule.inputs) {
+    const Input& input = rules[id];
+    switch (input.kind) {
+      case Input::Kind::kAlive:
+      case Input::Kind::kLifecycle:
+        all.push_back(input.component);
+        break;
+      case Input::Kind::kParameter:
+        of_parameter(input.parameter);
+        break;
+      case Input::Kind::kSignal:
+      case Input::Kind::kMean:
+      case Input::Kind::kMin:
+      case Input::Kind::kMax:
+      case Input::Kind::kStddev:
+      case Input::Kind::kChanged:
+        if (const auto* parameter = std::get_if<ParameterId>(&rules[input.signal].source))
+          of_parameter(*parameter);
+        break;
+      case Input::Kind::kRate:
+      case Input::Kind::kAge:
+      case Input::Kind::kPhi:
+      case Input::Kind::kLevel:
+        break;
+    }
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+GraphJson with_place(GraphJson entry, const RuleGraph::Place& place) {
+  entry["file"] = place.file;
+  entry["line"] = place.at.line;
+  entry["column"] = place.at.column;
+  return entry;
+}
+
+std::string listed_components(const std::vector<ComponentId>& components, const RuleGraph& graph) {
+  std::string text;
+  for (const ComponentId id : components)
+    text += (text.empty() ? "" : ", ") + graph.components[id.index].name;
+  return text;
+}
+
+}  // namespace
+
+RuleGraph graph_of(const RuleSet& rules, const Source& source) {
+  RuleGraph graph;
+  const std::map<std::string, Span> spans = spans_of_components(source);
+  for (const culprit::Component& each : rules.components) {
+    RuleGraph::Component component{each.name, each.node, each.declared, std::nullopt};
+    if (const auto found = spans.find(each.name); found != spans.end())
+      component.place = place_of(found->second, source);
+    graph.components.push_back(std::move(component));
+  }
+  graph.dependencies = rules.dependencies;
+  for (const culprit::Rule& each : rules.rules) {
+    graph.rules.push_back({each.name, each.policies.criticality, read_by(each, rules),
+                           each.components, place_of(each.declaration.span, source)});
+  }
+  return graph;
+}
+
+std::string as_text(const RuleGraph& graph) {
+  if (graph.components.empty() && graph.rules.empty()) return "no components and no rules\n";
+  std::vector<std::string> needs(graph.components.size());
+  for (const Dependency& each : graph.dependencies)
+    needs[each.consumer.index] += "  needs " + graph.components[each.producer.index].name + "\n";
+  std::string text;
+  for (std::size_t c = 0; c < graph.components.size(); ++c) {
+    const RuleGraph::Component& each = graph.components[c];
+    text += each.name + (each.node.empty() ? "" : "  (" + each.node + ")") + "\n" + needs[c];
+  }
+  for (const RuleGraph::Rule& rule : graph.rules) {
+    text += fmt::format("{}  ({})\n", rule.name, to_string(rule.criticality));
+    if (!rule.reads.empty()) text += "  looks at " + listed_components(rule.reads, graph) + "\n";
+    text += rule.adapts.empty() ? "  adapts nothing\n"
+                                : "  adapts " + listed_components(rule.adapts, graph) + "\n";
+  }
+  return text;
+}
+
+std::string as_json(const RuleGraph& graph) {
+  GraphJson components = GraphJson::array();
+  for (const RuleGraph::Component& each : graph.components) {
+    GraphJson entry{{"name", each.name}, {"node", each.node}, {"declared", each.is_declared}};
+    components.push_back(each.place ? with_place(std::move(entry), *each.place) : entry);
+  }
+  const auto name_of = [&](ComponentId id) { return graph.components[id.index].name; };
+  GraphJson dependencies = GraphJson::array();
+  for (const Dependency& each : graph.dependencies)
+    dependencies.push_back(
+        {{"consumer", name_of(each.consumer)}, {"producer", name_of(each.producer)}});
+  const auto names = [&](const std::vector<ComponentId>& all) {
+    GraphJson list = GraphJson::array();
+    for (const ComponentId id : all) list.push_back(name_of(id));
+    return list;
+  };
+  GraphJson rules = GraphJson::array();
+  for (const RuleGraph::Rule& each : graph.rules)
+    rules.push_back(with_place({{"name", each.name},
+                                {"criticality", to_string(each.criticality)},
+                                {"reads", names(each.reads)},
+                                {"adapts", names(each.adapts)}},
+                               each.place));
+  return to_text({{"components", std::move(components)},
+                  {"dependencies", std::move(dependencies)},
+                  {"rules", std::move(rules)}}) +
+         "\n";
+}
+
+std::string in_dot(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+// A rule may be called as a component is: they are told apart by what stands in front.
+std::string as_dot(const RuleGraph& graph) {
+  std::string text = "digraph rules {\n  rankdir=LR;\n";
+  const auto component = [&](ComponentId id) {
+    return in_dot("component " + graph.components[id.index].name);
+  };
+  for (std::size_t c = 0; c < graph.components.size(); ++c)
+    text += fmt::format("  {} [shape=box, label={}];\n", component(ComponentId(c)),
+                        in_dot(graph.components[c].name));
+  for (const Dependency& each : graph.dependencies)
+    text += fmt::format("  {} -> {};\n", component(each.producer), component(each.consumer));
+  for (const RuleGraph::Rule& each : graph.rules) {
+    const std::string rule = in_dot("rule " + each.name);
+    text += fmt::format("  {} [shape=ellipse, label={}];\n", rule, in_dot(each.name));
+    for (const ComponentId id : each.reads)
+      text += fmt::format("  {} -> {} [style=dotted];\n", component(id), rule);
+    for (const ComponentId id : each.adapts)
+      text += fmt::format("  {} -> {} [style=dashed];\n", rule, component(id));
+  }
+  return text + "}\n";
+}
+
+}  // namespace culprit::cli

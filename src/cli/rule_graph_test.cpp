@@ -1,0 +1,149 @@
+// culprit graph RULES: what a rule file says of its robot.
+#include "cli/rule_graph.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+
+namespace culprit::cli {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kRover = R"(COMPONENT lidar NODE /lidar
+COMPONENT slam  NODE /slam
+DEPENDENCY slam ON lidar
+SIGNAL mode PARAMETER lidar mode
+RULE NoScan
+  POLICIES ERROR
+  TRIGGER age(/scan) > 1s && mode == "fast" && alive(slam)
+    STRATEGY again 90 10
+      ADAPTATION lidar restart 10
+RULE Tilted
+  POLICIES WARNING
+  TRIGGER tilt > 3
+    STRATEGY level 50 10
+      ADAPTATION arm set_parameter level true 5
+      ADAPTATION slam restart 5
+)";
+
+struct GraphOfRules : testing::Test {
+  // Gives the exit code; what was printed is in `out` and `err`.
+  int graph(std::vector<std::string> arguments) {
+    CLI::App app;
+    int exit_code = -1;
+    add_graph(app, exit_code);
+    arguments.insert(arguments.begin(), "graph");
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    app.parse(arguments);
+    out = testing::internal::GetCapturedStdout();
+    err = testing::internal::GetCapturedStderr();
+    return exit_code;
+  }
+  std::string file(const std::string& name, const std::string& text) {
+    const std::string path = testing::TempDir() + "rule_graph_test_" + name + ".rules";
+    std::ofstream(path, std::ios::binary) << text;
+    return path;
+  }
+
+  std::string out;
+  std::string err;
+};
+
+TEST_F(GraphOfRules, IsOfComponentsDependenciesAndRules) {
+  ASSERT_EQ(graph({file("rover", kRover)}), kOk) << err;
+  EXPECT_EQ(out,
+            "lidar  (/lidar)\n"
+            "slam  (/slam)\n"
+            "  needs lidar\n"
+            "arm\n"
+            "NoScan  (ERROR)\n"
+            "  looks at lidar, slam\n"
+            "  adapts lidar\n"
+            "Tilted  (WARNING)\n"
+            "  adapts slam, arm\n");
+}
+
+TEST_F(GraphOfRules, AsDataSaysWhereEachIsWritten) {
+  const std::string path = file("rover", kRover);
+  ASSERT_EQ(graph({path, "--json"}), kOk) << err;
+  const auto json = nlohmann::json::parse(out);
+  EXPECT_EQ(json["components"][1], nlohmann::json({{"name", "slam"},
+                                                   {"node", "/slam"},
+                                                   {"declared", true},
+                                                   {"file", path},
+                                                   {"line", 2},
+                                                   {"column", 11}}));
+  const auto& arm = json["components"][2];
+  EXPECT_EQ(arm["declared"], false);
+  EXPECT_EQ(arm["line"], 14) << "where it is named first";
+  EXPECT_EQ(json["dependencies"],
+            nlohmann::json::parse(R"([{"consumer": "slam", "producer": "lidar"}])"));
+  EXPECT_EQ(json["rules"][0]["line"], 5);
+  EXPECT_EQ(json["rules"][0]["reads"], nlohmann::json({"lidar", "slam"}));
+  EXPECT_EQ(json["rules"][1]["adapts"], nlohmann::json({"slam", "arm"}));
+  EXPECT_EQ(json["rules"][1]["criticality"], "WARNING");
+}
+
+TEST_F(GraphOfRules, LeadsToTheFileThatIsIncludedAndToWhereATemplateIsUsed) {
+  const std::string included = file("included", "COMPONENT base NODE /base\n");
+  const std::string name = std::filesystem::path(included).filename();
+  const std::string path = file("including", "INCLUDE \"" + name +
+                                                 "\"\nTEMPLATE driver(name)\n"
+                                                 "COMPONENT {name} NODE /{name}\nEND\n"
+                                                 "USE driver(camera)\n");
+  ASSERT_EQ(graph({path, "--json"}), kOk) << err;
+  const auto json = nlohmann::json::parse(out);
+  ASSERT_EQ(json["components"].size(), 2u);
+  EXPECT_EQ(json["components"][0]["file"], included);
+  EXPECT_EQ(json["components"][0]["line"], 1);
+  EXPECT_EQ(json["components"][1]["name"], "camera");
+  EXPECT_EQ(json["components"][1]["file"], path);
+  EXPECT_EQ(json["components"][1]["line"], 5);
+}
+
+TEST_F(GraphOfRules, OfAFileWithMistakesIsWhatTheCheckSays) {
+  EXPECT_EQ(graph({file("wrong", "COMPONENT lidar NODE /lidar\nRULE\n"), "--json"}), kFailed);
+  EXPECT_EQ(out, "");
+  EXPECT_THAT(err, HasSubstr("wrong.rules has errors"));
+  EXPECT_THAT(err, HasSubstr("wrong.rules:2:"));
+}
+
+TEST_F(GraphOfRules, NeedsNoRobotAndNoEnvironment) {
+  setenv("ROS_DOMAIN_ID", "many", 1);
+  EXPECT_EQ(graph({"rules/sunset.rules"}), kOk) << err;
+  unsetenv("ROS_DOMAIN_ID");
+}
+
+// A rule may be called as a component is.
+TEST_F(GraphOfRules, IsDrawnByGraphviz) {
+  ASSERT_EQ(graph({file("one_name",
+                        "COMPONENT lidar NODE /lidar\nRULE lidar\nPOLICIES ERROR\n"
+                        "TRIGGER !alive(lidar)\nSTRATEGY s 50 10\n"
+                        "ADAPTATION lidar restart 5\n"),
+                   "--dot"}),
+            kOk)
+      << err;
+  EXPECT_EQ(out,
+            "digraph rules {\n"
+            "  rankdir=LR;\n"
+            "  \"component lidar\" [shape=box, label=\"lidar\"];\n"
+            "  \"rule lidar\" [shape=ellipse, label=\"lidar\"];\n"
+            "  \"component lidar\" -> \"rule lidar\" [style=dotted];\n"
+            "  \"rule lidar\" -> \"component lidar\" [style=dashed];\n"
+            "}\n");
+}
+
+TEST(GraphOfRulesAsDot, HoldsHostileNames) {
+  EXPECT_EQ(in_dot("a\"]; b [label=\"\\"), "\"a\\\"]; b [label=\\\"\\\\\"");
+}
+
+}  // namespace
+}  // namespace culprit::cli
