@@ -91,6 +91,23 @@ TEST(EditorExtension, HasAnIcon) {
   EXPECT_EQ(bytes.substr(16), std::string("\0\0\0\x80\0\0\0\x80", 8));
 }
 
+TEST(EditorExtension, OffersOnlyCommandsThatItHas) {
+  std::ifstream file("editors/vscode/src/extension.ts");
+  const std::string source(std::istreambuf_iterator<char>(file), {});
+  const nlohmann::json contributes = read_json("package.json").at("contributes");
+  Words commands;
+  for (const auto& each : contributes.at("commands")) {
+    commands.insert(each.at("command").get<std::string>());
+    EXPECT_NE(source.find("registerCommand(\"" + each.at("command").get<std::string>() + "\""),
+              std::string::npos)
+        << each;
+  }
+  for (const auto& [menu, entries] : contributes.at("menus").items()) {
+    for (const auto& each : entries)
+      EXPECT_TRUE(commands.contains(each.at("command").get<std::string>())) << menu;
+  }
+}
+
 // A snippet as it stands in the file when nothing is typed into it.
 std::string as_inserted(const nlohmann::json& snippet) {
   std::string text;

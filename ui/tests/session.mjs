@@ -105,7 +105,8 @@ export async function suite(sessions) {
   }
 }
 
-async function browse(server, steps, now = null) {
+// Runs `steps` with a page of any server: its address is a promise, and it has an end().
+export async function browse(server, steps, now = null) {
   const complaints = []
   let page
   try {

@@ -4,6 +4,7 @@ import { execFile } from "child_process";
 import { dirname } from "path";
 import { commands, Diagnostic, ExtensionContext, languages, TextDocument, Uri, window, workspace } from "vscode";
 import { LanguageClient } from "vscode-languageclient/node";
+import { GraphPanels } from "./graph_panel";
 
 let client: LanguageClient | undefined;
 
@@ -86,16 +87,25 @@ function claim(document: TextDocument): void {
   if (isOurs(document)) void languages.setTextDocumentLanguage(document, kLanguage);
 }
 
+// The one that is being edited, if it is a file of rules.
+function ruleFile(): TextDocument | undefined {
+  const document = window.activeTextEditor?.document;
+  if (document?.languageId === kLanguage && document.uri.scheme === "file") return document;
+  void window.showErrorMessage("Open a rule file of culprit first, and save it.");
+  return undefined;
+}
+
 // In a terminal, as the program of that terminal: no shell reads the file's name.
 async function runInTerminal(name: string, args: (file: string) => string[]): Promise<void> {
-  const document = window.activeTextEditor?.document;
-  if (document === undefined || document.languageId !== kLanguage || document.isUntitled) {
-    void window.showErrorMessage("Open a rule file of culprit first, and save it.");
-    return;
-  }
-  if (!(await document.save())) return;
+  const document = ruleFile();
+  if (document === undefined || !(await document.save())) return;
   const file = document.fileName;
   window.createTerminal({ name, shellPath: program(), shellArgs: args(file), cwd: dirname(file) }).show();
+}
+
+async function showGraph(panels: GraphPanels): Promise<void> {
+  const document = ruleFile();
+  if (document !== undefined) await panels.show(document, window.activeTextEditor?.viewColumn);
 }
 
 async function runOnRobot(): Promise<void> {
@@ -107,11 +117,16 @@ async function runOnRobot(): Promise<void> {
 
 export async function activate(context: ExtensionContext): Promise<void> {
   workspace.textDocuments.forEach(claim);
+  const graphs = new GraphPanels(context, program);
   context.subscriptions.push(
     workspace.onDidOpenTextDocument(claim),
-    workspace.onDidSaveTextDocument(claim),
+    workspace.onDidSaveTextDocument((document) => {
+      claim(document);
+      if (document.languageId === kLanguage) graphs.saved();
+    }),
     workspace.registerTextDocumentContentProvider(kExplained, { provideTextDocumentContent: explain }),
     commands.registerCommand("culprit.restart", restart),
+    commands.registerCommand("culprit.graph", () => showGraph(graphs)),
     commands.registerCommand("culprit.test", () => runInTerminal("culprit test", (file) => ["test", dirname(file)])),
     commands.registerCommand("culprit.plan", () => runInTerminal("culprit plan", (file) => ["plan", file, "--robot"])),
     commands.registerCommand("culprit.web", () => runInTerminal("culprit web", (file) => ["web", file])),
