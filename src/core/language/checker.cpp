@@ -13,6 +13,7 @@
 #include "language/likely_slips.h"
 #include "language/parser.h"
 #include "language/rule_checks.h"
+#include "language/rule_memory.h"
 #include "language/typing.h"
 
 namespace culprit {
@@ -28,6 +29,14 @@ class Checker {
   Checker(const syntax::File& file, Strictness strictness, std::vector<Diagnostic>& diagnostics)
       : file_(file), diagnostics_(diagnostics), symbols_(rules_, strictness, diagnostics) {}
 
+  // With what an earlier check has left in `memory`, which is then what this one leaves. `text` is what
+  // the file is the tree of.
+  void use(RuleMemory& memory, std::string_view text) {
+    before_ = std::exchange(memory, {});
+    memory_ = &memory;
+    text_ = text;
+  }
+
   RuleSet check() {
     rules_.components.reserve(file_.components.size());
     rules_.signals.reserve(file_.signals.size());
@@ -40,13 +49,23 @@ class Checker {
     infer();
     for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
     interlocks();
-    for (const syntax::Rule& rule : file_.rules) add_rule(rule);
+    forget_other_cycle();
+    for (const syntax::Rule& rule : file_.rules) {
+      if (rule.name.text.empty()) continue;  // its line was broken
+      check_name(rule);
+      if (memory_ == nullptr) {
+        add_rule(rule);
+      } else if (!recall(rule)) {
+        add_and_remember(rule);
+      }
+    }
     symbols_.drop_forgotten_reports();
     for (Input& input : rules_.inputs) sort_unique(input.thresholds);
     for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
     for (std::size_t r = 0; r < rules_.rules.size(); ++r) link_readers(RuleId(r));
     check_circles(file_, rules_, diagnostics_);
     check_meaning();
+    if (memory_ != nullptr) memory_->conditions = std::move(conditions_);
     return std::move(rules_);
   }
 
@@ -177,12 +196,96 @@ class Checker {
     if (const auto type = symbols_.type_of(id)) rules_.signals[id.index].type = *type;
   }
 
-  void add_rule(const syntax::Rule& written) {
-    if (written.name.text.empty()) return;  // its line was broken
+  void check_name(const syntax::Rule& written) {
     if (!rule_names_.insert(written.name.text).second) {
       report(Code::kDuplicateName, written.name.span,
              "there is a rule '" + written.name.text + "' already", "give this rule another name");
     }
+  }
+
+  // ---- What is remembered
+
+  // What an impact of so many cycles lasts is part of what rules mean.
+  void forget_other_cycle() {
+    if (memory_ == nullptr) return;
+    memory_->cycle = rules_.cycle;
+    if (before_.cycle == rules_.cycle) return;
+    for (auto& [text, rule] : before_.known) rule.meaning.reset();
+  }
+
+  std::string_view text_of(const syntax::Rule& rule) const {
+    const syntax::Rule* next = &rule + 1;
+    const bool is_last = next == file_.rules.data() + file_.rules.size();
+    return text_.substr(rule.begin, (is_last ? text_.size() : next->begin) - rule.begin);
+  }
+
+  // Adds the rule as it was checked before. False if it was not, or what is known of its names is not
+  // what it was.
+  bool recall(const syntax::Rule& written) {
+    const auto known = before_.known.find(text_of(written));
+    if (known == before_.known.end()) return false;
+    RememberedRule& remembered = known->second;
+    if (remembered.has_broken_part != written.has_broken_part ||
+        !symbols_.answers_the_same(remembered.uses))
+      return false;
+    const RuleId id(rules_.rules.size());
+    symbols_.ask_again(remembered.uses, written.begin - remembered.begin);
+    auto rule = renewed(remembered, written, id, StrategyId(rules_.strategies.size()), before_);
+    if (!rule) {
+      before_.known.erase(known);  // what was made of it is lost
+      return false;
+    }
+    diagnostics_.insert(diagnostics_.end(), remembered.said.begin(), remembered.said.end());
+    remembered.rule = id.index;
+    rules_.rules.push_back(std::move(rule->rule));
+    for (Strategy& strategy : rule->strategies) {
+      rules_.heaviest = std::max(rules_.heaviest, strategy.impact);
+      rules_.strategies.push_back(std::move(strategy));
+    }
+    if (rule->conditions) {
+      collect_thresholds(rule->conditions->trigger, rules_.inputs);
+      remembered.conditions = conditions_.size();
+      conditions_.push_back(std::move(*rule->conditions));
+    }
+    const auto kept = memory_->known.insert(before_.known.extract(known));
+    if (kept.inserted) remember(id, &kept.position->second);
+    return true;
+  }
+
+  void add_and_remember(const syntax::Rule& written) {
+    // One that asks for more is a hostile one: finding what stands for what would take long.
+    constexpr std::size_t kMostUses = 500;
+    RememberedRule rule;
+    const RuleId id(rules_.rules.size());
+    const auto said = static_cast<std::ptrdiff_t>(diagnostics_.size());
+    symbols_.record(&rule.uses);
+    add_rule(written);
+    symbols_.record(nullptr);
+    if (rule.uses.has_report || rule.uses.size() > kMostUses) return;
+    rule.has_broken_part = written.has_broken_part;
+    rule.begin = written.begin;
+    rule.said.assign(diagnostics_.begin() + said, diagnostics_.end());
+    rule.rule = id.index;
+    if (!conditions_.empty() && conditions_.back().rule == id)
+      rule.conditions = conditions_.size() - 1;
+    const auto [entry, is_new] =
+        memory_->known.emplace(std::string(text_of(written)), std::move(rule));
+    if (is_new) remember(id, &entry->second);
+  }
+
+  void remember(RuleId id, RememberedRule* rule) {
+    remembered_.resize(id.index + 1);
+    remembered_[id.index] = rule;
+  }
+
+  // Null: it is not remembered.
+  RememberedRule* remembered(RuleId id) const {
+    return id.index < remembered_.size() ? remembered_[id.index] : nullptr;
+  }
+
+  // ---- Rules
+
+  void add_rule(const syntax::Rule& written) {
     const RuleId id(rules_.rules.size());
     Rule rule;
     rule.name = written.name.text;
@@ -228,18 +331,29 @@ class Checker {
                                     [](const auto& d) { return d.severity == Severity::kError; });
     if (failed) return;
     for (RuleConditions& rule : conditions_) {
-      rule.never_fires = is_never(true, rule.trigger, rules_);
-      check_conditions(rule, rules_, diagnostics_);
-      check_last_resort(rule, rules_, diagnostics_);
-      check_true_when_well(rule, rules_, diagnostics_);
-      check_windows(rule, rules_, diagnostics_);
+      RememberedRule* known = remembered(rule.rule);
+      if (known != nullptr && known->meaning) {
+        diagnostics_.insert(diagnostics_.end(), known->meaning->begin(), known->meaning->end());
+        continue;
+      }
+      const auto said = static_cast<std::ptrdiff_t>(diagnostics_.size());
+      check_meaning(rule);
+      if (known != nullptr) known->meaning.emplace(diagnostics_.begin() + said, diagnostics_.end());
     }
-    for (const syntax::Rule& rule : file_.rules) check_short_impacts(rule, rules_, diagnostics_);
     for (const syntax::Component& component : file_.components)
       check_shell(component, rules_[symbols_.component(component.name)], diagnostics_);
     check_unused(file_, rules_, diagnostics_);
     check_covered_rules(conditions_, rules_, diagnostics_);
     check_oscillation(conditions_, rules_, diagnostics_);
+  }
+
+  void check_meaning(RuleConditions& rule) {
+    rule.never_fires = is_never(true, rule.trigger, rules_);
+    check_conditions(rule, rules_, diagnostics_);
+    check_last_resort(rule, rules_, diagnostics_);
+    check_true_when_well(rule, rules_, diagnostics_);
+    check_windows(rule, rules_, diagnostics_);
+    check_short_impacts(*rule.written, rules_, diagnostics_);
   }
 
   void check_complete(const syntax::Rule& rule) {
@@ -357,7 +471,7 @@ class Checker {
     adaptation.subject = written.subject.text;
     adaptation.topic = written.topic.text;
     if (written.request) adaptation.request = written.request->text;
-    if (names_parameter(written.type))
+    if (syntax::names_parameter(written.type))
       adaptation.parameter = symbols_.parameter(adaptation.component, adaptation.subject);
     if (!written.impact.whole || written.impact.value < 1 || written.impact.value > kMaxImpact) {
       report(Code::kImpactRange, written.impact.span,
@@ -374,12 +488,6 @@ class Checker {
     strategy.components.push_back(adaptation.component);
     strategy.impact = std::max(strategy.impact, adaptation.impact);
     strategy.adaptations.push_back(std::move(adaptation));
-  }
-
-  static bool names_parameter(AdaptationType type) {
-    return type == AdaptationType::kSetParameter || type == AdaptationType::kIncreaseParameter ||
-           type == AdaptationType::kDecreaseParameter ||
-           type == AdaptationType::kChangeCommunication;
   }
 
   void adaptation_value(const syntax::Adaptation& written, Typed typed, Adaptation& adaptation) {
@@ -439,7 +547,11 @@ class Checker {
   RuleSet rules_;
   Symbols symbols_;
   std::set<std::string> rule_names_;
-  std::vector<RuleConditions> conditions_;  // of each rule that has a trigger
+  std::vector<RuleConditions> conditions_;   // of each rule that has a trigger
+  RuleMemory before_;                        // what the last check has left
+  RuleMemory* memory_ = nullptr;             // what this one leaves; null: nobody wants it
+  std::string_view text_;                    // of the file, where there is a memory
+  std::vector<RememberedRule*> remembered_;  // by RuleId; null: it is not
 };
 
 // What is wrong in a template is wrong in each USE of it.
@@ -454,6 +566,27 @@ void say_once(std::vector<Diagnostic>& diagnostics, const Source& source) {
   });
 }
 
+Checked check_tree(const syntax::File& file, std::vector<Diagnostic> said, Strictness strictness,
+                   RuleMemory* memory = nullptr, std::string_view text = "") {
+  Checked result;
+  result.diagnostics = std::move(said);
+  Checker checker(file, strictness, result.diagnostics);
+  if (memory != nullptr) checker.use(*memory, text);
+  RuleSet rules = checker.check();
+  std::stable_sort(
+      result.diagnostics.begin(), result.diagnostics.end(),
+      [](const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; });
+  const bool failed =
+      std::any_of(result.diagnostics.begin(), result.diagnostics.end(),
+                  [](const Diagnostic& d) { return d.severity == Severity::kError; });
+  if (!failed) {
+    result.rules = std::move(rules);
+  } else if (memory != nullptr) {
+    memory->take(rules);
+  }
+  return result;
+}
+
 }  // namespace
 
 Checked check(const Source& source, Strictness strictness) {
@@ -465,7 +598,11 @@ Checked check(const Source& source, Strictness strictness) {
     checked.diagnostics = as_written(std::move(checked.diagnostics), rules.source);
     return checked;
   }
-  return check(file, std::move(said), strictness);
+  return check_tree(file, std::move(said), strictness);
+}
+
+Checked check(const Parsed& whole, Strictness strictness) {
+  return check_tree(whole.file, whole.said, strictness);
 }
 
 Checked check(const Expansion& rules, Strictness strictness) {
@@ -475,18 +612,15 @@ Checked check(const Expansion& rules, Strictness strictness) {
   return checked;
 }
 
-Checked check(const syntax::File& file, std::vector<Diagnostic> said, Strictness strictness) {
-  Checked result;
-  result.diagnostics = std::move(said);
-  RuleSet rules = Checker(file, strictness, result.diagnostics).check();
-  std::stable_sort(
-      result.diagnostics.begin(), result.diagnostics.end(),
-      [](const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; });
-  const bool failed =
-      std::any_of(result.diagnostics.begin(), result.diagnostics.end(),
-                  [](const Diagnostic& d) { return d.severity == Severity::kError; });
-  if (!failed) result.rules = std::move(rules);
-  return result;
+Checked check_again(const Parsed& whole, RuleMemory& memory) {
+  return check_tree(whole.file, whole.said, Strictness::kLenient, &memory, whole.source.text());
+}
+
+Checked check_again(const Expansion& rules, const Parsed& whole, RuleMemory& memory) {
+  if (!rules.mistakes.empty()) return {{}, rules.mistakes};
+  Checked checked = check_again(whole, memory);
+  say_once(checked.diagnostics, rules.source);
+  return checked;
 }
 
 }  // namespace culprit

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "language/diagnostic.h"
+#include "language/reparse.h"
 #include "language/reuse/expansion.h"
+#include "language/rule_memory.h"
 #include "language/rule_set.h"
 #include "language/source.h"
 #include "language/symbols.h"
@@ -26,8 +28,14 @@ struct Checked {
 Checked check(const Source& source, Strictness strictness = Strictness::kLenient);
 // Of rules that were put together (reuse/expansion.h).
 Checked check(const Expansion& rules, Strictness strictness = Strictness::kLenient);
-// The same of a file that is parsed already; `said` are the parser's complaints.
-Checked check(const syntax::File& file, std::vector<Diagnostic> said,
-              Strictness strictness = Strictness::kLenient);
+// The same of a text that is parsed already, and has no INCLUDE, TEMPLATE or USE.
+Checked check(const Parsed& whole, Strictness strictness = Strictness::kLenient);
+
+// The same as a lenient check of `whole`, which takes from `memory` what an earlier one has left there,
+// whatever that was of, and leaves there what the next one may take. The rule set that the earlier one gave
+// has to be given back with RuleMemory::take(), if it gave one.
+Checked check_again(const Parsed& whole, RuleMemory& memory);
+// `whole` is of `rules.source`.
+Checked check_again(const Expansion& rules, const Parsed& whole, RuleMemory& memory);
 
 }  // namespace culprit

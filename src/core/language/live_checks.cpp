@@ -441,16 +441,15 @@ void check_live(const syntax::File& file, const RuleSet& rules, const LiveInvent
 }
 
 std::vector<Diagnostic> missing_on(const LiveInventory& robot, const Source& source) {
-  std::vector<Diagnostic> said;
-  const syntax::File file = parse(source, said);
-  if (file.has_reuse()) {
+  const Parsed parsed = parse_whole(source);
+  if (parsed.file.has_reuse()) {
     const Expansion rules = expand(source);
     if (!rules.mistakes.empty()) return {};
     return as_written(missing_on(robot, rules.source), rules.source);
   }
-  const Checked checked = check(file, std::move(said));
+  const Checked checked = check(parsed);
   if (!checked.rules) return {};
-  return find_missing(file, *checked.rules, robot, checked.diagnostics);
+  return find_missing(parsed.file, *checked.rules, robot, checked.diagnostics);
 }
 
 std::vector<Diagnostic> cannot_launch(const Source& source, const RuleSet& rules,
@@ -463,16 +462,15 @@ std::vector<Diagnostic> cannot_launch(const Source& source, const RuleSet& rules
 }
 
 Checked check_against(const LiveInventory& robot, const Source& source, Strictness strictness) {
-  std::vector<Diagnostic> said;
-  const syntax::File file = parse(source, said);
-  if (file.has_reuse()) {
+  const Parsed parsed = parse_whole(source);
+  if (parsed.file.has_reuse()) {
     const Expansion rules = expand(source);
     Checked checked = check_against(robot, rules, strictness);
     checked.diagnostics = as_written(std::move(checked.diagnostics), rules.source);
     return checked;
   }
-  Checked checked = check(file, std::move(said), strictness);
-  if (checked.rules) check_live(file, *checked.rules, robot, checked.diagnostics);
+  Checked checked = check(parsed, strictness);
+  if (checked.rules) check_live(parsed.file, *checked.rules, robot, checked.diagnostics);
   return checked;
 }
 

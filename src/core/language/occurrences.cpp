@@ -98,12 +98,11 @@ class Collector {
   }
 
   void adaptation(const syntax::Adaptation& a) {
-    using enum syntax::AdaptationType;
     add(OccurrenceKind::kComponent, a.component);
-    const bool has_parameter = a.type == kSetParameter || a.type == kIncreaseParameter ||
-                               a.type == kDecreaseParameter || a.type == kChangeCommunication;
-    if (has_parameter) add(OccurrenceKind::kParameter, a.subject, false, a.component.text);
-    if (a.type == kCall) add_ros_name(OccurrenceKind::kService, a.subject, a.component);
+    if (syntax::names_parameter(a.type))
+      add(OccurrenceKind::kParameter, a.subject, false, a.component.text);
+    if (a.type == syntax::AdaptationType::kCall)
+      add_ros_name(OccurrenceKind::kService, a.subject, a.component);
     add_ros_name(OccurrenceKind::kTopic, a.topic, a.component);
     if (a.value) expression(*a.value);
   }

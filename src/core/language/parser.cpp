@@ -15,12 +15,16 @@ using syntax::Name;
 
 class Parser {
  public:
-  Parser(const Source& source, std::vector<Diagnostic>& diagnostics, std::vector<Lexeme>* lexemes)
-      : source_(source), read_(source, diagnostics), lexemes_(lexemes) {}
+  // What is read is put behind what `file` has already.
+  Parser(const Source& source, syntax::File& file, std::vector<Diagnostic>& diagnostics,
+         std::vector<Lexeme>* lexemes)
+      : source_(source), read_(source, diagnostics), lexemes_(lexemes), file_(file) {}
 
-  syntax::File parse() {
-    for (std::uint32_t line = 1; line <= source_.line_count(); ++line) {
+  template <class IsKnown>
+  std::uint32_t parse(std::uint32_t begin, IsKnown is_known) {
+    for (std::uint32_t line = source_.position(begin).line; line <= source_.line_count(); ++line) {
       line_ = source_.line(line);
+      if (!template_ && !stray_part_ && is_known(line_.begin)) return line_.begin;
       if (template_) {
         template_line();
         continue;
@@ -31,10 +35,9 @@ class Parser {
     if (template_) {
       read_.fail(Code::kIncomplete, template_keyword_, "this TEMPLATE has no END",
                  "write END on a line of its own behind its last statement");
-      const auto end = static_cast<std::uint32_t>(source_.text().size());
-      close_template(end, end);
+      close_template(text_end(), text_end());
     }
-    return std::move(file_);
+    return text_end();
   }
 
  private:
@@ -447,14 +450,15 @@ class Parser {
 
   std::uint32_t behind_line() const {
     const auto end = source_.text().find('\n', line_.end);
-    return static_cast<std::uint32_t>(end == std::string_view::npos ? source_.text().size()
-                                                                    : end + 1);
+    return end == std::string_view::npos ? text_end() : static_cast<std::uint32_t>(end + 1);
   }
+  std::uint32_t text_end() const { return static_cast<std::uint32_t>(source_.text().size()); }
 
   // ---- rules
 
   bool rule(Scanner& s) {
     into_->rules.emplace_back();
+    into_->rules.back().begin = line_.begin;
     is_in_rule_ = true;
     // A part that stands before the rule may be the one that the rule then lacks.
     into_->rules.back().has_broken_part = std::exchange(stray_part_, false);
@@ -682,7 +686,7 @@ class Parser {
   const Source& source_;
   LineReader read_;
   std::vector<Lexeme>* lexemes_;
-  syntax::File file_;
+  syntax::File& file_;
   syntax::File* into_ = &file_;  // what statements become part of: this, or a template's body
   Span line_;                    // that is at hand
   Span keyword_;                 // of it
@@ -696,7 +700,15 @@ class Parser {
 
 syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics,
                    std::vector<Lexeme>* lexemes) {
-  return Parser(source, diagnostics, lexemes).parse();
+  syntax::File file;
+  Parser(source, file, diagnostics, lexemes).parse(0, [](std::uint32_t) { return false; });
+  return file;
+}
+
+std::uint32_t parse_lines(const Source& source, std::uint32_t begin,
+                          const std::function<bool(std::uint32_t line)>& is_known,
+                          syntax::File& file, std::vector<Diagnostic>& diagnostics) {
+  return Parser(source, file, diagnostics, nullptr).parse(begin, is_known);
 }
 
 }  // namespace culprit

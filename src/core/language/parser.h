@@ -5,6 +5,7 @@
 // later stages do not report what follows from it.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "language/diagnostic.h"
@@ -18,5 +19,13 @@ namespace culprit {
 // with is entered into `lexemes`, if wanted; comments are not.
 syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics,
                    std::vector<Lexeme>* lexemes = nullptr);
+
+// Only some of the lines: from `begin`, which is 0 or where a whole RULE line begins, up to the first line
+// that `is_known`; it is asked where a line begins that is in no TEMPLATE, and behind no part of a
+// rule that stands before one. What the lines say is put behind what `file` has of those in front of
+// them. Gives where the first line begins that is left; the size of the text if none is.
+std::uint32_t parse_lines(const Source& source, std::uint32_t begin,
+                          const std::function<bool(std::uint32_t line)>& is_known,
+                          syntax::File& file, std::vector<Diagnostic>& diagnostics);
 
 }  // namespace culprit

@@ -116,6 +116,7 @@ struct Signal {
   struct Range {
     double low = 0;
     double high = 0;
+    bool operator==(const Range&) const = default;
   };
   std::optional<Range> range;
 };

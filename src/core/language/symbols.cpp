@@ -1,6 +1,9 @@
 #include "language/symbols.h"
 
 #include <algorithm>
+#include <bit>
+#include <cassert>
+#include <utility>
 
 namespace culprit {
 namespace {
@@ -396,9 +399,12 @@ void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
   }
 }
 
-const Symbols::Constant* Symbols::constant(const std::string& name) const {
+const Symbols::Constant* Symbols::constant(const std::string& name) {
   const auto found = constants_.find(name);
-  return found == constants_.end() ? nullptr : &found->second;
+  const Constant* known = found == constants_.end() ? nullptr : &found->second;
+  if (uses_ != nullptr)
+    uses_->constants.push_back({name, known != nullptr ? std::optional(*known) : std::nullopt});
+  return known;
 }
 
 void Symbols::define_constant(const syntax::Name& name, Constant value) {
@@ -415,6 +421,8 @@ std::string Symbols::near_name(const std::string& name,
 void Symbols::report_undeclared(const syntax::Name& name, const char* what,
                                 const std::vector<std::string_view>& declared) {
   const std::string near = near_name(name.text, declared);
+  if (uses_ != nullptr && (!near.empty() || strictness_ == Strictness::kStrict))
+    uses_->has_report = true;
   const auto fix = replacement(name.span, near);
   if (strictness_ == Strictness::kStrict) {
     diagnostics_.push_back(
@@ -432,16 +440,26 @@ void Symbols::report_undeclared(const syntax::Name& name, const char* what,
 }
 
 ComponentId Symbols::component(const syntax::Name& name) {
-  const auto found = components_.find(name.text);
+  const ComponentId id = known_or_new_component(name);
+  if (uses_ != nullptr) uses_->components.push_back({name, id, id, traits_of(id)});
+  return id;
+}
+
+std::optional<ComponentId> Symbols::known_component(const std::string& name) const {
+  const auto found = components_.find(name);
   if (found != components_.end()) return found->second;
   // A full node name may stand for the component that is declared with it.
-  const bool is_node = name.text.starts_with('/');
-  if (is_node) {
-    const auto declared = components_by_node_.find(name.text);
-    if (declared != components_by_node_.end()) return declared->second;
-  }
+  const auto declared = components_by_node_.find(name);
+  return declared != components_by_node_.end() && name.starts_with('/')
+             ? std::optional(declared->second)
+             : std::nullopt;
+}
+
+ComponentId Symbols::known_or_new_component(const syntax::Name& name) {
+  if (const auto known = known_component(name.text)) return *known;
   report_undeclared(name, "component", declared_components_);
   const ComponentId id(rules_.components.size());
+  const bool is_node = name.text.starts_with('/');
   rules_.components.push_back({name.text, is_node ? name.text : "", {}, false});
   components_[name.text] = id;
   return id;
@@ -449,7 +467,12 @@ ComponentId Symbols::component(const syntax::Name& name) {
 
 SignalId Symbols::signal(const syntax::Name& name) {
   const auto found = signals_.find(name.text);
-  if (found != signals_.end()) return found->second;
+  if (found != signals_.end()) {
+    const SignalId id = found->second;
+    if (uses_ != nullptr) uses_->signals.push_back({name.text, id, id, traits_of(id)});
+    return id;
+  }
+  if (uses_ != nullptr) uses_->has_report = true;  // infer_types() has asked for all of them
   report_undeclared(name, "signal", declared_values_);
   const SignalId id(rules_.signals.size());
   rules_.signals.push_back({name.text, LookedUp{}, Type::kDouble, {}, {}});
@@ -458,13 +481,20 @@ SignalId Symbols::signal(const syntax::Name& name) {
   return id;
 }
 
-bool Symbols::is_looked_up(const std::string& signal) const {
+bool Symbols::is_looked_up(const std::string& signal) {
+  const bool is_so = looks_up(signal);
+  if (uses_ != nullptr) uses_->looked_up.emplace_back(signal, is_so);
+  return is_so;
+}
+
+bool Symbols::looks_up(const std::string& signal) const {
   const auto found = signals_.find(signal);
   return strictness_ == Strictness::kLenient && found != signals_.end() &&
          std::holds_alternative<LookedUp>(rules_[found->second].source);
 }
 
 std::string Symbols::forget_near_miss(const std::string& signal) {
+  if (uses_ != nullptr) uses_->has_report = true;
   const auto found = near_misses_.find(signal);
   if (found == near_misses_.end()) return "";
   const NearMiss miss = found->second;
@@ -486,12 +516,14 @@ void Symbols::drop_forgotten_reports() {
 TopicId Symbols::topic(const std::string& name) {
   const auto [found, is_new] = topics_.emplace(name, TopicId(rules_.topics.size()));
   if (is_new) rules_.topics.push_back({name});
+  if (uses_ != nullptr) uses_->topics.push_back({name, found->second, found->second});
   return found->second;
 }
 
 DiagnosticId Symbols::diagnostic(const std::string& name) {
   const auto [found, is_new] = level_names_.emplace(name, DiagnosticId(rules_.diagnostics.size()));
   if (is_new) rules_.diagnostics.push_back({name});
+  if (uses_ != nullptr) uses_->diagnostics.push_back({name, found->second, found->second});
   return found->second;
 }
 
@@ -502,13 +534,154 @@ ParameterId Symbols::parameter(ComponentId component, const std::string& name) {
     rules_.parameters.push_back({component, name});
     parameter_types_.push_back(types_.add(std::nullopt));
   }
-  return found->second;
+  const ParameterId id = found->second;
+  if (uses_ != nullptr) uses_->parameters.push_back({component, name, id, id, type_of(id)});
+  return id;
 }
 
 InputId Symbols::input(const Input& wanted) {
   const auto [found, is_new] = inputs_.emplace(key_of(wanted), InputId(rules_.inputs.size()));
   if (is_new) rules_.inputs.push_back(wanted);
+  if (uses_ != nullptr) uses_->inputs.push_back({wanted, found->second, found->second});
   return found->second;
+}
+
+// ---- What was asked before
+
+namespace {
+
+// Two numbers that compare equal may not be the same to who writes them: 0.0 and -0.0.
+bool same(const syntax::Literal& a, const syntax::Literal& b) {
+  const double* x = std::get_if<double>(&a);
+  const double* y = std::get_if<double>(&b);
+  if (x != nullptr && y != nullptr)
+    return std::bit_cast<std::uint64_t>(*x) == std::bit_cast<std::uint64_t>(*y);
+  return a == b;
+}
+
+}  // namespace
+
+std::size_t Symbols::Uses::size() const {
+  return constants.size() + looked_up.size() + components.size() + signals.size() + topics.size() +
+         diagnostics.size() + parameters.size() + inputs.size();
+}
+
+Symbols::Uses::OfComponent::Traits Symbols::traits_of(ComponentId id) const {
+  const Component& c = rules_[id];
+  return {c.name, c.can_start(), c.can_start_again(), c.is_required};
+}
+
+Symbols::Uses::OfSignal::Traits Symbols::traits_of(SignalId id) const {
+  return {rules_[id].range, type_of(id)};
+}
+
+namespace {
+
+template <class Use, class Id>
+Id now_of(const std::vector<Use>& uses, Id was) {
+  const auto use =
+      std::find_if(uses.begin(), uses.end(), [was](const Use& u) { return u.was == was; });
+  assert(use != uses.end());
+  return use->id;
+}
+
+}  // namespace
+
+ComponentId Symbols::Uses::now(ComponentId id) const { return now_of(components, id); }
+TopicId Symbols::Uses::now(TopicId id) const { return now_of(topics, id); }
+SignalId Symbols::Uses::now(SignalId id) const { return now_of(signals, id); }
+ParameterId Symbols::Uses::now(ParameterId id) const { return now_of(parameters, id); }
+DiagnosticId Symbols::Uses::now(DiagnosticId id) const { return now_of(diagnostics, id); }
+InputId Symbols::Uses::now(InputId id) const { return now_of(inputs, id); }
+
+bool Symbols::answers_the_same(const Uses& uses) const {
+  const auto type_of_parameter = [&](const Uses::OfParameter& p) -> std::optional<Type> {
+    const auto owner =
+        std::find_if(uses.components.begin(), uses.components.end(),
+                     [&](const Uses::OfComponent& c) { return c.id == p.component; });
+    assert(owner != uses.components.end());
+    const auto component = known_component(owner->name.text);
+    if (!component) return std::nullopt;
+    const auto found = parameters_.find({*component, p.name});
+    return found == parameters_.end() ? std::nullopt : type_of(found->second);
+  };
+  return std::all_of(uses.constants.begin(), uses.constants.end(),
+                     [&](const Uses::OfConstant& c) {
+                       const auto found = constants_.find(c.name);
+                       if (found == constants_.end()) return !c.answer.has_value();
+                       return c.answer && c.answer->broken == found->second.broken &&
+                              same(c.answer->value, found->second.value);
+                     }) &&
+         std::all_of(uses.looked_up.begin(), uses.looked_up.end(),
+                     [&](const auto& asked) { return asked.second == looks_up(asked.first); }) &&
+         std::all_of(uses.components.begin(), uses.components.end(),
+                     [&](const Uses::OfComponent& c) {
+                       const auto known = known_component(c.name.text);
+                       using Traits = Uses::OfComponent::Traits;
+                       return c.traits == (known ? traits_of(*known) : Traits{c.name.text});
+                     }) &&
+         std::all_of(uses.signals.begin(), uses.signals.end(),
+                     [&](const Uses::OfSignal& s) {
+                       const auto found = signals_.find(s.name);
+                       return found != signals_.end() && s.traits == traits_of(found->second);
+                     }) &&
+         std::all_of(uses.parameters.begin(), uses.parameters.end(),
+                     [&](const Uses::OfParameter& p) { return p.type == type_of_parameter(p); });
+}
+
+namespace {
+
+// Each kind of input has other ids; those that it has not are 0.
+void renumber(Input& input, const Symbols::Uses& uses) {
+  using enum Input::Kind;
+  switch (input.kind) {
+    case kRate:
+    case kAge:
+    case kPhi:
+      input.topic = uses.now(input.topic);
+      return;
+    case kAlive:
+    case kLifecycle:
+      input.component = uses.now(input.component);
+      return;
+    case kParameter:
+      input.component = uses.now(input.component);
+      input.parameter = uses.now(input.parameter);
+      return;
+    case kLevel:
+      input.diagnostic = uses.now(input.diagnostic);
+      return;
+    case kSignal:
+    case kMean:
+    case kMin:
+    case kMax:
+    case kStddev:
+    case kChanged:
+      input.signal = uses.now(input.signal);
+      return;
+  }
+}
+
+}  // namespace
+
+void Symbols::ask_again(Uses& uses, std::uint32_t moved_by) {
+  const auto renew = [](auto& use, auto id) { use.was = std::exchange(use.id, id); };
+  for (auto& c : uses.components) {
+    c.name.span.begin += moved_by;
+    c.name.span.end += moved_by;
+    renew(c, component(c.name));
+  }
+  for (auto& s : uses.signals) renew(s, signals_.at(s.name));
+  for (auto& t : uses.topics) renew(t, topic(t.name));
+  for (auto& d : uses.diagnostics) renew(d, diagnostic(d.name));
+  for (auto& p : uses.parameters) {
+    p.component = uses.now(p.component);
+    renew(p, parameter(p.component, p.name));
+  }
+  for (auto& i : uses.inputs) {
+    renumber(i.input, uses);
+    renew(i, input(i.input));
+  }
 }
 
 }  // namespace culprit

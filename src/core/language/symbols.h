@@ -40,13 +40,90 @@ class Symbols {
     syntax::Literal value;
     bool broken = false;  // it was reported; what uses it stays silent
   };
-  const Constant* constant(const std::string& name) const;
+
+  // What a rule asked for and was told. As long as it would be told the same, a check says the same of
+  // the rule. The ids may be others by then: `was` is the one before.
+  struct Uses {
+    struct OfConstant {
+      std::string name;
+      std::optional<Constant> answer;  // nothing: it is none
+    };
+    struct OfComponent {
+      syntax::Name name;
+      ComponentId id, was;
+      struct Traits {
+        std::string name;
+        bool can_start = false;
+        bool can_start_again = false;
+        bool is_required = false;
+        bool operator==(const Traits&) const = default;
+      };
+      Traits traits;
+    };
+    struct OfSignal {
+      std::string name;
+      SignalId id, was;
+      struct Traits {
+        std::optional<Signal::Range> range;
+        std::optional<Type> type;
+        bool operator==(const Traits&) const = default;
+      };
+      Traits traits;
+    };
+    struct OfTopic {
+      std::string name;
+      TopicId id, was;
+    };
+    struct OfDiagnostic {
+      std::string name;
+      DiagnosticId id, was;
+    };
+    struct OfParameter {
+      ComponentId component;
+      std::string name;
+      ParameterId id, was;
+      std::optional<Type> type;
+    };
+    struct OfInput {
+      Input input;
+      InputId id, was;
+    };
+    std::vector<OfConstant> constants;
+    std::vector<std::pair<std::string, bool>> looked_up;  // signals, and whether they are
+    std::vector<OfComponent> components;
+    std::vector<OfSignal> signals;
+    std::vector<OfTopic> topics;
+    std::vector<OfDiagnostic> diagnostics;
+    std::vector<OfParameter> parameters;
+    std::vector<OfInput> inputs;
+    // Something was said of a name in passing, or taken back: what the next one is told may be
+    // something else.
+    bool has_report = false;
+
+    std::size_t size() const;
+    // What stands for the same thing now. @pre it is one of those.
+    ComponentId now(ComponentId id) const;
+    TopicId now(TopicId id) const;
+    SignalId now(SignalId id) const;
+    ParameterId now(ParameterId id) const;
+    DiagnosticId now(DiagnosticId id) const;
+    InputId now(InputId id) const;
+  };
+  // From now on enters into `uses` what is asked; null: no more.
+  void record(Uses* uses) { uses_ = uses; }
+  // Whether all that was asked would be answered as it was.
+  bool answers_the_same(const Uses& uses) const;
+  // Asks for all that once more, `moved_by` bytes further on, and enters the ids of now.
+  // @pre answers_the_same(uses)
+  void ask_again(Uses& uses, std::uint32_t moved_by);
+
+  const Constant* constant(const std::string& name);
   void define_constant(const syntax::Name& name, Constant value);
 
   ComponentId component(const syntax::Name& name);
   SignalId signal(const syntax::Name& name);
   // A signal that the file uses and does not declare, in a lenient check; a strict one has said so.
-  bool is_looked_up(const std::string& signal) const;
+  bool is_looked_up(const std::string& signal);
   TopicId topic(const std::string& name);
   DiagnosticId diagnostic(const std::string& name);
   ParameterId parameter(ComponentId component, const std::string& name);
@@ -79,6 +156,11 @@ class Symbols {
   void report_undeclared(const syntax::Name& name, const char* what,
                          const std::vector<std::string_view>& declared);
   std::string near_name(const std::string& name, const std::vector<std::string_view>& declared);
+  bool looks_up(const std::string& signal) const;
+  std::optional<ComponentId> known_component(const std::string& name) const;
+  ComponentId known_or_new_component(const syntax::Name& name);
+  Uses::OfComponent::Traits traits_of(ComponentId id) const;
+  Uses::OfSignal::Traits traits_of(SignalId id) const;
 
   RuleSet& rules_;
   Strictness strictness_;
@@ -106,6 +188,7 @@ class Symbols {
   TypeClasses types_;
   std::vector<TypeClasses::Variable> signal_types_;
   std::vector<TypeClasses::Variable> parameter_types_;
+  Uses* uses_ = nullptr;  // what is asked goes in here
 };
 
 }  // namespace culprit

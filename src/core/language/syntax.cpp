@@ -46,6 +46,12 @@ std::vector<std::string_view> adaptation_keywords() {
   return keywords;
 }
 
+bool names_parameter(AdaptationType type) {
+  using enum AdaptationType;
+  return type == kSetParameter || type == kIncreaseParameter || type == kDecreaseParameter ||
+         type == kChangeCommunication;
+}
+
 bool File::has_reuse() const { return !includes.empty() || !templates.empty() || !uses.empty(); }
 
 std::string_view symbol(Operator op) {

@@ -151,6 +151,8 @@ enum class AdaptationType : std::uint8_t {
 std::string_view keyword(AdaptationType type);
 std::optional<AdaptationType> adaptation_type(std::string_view keyword);
 std::vector<std::string_view> adaptation_keywords();
+// Whether its subject is a parameter.
+bool names_parameter(AdaptationType type);
 
 struct Adaptation {
   Name component;
@@ -202,6 +204,7 @@ struct Rule {
   std::optional<Expression> trigger;
   std::vector<Strategy> strategies;
   bool has_broken_part = false;  // a POLICIES, TRIGGER or STRATEGY line is there and does not parse
+  std::uint32_t begin = 0;       // of its RULE line
 };
 
 // A condition without which nothing is done, and how it is written.

@@ -243,7 +243,7 @@ class Completion {
 
 // The parameters of the template whose lines are around `offset`.
 void add_parameters(const Document& document, std::uint32_t offset, std::vector<Proposal>& out) {
-  for (const syntax::Template& t : document.file.templates) {
+  for (const syntax::Template& t : document.file().templates) {
     if (offset < t.lines.begin || offset > t.lines.end) continue;
     for (const syntax::TemplateParameter& p : t.parameters)
       out.push_back({Kind::kParameter, "{" + p.name.text + "}", "parameter of " + t.name.text});
@@ -255,15 +255,15 @@ void add_parameters(const Document& document, std::uint32_t offset, std::vector<
 std::vector<Proposal> proposals(const Document& document, std::uint32_t offset,
                                 const LiveInventory* robot, const std::vector<std::string>& files) {
   const std::uint32_t line_begin =
-      document.source.line(document.source.position(offset).line).begin;
-  const std::string_view before = document.source.text({line_begin, offset});
+      document.source().line(document.source().position(offset).line).begin;
+  const std::string_view before = document.source().text({line_begin, offset});
   std::vector<Proposal> out = Completion(document, before, robot, files).find();
   if (words_of(before).size() > 1) add_parameters(document, offset, out);
   return out;
 }
 
 Span typed_part(const Document& document, std::uint32_t offset, const Proposal& proposal) {
-  const std::string_view text = document.source.text();
+  const std::string_view text = document.source().text();
   const bool is_identifier = is_identifier_part(proposal.text);
   const auto belongs = [&](char c) {
     return is_identifier ? is_identifier_part({&c, 1})

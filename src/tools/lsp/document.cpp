@@ -1,7 +1,6 @@
 #include "lsp/document.h"
 
 #include "language/live_checks.h"
-#include "language/parser.h"
 
 namespace culprit::lsp {
 namespace {
@@ -23,17 +22,28 @@ std::string with_notes(const Diagnostic& diagnostic, const LocatedDiagnostic& he
 }  // namespace
 
 Document::Document(std::string text, const std::string& name, const RuleLoader& load)
-    : source(name, std::move(text)) {
-  std::vector<Diagnostic> said;
-  file = parse(source, said);
-  if (!file.has_reuse()) {
-    rules.source = source;
-    checked = check(file, std::move(said));
+    : written_(parse_whole(Source(name, std::move(text)))) {
+  read_rules(load);
+}
+
+void Document::change(std::string text, const RuleLoader& load) {
+  Source changed(source().name(), std::move(text));
+  written_ = reparse(std::move(written_), std::move(changed));
+  names_.reset();
+  names_elsewhere_.reset();
+  read_rules(load);
+}
+
+void Document::read_rules(const RuleLoader& load) {
+  if (checked.rules) memory_.take(*checked.rules);
+  if (!file().has_reuse()) {
+    rules = {source(), {}, {}};
+    whole_.reset();
+    checked = check_again(written_, memory_);
   } else {
-    rules = expand(source, load);
-    std::vector<Diagnostic> ignored;  // what is wrong is among those of the check
-    whole_ = parse(rules.source, ignored);
-    checked = check(rules);
+    rules = expand(source(), load);
+    whole_ = whole_ ? reparse(std::move(*whole_), rules.source) : parse_whole(rules.source);
+    checked = check_again(rules, *whole_, memory_);
   }
   tell(checked.diagnostics);
 }
@@ -66,14 +76,14 @@ Component Document::component_called(const std::string& name) const {
       if (c.declared && c.name == name) return c;
     }
   }
-  for (const syntax::Component& c : file.components) {
+  for (const syntax::Component& c : file().components) {
     if (c.name.text == name) return {name, c.node ? c.node->text : "", {}, true};
   }
   return {name, name.starts_with('/') ? name : "", {}, false};
 }
 
 const std::vector<Occurrence>& Document::names() const {
-  if (!names_) names_ = occurrences(file, source);
+  if (!names_) names_ = occurrences(file(), source());
   return *names_;
 }
 
@@ -81,7 +91,7 @@ const std::vector<Occurrence>& Document::names_elsewhere() const {
   if (names_elsewhere_) return *names_elsewhere_;
   names_elsewhere_.emplace();
   if (!whole_) return *names_elsewhere_;
-  for (Occurrence& o : occurrences(*whole_)) {
+  for (Occurrence& o : occurrences(whole_->file)) {
     const Origin origin = rules.source.origin(o.span);
     if (o.declares && (origin.place.file != 0 || !origin.steps.empty() || origin.goes_in))
       names_elsewhere_->push_back(std::move(o));
@@ -93,7 +103,7 @@ bool Document::compare_with(const LiveInventory& robot) {
   std::vector<Diagnostic> all = checked.diagnostics;
   // A robot without any node is one that is not there, and says nothing about the rules.
   if (checked.rules && !robot.nodes.empty())
-    check_live(whole_ ? *whole_ : file, *checked.rules, robot, all);
+    check_live(whole_ ? whole_->file : file(), *checked.rules, robot, all);
   const auto before = std::pair(std::move(diagnostics), std::move(elsewhere));
   tell(all);
   return before != std::pair(diagnostics, elsewhere);

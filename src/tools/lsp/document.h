@@ -9,6 +9,7 @@
 #include "language/checker.h"
 #include "language/live_inventory.h"
 #include "language/occurrences.h"
+#include "language/reparse.h"
 #include "language/reuse/expansion.h"
 #include "language/source.h"
 #include "language/syntax.h"
@@ -20,6 +21,10 @@ struct Document {
   explicit Document(std::string text, const std::string& name = "",
                     const RuleLoader& load = nullptr);
 
+  // Its text is another one now. All is as of a Document that is made of it; what did not change is
+  // not read again.
+  void change(std::string text, const RuleLoader& load);
+
   // The component of this name: as the rules declare it, or the node of this name.
   Component component_called(const std::string& name) const;
   // Every place that names something, found when it is first asked for: not at each keystroke.
@@ -30,8 +35,8 @@ struct Document {
   // Checks against the robot too, from now on. False if that changes nothing.
   bool compare_with(const LiveInventory& robot);
 
-  Source source;
-  syntax::File file;
+  const Source& source() const { return written_.source; }
+  const syntax::File& file() const { return written_.file; }
   Expansion rules;  // with all that the file includes and uses put in
   Checked checked;  // its diagnostics are of `rules`
   // Of the file as it is written. What is wrong in a file that it includes is shown at the INCLUDE,
@@ -40,9 +45,12 @@ struct Document {
   std::map<std::uint32_t, std::vector<Diagnostic>> elsewhere;  // by the file of rules.source
 
  private:
+  void read_rules(const RuleLoader& load);
   void tell(const std::vector<Diagnostic>& found);
 
-  std::optional<syntax::File> whole_;  // of rules.source; nothing: the file is whole
+  Parsed written_;
+  std::optional<Parsed> whole_;  // of rules.source; nothing: the file is whole
+  RuleMemory memory_;            // of `checked`
   mutable std::optional<std::vector<Occurrence>> names_;
   mutable std::optional<std::vector<Occurrence>> names_elsewhere_;
 };

@@ -21,7 +21,7 @@ std::string line_at(const Source& source, std::uint32_t offset) {
 std::string declaration(const Document& document, const Occurrence& thing) {
   for (const Occurrence& o : document.names()) {
     if (!o.declares || !o.same_as(thing)) continue;
-    return line_at(document.source, o.span.begin);
+    return line_at(document.source(), o.span.begin);
   }
   for (const Occurrence& o : document.names_elsewhere()) {
     if (!o.same_as(thing)) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <tuple>
 
 #include "language/formatter.h"
 #include "language/scanner.h"
@@ -51,7 +52,7 @@ std::uint32_t number_at(const Json& value, const JsonPath& path) {
 std::uint32_t place_in(const Document& document, const Json& params, const JsonPath& path) {
   const Json* position = at(params, path);
   if (position == nullptr) return 0;
-  return offset_of(document.source,
+  return offset_of(document.source(),
                    {number_at(*position, {"line"}), number_at(*position, {"character"})});
 }
 
@@ -176,7 +177,7 @@ int symbol_kind(OccurrenceKind kind) {
 
 // Whether the line at `offset` is an INCLUDE.
 bool includes_at(const Document& document, std::uint32_t offset) {
-  const Source& source = document.source;
+  const Source& source = document.source();
   const std::string_view line = source.text(source.line(source.position(offset).line));
   return trimmed(line).starts_with("INCLUDE");
 }
@@ -188,8 +189,8 @@ Span line_of(const Source& source, Span span) {
 Json symbol(const Document& document, const Occurrence& thing) {
   return {{"name", thing.name},
           {"kind", symbol_kind(thing.kind)},
-          {"range", to_json(document.source, line_of(document.source, thing.span))},
-          {"selectionRange", to_json(document.source, thing.span)}};
+          {"range", to_json(document.source(), line_of(document.source(), thing.span))},
+          {"selectionRange", to_json(document.source(), thing.span)}};
 }
 
 // A name that the language takes for one, so that a rename leaves a file that can be read.
@@ -257,16 +258,20 @@ Expected<Source> Server::load(const std::string& file, const std::string& from) 
   if (!loaded) return loaded;
   const auto open = documents_.find(uri_of(loaded->name()));
   if (open == documents_.end()) return loaded;
-  return Source(loaded->name(), std::string(open->second.source.text()));
+  return Source(loaded->name(), std::string(open->second.source().text()));
 }
 
 void Server::read(const std::string& uri, std::string text) {
   const auto load_file = [this](const std::string& file, const std::string& from) {
     return load(file, from);
   };
-  Document& document =
-      documents_.insert_or_assign(uri, Document(std::move(text), path_of(uri), load_file))
-          .first->second;
+  auto entry = documents_.find(uri);
+  if (entry == documents_.end()) {
+    entry = documents_.emplace(uri, Document(std::move(text), path_of(uri), load_file)).first;
+  } else {
+    entry->second.change(std::move(text), load_file);
+  }
+  Document& document = entry->second;
   if (document.checked.rules) interests_[uri] = interest_of(*document.checked.rules);
   if (robot_) document.compare_with(*robot_);
 }
@@ -292,7 +297,7 @@ std::set<std::string> Server::read_includers_of(const std::string& uri) {
   }
   for (const std::string& other : includers) {
     uris.merge(concerned(other, documents_.at(other)));
-    read(other, std::string(documents_.at(other).source.text()));
+    read(other, std::string(documents_.at(other).source().text()));
     uris.merge(concerned(other, documents_.at(other)));
   }
   return uris;
@@ -337,15 +342,14 @@ void Server::publish(const std::set<std::string>& uris) {
 // What is wrong with the document, or with those that include it and is written in it; each once.
 void Server::publish(const std::string& uri) {
   Json diagnostics = Json::array();
+  std::set<std::tuple<Code, TextPosition, TextPosition>> said;
   const auto add = [&](const Diagnostic& d, const Source& source) {
-    Json json = to_json(d, source);
-    const bool is_said = std::any_of(diagnostics.begin(), diagnostics.end(), [&](const Json& said) {
-      return said["range"] == json["range"] && said["code"] == json["code"];
-    });
-    if (!is_said) diagnostics.push_back(std::move(json));
+    const auto here =
+        std::tuple(d.code, text_position(source, d.span.begin), text_position(source, d.span.end));
+    if (said.insert(here).second) diagnostics.push_back(to_json(d, source));
   };
   if (const auto own = documents_.find(uri); own != documents_.end()) {
-    for (const Diagnostic& d : own->second.diagnostics) add(d, own->second.source);
+    for (const Diagnostic& d : own->second.diagnostics) add(d, own->second.source());
   }
   for (const auto& [other, document] : documents_) {
     for (const auto& [file, found] : document.elsewhere) {
@@ -417,7 +421,7 @@ Json Server::completion(const std::string& uri, const Document& document,
   if (files_.includable && includes_at(document, place)) files = files_.includable(path_of(uri));
   for (const Proposal& p : proposals(document, place, robot(), files)) {
     // Editors do not know what belongs to the name of a topic.
-    Json edit{{"range", to_json(document.source, typed_part(document, place, p))},
+    Json edit{{"range", to_json(document.source(), typed_part(document, place, p))},
               {"newText", p.text}};
     Json item{{"label", p.text}, {"kind", item_kind(p.kind)}, {"textEdit", std::move(edit)}};
     if (!p.detail.empty()) item["detail"] = p.detail;
@@ -431,7 +435,7 @@ Json Server::hover_at(const Document& document, const Json& params) const {
   const std::string text = thing == nullptr ? "" : hover(document, *thing, robot());
   if (text.empty()) return nullptr;
   return {{"contents", {{"kind", "markdown"}, {"value", text}}},
-          {"range", to_json(document.source, thing->span)}};
+          {"range", to_json(document.source(), thing->span)}};
 }
 
 Json Server::definition(const std::string& uri, const Document& document,
@@ -440,7 +444,7 @@ Json Server::definition(const std::string& uri, const Document& document,
   if (thing == nullptr) return nullptr;
   for (const Occurrence& o : document.names()) {
     if (o.declares && o.same_as(*thing))
-      return {{"uri", uri}, {"range", to_json(document.source, o.span)}};
+      return {{"uri", uri}, {"range", to_json(document.source(), o.span)}};
   }
   const Source& source = document.rules.source;
   const auto at_place = [&](const Place& place) -> Json {
@@ -472,7 +476,7 @@ Json Server::references(const std::string& uri, const Document& document,
   Json places = Json::array();
   for (const Occurrence& o : document.names()) {
     if (o.same_as(*thing) && (with_declaration || !o.declares))
-      places.push_back({{"uri", uri}, {"range", to_json(document.source, o.span)}});
+      places.push_back({{"uri", uri}, {"range", to_json(document.source(), o.span)}});
   }
   return places;
 }
@@ -495,17 +499,17 @@ Expected<Json> Server::rename(const std::string& uri, const Document& document,
   Json edits = Json::array();
   for (const Occurrence& o : document.names()) {
     if (o.same_as(*thing))
-      edits.push_back({{"range", to_json(document.source, o.span)}, {"newText", name}});
+      edits.push_back({{"range", to_json(document.source(), o.span)}, {"newText", name}});
   }
   return Json{{"changes", {{uri, std::move(edits)}}}};
 }
 
 // One edit, of the whole text. A file with mistakes stays as it is: they are shown already.
 Json Server::formatting(const Document& document) const {
-  const auto text = format(document.source);
-  if (!text || *text == document.source.text()) return Json::array();
-  const auto end = static_cast<std::uint32_t>(document.source.text().size());
-  return Json::array({{{"range", to_json(document.source, {0, end})}, {"newText", *text}}});
+  const auto text = format(document.source());
+  if (!text || *text == document.source().text()) return Json::array();
+  const auto end = static_cast<std::uint32_t>(document.source().text().size());
+  return Json::array({{{"range", to_json(document.source(), {0, end})}, {"newText", *text}}});
 }
 
 // The fixes of what is wrong within the range that the client asks about.
@@ -518,10 +522,10 @@ Json Server::code_actions(const std::string& uri, const Document& document,
   for (const Diagnostic& d : document.diagnostics) {
     const bool touches = d.span.begin <= end && begin <= d.span.end;
     if (!d.fix || !touches) continue;
-    Json edit{{"range", to_json(document.source, d.fix->span)}, {"newText", d.fix->text}};
-    actions.push_back({{"title", title_of(*d.fix, document.source)},
+    Json edit{{"range", to_json(document.source(), d.fix->span)}, {"newText", d.fix->text}};
+    actions.push_back({{"title", title_of(*d.fix, document.source())},
                        {"kind", kQuickFix},
-                       {"diagnostics", Json::array({to_json(d, document.source)})},
+                       {"diagnostics", Json::array({to_json(d, document.source())})},
                        {"edit", {{"changes", {{uri, Json::array({std::move(edit)})}}}}}});
   }
   // An editor applies the preferred one unasked, so there is none where there is a choice.
@@ -551,8 +555,8 @@ Json Server::semantic_tokens(const Document& document) const {
   Json data = Json::array();
   TextPosition last;
   for (const Occurrence& o : document.names()) {
-    const TextPosition begin = text_position(document.source, o.span.begin);
-    const TextPosition end = text_position(document.source, o.span.end);
+    const TextPosition begin = text_position(document.source(), o.span.begin);
+    const TextPosition end = text_position(document.source(), o.span.end);
     const bool same_line = begin.line == last.line;
     data.push_back(begin.line - last.line);
     data.push_back(same_line ? begin.character - last.character : begin.character);

@@ -2,6 +2,7 @@
 // "Position").
 #pragma once
 
+#include <compare>
 #include <cstdint>
 
 #include "language/source.h"
@@ -11,7 +12,7 @@ namespace culprit::lsp {
 struct TextPosition {
   std::uint32_t line = 0;
   std::uint32_t character = 0;
-  bool operator==(const TextPosition&) const = default;
+  auto operator<=>(const TextPosition&) const = default;
 };
 
 TextPosition text_position(const Source& source, std::uint32_t offset);

@@ -1,0 +1,305 @@
+#include "language/reparse.h"
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "language/parser.h"
+
+namespace culprit {
+namespace {
+
+// Moves all places of a part of a tree. Each structure is taken apart into all its members, so one
+// that gets another does not compile before somebody thought of it here.
+class Mover {
+ public:
+  explicit Mover(std::uint32_t by) : by_(by) {}
+
+  void move(Span& span) const {
+    if (span == Span{}) return;  // of a part that is not there
+    span.begin += by_;
+    span.end += by_;
+  }
+  void move(Diagnostic& d) const {
+    move(d.span);
+    if (d.fix) move(d.fix->span);
+  }
+  void move(syntax::Name& name) const { move(name.span); }
+  void move(syntax::Number& number) const { move(number.span); }
+  void move(syntax::Expression& e) const {
+    auto& [kind, span, literal, name, op, children] = e;
+    move(span);
+    move(name);
+    move(children);
+  }
+  void move(syntax::File::Cycle& cycle) const { move(cycle.span); }
+  void move(syntax::Constant& c) const {
+    auto& [name, value] = c;
+    move(name);
+    move(value);
+  }
+  void move(syntax::Component& c) const {
+    auto& [name, node, launch, setup, environment, folder, is_required, is_respawned, unit,
+           is_users_unit, engine, engine_container, host, container, plugin, package, parameters,
+           remaps, lifecycle] = c;
+    move(name);
+    for (auto* part :
+         {&node, &launch, &setup, &environment, &folder, &unit, &engine, &engine_container, &host,
+          &container, &plugin, &package, &parameters, &remaps})
+      move(*part);
+  }
+  void move(syntax::Dependency& d) const {
+    auto& [consumer, producers] = d;
+    move(consumer);
+    move(producers);
+  }
+  void move(syntax::DiagnosticSource& s) const {
+    auto& [status, key] = s;
+    move(status);
+    move(key);
+  }
+  void move(syntax::TopicSource& s) const {
+    auto& [topic, field] = s;
+    move(topic);
+    move(field);
+  }
+  void move(syntax::ParameterSource& s) const {
+    auto& [component, parameter] = s;
+    move(component);
+    move(parameter);
+  }
+  void move(syntax::Signal::Range& r) const { move(r.span); }
+  void move(syntax::Signal& s) const {
+    auto& [name, source, stale, range] = s;
+    move(name);
+    std::visit([this](auto& which) { move(which); }, source);
+    move(range);
+  }
+  void move(syntax::Adaptation& a) const {
+    auto& [component, type, subject, topic, request, value, impact, span] = a;
+    move(component);
+    move(subject);
+    move(topic);
+    move(request);
+    move(value);
+    move(impact);
+    move(span);
+  }
+  void move(syntax::Strategy& s) const {
+    auto& [name, probability, confidence, when, adaptations, is_last_resort, is_broken] = s;
+    move(name);
+    move(probability);
+    move(confidence);
+    move(when);
+    move(adaptations);
+  }
+  void move(syntax::Policies::Hold& h) const { move(h.span); }
+  void move(syntax::Policies::Attempts& a) const { move(a.span); }
+  void move(syntax::Policies& p) const {
+    auto& [criticality, hold_for, hold, cooldown, attempts, on_change, is_report, span] = p;
+    move(hold);
+    move(attempts);
+    move(span);
+  }
+  void move(syntax::Rule& r) const {
+    auto& [name, policies, trigger, strategies, has_broken_part, begin] = r;
+    move(name);
+    move(policies);
+    move(trigger);
+    move(strategies);
+    begin += by_;
+  }
+  void move(syntax::Interlock& i) const {
+    auto& [condition, text] = i;
+    move(condition);
+  }
+  void move(syntax::BrokenDeclaration& b) const { move(b.name); }
+  void move(syntax::Include& i) const {
+    auto& [file, span] = i;
+    move(file);
+    move(span);
+  }
+  void move(syntax::Use& u) const {
+    auto& [pattern, arguments, in, span] = u;
+    move(pattern);
+    move(arguments);
+    move(in);
+    move(span);
+  }
+  void move(syntax::TemplateParameter& p) const {
+    auto& [name, usual] = p;
+    move(name);
+    move(usual);
+  }
+  void move(syntax::Template& t) const {
+    auto& [name, parameters, body, span, lines] = t;
+    move(name);
+    move(parameters);
+    move(body);
+    move(span);
+    move(lines);
+  }
+  void move(syntax::File& f) const {
+    auto& [robot, cycle, constants, components, dependencies, ignored_topics, interlocks, signals,
+           rules, broken_declarations, includes, templates, uses] = f;
+    move(robot);
+    move(cycle);
+    move(constants);
+    move(components);
+    move(dependencies);
+    move(ignored_topics);
+    move(interlocks);
+    move(signals);
+    move(rules);
+    move(broken_declarations);
+    move(includes);
+    move(templates);
+    move(uses);
+  }
+
+ private:
+  template <class T>
+  void move(std::optional<T>& part) const {
+    if (part) move(*part);
+  }
+  template <class T>
+  void move(std::vector<T>& parts) const {
+    if (by_ == 0) return;
+    for (T& part : parts) move(part);
+  }
+
+  std::uint32_t by_;  // modulo 2^32, as unsigned numbers count: also backwards
+};
+
+// Some place in the lines of a part, by which the tree is cut between lines.
+std::uint32_t place_of(const syntax::Name& name) { return name.span.begin; }
+std::uint32_t place_of(const syntax::File::Cycle& cycle) { return cycle.span.begin; }
+std::uint32_t place_of(const syntax::Dependency& d) { return place_of(d.consumer); }
+std::uint32_t place_of(const syntax::Interlock& i) { return i.condition.span.begin; }
+std::uint32_t place_of(const syntax::Rule& r) { return r.begin; }
+std::uint32_t place_of(const syntax::Include& i) { return i.span.begin; }
+std::uint32_t place_of(const syntax::Template& t) { return t.span.begin; }
+std::uint32_t place_of(const syntax::Use& u) { return u.span.begin; }
+std::uint32_t place_of(const Diagnostic& d) { return d.span.begin; }
+template <class Declaration>
+std::uint32_t place_of(const Declaration& d) {
+  return place_of(d.name);
+}
+
+// Parts are in the order of the text. What stands at `place` and behind it goes from `from` to the end of `to`.
+template <class T>
+void cut(std::vector<T>& from, std::uint32_t place, std::vector<T>& to) {
+  const auto tail = std::partition_point(from.begin(), from.end(),
+                                         [&](const T& part) { return place_of(part) < place; });
+  to.insert(to.end(), std::make_move_iterator(tail), std::make_move_iterator(from.end()));
+  from.erase(tail, from.end());
+}
+template <class T>
+void cut(std::optional<T>& from, std::uint32_t place, std::optional<T>& to) {
+  if (from && place_of(*from) >= place) to = std::exchange(from, std::nullopt);
+}
+void cut(syntax::File& from, std::uint32_t place, syntax::File& to) {
+  auto& [robot, cycle, constants, components, dependencies, ignored_topics, interlocks, signals,
+         rules, broken_declarations, includes, templates, uses] = from;
+  cut(robot, place, to.robot);
+  cut(cycle, place, to.cycle);
+  cut(constants, place, to.constants);
+  cut(components, place, to.components);
+  cut(dependencies, place, to.dependencies);
+  cut(ignored_topics, place, to.ignored_topics);
+  cut(interlocks, place, to.interlocks);
+  cut(signals, place, to.signals);
+  cut(rules, place, to.rules);
+  cut(broken_declarations, place, to.broken_declarations);
+  cut(includes, place, to.includes);
+  cut(templates, place, to.templates);
+  cut(uses, place, to.uses);
+}
+
+// How much two texts have in common at their begins and, beside that, at their ends.
+struct Common {
+  std::uint32_t front = 0;
+  std::uint32_t back = 0;
+};
+Common common(std::string_view a, std::string_view b) {
+  const std::size_t most = std::min(a.size(), b.size());
+  const auto front =
+      std::mismatch(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(most), b.begin()).first -
+      a.begin();
+  const auto left = static_cast<std::ptrdiff_t>(most) - front;
+  const auto back = std::mismatch(a.rbegin(), a.rbegin() + left, b.rbegin()).first - a.rbegin();
+  return {static_cast<std::uint32_t>(front), static_cast<std::uint32_t>(back)};
+}
+
+// Whether the tree can be cut in front of it. A part of a rule that stands before any RULE line breaks
+// the rule that follows; nothing else that is in front of a RULE line says anything about it.
+bool can_be_cut_at(const syntax::Rule& rule) { return !rule.has_broken_part; }
+
+// Where the last rule begins whose first line is all in the first `size` bytes of `text`; 0 if none.
+std::uint32_t last_rule_in(const std::vector<syntax::Rule>& rules, std::string_view text,
+                           std::uint32_t size) {
+  auto rule = std::partition_point(rules.begin(), rules.end(),
+                                   [&](const syntax::Rule& r) { return r.begin < size; });
+  while (rule != rules.begin()) {
+    --rule;
+    if (can_be_cut_at(*rule) && text.find('\n', rule->begin) < size) return rule->begin;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Parsed parse_whole(Source source) {
+  Parsed out{std::move(source), {}, {}};
+  out.file = parse(out.source, out.said);
+  return out;
+}
+
+Parsed reparse(Parsed before, Source source) {
+  const std::string_view old_text = before.source.text();
+  const Common same = common(old_text, source.text());
+  const auto old_size = static_cast<std::uint32_t>(old_text.size());
+  const auto moved_by = static_cast<std::uint32_t>(source.text().size()) - old_size;  // mod 2^32
+  const std::uint32_t begin = last_rule_in(before.file.rules, old_text, same.front);
+
+  Parsed rest{std::move(before.source), {}, {}};  // of the old text from `begin` on
+  cut(before.file, begin, rest.file);
+  cut(before.said, begin, rest.said);
+
+  // A line is known if a rule began there, and that line and all behind it are what they were; the
+  // line end in front of it, too. What it says of a second ROBOT or CYCLE does not change as long as
+  // there was a first one before, or still is none.
+  const bool has_robot = before.file.robot.has_value();
+  const bool has_cycle = before.file.cycle.has_value();
+  const auto was_set_before = [](const auto& part, std::uint32_t place) {
+    return part && place_of(*part) < place;
+  };
+  const auto is_known = [&](std::uint32_t line) {
+    if (line <= source.text().size() - same.back) return false;
+    const std::uint32_t was = line - moved_by;
+    const auto& rules = rest.file.rules;
+    const auto rule = std::partition_point(rules.begin(), rules.end(),
+                                           [&](const auto& r) { return r.begin < was; });
+    if (rule == rules.end() || rule->begin != was || !can_be_cut_at(*rule)) return false;
+    return before.file.robot.has_value() == (has_robot || was_set_before(rest.file.robot, was)) &&
+           before.file.cycle.has_value() == (has_cycle || was_set_before(rest.file.cycle, was));
+  };
+  const std::uint32_t end = parse_lines(source, begin, is_known, before.file, before.said);
+  if (end < source.text().size()) {
+    Parsed tail{Source("", ""), {}, {}};
+    cut(rest.file, end - moved_by, tail.file);
+    cut(rest.said, end - moved_by, tail.said);
+    const Mover mover(moved_by);
+    mover.move(tail.file);
+    for (Diagnostic& d : tail.said) mover.move(d);
+    cut(tail.file, 0, before.file);
+    cut(tail.said, 0, before.said);
+  }
+  before.source = std::move(source);
+  return before;
+}
+
+}  // namespace culprit

@@ -1,0 +1,31 @@
+// A text that changes a little at a time -> its syntax tree, as somebody types.
+//
+//     Parsed parsed = parse_whole(Source(name, text));
+//     parsed = reparse(std::move(parsed), Source(name, text_after_a_keystroke));
+//
+// A RULE line begins anew whatever the lines before it said, so the tree can be cut there: rules in
+// front of what changed stay as they are, rules behind it are moved to where they stand now, and only
+// the lines between are parsed. The result is in every part that of a parse of the whole text; what
+// the names mean is not looked at here.
+#pragma once
+
+#include <vector>
+
+#include "language/diagnostic.h"
+#include "language/source.h"
+#include "language/syntax.h"
+
+namespace culprit {
+
+struct Parsed {
+  Source source;
+  syntax::File file;
+  std::vector<Diagnostic> said;  // by the parser
+};
+
+Parsed parse_whole(Source source);
+
+// The same as parse_whole(source), whatever `before` is of.
+Parsed reparse(Parsed before, Source source);
+
+}  // namespace culprit
