@@ -32,9 +32,10 @@ class Checker {
   // With what an earlier check has left in `memory`, which is then what this one leaves. `text` is what
   // the file is the tree of.
   void use(RuleMemory& memory, std::string_view text) {
-    before_ = std::exchange(memory, {});
     memory_ = &memory;
     text_ = text;
+    ++memory.check;
+    rules_.strategies.reserve(memory.strategies.size());
   }
 
   RuleSet check() {
@@ -53,11 +54,7 @@ class Checker {
     for (const syntax::Rule& rule : file_.rules) {
       if (rule.name.text.empty()) continue;  // its line was broken
       check_name(rule);
-      if (memory_ == nullptr) {
-        add_rule(rule);
-      } else if (!recall(rule)) {
-        add_and_remember(rule);
-      }
+      memory_ == nullptr ? add_rule(rule) : add_or_recall_rule(rule);
     }
     symbols_.drop_forgotten_reports();
     for (Input& input : rules_.inputs) sort_unique(input.thresholds);
@@ -65,7 +62,11 @@ class Checker {
     for (std::size_t r = 0; r < rules_.rules.size(); ++r) link_readers(RuleId(r));
     check_circles(file_, rules_, diagnostics_);
     check_meaning();
-    if (memory_ != nullptr) memory_->conditions = std::move(conditions_);
+    if (memory_ != nullptr) {
+      std::erase_if(memory_->known,
+                    [&](const auto& k) { return k.second.check != memory_->check; });
+      memory_->conditions = std::move(conditions_);
+    }
     return std::move(rules_);
   }
 
@@ -207,10 +208,8 @@ class Checker {
 
   // What an impact of so many cycles lasts is part of what rules mean.
   void forget_other_cycle() {
-    if (memory_ == nullptr) return;
-    memory_->cycle = rules_.cycle;
-    if (before_.cycle == rules_.cycle) return;
-    for (auto& [text, rule] : before_.known) rule.meaning.reset();
+    if (memory_ == nullptr || std::exchange(memory_->cycle, rules_.cycle) == rules_.cycle) return;
+    for (auto& [text, rule] : memory_->known) rule.meaning.reset();
   }
 
   std::string_view text_of(const syntax::Rule& rule) const {
@@ -219,22 +218,26 @@ class Checker {
     return text_.substr(rule.begin, (is_last ? text_.size() : next->begin) - rule.begin);
   }
 
-  // Adds the rule as it was checked before. False if it was not, or what is known of its names is not
-  // what it was.
-  bool recall(const syntax::Rule& written) {
-    const auto known = before_.known.find(text_of(written));
-    if (known == before_.known.end()) return false;
-    RememberedRule& remembered = known->second;
+  void add_or_recall_rule(const syntax::Rule& written) {
+    const std::string_view text = text_of(written);
+    const auto known = memory_->known.find(text);
+    if (known == memory_->known.end()) return add_and_remember(written, text);
+    // Of two that are the same one is remembered.
+    if (known->second.check == memory_->check) return add_rule(written);
+    if (recall(written, known->second)) return;
+    memory_->known.erase(known);
+    add_and_remember(written, text);
+  }
+
+  // Adds the rule as it was checked before. False if what is known of its names is not what it was.
+  bool recall(const syntax::Rule& written, RememberedRule& remembered) {
     if (remembered.has_broken_part != written.has_broken_part ||
         !symbols_.answers_the_same(remembered.uses))
       return false;
     const RuleId id(rules_.rules.size());
     symbols_.ask_again(remembered.uses, written.begin - remembered.begin);
-    auto rule = renewed(remembered, written, id, StrategyId(rules_.strategies.size()), before_);
-    if (!rule) {
-      before_.known.erase(known);  // what was made of it is lost
-      return false;
-    }
+    auto rule = renewed(remembered, written, id, StrategyId(rules_.strategies.size()), *memory_);
+    if (!rule) return false;
     diagnostics_.insert(diagnostics_.end(), remembered.said.begin(), remembered.said.end());
     remembered.rule = id.index;
     rules_.rules.push_back(std::move(rule->rule));
@@ -247,12 +250,11 @@ class Checker {
       remembered.conditions = conditions_.size();
       conditions_.push_back(std::move(*rule->conditions));
     }
-    const auto kept = memory_->known.insert(before_.known.extract(known));
-    if (kept.inserted) remember(id, &kept.position->second);
+    remember(id, remembered);
     return true;
   }
 
-  void add_and_remember(const syntax::Rule& written) {
+  void add_and_remember(const syntax::Rule& written, std::string_view text) {
     // One that asks for more is a hostile one: finding what stands for what would take long.
     constexpr std::size_t kMostUses = 500;
     RememberedRule rule;
@@ -268,14 +270,13 @@ class Checker {
     rule.rule = id.index;
     if (!conditions_.empty() && conditions_.back().rule == id)
       rule.conditions = conditions_.size() - 1;
-    const auto [entry, is_new] =
-        memory_->known.emplace(std::string(text_of(written)), std::move(rule));
-    if (is_new) remember(id, &entry->second);
+    remember(id, memory_->known.emplace(std::string(text), std::move(rule)).first->second);
   }
 
-  void remember(RuleId id, RememberedRule* rule) {
+  void remember(RuleId id, RememberedRule& rule) {
+    rule.check = memory_->check;
     remembered_.resize(id.index + 1);
-    remembered_[id.index] = rule;
+    remembered_[id.index] = &rule;
   }
 
   // Null: it is not remembered.
@@ -547,10 +548,9 @@ class Checker {
   RuleSet rules_;
   Symbols symbols_;
   std::set<std::string> rule_names_;
-  std::vector<RuleConditions> conditions_;   // of each rule that has a trigger
-  RuleMemory before_;                        // what the last check has left
-  RuleMemory* memory_ = nullptr;             // what this one leaves; null: nobody wants it
-  std::string_view text_;                    // of the file, where there is a memory
+  std::vector<RuleConditions> conditions_;  // of each rule that has a trigger
+  RuleMemory* memory_ = nullptr;  // of the last check and for the next one; null: nobody wants it
+  std::string_view text_;         // of the file, where there is a memory
   std::vector<RememberedRule*> remembered_;  // by RuleId; null: it is not
 };
 

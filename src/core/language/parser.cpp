@@ -24,7 +24,7 @@ class Parser {
   std::uint32_t parse(std::uint32_t begin, IsKnown is_known) {
     for (std::uint32_t line = source_.position(begin).line; line <= source_.line_count(); ++line) {
       line_ = source_.line(line);
-      if (!template_ && !stray_part_ && is_known(line_.begin)) return line_.begin;
+      if (!template_ && !stray_part_ && is_known(line_.begin, is_in_rule_)) return line_.begin;
       if (template_) {
         template_line();
         continue;
@@ -701,12 +701,12 @@ class Parser {
 syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics,
                    std::vector<Lexeme>* lexemes) {
   syntax::File file;
-  Parser(source, file, diagnostics, lexemes).parse(0, [](std::uint32_t) { return false; });
+  Parser(source, file, diagnostics, lexemes).parse(0, [](std::uint32_t, bool) { return false; });
   return file;
 }
 
 std::uint32_t parse_lines(const Source& source, std::uint32_t begin,
-                          const std::function<bool(std::uint32_t line)>& is_known,
+                          const std::function<bool(std::uint32_t line, bool is_in_rule)>& is_known,
                           syntax::File& file, std::vector<Diagnostic>& diagnostics) {
   return Parser(source, file, diagnostics, nullptr).parse(begin, is_known);
 }

@@ -234,20 +234,50 @@ Common common(std::string_view a, std::string_view b) {
   return {static_cast<std::uint32_t>(front), static_cast<std::uint32_t>(back)};
 }
 
-// Whether the tree can be cut in front of it. A part of a rule that stands before any RULE line breaks
-// the rule that follows; nothing else that is in front of a RULE line says anything about it.
-bool can_be_cut_at(const syntax::Rule& rule) { return !rule.has_broken_part; }
+// Where a tree can be cut: the parser is at the begin of such a line what it is at the begin of a text, or
+// becomes the same whatever it was.
+class Cuts {
+ public:
+  // Up to `plain_end` no rule and no template has begun, and no part of a rule stands there.
+  Cuts(const std::vector<syntax::Rule>& rules, std::uint32_t plain_end)
+      : rules_(rules), plain_end_(plain_end) {}
 
-// Where the last rule begins whose first line is all in the first `size` bytes of `text`; 0 if none.
-std::uint32_t last_rule_in(const std::vector<syntax::Rule>& rules, std::string_view text,
-                           std::uint32_t size) {
-  auto rule = std::partition_point(rules.begin(), rules.end(),
-                                   [&](const syntax::Rule& r) { return r.begin < size; });
-  while (rule != rules.begin()) {
-    --rule;
-    if (can_be_cut_at(*rule) && text.find('\n', rule->begin) < size) return rule->begin;
+  // The last one whose state follows from the first `size` bytes of `text` alone.
+  std::uint32_t last_in(std::string_view text, std::uint32_t size) const {
+    auto rule = first_rule_at(size);
+    while (rule != rules_.begin()) {
+      --rule;
+      if (!rule->has_broken_part && text.find('\n', rule->begin) < size) return rule->begin;
+    }
+    const std::uint32_t plain = std::min(size, plain_end_);
+    if (plain == 0) return 0;
+    const std::size_t before = text.rfind('\n', plain - 1);
+    return before == std::string_view::npos ? 0 : static_cast<std::uint32_t>(before + 1);
   }
-  return 0;
+
+  // Whether the line that begins at `line` is one, for a parser that is within a rule or not.
+  bool has(std::uint32_t line, bool is_in_rule) const {
+    if (!is_in_rule && line <= plain_end_) return true;
+    const auto rule = first_rule_at(line);
+    return rule != rules_.end() && rule->begin == line && !rule->has_broken_part;
+  }
+
+ private:
+  std::vector<syntax::Rule>::const_iterator first_rule_at(std::uint32_t place) const {
+    return std::partition_point(rules_.begin(), rules_.end(),
+                                [&](const syntax::Rule& r) { return r.begin < place; });
+  }
+
+  const std::vector<syntax::Rule>& rules_;
+  const std::uint32_t plain_end_;
+};
+
+std::uint32_t plain_end_of(const syntax::File& file) {
+  // A part of a rule that stands before any RULE line breaks the rule that follows, which may be one of
+  // a template.
+  if (file.rules.empty() || file.rules.front().has_broken_part) return 0;
+  const std::uint32_t rule = file.rules.front().begin;
+  return !file.templates.empty() && file.templates.front().span.begin < rule ? 0 : rule;
 }
 
 }  // namespace
@@ -263,13 +293,14 @@ Parsed reparse(Parsed before, Source source) {
   const Common same = common(old_text, source.text());
   const auto old_size = static_cast<std::uint32_t>(old_text.size());
   const auto moved_by = static_cast<std::uint32_t>(source.text().size()) - old_size;  // mod 2^32
-  const std::uint32_t begin = last_rule_in(before.file.rules, old_text, same.front);
+  const std::uint32_t plain_end = plain_end_of(before.file);
+  const std::uint32_t begin = Cuts(before.file.rules, plain_end).last_in(old_text, same.front);
 
   Parsed rest{std::move(before.source), {}, {}};  // of the old text from `begin` on
   cut(before.file, begin, rest.file);
   cut(before.said, begin, rest.said);
 
-  // A line is known if a rule began there, and that line and all behind it are what they were; the
+  // A line is known if the tree can be cut there, and that line and all behind it are what they were; the
   // line end in front of it, too. What it says of a second ROBOT or CYCLE does not change as long as
   // there was a first one before, or still is none.
   const bool has_robot = before.file.robot.has_value();
@@ -277,14 +308,12 @@ Parsed reparse(Parsed before, Source source) {
   const auto was_set_before = [](const auto& part, std::uint32_t place) {
     return part && place_of(*part) < place;
   };
-  const auto is_known = [&](std::uint32_t line) {
+  const Cuts cuts(rest.file.rules, plain_end);
+  const auto is_known = [&](std::uint32_t line, bool is_in_rule) {
     if (line <= source.text().size() - same.back) return false;
     const std::uint32_t was = line - moved_by;
-    const auto& rules = rest.file.rules;
-    const auto rule = std::partition_point(rules.begin(), rules.end(),
-                                           [&](const auto& r) { return r.begin < was; });
-    if (rule == rules.end() || rule->begin != was || !can_be_cut_at(*rule)) return false;
-    return before.file.robot.has_value() == (has_robot || was_set_before(rest.file.robot, was)) &&
+    return cuts.has(was, is_in_rule) &&
+           before.file.robot.has_value() == (has_robot || was_set_before(rest.file.robot, was)) &&
            before.file.cycle.has_value() == (has_cycle || was_set_before(rest.file.cycle, was));
   };
   const std::uint32_t end = parse_lines(source, begin, is_known, before.file, before.said);

@@ -59,5 +59,18 @@ TEST(Reparse, KnowsThatASecondRobotIsTheFirstOneWhenThatGoes) {
   }
 }
 
+// A part of a rule that stands in front breaks the next rule, wherever that is.
+TEST(Reparse, KnowsThatAStrayPartBreaksARuleOfATemplate) {
+  const std::string rest =
+      "CONST a = 1\nTEMPLATE t\nRULE Inner\nPOLICIES ERROR\nEND\nCONST b = 2\nRULE Outer\n";
+  for (const std::string before : {"", "TRIGGER x > 1\n"}) {
+    for (const std::string after : {"", "TRIGGER x > 1\n", "CONST c = 3\n"}) {
+      const Source source("test.rules", after + rest);
+      const Parsed parsed = reparse(parse_whole(Source("test.rules", before + rest)), source);
+      EXPECT_EQ(all_of(parsed), all_of(parse_whole(source))) << before << "to " << after;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace culprit

@@ -29,6 +29,7 @@ struct RememberedRule {
   std::vector<Diagnostic> said;  // while it was checked by itself
   std::optional<std::vector<Diagnostic>>
       meaning;                            // of what it means; nothing: it was not looked at
+  std::uint64_t check = 0;                // the number of the last one that met it
   std::size_t rule = 0;                   // index of RuleMemory::rules
   std::optional<std::size_t> conditions;  // index of RuleMemory::conditions
 };
@@ -47,6 +48,7 @@ struct RuleMemory {
   std::vector<Strategy> strategies;
   std::vector<RuleConditions> conditions;
   Duration cycle{};
+  std::uint64_t check = 0;  // the number of the last one
 
   // Takes from the rule set that the check gave what the next one may need of it.
   void take(RuleSet& checked);

@@ -57,17 +57,16 @@ bool is_service_unit(std::string_view name) {
          name[0] != '@' && std::all_of(name.begin(), name.end(), may_be_there);
 }
 
-std::string key_of(const Input& input) {
-  std::string key;
-  for (const auto part :
-       {static_cast<std::int64_t>(input.kind), static_cast<std::int64_t>(input.topic.index),
-        static_cast<std::int64_t>(input.signal.index),
-        static_cast<std::int64_t>(input.component.index),
-        static_cast<std::int64_t>(input.parameter.index),
-        static_cast<std::int64_t>(input.diagnostic.index), std::int64_t{input.window.count()}}) {
-    key += std::to_string(part) + ' ';
-  }
-  return key;
+const std::string& text_of(const std::string& name) { return name; }
+const std::string& text_of(const syntax::Name& name) { return name.text; }
+
+// Most rules name few things several times.
+template <class Use>
+void enter(std::vector<Use>& uses, Use use) {
+  constexpr std::size_t kFew = 16;
+  const auto is_same = [&](const Use& u) { return text_of(u.name) == text_of(use.name); };
+  if (uses.size() > kFew || std::none_of(uses.begin(), uses.end(), is_same))
+    uses.push_back(std::move(use));
 }
 
 // No argument holds a zero byte.
@@ -78,6 +77,25 @@ std::string key_of(const std::vector<std::string>& command) {
 }
 
 }  // namespace
+
+Symbols::InputKey::InputKey(const Input& input)
+    : kind(input.kind),
+      topic(input.topic.index),
+      signal(input.signal.index),
+      component(input.component.index),
+      parameter(input.parameter.index),
+      diagnostic(input.diagnostic.index),
+      window(input.window.count()) {}
+
+std::size_t Symbols::InputKeyHash::operator()(const InputKey& key) const noexcept {
+  std::uint64_t hash = static_cast<std::uint64_t>(key.kind);
+  for (const std::uint64_t part :
+       {std::uint64_t{key.topic}, std::uint64_t{key.signal}, std::uint64_t{key.component},
+        std::uint64_t{key.parameter}, std::uint64_t{key.diagnostic},
+        static_cast<std::uint64_t>(key.window)})
+    hash = (hash ^ part) * 0x9E3779B97F4A7C15 + (hash >> 32);
+  return hash ^ (hash >> 29);
+}
 
 bool Symbols::first_declaration(const syntax::Name& name, const char* what) {
   if (declared_.insert(name.text).second) return true;
@@ -403,7 +421,7 @@ const Symbols::Constant* Symbols::constant(const std::string& name) {
   const auto found = constants_.find(name);
   const Constant* known = found == constants_.end() ? nullptr : &found->second;
   if (uses_ != nullptr)
-    uses_->constants.push_back({name, known != nullptr ? std::optional(*known) : std::nullopt});
+    enter(uses_->constants, {name, known != nullptr ? std::optional(*known) : std::nullopt});
   return known;
 }
 
@@ -441,7 +459,7 @@ void Symbols::report_undeclared(const syntax::Name& name, const char* what,
 
 ComponentId Symbols::component(const syntax::Name& name) {
   const ComponentId id = known_or_new_component(name);
-  if (uses_ != nullptr) uses_->components.push_back({name, id, id, traits_of(id)});
+  if (uses_ != nullptr) enter(uses_->components, {name, id, id, traits_of(id)});
   return id;
 }
 
@@ -469,7 +487,7 @@ SignalId Symbols::signal(const syntax::Name& name) {
   const auto found = signals_.find(name.text);
   if (found != signals_.end()) {
     const SignalId id = found->second;
-    if (uses_ != nullptr) uses_->signals.push_back({name.text, id, id, traits_of(id)});
+    if (uses_ != nullptr) enter(uses_->signals, {name.text, id, id, traits_of(id)});
     return id;
   }
   if (uses_ != nullptr) uses_->has_report = true;  // infer_types() has asked for all of them
@@ -540,7 +558,7 @@ ParameterId Symbols::parameter(ComponentId component, const std::string& name) {
 }
 
 InputId Symbols::input(const Input& wanted) {
-  const auto [found, is_new] = inputs_.emplace(key_of(wanted), InputId(rules_.inputs.size()));
+  const auto [found, is_new] = inputs_.emplace(InputKey(wanted), InputId(rules_.inputs.size()));
   if (is_new) rules_.inputs.push_back(wanted);
   if (uses_ != nullptr) uses_->inputs.push_back({wanted, found->second, found->second});
   return found->second;
@@ -551,7 +569,7 @@ InputId Symbols::input(const Input& wanted) {
 namespace {
 
 // Two numbers that compare equal may not be the same to who writes them: 0.0 and -0.0.
-bool same(const syntax::Literal& a, const syntax::Literal& b) {
+bool same_literal(const syntax::Literal& a, const syntax::Literal& b) {
   const double* x = std::get_if<double>(&a);
   const double* y = std::get_if<double>(&b);
   if (x != nullptr && y != nullptr)
@@ -610,7 +628,7 @@ bool Symbols::answers_the_same(const Uses& uses) const {
                        const auto found = constants_.find(c.name);
                        if (found == constants_.end()) return !c.answer.has_value();
                        return c.answer && c.answer->broken == found->second.broken &&
-                              same(c.answer->value, found->second.value);
+                              same_literal(c.answer->value, found->second.value);
                      }) &&
          std::all_of(uses.looked_up.begin(), uses.looked_up.end(),
                      [&](const auto& asked) { return asked.second == looks_up(asked.first); }) &&

@@ -174,7 +174,17 @@ class Symbols {
   std::unordered_map<std::string, TopicId> topics_;
   std::unordered_map<std::string, DiagnosticId> level_names_;
   std::map<std::pair<ComponentId, std::string>, ParameterId> parameters_;
-  std::unordered_map<std::string, InputId> inputs_;
+  struct InputKey {
+    explicit InputKey(const Input& input);
+    bool operator==(const InputKey&) const = default;
+    Input::Kind kind;
+    std::uint32_t topic, signal, component, parameter, diagnostic;
+    std::int64_t window;
+  };
+  struct InputKeyHash {
+    std::size_t operator()(const InputKey& key) const noexcept;
+  };
+  std::unordered_map<InputKey, InputId, InputKeyHash> inputs_;
   // What undeclared names may have been meant to be; views into the keys of the maps above.
   std::vector<std::string_view> declared_components_;
   std::vector<std::string_view> declared_values_;  // constants and signals
