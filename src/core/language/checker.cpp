@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <set>
 #include <tuple>
+#include <unordered_set>
 
 #include "language/compiler.h"
 #include "language/condition_checks.h"
@@ -29,8 +30,8 @@ class Checker {
   Checker(const syntax::File& file, Strictness strictness, std::vector<Diagnostic>& diagnostics)
       : file_(file), diagnostics_(diagnostics), symbols_(rules_, strictness, diagnostics) {}
 
-  // With what an earlier check has left in `memory`, which is then what this one leaves. `text` is what
-  // the file is the tree of.
+  // With what an earlier check has left in `memory`, which is then what this one leaves. `text` is
+  // what the file is the tree of.
   void use(RuleMemory& memory, std::string_view text) {
     memory_ = &memory;
     text_ = text;
@@ -547,7 +548,7 @@ class Checker {
   std::vector<Diagnostic>& diagnostics_;
   RuleSet rules_;
   Symbols symbols_;
-  std::set<std::string> rule_names_;
+  std::unordered_set<std::string_view> rule_names_;
   std::vector<RuleConditions> conditions_;  // of each rule that has a trigger
   RuleMemory* memory_ = nullptr;  // of the last check and for the next one; null: nobody wants it
   std::string_view text_;         // of the file, where there is a memory

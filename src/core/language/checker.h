@@ -31,9 +31,9 @@ Checked check(const Expansion& rules, Strictness strictness = Strictness::kLenie
 // The same of a text that is parsed already, and has no INCLUDE, TEMPLATE or USE.
 Checked check(const Parsed& whole, Strictness strictness = Strictness::kLenient);
 
-// The same as a lenient check of `whole`, which takes from `memory` what an earlier one has left there,
-// whatever that was of, and leaves there what the next one may take. The rule set that the earlier one gave
-// has to be given back with RuleMemory::take(), if it gave one.
+// The same as a lenient check of `whole`, which takes from `memory` what an earlier one has left
+// there, whatever that was of, and leaves there what the next one may take. The rule set that the
+// earlier one gave has to be given back with RuleMemory::take(), if it gave one.
 Checked check_again(const Parsed& whole, RuleMemory& memory);
 // `whole` is of `rules.source`.
 Checked check_again(const Expansion& rules, const Parsed& whole, RuleMemory& memory);

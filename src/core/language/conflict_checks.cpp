@@ -62,18 +62,20 @@ struct Effect {
 };
 
 std::optional<Effect> effect_of(const Adaptation& a) {
-  const std::string component = std::to_string(a.component.index);
+  const auto of_component = [&](const std::string& what) {
+    return std::to_string(a.component.index) + what;
+  };
   switch (a.type) {
     case AdaptationType::kActivate:
-      return Effect{component + " lifecycle", "active", "activates it"};
+      return Effect{of_component(" lifecycle"), "active", "activates it"};
     case AdaptationType::kDeactivate:
-      return Effect{component + " lifecycle", "inactive", "deactivates it"};
+      return Effect{of_component(" lifecycle"), "inactive", "deactivates it"};
     case AdaptationType::kStart:
-      return Effect{component + " process", "started", "starts it"};
+      return Effect{of_component(" process"), "started", "starts it"};
     case AdaptationType::kStop:
-      return Effect{component + " process", "stopped", "stops it"};
+      return Effect{of_component(" process"), "stopped", "stops it"};
     case AdaptationType::kChangeCommunication:
-      return Effect{component + " parameter " + a.subject, "\"" + a.topic + "\"",
+      return Effect{of_component(" parameter " + a.subject), "\"" + a.topic + "\"",
                     "sets its " + a.subject + " to " + a.topic};
     case AdaptationType::kSetParameter: {
       const bool is_constant =
@@ -85,7 +87,7 @@ std::optional<Effect> effect_of(const Adaptation& a) {
       // A whole number fits a parameter of numbers, so 1 and 1.0 are no different.
       const Value value = a.value.type == Type::kInt ? Value(static_cast<double>(slot.i))
                                                      : to_value(slot, a.value.type);
-      return Effect{component + " parameter " + a.subject, to_string(value),
+      return Effect{of_component(" parameter " + a.subject), to_string(value),
                     "sets its " + a.subject + " to " + to_string(to_value(slot, a.value.type))};
     }
     default:

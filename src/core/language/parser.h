@@ -20,11 +20,12 @@ namespace culprit {
 syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics,
                    std::vector<Lexeme>* lexemes = nullptr);
 
-// Only some of the lines: from `begin`, where a line begins that the parser meets as it meets the first one
-// of a text, or a whole RULE line, up to the first line that `is_known`. That is asked where a line begins
-// that is in no TEMPLATE, and behind no part of a rule that stands before one; `is_in_rule`: a part of a
-// rule would be the last one's. What the lines say is put behind what `file` has of those in front of
-// them. Gives where the first line begins that is left; the size of the text if none is.
+// Only some of the lines: from `begin`, where a line begins that the parser meets as it meets the
+// first one of a text, or a whole RULE line, up to the first line that `is_known`. That is asked
+// where a line begins that is in no TEMPLATE, and behind no part of a rule that stands before one;
+// `is_in_rule`: a part of a rule would be the last one's. What the lines say is put behind what
+// `file` has of those in front of them. Gives where the first line begins that is left; the size of
+// the text if none is.
 std::uint32_t parse_lines(const Source& source, std::uint32_t begin,
                           const std::function<bool(std::uint32_t line, bool is_in_rule)>& is_known,
                           syntax::File& file, std::vector<Diagnostic>& diagnostics);

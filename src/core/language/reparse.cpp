@@ -189,7 +189,8 @@ std::uint32_t place_of(const Declaration& d) {
   return place_of(d.name);
 }
 
-// Parts are in the order of the text. What stands at `place` and behind it goes from `from` to the end of `to`.
+// Parts are in the order of the text. What stands at `place` and behind it goes from `from` to the
+// end of `to`.
 template <class T>
 void cut(std::vector<T>& from, std::uint32_t place, std::vector<T>& to) {
   const auto tail = std::partition_point(from.begin(), from.end(),
@@ -234,8 +235,8 @@ Common common(std::string_view a, std::string_view b) {
   return {static_cast<std::uint32_t>(front), static_cast<std::uint32_t>(back)};
 }
 
-// Where a tree can be cut: the parser is at the begin of such a line what it is at the begin of a text, or
-// becomes the same whatever it was.
+// Where a tree can be cut: the parser is at the begin of such a line what it is at the begin of a
+// text, or becomes the same whatever it was.
 class Cuts {
  public:
   // Up to `plain_end` no rule and no template has begun, and no part of a rule stands there.
@@ -273,8 +274,8 @@ class Cuts {
 };
 
 std::uint32_t plain_end_of(const syntax::File& file) {
-  // A part of a rule that stands before any RULE line breaks the rule that follows, which may be one of
-  // a template.
+  // A part of a rule that stands before any RULE line breaks the rule that follows, which may be
+  // one of a template.
   if (file.rules.empty() || file.rules.front().has_broken_part) return 0;
   const std::uint32_t rule = file.rules.front().begin;
   return !file.templates.empty() && file.templates.front().span.begin < rule ? 0 : rule;
@@ -300,9 +301,9 @@ Parsed reparse(Parsed before, Source source) {
   cut(before.file, begin, rest.file);
   cut(before.said, begin, rest.said);
 
-  // A line is known if the tree can be cut there, and that line and all behind it are what they were; the
-  // line end in front of it, too. What it says of a second ROBOT or CYCLE does not change as long as
-  // there was a first one before, or still is none.
+  // A line is known if the tree can be cut there, and that line and all behind it are what they
+  // were; the line end in front of it, too. What it says of a second ROBOT or CYCLE does not change
+  // as long as there was a first one before, or still is none.
   const bool has_robot = before.file.robot.has_value();
   const bool has_cycle = before.file.cycle.has_value();
   const auto was_set_before = [](const auto& part, std::uint32_t place) {

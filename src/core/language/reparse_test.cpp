@@ -9,7 +9,7 @@
 namespace culprit {
 namespace {
 
-std::string all_of(const Parsed& parsed) {
+std::string tree_and_words(const Parsed& parsed) {
   std::string out = tree_text(parsed.file, Places::kShown);
   for (const Diagnostic& d : parsed.said) {
     out += "\n" + std::to_string(d.span.begin) + "-" + std::to_string(d.span.end) + " " +
@@ -29,7 +29,7 @@ RC_GTEST_PROP(Reparse, GivesWhatAParseOfTheWholeTextGives, ()) {
     const Source source("test.rules", text);
     parsed = reparse(std::move(parsed), source);
     RC_ASSERT(parsed.source.text() == source.text());
-    RC_ASSERT(all_of(parsed) == all_of(parse_whole(source)));
+    RC_ASSERT(tree_and_words(parsed) == tree_and_words(parse_whole(source)));
   }
 }
 
@@ -42,10 +42,11 @@ TEST(Reparse, MovesWhatStandsBehindTheChange) {
   for (std::size_t size = 0; size <= typed.size(); ++size) {
     const Source source("test.rules", first + typed.substr(0, size) + last);
     parsed = reparse(std::move(parsed), source);
-    EXPECT_EQ(all_of(parsed), all_of(parse_whole(source))) << size;
+    EXPECT_EQ(tree_and_words(parsed), tree_and_words(parse_whole(source))) << size;
   }
   parsed = reparse(std::move(parsed), Source("test.rules", first + last));
-  EXPECT_EQ(all_of(parsed), all_of(parse_whole(Source("test.rules", first + last))));
+  EXPECT_EQ(tree_and_words(parsed),
+            tree_and_words(parse_whole(Source("test.rules", first + last))));
 }
 
 TEST(Reparse, KnowsThatASecondRobotIsTheFirstOneWhenThatGoes) {
@@ -54,7 +55,8 @@ TEST(Reparse, KnowsThatASecondRobotIsTheFirstOneWhenThatGoes) {
     for (const std::string after : {"", "ROBOT other\n", "CYCLE 2s\n", "ROBOT first\nCYCLE 2s\n"}) {
       const Source source("test.rules", after + rules);
       const Parsed parsed = reparse(parse_whole(Source("test.rules", before + rules)), source);
-      EXPECT_EQ(all_of(parsed), all_of(parse_whole(source))) << before << "to " << after;
+      EXPECT_EQ(tree_and_words(parsed), tree_and_words(parse_whole(source)))
+          << before << "to " << after;
     }
   }
 }
@@ -67,7 +69,8 @@ TEST(Reparse, KnowsThatAStrayPartBreaksARuleOfATemplate) {
     for (const std::string after : {"", "TRIGGER x > 1\n", "CONST c = 3\n"}) {
       const Source source("test.rules", after + rest);
       const Parsed parsed = reparse(parse_whole(Source("test.rules", before + rest)), source);
-      EXPECT_EQ(all_of(parsed), all_of(parse_whole(source))) << before << "to " << after;
+      EXPECT_EQ(tree_and_words(parsed), tree_and_words(parse_whole(source)))
+          << before << "to " << after;
     }
   }
 }

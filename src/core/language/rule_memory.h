@@ -1,12 +1,14 @@
 // What a check remembers of each rule, for the next check of a text that is nearly the same.
 //
-// What a check makes of a rule follows from the rule's own bytes and from what its names mean: so a rule
-// whose bytes are those of one before, and of whose names the same is known (Symbols::Uses), is not
-// typed, compiled and reasoned about again. What is left of it is moved to where the rule stands now, and
-// its ids become those of now. Names that are declared, types that are found by use, and what rules do to
-// one another are looked at anew each time.
+// What a check makes of a rule follows from the rule's own bytes and from what its names mean: so a
+// rule whose bytes are those of one before, and of whose names the same is known (Symbols::Uses),
+// is not typed, compiled and reasoned about again. What is left of it is moved to where the rule
+// stands now, and its ids become those of now. Names that are declared, types that are found by
+// use, and what rules do to one another are looked at anew each time.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,8 +29,8 @@ struct RememberedRule {
   std::uint32_t begin = 0;  // where it stood
   Symbols::Uses uses;
   std::vector<Diagnostic> said;  // while it was checked by itself
-  std::optional<std::vector<Diagnostic>>
-      meaning;                            // of what it means; nothing: it was not looked at
+  // Of what it means; nothing: that was not looked at, for there was some mistake in the file.
+  std::optional<std::vector<Diagnostic>> meaning;
   std::uint64_t check = 0;                // the number of the last one that met it
   std::size_t rule = 0;                   // index of RuleMemory::rules
   std::optional<std::size_t> conditions;  // index of RuleMemory::conditions
@@ -54,8 +56,7 @@ struct RuleMemory {
   void take(RuleSet& checked);
 };
 
-// What one more rule is made of. `rule` and what belongs to it come from `memory`, which is what the last
-// check left, and are as of `written` then.
+// A rule of the last check, with the places and ids of this one; its inputs are left out.
 struct RenewedRule {
   Rule rule;
   std::vector<Strategy> strategies;

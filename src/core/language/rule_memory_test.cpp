@@ -114,30 +114,31 @@ constexpr const char* kDeclared =
     "COMPONENT lidar NODE /lidar LAUNCH \"run lidar\"\n"
     "SIGNAL entropy DIAGNOSTIC camera KEY entropy RANGE 0..1\n";
 
-std::string rule(const std::string& name, const std::string& trigger,
-                 const std::string& component = "camera") {
+std::string rule_of(const std::string& name, const std::string& trigger,
+                    const std::string& component = "camera") {
   return "RULE " + name + "\n  POLICIES ERROR\n  TRIGGER " + trigger +
          "\n    STRATEGY s 50 10\n      ADAPTATION " + component + " redeploy 20\n";
 }
 
-// Texts that somebody has one after the other, of which each one changes what a rule that stays means.
+// Texts that somebody has one after the other, of which each one changes what a rule that stays
+// means.
 TEST(RuleMemory, IsOfNoUseWhereTheNamesMeanSomethingElse) {
-  const std::string a = rule("A", "entropy > 0.5 || mode == limit || speed > 2");
-  const std::string b = rule("B", "age(/image) > 1s && parameter(lidar, gain) > 1", "/lidar");
+  const std::string a = rule_of("A", "entropy > 0.5 || mode == limit || speed > 2");
+  const std::string b = rule_of("B", "age(/image) > 1s && parameter(lidar, gain) > 1", "/lidar");
   const std::string rest = a + b;
   const std::string texts[] = {
       kDeclared + rest,
-      kDeclared + rest + rule("C", "mode == \"dock\""),
+      kDeclared + rest + rule_of("C", "mode == \"dock\""),
       "CONST limit = \"dock\"\n" + (kDeclared + rest),
       "CONST limit = \"other\"\n" + (kDeclared + rest),
       "CONST limit = 3\n" + (kDeclared + rest),
-      kDeclared + rule("First", "age(/other) > 1s && limit == \"x\"", "other") + rest,
-      "CYCLE 10ms\n" + (kDeclared + rest) + rule("C", "mode == \"dock\""),
+      kDeclared + rule_of("First", "age(/other) > 1s && limit == \"x\"", "other") + rest,
+      "CYCLE 10ms\n" + (kDeclared + rest) + rule_of("C", "mode == \"dock\""),
       "SIGNAL mod TOPIC /mode FIELD data\n" + (kDeclared + rest),
-      "COMPONENT laser NODE /lidar\n" + rule("C", "mode == \"dock\"") + rest,
+      "COMPONENT laser NODE /lidar\n" + rule_of("C", "mode == \"dock\"") + rest,
       "COMPONENT zebra LAUNCH \"z\"\nCOMPONENT /lida LAUNCH \"x\"\n" + rest + "broken\n",
       rest + rest + kDeclared,
-      kDeclared + rule("C", "mode == \"dock\" && parameter(lidar, gain) == \"x\"") + rest,
+      kDeclared + rule_of("C", "mode == \"dock\" && parameter(lidar, gain) == \"x\"") + rest,
   };
   Session session;
   for (const std::string& text : texts) {

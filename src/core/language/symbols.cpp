@@ -57,14 +57,14 @@ bool is_service_unit(std::string_view name) {
          name[0] != '@' && std::all_of(name.begin(), name.end(), may_be_there);
 }
 
-const std::string& text_of(const std::string& name) { return name; }
-const std::string& text_of(const syntax::Name& name) { return name.text; }
+const std::string& asked_name(const std::string& name) { return name; }
+const std::string& asked_name(const syntax::Name& name) { return name.text; }
 
 // Most rules name few things several times.
 template <class Use>
 void enter(std::vector<Use>& uses, Use use) {
   constexpr std::size_t kFew = 16;
-  const auto is_same = [&](const Use& u) { return text_of(u.name) == text_of(use.name); };
+  const auto is_same = [&](const Use& u) { return asked_name(u.name) == asked_name(use.name); };
   if (uses.size() > kFew || std::none_of(uses.begin(), uses.end(), is_same))
     uses.push_back(std::move(use));
 }
@@ -106,6 +106,11 @@ bool Symbols::first_declaration(const syntax::Name& name, const char* what) {
 }
 
 void Symbols::declare(const syntax::File& file) {
+  declared_.reserve(file.constants.size() + file.components.size() + file.signals.size());
+  components_.reserve(file.components.size());
+  components_by_node_.reserve(file.components.size());
+  by_owner_.reserve(file.components.size());
+  signals_.reserve(file.signals.size());
   for (const syntax::Constant& c : file.constants) {
     // Its value follows, in file order: a constant may use the ones before it.
     if (first_declaration(c.name, "constant")) constants_[c.name.text] = {{}, true};

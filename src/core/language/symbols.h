@@ -41,8 +41,8 @@ class Symbols {
     bool broken = false;  // it was reported; what uses it stays silent
   };
 
-  // What a rule asked for and was told. As long as it would be told the same, a check says the same of
-  // the rule. The ids may be others by then: `was` is the one before.
+  // What a rule asked for and was told. As long as it would be told the same, a check says the same
+  // of the rule. The ids may be others by then: `was` is the one before.
   struct Uses {
     struct OfConstant {
       std::string name;

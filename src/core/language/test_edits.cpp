@@ -10,8 +10,8 @@
 namespace culprit {
 namespace {
 
-// Lines that make sense together, or nearly: names that are declared and that are not, mistakes that
-// depend on what other lines say, warnings that only come where there is no mistake.
+// Lines that make sense together, or nearly: names that are declared and that are not, mistakes
+// that depend on what other lines say, warnings that only come where there is no mistake.
 const std::vector<std::string> kLines = {
     "ROBOT rover",
     "CYCLE 200ms",

@@ -5,8 +5,8 @@
 
 namespace culprit {
 
-// A rule file of a few lines that make sense, with whatever edits make of it later. To be called within
-// a property, as all here.
+// A rule file of a few lines that make sense, with whatever edits make of it later. To be called
+// within a property, as all here.
 std::string random_start();
 
 // `text` after one more edit: a keystroke, a line that comes, goes, is copied, split or joined, a

@@ -9,7 +9,7 @@
 namespace culprit::lsp {
 namespace {
 
-std::string words_of(const std::vector<Diagnostic>& diagnostics) {
+std::string said_of(const std::vector<Diagnostic>& diagnostics) {
   std::string out;
   for (const Diagnostic& d : diagnostics) {
     out += to_string(d.code) + (d.severity == Severity::kError ? " error " : " warning ") +
@@ -23,10 +23,10 @@ std::string words_of(const std::vector<Diagnostic>& diagnostics) {
 }
 
 // All that is said of a document, as far as people see it.
-std::string words_of(const Document& document) {
-  std::string out = words_of(document.diagnostics);
+std::string said_of(const Document& document) {
+  std::string out = said_of(document.diagnostics);
   for (const auto& [file, diagnostics] : document.elsewhere)
-    out += "in " + document.rules.source.file(file).name() + "\n" + words_of(diagnostics);
+    out += "in " + document.rules.source.file(file).name() + "\n" + said_of(diagnostics);
   for (const Occurrence& o : document.names())
     out += o.name + " " + std::to_string(o.span.begin) + (o.declares ? " declared\n" : "\n");
   for (const Occurrence& o : document.names_elsewhere())
@@ -52,10 +52,10 @@ RC_GTEST_PROP(LspDocument, SaysAfterEachEditWhatItSaysOfTheWholeText, ()) {
     (*rc::gen::inRange(0, 6) == 0 ? other : text) = edited(text);
     document.change(text, load);
     Document whole(text, "test.rules", load);
-    RC_ASSERT(words_of(document) == words_of(whole));
+    RC_ASSERT(said_of(document) == said_of(whole));
     document.compare_with(example_robot());
     whole.compare_with(example_robot());
-    RC_ASSERT(words_of(document) == words_of(whole));
+    RC_ASSERT(said_of(document) == said_of(whole));
   }
 }
 
