@@ -39,7 +39,7 @@ class Renumbering {
   void renew(Strategy& strategy) const {
     renew(strategy.when);
     renew(strategy.components);
-    for (Adaptation& a : strategy.adaptations) {
+    for (auto& a : strategy.adaptations) {
       a.component = uses_.now(a.component);
       if (syntax::names_parameter(a.type)) a.parameter = uses_.now(a.parameter);
       renew(a.value);
