@@ -449,6 +449,28 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
   EXPECT_FALSE(boss.query("UPDATE culprit.robot SET name = 'x'"));
 }
 
+// However many robots share a login, it is not all of them that are gone through to see whose a row is.
+TEST_F(Fleet, WhoseARowIsIsLookedUpByItsRobot) {
+  postgres->run(R"sql(
+SET session_replication_role = replica;
+INSERT INTO culprit.robot(robot, login, name, model, culprit, rule_set, context)
+  SELECT md5('r' || i)::uuid, 'rover', '', '', '', '', '' FROM generate_series(1, 5000) i;
+INSERT INTO culprit.run(run, robot, began, culprit, model, rule_set, context)
+  SELECT md5('u' || i)::uuid, md5('r' || i)::uuid, now(), '', '', '', '' FROM generate_series(1, 5000) i;
+ANALYZE;
+)sql");
+  Server rover = postgres->connect("rover");
+  for (const std::string statement :
+       {"UPDATE culprit.run SET last_heard = now() WHERE run = md5('u1')::uuid",
+        "SELECT 1 FROM culprit.outcome WHERE robot = md5('r1')::uuid",
+        "SELECT 1 FROM culprit.failure WHERE robot = md5('r1')::uuid"}) {
+    const auto plan = rover.query("EXPLAIN " + statement);
+    ASSERT_TRUE(plan) << plan.error();
+    for (const Row& line : *plan)
+      EXPECT_EQ(text_in(line[0]).find("Seq Scan on robot"), std::string::npos) << statement;
+  }
+}
+
 TEST_F(Fleet, ANewRobotBeginsWithWhatTheOthersLearned) {
   postgres->run("UPDATE culprit.setting SET value = '0' WHERE name = 'pool_seconds'");
   for (int i = 0; i < 8; ++i) {

@@ -271,7 +271,22 @@ GRANT INSERT (robot, run, row, incident, rule, criticality, component, began, en
   ON culprit.failure TO culprit_robot;
 )sql";
 
-const std::array kMigrations = {std::string(kTables) + kFunctions + kRights};
+// Whose a row is was found by listing all robots of the login, in each statement: 20 ms where 10,000 share one. Now
+// its own robot is looked up.
+constexpr const char* kRightsByRow = R"sql(
+ALTER POLICY own ON culprit.run
+  USING (EXISTS (SELECT FROM culprit.robot r WHERE r.robot = run.robot AND r.login = session_user))
+  WITH CHECK (EXISTS (SELECT FROM culprit.robot r WHERE r.robot = run.robot AND r.login = session_user));
+ALTER POLICY own ON culprit.outcome
+  USING (EXISTS (SELECT FROM culprit.robot r WHERE r.robot = outcome.robot AND r.login = session_user))
+  WITH CHECK (EXISTS (SELECT FROM culprit.robot r WHERE r.robot = outcome.robot AND r.login = session_user));
+ALTER POLICY own ON culprit.failure
+  USING (EXISTS (SELECT FROM culprit.robot r WHERE r.robot = failure.robot AND r.login = session_user))
+  WITH CHECK (EXISTS (SELECT FROM culprit.robot r WHERE r.robot = failure.robot AND r.login = session_user));
+)sql";
+
+const std::array kMigrations = {std::string(kTables) + kFunctions + kRights,
+                                std::string(kRightsByRow)};
 
 }  // namespace
 
