@@ -59,7 +59,7 @@ void step(benchmark::State& state) {
     observation[0] = {now, SignalRead{SignalId(0), Value(value)}};
     benchmark::DoNotOptimize(manager.step(now, observation));
   };
-  for (int i = 0; i < 100; ++i) once();
+  for (int i = 0; i < 100'000; ++i) once();  // until all was told that is told once
   const std::uint64_t before = allocations();
   for (auto _ : state) once();
   const auto made = static_cast<double>(allocations() - before);

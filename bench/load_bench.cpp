@@ -91,11 +91,11 @@ void big_pictures(benchmark::State& state) {
       {
         const Child reader(world, "culprit-bench-peer", {"bare-reader"});
         std::this_thread::sleep_for(2s);
-        bare += cpu_percent(reader.pid(), 5s) / 3;
+        bare += cpu_percent(reader.pid(), 3s) / 3;
       }
       const Child culprit(world, "culprit", {"run", rules, "--dry-run"});
       std::this_thread::sleep_for(2s);
-      watched += cpu_percent(culprit.pid(), 5s) / 3;
+      watched += cpu_percent(culprit.pid(), 3s) / 3;
     }
   }
   state.counters["bare_reader_percent"] = bare;

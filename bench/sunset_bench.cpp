@@ -25,7 +25,7 @@ void idle(benchmark::State& state) {
   const Child culprit(world, "culprit", {"run", CULPRIT_SUNSET_RULES});
   std::this_thread::sleep_for(8s);
   double cpu = 0;
-  for (auto _ : state) cpu = cpu_percent(culprit.pid(), 20s);
+  for (auto _ : state) cpu = cpu_percent(culprit.pid(), 10s);
   state.counters["cpu_percent"] = cpu;
   claim("idle beside SUNSET: processor", cpu, 0.5, "% of a core");
   claim("idle beside SUNSET: memory", usage_of(culprit.pid()).resident_mib, 30, "MiB");
