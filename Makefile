@@ -1,11 +1,14 @@
 # The two commands of this project are `make demo` and `make test`. Each installs what is missing first.
 .PHONY: build install package demo test soak bench docs format clean
 
+# Ninja would start two compilers more than there are processors; on two cores that takes a tenth longer.
+JOBS := $(shell nproc)
+
 # The programs that the README runs; `make test` builds the tests.
 build:
 	@scripts/install-dependencies --studies
 	cmake --preset release -DCULPRIT_TESTS=OFF
-	cmake --build --preset release --target culprit culprit-lab sunset-node suave-node
+	cmake --build --preset release --parallel $(JOBS) --target culprit culprit-lab sunset-node suave-node
 
 # Programs, rules, documents, the manual page, and culprit::core for programs of others.
 PREFIX ?= /usr/local
@@ -20,7 +23,7 @@ package:
 demo:
 	@scripts/install-dependencies
 	cmake --preset demo
-	cmake --build --preset demo
+	cmake --build --preset demo --parallel $(JOBS)
 	build/demo/bin/culprit-lab demo --end
 
 test:
@@ -35,7 +38,7 @@ test:
 soak:
 	@scripts/install-dependencies --tests
 	cmake --preset release
-	cmake --build --preset release
+	cmake --build --preset release --parallel $(JOBS)
 	ctest --preset release --parallel 4
 	scripts/soak
 	scripts/first-hour
@@ -45,10 +48,10 @@ soak:
 	CULPRIT_SEQUENCES=100 build/release/bin/owners_test --gtest_filter='AnySequenceOfFaults.*'
 	scripts/mutate
 	cmake --preset asan
-	cmake --build --preset asan-soak
+	cmake --build --preset asan-soak --parallel $(JOBS)
 	ctest --preset asan-soak
 	cmake --preset tsan
-	cmake --build --preset tsan-soak
+	cmake --build --preset tsan-soak --parallel $(JOBS)
 	ctest --preset tsan-soak
 	scripts/fuzz --seconds 300
 	scripts/figures --check
@@ -63,7 +66,7 @@ docs:
 bench:
 	@scripts/install-dependencies --tests
 	cmake --preset release -DCULPRIT_BENCH=ON
-	cmake --build --preset release --target culprit-bench
+	cmake --build --preset release --parallel $(JOBS) --target culprit-bench
 	build/release/bin/culprit-bench
 
 format:
