@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <string>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
@@ -43,6 +44,14 @@ struct ReceiveThread::Socket {
   const std::uint32_t largest;
   const Haste haste;
   const OnDatagram on_datagram;
+
+  // Taken, and not handed on yet. Of the thread.
+  struct Kept {
+    UdpAddress from;
+    std::vector<std::uint8_t> bytes;
+  };
+  std::deque<Kept> kept;
+  std::size_t kept_bytes = 0;
 };
 
 // What was taken from a socket at once. Its memory is touched only as far as datagrams reach.
@@ -69,15 +78,27 @@ class ReceiveThread::Batch {
     return count_ == kBatch;
   }
   void hand_to(const Socket& socket) {
+    for (std::size_t i = 0; i < count_; ++i) socket.on_datagram(datagram(i), sender(i));
+  }
+  void keep_for(Socket& socket) {
     for (std::size_t i = 0; i < count_; ++i) {
-      UdpAddress from;
-      std::memcpy(from.ip.data(), &senders_[i].sin_addr, from.ip.size());
-      from.port = ntohs(senders_[i].sin_port);
-      socket.on_datagram({bytes_.get() + i * kLargest, messages_[i].msg_len}, from);
+      const auto bytes = datagram(i);
+      socket.kept.push_back({sender(i), {bytes.begin(), bytes.end()}});
+      socket.kept_bytes += bytes.size();
     }
   }
 
  private:
+  std::span<std::uint8_t> datagram(std::size_t i) {
+    return {bytes_.get() + i * kLargest, messages_[i].msg_len};
+  }
+  UdpAddress sender(std::size_t i) const {
+    UdpAddress from;
+    std::memcpy(from.ip.data(), &senders_[i].sin_addr, from.ip.size());
+    from.port = ntohs(senders_[i].sin_port);
+    return from;
+  }
+
   const std::unique_ptr<std::uint8_t[]> bytes_;
   std::array<sockaddr_in, kBatch> senders_{};
   std::array<iovec, kBatch> places_{};
@@ -174,14 +195,16 @@ void ReceiveThread::run() {
   Clock::time_point watched{};  // since then
   int woken = 0;                // by sockets that have time, since then
   Clock::time_point looks_until{};
+  bool has_kept = false;
   while (true) {
     bool looks = false;
     {
       const MutexLock lock(mutex_);
       looks = !is_armed_;
     }
-    const int count = epoll_wait(wait_fd_, events.data(), static_cast<int>(events.size()),
-                                 looks ? static_cast<int>(kSoon.count()) : -1);
+    const int patience = has_kept ? 0 : looks ? static_cast<int>(kSoon.count()) : -1;
+    const int count =
+        epoll_wait(wait_fd_, events.data(), static_cast<int>(events.size()), patience);
     const Clock::time_point now = Clock::now();
     Sockets urgent;
     Sockets patient;
@@ -195,9 +218,12 @@ void ReceiveThread::run() {
           return static_cast<std::uint64_t>(each->descriptor) == which;
         });
         if (ready == sockets_.end()) continue;
-        if ((*ready)->haste == Haste::kNow) urgent.push_back(*ready);
+        const bool has_turn = !(*ready)->kept.empty();  // in any case
+        if ((*ready)->haste == Haste::kNow && !has_turn) urgent.push_back(*ready);
         is_woken_by_patient = is_woken_by_patient || (*ready)->haste == Haste::kSoon;
       }
+      std::ranges::copy_if(sockets_, std::back_inserter(urgent),
+                           [](const auto& each) { return !each->kept.empty(); });
       std::ranges::copy_if(sockets_, std::back_inserter(patient),
                            [](const auto& each) { return each->haste == Haste::kSoon; });
       if (now - watched > kWatched) {
@@ -216,10 +242,10 @@ void ReceiveThread::run() {
       ++rounds_;
     }
     if (urgent.empty()) take_patient(patient, patient_batch);
+    has_kept = false;
     for (const auto& each : urgent) {
-      batch.take(*each);
-      take_patient(patient, patient_batch);
-      batch.hand_to(*each);
+      take_urgent(*each, batch, patient, patient_batch);
+      has_kept = has_kept || !each->kept.empty();
     }
     urgent.clear();
     patient.clear();
@@ -228,6 +254,28 @@ void ReceiveThread::run() {
       ++rounds_;
     }
     round_ended_.notify_all();
+  }
+}
+
+void ReceiveThread::take_urgent(Socket& socket, Batch& batch, const Sockets& patient,
+                                Batch& patient_batch) {
+  bool has_more = batch.take(socket);
+  if (!has_more && socket.kept.empty()) {
+    take_patient(patient, patient_batch);
+    batch.hand_to(socket);
+    return;
+  }
+  batch.keep_for(socket);
+  while (has_more && socket.kept_bytes < kMostKept) {
+    has_more = batch.take(socket);
+    batch.keep_for(socket);
+  }
+  take_patient(patient, patient_batch);
+  for (std::size_t i = 0; i < kBatch && !socket.kept.empty(); ++i) {
+    Socket::Kept first = std::move(socket.kept.front());
+    socket.kept.pop_front();
+    socket.kept_bytes -= first.bytes.size();
+    socket.on_datagram(first.bytes, first.from);
   }
 }
 

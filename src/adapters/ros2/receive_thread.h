@@ -1,7 +1,11 @@
 // One thread that receives from all UDP sockets of a participant.
 //
 // Fast DDS has a thread for each socket, and a system call for each datagram. Here one thread waits
-// for all of them, and takes what lies in a socket together, up to kBatch datagrams.
+// for all of them, and takes what lies in a socket together.
+//
+// Who discovers a robot is sent what all of it has within a moment, more than a socket has room for. What is
+// lost there every peer sends again, to everybody. So all that lies in a socket is taken at once, and kept up
+// to kMostKept until its turn comes: of each socket kBatch datagrams, then of the next one.
 //
 // What costs most is to wake it. So some sockets have time (Haste::kSoon): they are read whenever the
 // thread is awake anyway, and if so much comes that this would be cheaper, every kSoon instead of with
@@ -30,6 +34,7 @@ enum class Haste : std::uint8_t { kNow, kSoon };
 class ReceiveThread {
  public:
   static constexpr std::size_t kBatch = 8;
+  static constexpr std::size_t kMostKept = 4 << 20;  // bytes, of each socket
   static constexpr std::uint32_t kLargest = 65'536;  // bytes; UDP carries less
   static constexpr std::chrono::milliseconds kSoon{20};
   static constexpr const char* kName = "culprit-receive";  // of the thread, as `top -H` shows it
@@ -71,7 +76,10 @@ class ReceiveThread {
   class Batch;
 
   void run();
-  void take_patient(const Sockets& patient, Batch& batch);
+  // Hands on what came to one that waits for nobody, at most kBatch datagrams, and keeps the rest. Before that, all that came to the patient ones.
+  static void take_urgent(Socket& socket, Batch& batch, const Sockets& patient,
+                          Batch& patient_batch);
+  static void take_patient(const Sockets& patient, Batch& batch);
   void arm(bool is_armed) CULPRIT_REQUIRES(mutex_);
 
   const int wait_fd_;  // of epoll

@@ -1,7 +1,10 @@
 #include "ros2/receive_thread.h"
 
 #include <arpa/inet.h>
+#include <semaphore>
+#include <set>
 #include <string>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
@@ -153,6 +156,75 @@ TEST(ReceiveThread, OnePortMayFloodAndAnotherIsHeard) {
   EXPECT_TRUE(ears.heard.wait_for_count(1));
   stop = true;
   flooder.join();
+}
+
+// A socket whose callback stops at some datagrams until it is let go on.
+struct HeldListener : Listener {
+  std::uint16_t open_held(const std::string& name, const std::set<std::string>& stops) {
+    while (true) {
+      const std::uint16_t port = unused_port();
+      if (thread.open({.ip = kThisMachine, .port = port},
+                      [this, name, stops](std::span<std::uint8_t> datagram, const UdpAddress&) {
+                        const std::string text =
+                            name + std::string(datagram.begin(), datagram.end());
+                        heard.add(text);
+                        if (stops.contains(text)) go_on.acquire();
+                      }))
+        return port;
+    }
+  }
+  std::size_t bytes_in_sockets() const {
+    int all = 0;
+    thread.look_at_sockets([&](std::span<const int> descriptors) {
+      for (const int each : descriptors) {
+        int bytes = 0;
+        EXPECT_EQ(ioctl(each, FIONREAD, &bytes), 0);
+        all += bytes;
+      }
+    });
+    return static_cast<std::size_t>(all);
+  }
+
+  std::counting_semaphore<> go_on{0};
+};
+
+TEST(ReceiveThread, AllThatLiesInASocketIsTakenBeforeItsTurnComes) {
+  HeldListener ears;
+  const Voice speaker;
+  const std::uint16_t port = ears.open_held("", {"0", "1"});
+  speaker.say(port, "0");
+  EXPECT_TRUE(ears.heard.wait_for_count(1));
+  for (int i = 1; i <= 40; ++i) speaker.say(port, std::to_string(i));
+  EXPECT_GT(ears.bytes_in_sockets(), 0u);
+  ears.go_on.release();
+  EXPECT_TRUE(ears.heard.wait_for_count(2));
+  EXPECT_EQ(ears.bytes_in_sockets(), 0u) << "there is room for what comes now";
+  speaker.say(port, "41");
+  ears.go_on.release();
+  ASSERT_TRUE(ears.heard.wait_for_count(42));
+  for (std::size_t i = 0; i < 42; ++i) EXPECT_EQ(ears.heard.all()[i], std::to_string(i));
+}
+
+TEST(ReceiveThread, WhatWasKeptLeavesOthersTheirTurn) {
+  HeldListener ears;
+  const Voice speaker;
+  const std::uint16_t flooded = ears.open_held("flood ", {"flood 0"});
+  const std::uint16_t other = ears.open("other ");
+  speaker.say(flooded, "0");
+  EXPECT_TRUE(ears.heard.wait_for_count(1));
+  for (int i = 1; i <= 100; ++i) speaker.say(flooded, std::to_string(i));
+  for (int i = 0; i < 20; ++i) speaker.say(other, std::to_string(i));
+  ears.go_on.release();
+  ASSERT_TRUE(ears.heard.wait_for_count(121));
+  const auto all = ears.heard.all();
+  const auto place = [&](const std::string& text) {
+    return static_cast<std::size_t>(std::ranges::find(all, text) - all.begin());
+  };
+  EXPECT_LE(place("other 0"), 1 + ReceiveThread::kBatch);
+  EXPECT_LE(place("other 19"), 1 + 20 + 3 * ReceiveThread::kBatch);
+  for (int i = 1; i <= 100; ++i) {
+    EXPECT_LT(place("flood " + std::to_string(i - 1)), place("flood " + std::to_string(i)));
+  }
 }
 
 TEST(ReceiveThread, WhatIsTooLongIsCut) {
