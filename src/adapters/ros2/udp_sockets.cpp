@@ -1,12 +1,13 @@
 #include "ros2/udp_sockets.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <fstream>
 #include <optional>
-#include <sstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace culprit::ros2 {
 namespace {
@@ -27,22 +28,37 @@ std::optional<UdpAddress> parse_address(std::string_view text) {
   return address;
 }
 
+// Takes the next of the columns that blanks part.
+std::string_view next_column(std::string_view& line) {
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  const std::string_view column = line.substr(0, line.find(' '));
+  line.remove_prefix(column.size());
+  return column;
+}
+
+std::optional<UdpSocket> parse_socket(std::string_view line) {
+  constexpr int kBetweenAddressAndUser = 5;
+  constexpr int kBetweenUserAndInode = 1;
+  UdpSocket socket;
+  next_column(line);  // its number
+  const auto address = parse_address(next_column(line));
+  for (int i = 0; i < kBetweenAddressAndUser; ++i) next_column(line);
+  const std::string_view user = next_column(line);
+  for (int i = 0; i < kBetweenUserAndInode; ++i) next_column(line);
+  const std::string_view inode = next_column(line);
+  const auto read = std::from_chars(user.data(), user.data() + user.size(), socket.user);
+  if (!address || read.ec != std::errc() || inode.empty()) return std::nullopt;
+  socket.address = *address;
+  socket.link = "socket:[" + std::string(inode) + "]";
+  return socket;
+}
+
 void add_sockets(const std::filesystem::path& table, std::vector<UdpSocket>& sockets) {
   std::ifstream file(table);
   std::string line;
   std::getline(file, line);  // the headings
   while (std::getline(file, line)) {
-    std::istringstream columns(line);
-    std::string skipped, local, inode;
-    UdpSocket socket;
-    columns >> skipped >> local;
-    for (int i = 0; i < 5; ++i) columns >> skipped;
-    columns >> socket.user >> skipped >> inode;
-    const auto address = parse_address(local);
-    if (!columns || !address) continue;
-    socket.address = *address;
-    socket.link = "socket:[" + inode + "]";
-    sockets.push_back(std::move(socket));
+    if (auto socket = parse_socket(line)) sockets.push_back(std::move(*socket));
   }
 }
 
