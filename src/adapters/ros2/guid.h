@@ -41,23 +41,33 @@ struct SampleIdentity {
   bool operator==(const SampleIdentity&) const = default;
 };
 
+// Of the bytes of an id in two parts, for the tables in which each datagram is looked up. The upper half of
+// a product depends on all bits of its factors. The bytes come from the network: those tables are capped.
+constexpr std::size_t hash_of(std::uint64_t first, std::uint64_t rest) {
+  const std::uint64_t product = (first ^ rest * 0x9e3779b97f4a7c15) * 0xd6e8feb86659fd93;
+  return product ^ product >> 32;
+}
+
 }  // namespace culprit::ros2
 
 template <>
 struct std::hash<culprit::ros2::GuidPrefix> {
   std::size_t operator()(const culprit::ros2::GuidPrefix& prefix) const noexcept {
-    // FNV-1a: the bytes come from the network, but the tables that use this are capped.
-    std::uint64_t h = 0xcbf29ce484222325;
-    for (const std::uint8_t b : prefix.bytes) h = (h ^ b) * 0x100000001b3;
-    return h;
+    std::uint64_t first = 0;
+    std::uint32_t rest = 0;
+    std::memcpy(&first, prefix.bytes.data(), sizeof first);
+    std::memcpy(&rest, prefix.bytes.data() + sizeof first, sizeof rest);
+    return culprit::ros2::hash_of(first, rest);
   }
 };
 
 template <>
 struct std::hash<culprit::ros2::Guid> {
   std::size_t operator()(const culprit::ros2::Guid& guid) const noexcept {
-    std::uint64_t h = 0xcbf29ce484222325;
-    for (const std::uint8_t b : guid.bytes) h = (h ^ b) * 0x100000001b3;
-    return h;
+    std::uint64_t first = 0;
+    std::uint64_t rest = 0;
+    std::memcpy(&first, guid.bytes.data(), sizeof first);
+    std::memcpy(&rest, guid.bytes.data() + sizeof first, sizeof rest);
+    return culprit::ros2::hash_of(first, rest);
   }
 };
