@@ -374,12 +374,20 @@ const EndpointInfo* Graph::endpoint(const Guid& guid) const {
   return found == nullptr ? nullptr : &found->info;
 }
 
-std::vector<Graph::NodeView> Graph::nodes() const {
+std::vector<Graph::NodeView> Graph::bare_nodes() const {
   std::vector<NodeView> views;
-  for (const auto& [name, node] : nodes_) {
-    NodeView& view =
-        views.emplace_back(NodeView{describe(name, peers_.at(*node.told)), {}, *node.told});
-    for (const auto& [key, edge] : node.edges) view.endpoints.push_back(edge.endpoint);
+  views.reserve(nodes_.size());
+  for (const auto& [name, node] : nodes_)
+    views.push_back({describe(name, peers_.at(*node.told)), {}, *node.told});
+  return views;
+}
+
+std::vector<Graph::NodeView> Graph::nodes() const {
+  std::vector<NodeView> views = bare_nodes();
+  for (NodeView& view : views) {
+    const auto& edges = nodes_.at(view.node.name).edges;
+    view.endpoints.reserve(edges.size());
+    for (const auto& [key, edge] : edges) view.endpoints.push_back(edge.endpoint);
   }
   return views;
 }

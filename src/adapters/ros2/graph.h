@@ -140,6 +140,8 @@ class Graph {
     GuidPrefix participant{};  // that holds it
   };
   std::vector<NodeView> nodes() const;
+  // The same without their endpoints: participants() has those, too.
+  std::vector<NodeView> bare_nodes() const;
 
   // Every participant, with all that it has: also nodes that do not count, since another has their
   // name, and each of several endpoints of one node, kind and name.

@@ -35,7 +35,7 @@ constexpr const char* kDiagnostics = "/diagnostics";
 // Of the executor's thread, which is the caller's, but for what it hears.
 class Look {
  public:
-  Look(const LookOptions& options, std::function<void(const Picture&)> on_picture)
+  Look(const LookOptions& options, std::function<void(Picture)> on_picture)
       : options_(options), on_picture_(std::move(on_picture)), tasks_(executor_) {}
 
   Expected<void> open() {
@@ -248,17 +248,18 @@ class Look {
   // ---- what was seen
 
   std::vector<Node> nodes_with_endpoints(
-      const std::vector<ros2::Graph::ParticipantView>& participants) const {
+      std::vector<ros2::Graph::ParticipantView> participants) const {
     std::vector<Node> nodes;
     std::map<std::pair<ros2::GuidPrefix, std::string>, std::size_t> places;
-    for (const ros2::Graph::NodeView& view : context_->graph().nodes()) {
+    for (ros2::Graph::NodeView& view : context_->graph().bare_nodes()) {
       places[{view.participant, view.node.name}] = nodes.size();
-      nodes.push_back(Node{view.node});
+      nodes.push_back(Node{std::move(view.node)});
     }
-    for (const ros2::Graph::ParticipantView& each : participants) {
-      for (const auto& owned : each.endpoints) {
+    for (ros2::Graph::ParticipantView& each : participants) {
+      for (ros2::Graph::OwnedEndpoint& owned : each.endpoints) {
         const auto place = places.find({each.info.guid.prefix(), owned.node});
-        if (place != places.end()) nodes[place->second].endpoints.push_back(owned.endpoint);
+        if (place != places.end())
+          nodes[place->second].endpoints.push_back(std::move(owned.endpoint));
       }
     }
     return nodes;
@@ -266,14 +267,15 @@ class Look {
 
   Picture picture() {
     const Time now = live_now();
-    const auto participants = context_->graph().participants();
+    auto participants = context_->graph().participants();
     Picture seen;
     seen.domain = options_.participant.domain;
     seen.looked = now - began_;
     seen.waited = longest_wait(waits_, waits_of_own_threads());
-    seen.nodes = nodes_with_endpoints(participants);
     seen.namesakes = namesakes_;
     for (const auto& each : participants) seen.participants.push_back(described(each));
+    add_transforms(seen, participants, now);
+    seen.nodes = nodes_with_endpoints(std::move(participants));
     seen.unanswered = asking_->unanswered();
     seen.asked = asked_;
     add_ended(seen, now);
@@ -286,7 +288,6 @@ class Look {
                              status.last - began_};
     seen.flows = topics_->flows(now);
     seen.clock = clock_->seen();
-    add_transforms(seen, participants, now);
     seen.processes = processes_.processes();
     seen.free_memory = free_memory();
     add_disks(seen);
@@ -386,7 +387,7 @@ class Look {
   };
 
   const LookOptions options_;
-  const std::function<void(const Picture&)> on_picture_;
+  const std::function<void(Picture)> on_picture_;
   Time began_{};
   std::map<int, Duration> waits_;     // of our threads, when the look began
   std::map<std::string, int> nodes_;  // with their processes; 0: not known
@@ -420,8 +421,8 @@ class Look {
 Expected<Picture> look(const LookOptions& options, const std::stop_token& stop) {
   std::optional<Picture> taken;
   Look* running = nullptr;
-  Look look(options, [&](const Picture& picture) {
-    taken = picture;
+  Look look(options, [&](Picture picture) {
+    taken = std::move(picture);
     running->stop();
   });
   running = &look;

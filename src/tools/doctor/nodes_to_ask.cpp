@@ -27,14 +27,11 @@ std::vector<ros2::Graph::NodeView> nodes_to_ask(std::vector<ros2::Graph::NodeVie
   }
   std::set<std::size_t> chosen;
   for (const auto& each : by_participant)
-    chosen.insert(each.second[2 * round % each.second.size()]);
+    chosen.insert(each.second[round % each.second.size()]);
   // So many at least have room in each round.
   const std::size_t step = kMost - std::min(kMost, by_participant.size());
   for (std::size_t i = 0; i < managed.size() && chosen.size() < kMost; ++i)
     chosen.insert(managed[(round * step + i) % managed.size()]);
-  for (const auto& each : by_participant) {
-    if (chosen.size() < kMost) chosen.insert(each.second[(2 * round + 1) % each.second.size()]);
-  }
   std::vector<ros2::Graph::NodeView> views;
   for (const std::size_t i : chosen) views.push_back(std::move(nodes[i]));
   return views;

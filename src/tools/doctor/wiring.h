@@ -1,4 +1,4 @@
-// Who is connected to whom: the endpoints of a picture, by topic and service.
+// Who is connected to whom: the endpoints of a picture, by topic and service. A view of the picture, which must outlive it.
 #pragma once
 
 #include <map>
@@ -10,9 +10,9 @@
 namespace culprit::doctor {
 
 struct End {
-  std::string node;
+  const std::string& node;
   ros2::Vendor vendor = ros2::Vendor::kOther;
-  ros2::GraphEndpoint endpoint;
+  const ros2::GraphEndpoint& endpoint;
 };
 
 // Of a topic its publishers and subscribers; of a service its clients, which send, and its servers.
@@ -28,6 +28,7 @@ struct Wiring {
 
 // Without the endpoints of hidden nodes, which are somebody's tools.
 Wiring wiring_of(const Picture& picture);
+Wiring wiring_of(Picture&& picture) = delete;
 
 // Whether any of them is of a node of the robot, not of a tool.
 bool has_robots_end(const std::vector<End>& ends);
