@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <random>
+#include <set>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include "fleet/member.h"
 #include "fleet/schema.h"
 #include "fleet/test_journal.h"
+#include "fleet/test_pooler.h"
 #include "fleet/test_postgres.h"
 #include "journal/reader.h"
 #include "language/checker.h"
@@ -469,6 +471,40 @@ ANALYZE;
     for (const Row& line : *plan)
       EXPECT_EQ(text_in(line[0]).find("Seq Scan on robot"), std::string::npos) << statement;
   }
+}
+
+// Rows go by the login, whoever had its session before.
+TEST_F(Fleet, ManyShareTheSessionsOfAPooler) {
+  if (const std::string why = TestPooler::why_not(); !why.empty()) GTEST_SKIP() << why;
+  postgres->run("CREATE ROLE other LOGIN IN ROLE culprit_robot");
+  const TestPooler pooler(*postgres, {"rover", "other"});
+  const auto session = [&](const std::string& login) {
+    auto server = Server::connect(pooler.address(login), stop);
+    EXPECT_TRUE(server) << server.error();
+    return std::move(*server);
+  };
+  std::set<std::string> processes;
+  for (const std::string login : {"rover", "other"}) {
+    for (int i = 0; i < 5; ++i) {
+      TestJournal journal(folder / (login + std::to_string(i)));
+      journal.begins();
+      for (int n = 0; n <= i; ++n) journal.outcome("restart", true);
+      auto outbox = Outbox::open(outbox_beside(journal.path()), "");
+      JournalTail tail(journal.path());
+      ASSERT_TRUE(tail.follow(*outbox, stop));
+      Server server = session(login);
+      ASSERT_TRUE(check_schema(server));
+      const auto sent = send(server, *outbox, {login, *tail.run()}, {});
+      ASSERT_TRUE(sent) << sent.error();
+      processes.insert(text_in((*server.query("SELECT pg_backend_pid()"))[0][0]));
+    }
+  }
+  EXPECT_EQ(processes.size(), 2u) << "one of each login, however many come";
+  EXPECT_EQ(sums().helped, 30);
+  EXPECT_EQ(text_in((*session("rover").query("SELECT count(*) FROM culprit.robot"))[0][0]), "5");
+  EXPECT_EQ(
+      text_in(postgres->query("SELECT count(*) FROM culprit.robot WHERE login::text = name")[0][0]),
+      "10");
 }
 
 TEST_F(Fleet, ANewRobotBeginsWithWhatTheOthersLearned) {

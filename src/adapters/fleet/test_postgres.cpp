@@ -25,6 +25,28 @@ fs::path programs() {
   return newest;
 }
 
+void run_as_nobody(std::vector<std::string> arguments, const fs::path& log) {
+  const std::string program = arguments[0];
+  int status = 0;
+  waitpid(start_as_nobody(std::move(arguments), log), &status, 0);
+  if (status != 0) throw std::runtime_error(program + " failed");
+}
+
+// An empty one, made once in a process: a copy takes a tenth of the time.
+const fs::path& empty_database() {
+  static const test::TestFolder folder;
+  static const fs::path data = [] {
+    give_away(folder.path());
+    run_as_nobody({programs() / "initdb", "-D", folder / "data", "--no-sync", "-A", "trust", "-U",
+                   "postgres", "-E", "UTF8", "--locale=C", "--wal-segsize=1", "--no-instructions"},
+                  folder / "log");
+    return fs::path(folder / "data");
+  }();
+  return data;
+}
+
+}  // namespace
+
 pid_t start_as_nobody(std::vector<std::string> arguments, const fs::path& log) {
   std::vector<std::string> all = {"setpriv", "--pdeathsig", "QUIT"};
   if (geteuid() == 0)
@@ -48,28 +70,6 @@ void give_away(const fs::path& folder) {
   if (geteuid() == 0 && chown(folder.c_str(), 65534, 65534) != 0)
     throw std::runtime_error("the folder cannot be given away");
 }
-
-void run_as_nobody(std::vector<std::string> arguments, const fs::path& log) {
-  const std::string program = arguments[0];
-  int status = 0;
-  waitpid(start_as_nobody(std::move(arguments), log), &status, 0);
-  if (status != 0) throw std::runtime_error(program + " failed");
-}
-
-// An empty one, made once in a process: a copy takes a tenth of the time.
-const fs::path& empty_database() {
-  static const test::TestFolder folder;
-  static const fs::path data = [] {
-    give_away(folder.path());
-    run_as_nobody({programs() / "initdb", "-D", folder / "data", "--no-sync", "-A", "trust", "-U",
-                   "postgres", "-E", "UTF8", "--locale=C", "--wal-segsize=1", "--no-instructions"},
-                  folder / "log");
-    return fs::path(folder / "data");
-  }();
-  return data;
-}
-
-}  // namespace
 
 std::string TestPostgres::why_not() {
   return programs().empty() ? "there is no PostgreSQL here (Debian: postgresql)" : "";

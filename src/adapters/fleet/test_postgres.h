@@ -5,11 +5,17 @@
 #include <filesystem>
 #include <string>
 #include <sys/types.h>
+#include <vector>
 
 #include "base/test_folder.h"
 #include "fleet/server.h"
 
 namespace culprit::fleet {
+
+// A program of the distribution, as a user that may do nothing else; it ends with us. What it says goes to
+// `log`. That user may write into a folder that was given away.
+pid_t start_as_nobody(std::vector<std::string> arguments, const std::filesystem::path& log);
+void give_away(const std::filesystem::path& folder);
 
 class TestPostgres {
  public:
@@ -28,6 +34,8 @@ class TestPostgres {
   // Of the server, whose processes are its children.
   pid_t pid() const { return pid_; }
 
+  // Of its socket.
+  const std::filesystem::path& folder() const { return folder_.path(); }
   // As this login, which needs no password.
   Address address(const std::string& login = "postgres") const;
   // Throws if that is impossible.
