@@ -51,7 +51,9 @@ struct ReceiveThread::Socket {
     std::vector<std::uint8_t> bytes;
   };
   std::deque<Kept> kept;
-  std::size_t kept_bytes = 0;
+  std::size_t kept_bytes = 0;  // with what each takes beside what it says: datagrams may be empty
+
+  static std::size_t bytes_of(const Kept& each) { return sizeof(Kept) + each.bytes.size(); }
 };
 
 // What was taken from a socket at once. Its memory is touched only as far as datagrams reach.
@@ -84,7 +86,7 @@ class ReceiveThread::Batch {
     for (std::size_t i = 0; i < count_; ++i) {
       const auto bytes = datagram(i);
       socket.kept.push_back({sender(i), {bytes.begin(), bytes.end()}});
-      socket.kept_bytes += bytes.size();
+      socket.kept_bytes += Socket::bytes_of(socket.kept.back());
     }
   }
 
@@ -274,7 +276,7 @@ void ReceiveThread::take_urgent(Socket& socket, Batch& batch, const Sockets& pat
   for (std::size_t i = 0; i < kBatch && !socket.kept.empty(); ++i) {
     Socket::Kept first = std::move(socket.kept.front());
     socket.kept.pop_front();
-    socket.kept_bytes -= first.bytes.size();
+    socket.kept_bytes -= Socket::bytes_of(first);
     socket.on_datagram(first.bytes, first.from);
   }
 }

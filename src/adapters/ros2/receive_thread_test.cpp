@@ -139,23 +139,27 @@ TEST(ReceiveThread, WhatHasTimeComesByItself) {
 }
 
 TEST(ReceiveThread, OnePortMayFloodAndAnotherIsHeard) {
-  Listener ears;
-  const Voice speaker;
-  const std::uint16_t flooded = unused_port();
-  std::atomic<int> flood = 0;
-  ASSERT_TRUE(ears.thread.open({.ip = kThisMachine, .port = flooded, .haste = Haste::kSoon},
-                               [&](auto, const auto&) { ++flood; }));
-  const std::uint16_t urgent = ears.open("");
-  std::atomic<bool> stop = false;
-  std::thread flooder([&] {
-    const Voice other;
-    while (!stop) other.say(flooded, "x");
-  });
-  while (flood < 100) std::this_thread::yield();
-  speaker.say(urgent, "x");
-  EXPECT_TRUE(ears.heard.wait_for_count(1));
-  stop = true;
-  flooder.join();
+  for (const Haste haste : {Haste::kSoon, Haste::kNow}) {
+    for (const std::string text : {"x", ""}) {
+      std::atomic<int> flood = 0;  // outlives the thread that counts
+      Listener ears;
+      const Voice speaker;
+      const std::uint16_t flooded = unused_port();
+      ASSERT_TRUE(ears.thread.open({.ip = kThisMachine, .port = flooded, .haste = haste},
+                                   [&](auto, const auto&) { ++flood; }));
+      const std::uint16_t urgent = ears.open("");
+      std::atomic<bool> stop = false;
+      std::thread flooder([&] {
+        const Voice other;
+        while (!stop) other.say(flooded, text);
+      });
+      while (flood < 100) std::this_thread::yield();
+      speaker.say(urgent, "x");
+      EXPECT_TRUE(ears.heard.wait_for_count(1));
+      stop = true;
+      flooder.join();
+    }
+  }
 }
 
 // A socket whose callback stops at some datagrams until it is let go on.
