@@ -26,8 +26,7 @@ std::vector<ros2::Graph::NodeView> nodes_to_ask(std::vector<ros2::Graph::NodeVie
     if (is_managed(nodes[i])) managed.push_back(i);
   }
   std::set<std::size_t> chosen;
-  for (const auto& each : by_participant)
-    chosen.insert(each.second[round % each.second.size()]);
+  for (const auto& each : by_participant) chosen.insert(each.second[round % each.second.size()]);
   // So many at least have room in each round.
   const std::size_t step = kMost - std::min(kMost, by_participant.size());
   for (std::size_t i = 0; i < managed.size() && chosen.size() < kMost; ++i)
