@@ -17,30 +17,35 @@ struct Neighbours {
   std::vector<Vertex> targets;
 
   Neighbours(std::size_t vertices, std::span<const Edge> edges)
-      : first(vertices + 1, 0), targets(edges.size()) {
-    for (const Edge& edge : edges) ++first[edge.first + 1];
-    for (std::size_t v = 0; v < vertices; ++v) first[v + 1] += first[v];
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    for (const Edge& edge : edges) targets[next[edge.first]++] = edge.second;
+      : first(vertices + 2, 0), targets(edges.size()) {
+    for (const Edge& edge : edges) ++first[edge.first + 2];
+    for (std::size_t v = 0; v < vertices; ++v) first[v + 2] += first[v + 1];
+    // Now first[v + 1] is where those of v begin; it comes to be where they end.
+    for (const Edge& edge : edges) targets[first[edge.first + 1]++] = edge.second;
+  }
+  std::span<const Vertex> of(Vertex v) const {
+    return std::span(targets).subspan(first[v], first[v + 1] - first[v]);
   }
 };
 
 // Tarjan's search, with its own stack: a long chain must not overflow the program's.
 class Traversal {
  public:
-  explicit Traversal(const Neighbours& neighbours)
-      : neighbours_(neighbours),
-        number_(neighbours.first.size() - 1, kNone),
-        low_(number_.size()),
-        scc_of_(number_.size(), kNone) {}
+  Traversal(std::size_t vertices, const Neighbours& neighbours, Condensation::Sccs& found)
+      : neighbours_(neighbours), number_(vertices, kNone), low_(vertices), found_(found) {
+    found_.of.assign(vertices, kNone);
+    found_.first_producer.reserve(vertices + 1);
+    found_.first_producer.push_back(0);
+    found_.producers.reserve(neighbours.targets.size());
+    open_.reserve(vertices);
+    calls_.reserve(vertices);
+  }
 
-  std::vector<Condensation::Scc> run() {
+  void run() {
     for (Vertex v = 0; v < number_.size(); ++v) {
       if (number_[v] == kNone) visit_from(v);
     }
-    return std::move(scc_of_);
   }
-  std::uint32_t sccs() const { return sccs_; }
 
  private:
   struct Call {
@@ -68,7 +73,7 @@ class Traversal {
       const Vertex target = neighbours_.targets[call.next++];
       if (number_[target] == kNone) {
         enter(target);
-      } else if (scc_of_[target] == kNone) {
+      } else if (found_.of[target] == kNone) {
         lower(v, number_[target]);
       }
     }
@@ -76,24 +81,27 @@ class Traversal {
 
   void lower(Vertex v, std::uint32_t to) { low_[v] = std::min(low_[v], to); }
 
+  // From `root` on, what is open is an SCC. All that it depends on is in one now.
   void close(Vertex root) {
-    Vertex v = kNone;
-    do {
-      v = open_.back();
-      open_.pop_back();
-      scc_of_[v] = sccs_;
-    } while (v != root);
-    ++sccs_;
+    const auto scc = static_cast<Condensation::Scc>(found_.first_producer.size() - 1);
+    const auto first = std::find(open_.rbegin(), open_.rend(), root).base() - 1;
+    std::for_each(first, open_.end(), [&](Vertex member) { found_.of[member] = scc; });
+    std::for_each(first, open_.end(), [&](Vertex member) {
+      for (const Vertex target : neighbours_.of(member)) {
+        if (found_.of[target] != scc) found_.producers.push_back(found_.of[target]);
+      }
+    });
+    found_.first_producer.push_back(static_cast<std::uint32_t>(found_.producers.size()));
+    open_.erase(first, open_.end());
   }
 
   const Neighbours& neighbours_;
   std::vector<std::uint32_t> number_;  // in the order of visits
   std::vector<std::uint32_t> low_;     // the lowest number known to be reached
-  std::vector<Condensation::Scc> scc_of_;
+  Condensation::Sccs& found_;
   std::vector<Vertex> open_;  // visited, and in no SCC yet
   std::vector<Call> calls_;
   std::uint32_t count_ = 0;
-  std::uint32_t sccs_ = 0;
 };
 
 }  // namespace
@@ -110,17 +118,7 @@ void ChannelEdges::add(std::span<const Vertex> producers, std::span<const Vertex
 
 Condensation::Condensation(std::size_t vertices, std::span<const Edge> edges) {
   const Neighbours neighbours(vertices, edges);
-  Traversal search(neighbours);
-  scc_of_ = search.run();
-  std::vector<Edge> between;
-  between.reserve(edges.size());
-  for (const Edge& edge : edges) {
-    const Edge sccs(scc_of_[edge.first], scc_of_[edge.second]);
-    if (sccs.first != sccs.second) between.push_back(sccs);
-  }
-  Neighbours condensed(search.sccs(), between);
-  first_producer_ = std::move(condensed.first);
-  producers_ = std::move(condensed.targets);
+  Traversal(vertices, neighbours, sccs_).run();
 }
 
 }  // namespace culprit

@@ -20,6 +20,8 @@ class ChannelEdges {
   using Vertex = std::uint32_t;
 
   explicit ChannelEdges(std::size_t vertices) : vertices_(vertices) {}
+  // Room for channels with so many ends in all.
+  void reserve(std::size_t ends) { edges_.reserve(ends); }
   // Neither is empty.
   void add(std::span<const Vertex> producers, std::span<const Vertex> consumers);
 
@@ -39,18 +41,22 @@ class Condensation {
   // `edges` lead from a consumer to a producer; both are below `vertices`. Tarjan's algorithm.
   Condensation(std::size_t vertices, std::span<const std::pair<Vertex, Vertex>> edges);
 
-  std::size_t size() const { return first_producer_.size() - 1; }
-  Scc scc_of(Vertex vertex) const { return scc_of_[vertex]; }
+  std::size_t size() const { return sccs_.first_producer.size() - 1; }
+  Scc scc_of(Vertex vertex) const { return sccs_.of[vertex]; }
   // What an SCC depends on directly: lower numbers, possibly more than once.
   std::span<const Scc> producers(Scc scc) const {
-    return std::span(producers_)
-        .subspan(first_producer_[scc], first_producer_[scc + 1] - first_producer_[scc]);
+    const auto& first = sccs_.first_producer;
+    return std::span(sccs_.producers).subspan(first[scc], first[scc + 1] - first[scc]);
   }
 
+  struct Sccs {
+    std::vector<Scc> of;                        // by vertex
+    std::vector<std::uint32_t> first_producer;  // by SCC, and the end
+    std::vector<Scc> producers;
+  };
+
  private:
-  std::vector<Scc> scc_of_;
-  std::vector<std::uint32_t> first_producer_;  // by SCC, and the end
-  std::vector<Scc> producers_;
+  Sccs sccs_;
 };
 
 }  // namespace culprit

@@ -34,7 +34,7 @@ DependencyGraph::DependencyGraph(const RuleSet& rules)
 
 NodeId DependencyGraph::add_node() {
   nodes_.emplace_back();
-  condensation_.reset();
+  whole_.reset();
   return NodeId(nodes_.size() - 1);
 }
 
@@ -78,7 +78,7 @@ std::optional<DependencyGraph::ChannelId> DependencyGraph::intern_channel(Endpoi
 bool DependencyGraph::node_appeared(const std::string& node) {
   const auto id = intern_node(node);
   if (!id || nodes_[id->index].is_present) return false;
-  condensation_.reset();
+  whole_.reset();
   ++changes_;
   return nodes_[id->index].is_present = true;
 }
@@ -88,7 +88,7 @@ bool DependencyGraph::node_vanished(const std::string& node) {
   if (id == node_ids_.end() || !nodes_[id->second.index].is_present) return false;
   nodes_[id->second.index].is_present = false;
   ++changes_;
-  condensation_.reset();
+  whole_.reset();
   return true;
 }
 
@@ -97,7 +97,7 @@ void DependencyGraph::keep_ends(ComponentId component, bool is_kept) {
   if (!node || nodes_[node->index].keeps_ends == is_kept) return;
   nodes_[node->index].keeps_ends = is_kept;
   ++changes_;
-  condensation_.reset();
+  whole_.reset();
 }
 
 bool DependencyGraph::has_all_ends(ComponentId component) const {
@@ -122,7 +122,7 @@ bool DependencyGraph::endpoint_appeared(const std::string& node, EndpointKind ki
   if (!node_id || !channel_id) return false;
   if (++end_of(*node_id, *channel_id, produces(kind)).count > 1) return false;
   if (produces(kind)) ++channels_[channel_id->index].live_producers;
-  condensation_.reset();
+  whole_.reset();
   ++changes_;
   return true;
 }
@@ -144,7 +144,7 @@ void DependencyGraph::remember(ComponentId component, const std::vector<KnownRob
     const auto channel = intern_channel(end.kind, end.name);
     if (!channel) return;
     end_of(node, *channel, produces(end.kind));
-    condensation_.reset();
+    whole_.reset();
   }
 }
 
@@ -179,7 +179,7 @@ bool DependencyGraph::endpoint_vanished(const std::string& node, EndpointKind ki
   if (end == ends.end() || end->count == 0) return false;
   if (--end->count > 0) return false;
   if (produces(kind)) --channel.live_producers;
-  condensation_.reset();
+  whole_.reset();
   ++changes_;
   return true;
 }
@@ -311,27 +311,47 @@ const std::vector<ComponentId>& DependencyGraph::reach(ComponentId from, Directi
   return found_;
 }
 
-void DependencyGraph::find_ends(const Channel& channel, std::vector<Vertex>& producers,
-                                std::vector<Vertex>& consumers) const {
-  for (const End& end : channel.producers) {
-    if (counts(end, channel, true)) producers.push_back(end.node.index);
+void DependencyGraph::find_links(Whole& whole) const {
+  whole.links.reserve(channels_.size());
+  auto& ends = whole.ends;
+  const auto end = [&] { return static_cast<std::uint32_t>(ends.size()); };
+  for (Vertex n = 0; n < nodes_.size(); ++n) {
+    for (const NodeId producer : nodes_[n].declared_producers) {
+      whole.links.push_back({end(), end() + 1, end() + 2});
+      ends.push_back(producer.index);
+      ends.push_back(n);
+    }
   }
-  for (const End& end : channel.consumers) {
-    if (counts(end, channel, false)) consumers.push_back(end.node.index);
+  for (const Channel& channel : channels_) {
+    Whole::Link link{end(), 0, 0};
+    for (const End& each : channel.producers) {
+      if (counts(each, channel, true)) ends.push_back(each.node.index);
+    }
+    link.consumers = end();
+    for (const End& each : channel.consumers) {
+      if (counts(each, channel, false)) ends.push_back(each.node.index);
+    }
+    link.end = end();
+    if (link.producers < link.consumers && link.consumers < link.end) {
+      whole.links.push_back(link);
+    } else {
+      ends.resize(link.producers);
+    }
   }
 }
 
-const Condensation& DependencyGraph::condensation() const {
-  if (condensation_) return *condensation_;
+const DependencyGraph::Whole& DependencyGraph::whole() const {
+  if (whole_) return *whole_;
+  Whole& whole = whole_.emplace();
+  find_links(whole);
   ChannelEdges edges(nodes_.size());
+  edges.reserve(whole.ends.size());
   for_each_channel([&](auto producers, auto consumers) { edges.add(producers, consumers); });
-  return condensation_.emplace(edges.vertices(), edges.edges());
+  whole.condensation.emplace(edges.vertices(), edges.edges());
+  return whole;
 }
 
-std::optional<DependencyGraph::Vertex> DependencyGraph::vertex_of(ComponentId component) const {
-  const auto node = nodes_of_components_[component.index];
-  return node ? std::optional<Vertex>(node->index) : std::nullopt;
-}
+const Condensation& DependencyGraph::condensation() const { return *whole().condensation; }
 
 std::optional<Condensation::Scc> DependencyGraph::scc_of(ComponentId component) const {
   const auto node = vertex_of(component);

@@ -97,8 +97,10 @@ class DependencyGraph {
   using Vertex = std::uint32_t;
   // Nodes as numbers below size(). Nothing as for scc_of().
   std::size_t size() const { return nodes_.size(); }
-  std::optional<Vertex> vertex_of(ComponentId component) const;
-  std::optional<ComponentId> component_at(Vertex vertex) const { return nodes_[vertex].component; }
+  std::optional<Vertex> vertex_of(ComponentId component) const {
+    const auto node = nodes_of_components_[component.index];
+    return node ? std::optional<Vertex>(node->index) : std::nullopt;
+  }
   // Calls visit(producers, consumers) for each channel with both ends, and for each declared
   // dependency: spans of vertices, of all that counts now.
   template <class Visit>
@@ -148,9 +150,19 @@ class DependencyGraph {
   std::optional<ChannelId> intern_channel(EndpointKind kind, const std::string& name);
   bool counts(const End& end, const Channel& channel, bool producer) const;
   std::vector<NodeId> publishers_of(const std::string& topic) const;
-  // Appends those that count.
-  void find_ends(const Channel& channel, std::vector<Vertex>& producers,
-                 std::vector<Vertex>& consumers) const;
+  // All that counts now, in one piece: a plan reads it several times.
+  struct Whole {
+    struct Link {  // a channel with both ends, or a declared dependency
+      std::uint32_t producers;
+      std::uint32_t consumers;
+      std::uint32_t end;
+    };
+    std::vector<Vertex> ends;
+    std::vector<Link> links;  // where each one's producers and consumers begin and end in `ends`
+    std::optional<Condensation> condensation;
+  };
+  const Whole& whole() const;
+  void find_links(Whole& whole) const;
   // Up to the first one that is `last`; null: all.
   const std::vector<ComponentId>& reach(ComponentId from, Direction direction,
                                         const Predicate& is_last = nullptr) const;
@@ -165,7 +177,7 @@ class DependencyGraph {
 
   std::uint64_t changes_ = 0;
 
-  mutable std::optional<Condensation> condensation_;  // nothing: something changed
+  mutable std::optional<Whole> whole_;  // nothing: something changed
 
   // Scratch of reach(): who was visited in which search; first the nodes, then the channels.
   mutable std::vector<std::uint32_t> visited_;
@@ -176,21 +188,10 @@ class DependencyGraph {
 
 template <class Visit>
 void DependencyGraph::for_each_channel(Visit visit) const {
-  std::vector<Vertex> producers;
-  std::vector<Vertex> consumers;
-  for (Vertex n = 0; n < nodes_.size(); ++n) {
-    consumers.assign(1, n);
-    for (const NodeId producer : nodes_[n].declared_producers) {
-      producers.assign(1, producer.index);
-      visit(std::span<const Vertex>(producers), std::span<const Vertex>(consumers));
-    }
-  }
-  for (const Channel& channel : channels_) {
-    producers.clear();
-    consumers.clear();
-    find_ends(channel, producers, consumers);
-    if (!producers.empty() && !consumers.empty())
-      visit(std::span<const Vertex>(producers), std::span<const Vertex>(consumers));
+  const std::span<const Vertex> ends(whole().ends);
+  for (const Whole::Link& link : whole().links) {
+    visit(ends.subspan(link.producers, link.consumers - link.producers),
+          ends.subspan(link.consumers, link.end - link.consumers));
   }
 }
 
