@@ -21,11 +21,4 @@ std::vector<ComponentId> also_ended(const Strategy& strategy, const Knowledge& k
   return all;
 }
 
-std::vector<ComponentId> all_affected(const Strategy& strategy, const Knowledge& knowledge) {
-  std::vector<ComponentId> all = strategy.components;
-  const std::vector<ComponentId> others = also_ended(strategy, knowledge);
-  all.insert(all.end(), others.begin(), others.end());
-  return all;
-}
-
 }  // namespace culprit::plan

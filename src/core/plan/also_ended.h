@@ -14,7 +14,4 @@ namespace culprit::plan {
 // Ascending, each once, without the components of the strategy itself.
 std::vector<ComponentId> also_ended(const Strategy& strategy, const Knowledge& knowledge);
 
-// Those and the components of the strategy.
-std::vector<ComponentId> all_affected(const Strategy& strategy, const Knowledge& knowledge);
-
 }  // namespace culprit::plan

@@ -16,8 +16,8 @@ namespace culprit::plan {
 
 // @pre |number| < 2^30
 inline std::int64_t parts(double number) {
-  assert(std::abs(number) < std::ldexp(1.0, 30));
-  return std::llround(std::ldexp(number, 30));
+  assert(std::abs(number) < 0x1p30);
+  return std::llround(number * 0x1p30);
 }
 
 }  // namespace culprit::plan

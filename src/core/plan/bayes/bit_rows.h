@@ -50,13 +50,24 @@ inline void clear(std::span<Word> row, std::size_t bit) {
   row[bit / kWordBits] &= ~(Word{1} << (bit % kWordBits));
 }
 
-// Calls `visit(bit)` for each bit that is set in both, ascending.
+// Visits the bits that are set in both, ascending, up to the first one of which `visit(bit)` is
+// true. Whether there is one.
+template <class Visit>
+bool any_common(std::span<const Word> a, std::span<const Word> b, Visit visit) {
+  for (std::size_t w = 0; w < a.size(); ++w) {
+    for (Word rest = a[w] & b[w]; rest != 0; rest &= rest - 1) {
+      if (visit(w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest)))) return true;
+    }
+  }
+  return false;
+}
+// Calls `visit(bit)` for each of them.
 template <class Visit>
 void for_each_common(std::span<const Word> a, std::span<const Word> b, Visit visit) {
-  for (std::size_t w = 0; w < a.size(); ++w) {
-    for (Word rest = a[w] & b[w]; rest != 0; rest &= rest - 1)
-      visit(w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest)));
-  }
+  any_common(a, b, [&](std::size_t bit) {
+    visit(bit);
+    return false;
+  });
 }
 // Calls `visit(bit)` for each bit that is set, ascending.
 template <class Visit>
@@ -71,5 +82,8 @@ inline std::optional<std::size_t> first_common(std::span<const Word> a, std::spa
   }
   return std::nullopt;
 }
+
+// Rows as columns, of `size` of either.
+BitRows transposed(const BitRows& square, std::size_t size);
 
 }  // namespace culprit::plan

@@ -91,30 +91,30 @@ class Greedy {
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  static constexpr std::size_t kSeveral = static_cast<std::size_t>(-2);
 
   void fill(const std::vector<std::size_t>& order) {
     for (const std::size_t c : order) {
-      if (!is_chosen_[c] && rivals(c).empty()) choose(c);
+      if (!is_chosen_[c] && rival(c) == kNone) choose(c);
     }
   }
 
-  // The chosen ones that conflict with `c`.
-  const std::vector<std::size_t>& rivals(std::size_t c) {
-    rivals_.clear();
-    const auto found = [&](std::size_t rival) {
-      if (rival != kNone && std::find(rivals_.begin(), rivals_.end(), rival) == rivals_.end())
-        rivals_.push_back(rival);
-    };
-    found(of_failure_[items_[c].failure]);
-    for_each_common(items_[c].near, taken_, [&](std::size_t place) { found(at_place_[place]); });
-    return rivals_;
+  // The chosen one that conflicts with `c`; kNone, or kSeveral.
+  std::size_t rival(std::size_t c) const {
+    std::size_t only = of_failure_[items_[c].failure];
+    const bool is_another = any_common(items_[c].near, taken_, [&](std::size_t place) {
+      if (only == kNone) only = at_place_[place];
+      return at_place_[place] != only;
+    });
+    return is_another ? kSeveral : only;
   }
 
   // Lets chosen ones go for those that only they shut out, where these are worth more together.
   bool improve(const std::vector<std::size_t>& order) {
     std::vector<std::vector<std::size_t>> shut_out(items_.size());
     for (const std::size_t c : order) {
-      if (!is_chosen_[c] && rivals(c).size() == 1) shut_out[rivals_.front()].push_back(c);
+      const std::size_t by = is_chosen_[c] ? kNone : rival(c);
+      if (by != kNone && by != kSeveral) shut_out[by].push_back(c);
     }
     bool is_better = false;
     for (const std::size_t c : order) {
@@ -127,7 +127,7 @@ class Greedy {
     std::vector<std::size_t> coming;
     std::int64_t worth = 0;
     for (const std::size_t c : shut_out) {
-      const bool is_free = rivals(c).size() == 1 &&  // also after other swaps
+      const bool is_free = rival(c) == leaving &&  // also after other swaps
                            std::none_of(coming.begin(), coming.end(), [&](std::size_t other) {
                              return conflict(items_[c], items_[other]);
                            });
@@ -156,7 +156,6 @@ class Greedy {
   std::vector<std::size_t> of_failure_;  // the chosen one
   std::vector<Word> taken_;              // places
   std::vector<std::size_t> at_place_;    // the chosen one that takes it
-  std::vector<std::size_t> rivals_;
 };
 
 }  // namespace

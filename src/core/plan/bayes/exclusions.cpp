@@ -37,16 +37,15 @@ Duration longest_wait(RuleId suspicious, const Knowledge& knowledge) {
                                        knowledge.rules.cycle);
 }
 
-std::vector<RuleId> suspicious_rules(std::span<const RuleId> failures, const Knowledge& knowledge) {
+std::vector<RuleId> awaited(std::span<const RuleId> suspicious, std::span<const RuleId> failures,
+                            const Knowledge& knowledge) {
   Time latest = kLongAgo;
   for (const RuleId f : failures) latest = std::max(latest, knowledge.states[f].failing_since);
-  std::vector<RuleId> suspicious;
-  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
-    const RuleId rule(r);
-    const bool is_over = knowledge.now >= later(latest, longest_wait(rule, knowledge));
-    if (!is_over && is_suspicious(rule, knowledge)) suspicious.push_back(rule);
-  }
-  return suspicious;
+  std::vector<RuleId> rules;
+  std::copy_if(suspicious.begin(), suspicious.end(), std::back_inserter(rules), [&](RuleId rule) {
+    return knowledge.now < later(latest, longest_wait(rule, knowledge));
+  });
+  return rules;
 }
 
 std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
@@ -93,16 +92,16 @@ Exclusions::Exclusions(const Knowledge& knowledge, const Reach& reach, const Lev
   };
   // While a process is dead, nothing that is done upstream disturbs who replaces it.
   const auto mark_living_below = [&](std::vector<Marks>& marks, RuleId rule) {
-    std::vector<ComponentId> living;
-    const auto& touched = knowledge.rules[rule].components;
-    std::copy_if(touched.begin(), touched.end(), std::back_inserter(living),
-                 [&](ComponentId c) { return !is_seen_down(c, knowledge); });
-    mark_below(marks, living, rule);
+    for (const ComponentId c : knowledge.rules[rule].components) {
+      for (std::size_t below = 0; below < level_of(rule); ++below) {
+        if (!is_seen_down(c, knowledge)) marks[below].mark(reach.place_of(c), rule);
+      }
+    }
   };
   for (const RuleId rule : knowledge.states.active()) {
     const auto& attempt = knowledge.states[rule].attempt;
     if (!attempt || attempt->stage == Attempt::Stage::kSuspended) continue;
-    const auto adapted = all_affected(knowledge.rules[attempt->strategy], knowledge);
+    const Places adapted = affected(knowledge.rules[attempt->strategy]);
     const bool has_effect = attempt->stage == Attempt::Stage::kWaiting;
     if (has_effect) {
       mark_below(judged_, knowledge.rules[rule].components, rule);
@@ -110,7 +109,8 @@ Exclusions::Exclusions(const Knowledge& knowledge, const Reach& reach, const Lev
       mark_living_below(urgent_, rule);
     }
     for (std::size_t level = 0; level < kLevels; ++level) {
-      if (!has_effect || level <= level_of(rule)) mark(holding_[level], adapted, rule);
+      if (has_effect && level > level_of(rule)) continue;
+      for (const std::size_t place : adapted) holding_[level].mark(place, rule);
     }
   }
   for (const RuleId rule : failures) mark_living_below(planned_, rule);
@@ -124,11 +124,21 @@ Exclusions::Exclusions(const Knowledge& knowledge, const Reach& reach, const Lev
   }
 }
 
-std::optional<Exclusions::Obstacle> Exclusions::reserved(const Strategy& strategy) const {
-  const Marks& marks = holding_[level_of(strategy.rule)];
-  for (const ComponentId c : all_affected(strategy, knowledge_)) {
-    const std::size_t place = reach_.place_of(c);
-    if (has(marks.bits(), place)) return Obstacle{Condition::kAdapting, c, marks.failure[place]};
+Exclusions::Places Exclusions::affected(const Strategy& strategy) const {
+  const std::vector<ComponentId> others = also_ended(strategy, knowledge_);
+  Places places;
+  places.reserve(strategy.components.size() + others.size());
+  for (const ComponentId c : strategy.components) places.push_back(reach_.place_of(c));
+  for (const ComponentId c : others) places.push_back(reach_.place_of(c));
+  return places;
+}
+
+std::optional<Exclusions::Obstacle> Exclusions::reserved(Criticality level,
+                                                         const Places& places) const {
+  const Marks& marks = holding_[static_cast<std::size_t>(level)];
+  for (const std::size_t place : places) {
+    if (has(marks.bits(), place))
+      return Obstacle{Condition::kAdapting, reach_[place], marks.failure[place]};
   }
   return std::nullopt;
 }
@@ -178,10 +188,10 @@ std::optional<Exclusions::Obstacle> Exclusions::in_the_way(std::size_t place,
   return found(Condition::kInTheWay, reach_.downstream(place), marks);
 }
 
-void Exclusions::add(const Strategy& strategy) {
-  for (const ComponentId c : all_affected(strategy, knowledge_)) {
-    added_.mark(reach_.place_of(c), strategy.rule);
-    if (!only_revives(strategy, knowledge_)) guarded_.mark(reach_.place_of(c), strategy.rule);
+void Exclusions::add(RuleId rule, const Places& places, Disturbance disturbance) {
+  for (const std::size_t place : places) {
+    added_.mark(place, rule);
+    if (disturbance == Disturbance::kFromUpstream) guarded_.mark(place, rule);
   }
 }
 

@@ -13,9 +13,9 @@ namespace culprit::plan {
 std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
                                                 std::span<const RuleId> suspicious);
 
-// The rules of which it is not known yet whether they fail; none once no failure of `failures` waits
-// for that any more.
-std::vector<RuleId> suspicious_rules(std::span<const RuleId> failures, const Knowledge& knowledge);
+// Those of the suspicious rules of which a failure of `failures` still waits to see whether they fail.
+std::vector<RuleId> awaited(std::span<const RuleId> suspicious, std::span<const RuleId> failures,
+                            const Knowledge& knowledge);
 
 // Does it take a component down, if only for a moment?
 bool takes_down(const Adaptation& adaptation);
@@ -37,16 +37,20 @@ class Exclusions {
     ComponentId component;  // see Candidate
     std::optional<RuleId> because;
   };
-  // Who has a component of the strategy, if anybody does that need not give way to it.
-  std::optional<Obstacle> reserved(const Strategy& strategy) const;
+  // All that a strategy adapts or ends.
+  using Places = std::vector<std::size_t>;
+  Places affected(const Strategy& strategy) const;
+  // Who has one of the components, if anybody does that need not give way at this level.
+  std::optional<Obstacle> reserved(Criticality level, const Places& places) const;
   // What else stands against adapting the component at `place` by this strategy, if anything does.
   // `chance` is u of the strategy (plan/bayes/strategy_chances.h).
   std::optional<Obstacle> obstacle(std::size_t place, const Strategy& strategy,
                                    double chance) const;
 
-  // From now on the strategy is carried out as well. What only replaces dead processes is not
-  // disturbed by what is done upstream.
-  void add(const Strategy& strategy);
+  // From now on a strategy of the rule is carried out as well. What only replaces dead processes is
+  // not disturbed by what is done upstream.
+  enum class Disturbance : std::uint8_t { kNone, kFromUpstream };
+  void add(RuleId rule, const Places& places, Disturbance disturbance);
   // Is it adapted by one of those that were added?
   std::optional<Obstacle> taken(std::size_t place) const;
   // What the strategies that were added stand against.

@@ -25,18 +25,26 @@ struct Signs {
   }
 };
 
-std::vector<Signs> signs_of(const Knowledge& knowledge) {
+// Is its failure there, or at least its trigger true: in its COOLDOWN, or after ON_CHANGE?
+bool is_ill(const RuleState& state) {
+  const Detection& seen = state.detection;
+  return state.phase != RulePhase::kQuiet ||
+         (seen.history.empty() && seen.trigger.known && seen.trigger.b);
+}
+
+std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> suspicious) {
   std::vector<Signs> signs(knowledge.rules.components.size());
-  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
-    const RuleId rule(r);
-    const bool is_ill = !looks_well(rule, knowledge);
-    const bool is_seen = is_ill || knowledge.states[rule].detection.trigger.known;
+  const auto add = [&](RuleId rule, bool is_ill) {
     const auto symptom = static_cast<std::size_t>(symptom_of(rule, knowledge));
-    for (const ComponentId c : knowledge.rules[rule].components) {
-      signs[c.index].has_ill[symptom] = signs[c.index].has_ill[symptom] || is_ill;
-      signs[c.index].is_watched[symptom] = signs[c.index].is_watched[symptom] || is_seen;
-    }
+    for (const ComponentId c : knowledge.rules[rule].components)
+      (is_ill ? signs[c.index].has_ill : signs[c.index].is_watched)[symptom] = true;
+  };
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
+    const RuleState& state = knowledge.states[RuleId(r)];
+    const bool is_seen_ill = is_ill(state);
+    if (is_seen_ill || state.detection.trigger.known) add(RuleId(r), is_seen_ill);
   }
+  for (const RuleId rule : suspicious) add(rule, true);
   return signs;
 }
 
@@ -50,12 +58,17 @@ bool can_carry(std::size_t well, std::size_t ill) {
 class Narrowing {
  public:
   Narrowing(const Knowledge& knowledge, const std::vector<Signs>& signs, Symptom symptom)
-      : knowledge_(knowledge), place_(knowledge.graph.size(), kOut) {
-    for (Vertex v = 0; v < place_.size(); ++v) {
-      const auto component = knowledge.graph.component_at(v);
-      const Signs* seen = component ? &signs[component->index] : nullptr;
-      is_ill_.push_back(seen != nullptr && seen->is_ill(symptom));
-      if (seen == nullptr || !seen->is_well(symptom)) place_[v] = left_++;
+      : knowledge_(knowledge),
+        place_(knowledge.graph.size(), 0),
+        is_ill_(knowledge.graph.size(), false) {
+    for (std::size_t c = 0; c < signs.size(); ++c) {
+      const auto vertex = knowledge.graph.vertex_of(ComponentId(c));
+      if (!vertex) continue;
+      is_ill_[*vertex] = signs[c].is_ill(symptom);
+      if (signs[c].is_well(symptom)) place_[*vertex] = kOut;
+    }
+    for (Vertex& place : place_) {
+      if (place != kOut) place = left_++;
     }
   }
 
@@ -101,7 +114,8 @@ class Narrowing {
 
 }  // namespace
 
-FailurePaths::FailurePaths(const Knowledge& knowledge, const Reach& whole)
+FailurePaths::FailurePaths(const Knowledge& knowledge, const Reach& whole,
+                           std::span<const RuleId> suspicious)
     : knowledge_(knowledge), whole_(whole) {
   std::array<bool, 2> is_needed{};
   for (const RuleId rule : knowledge.states.active()) {
@@ -109,7 +123,7 @@ FailurePaths::FailurePaths(const Knowledge& knowledge, const Reach& whole)
       is_needed[static_cast<std::size_t>(symptom_of(rule, knowledge))] = true;
   }
   if (!is_needed[0] && !is_needed[1]) return;
-  const std::vector<Signs> signs = signs_of(knowledge);
+  const std::vector<Signs> signs = signs_of(knowledge, suspicious);
   for (const Symptom symptom : {Symptom::kOutage, Symptom::kValue}) {
     const bool is_any_well =
         std::any_of(signs.begin(), signs.end(), [&](const Signs& s) { return s.is_well(symptom); });

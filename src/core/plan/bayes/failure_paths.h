@@ -16,6 +16,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "plan/bayes/reach.h"
 
@@ -27,8 +28,9 @@ inline constexpr double kDeviations = 3;
 
 class FailurePaths {
  public:
-  // Both must outlive it. `whole` has the components that matter, by the whole graph.
-  FailurePaths(const Knowledge& knowledge, const Reach& whole);
+  // Both must outlive it. `whole` has the components that matter, by the whole graph. `suspicious`:
+  // all that are (plan/bayes/suspicion.h).
+  FailurePaths(const Knowledge& knowledge, const Reach& whole, std::span<const RuleId> suspicious);
 
   // The places from which the failure of `rule` at `place` can have come.
   std::span<const Word> upstream(std::size_t place, RuleId rule) const;

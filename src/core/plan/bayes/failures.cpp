@@ -77,7 +77,6 @@ Failures::Failures(const Knowledge& knowledge, const Reach& reach, const Failure
     for (std::size_t level = level_of(rules[rules_[i]]) + 1; level < kLevels; ++level)
       set(slight[level], i);
   }
-  BitRows effects(rules_.size(), rules_.size());
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     const auto row = causes_[i];
     for (const ComponentId c : rules[rules_[i]].components) {
@@ -86,9 +85,8 @@ Failures::Failures(const Knowledge& knowledge, const Reach& reach, const Failure
     }
     clear(row, i);
     for_each(slight[level_of(rules[rules_[i]])], [&](std::size_t cause) { clear(row, cause); });
-    for_each(row, [&](std::size_t cause) { set(effects[cause], i); });
   }
-  find_circles(effects);
+  find_circles(transposed(causes_, rules_.size()));
 }
 
 // Kosaraju: what is visited first from the last of one search, backwards, is a circle.

@@ -36,15 +36,16 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
     : knowledge_(knowledge),
       weights_(weights),
       planned_(failures.begin(), failures.end()),
-      suspicious_(suspicious_rules(failures, knowledge)),
-      reach_(knowledge, components_of_interest(knowledge, suspicious_)),
-      paths_(knowledge, reach_),
+      suspicious_(suspicious_rules(knowledge)),
+      awaited_(awaited(suspicious_, failures, knowledge)),
+      reach_(knowledge, components_of_interest(knowledge, awaited_)),
+      paths_(knowledge, reach_, suspicious_),
       failures_(knowledge, reach_, paths_),
       responsibility_(knowledge, failures_),
       unheard_(all_unheard()),
       levels_(knowledge, failures_, responsibility_),
       chances_(all_chances()),
-      exclusions_(knowledge, reach_, levels_, worked_on(), suspicious_),
+      exclusions_(knowledge, reach_, levels_, worked_on(), awaited_),
       has_choice_(failures_.size(), false),
       tries_(failures_.size()) {}
 
@@ -55,9 +56,7 @@ std::vector<Decision> PlanningStep::run() {
   }
   if (until > kLongAgo) watchers_.emplace(knowledge_, until);
   find_stakes();
-  for (const RuleId rule : planned_) examine(failures_.index_of(rule));
-  std::sort(weighed_.begin(), weighed_.end(),
-            [&](const WeighedCandidate& a, const WeighedCandidate& b) { return is_before(a, b); });
+  examine_all();
   revive();
   for (const Criticality level :
        {Criticality::kError, Criticality::kWarning, Criticality::kNonCritical})
@@ -146,10 +145,9 @@ std::optional<RuleId> PlanningStep::cause_of(std::size_t failure) const {
 // By level, then by worth, then by name, which failures are in the order of.
 bool PlanningStep::is_before(const WeighedCandidate& a, const WeighedCandidate& b) const {
   const auto key = [&](const WeighedCandidate& e) {
-    const Strategy& strategy = knowledge_.rules[e.candidate.strategy];
     return std::tuple<int, std::int64_t, std::int64_t, std::size_t, const std::string&>(
-        -static_cast<int>(levels_.of(strategy.rule)), -e.worth, parts(e.candidate.cost), e.failure,
-        strategy.name);
+        -static_cast<int>(e.level), -e.worth, e.cost, e.failure,
+        knowledge_.rules[e.candidate.strategy].name);
   };
   return key(a) < key(b);
 }
@@ -181,33 +179,48 @@ void PlanningStep::find_stakes() {
   }
 }
 
+void PlanningStep::examine_all() {
+  std::size_t count = 0;
+  for (const auto& of_failure : chances_) count += of_failure.size();
+  weighed_.reserve(count);
+  for (const RuleId rule : planned_) examine(failures_.index_of(rule));
+  best_first_.reserve(count);
+  for (WeighedCandidate& weighed : weighed_) best_first_.push_back(&weighed);
+  std::sort(
+      best_first_.begin(), best_first_.end(),
+      [&](const WeighedCandidate* a, const WeighedCandidate* b) { return is_before(*a, *b); });
+}
+
 void PlanningStep::examine(std::size_t failure) {
   const std::vector<StrategyChance>& all = chances_[failure];
   const std::vector<Try> tries = tries_of(failure, all);
   std::vector<std::size_t> order(all.size());  // p/c index
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const auto key = [&](std::size_t s) {
-      return std::pair<std::int64_t, const std::string&>(-parts(index(tries[s])),
-                                                         knowledge_.rules[all[s].strategy].name);
+      return std::tuple<std::int64_t, const std::string&, std::size_t>(
+          -parts(index(tries[s])), knowledge_.rules[all[s].strategy].name, s);
     };
     return key(a) < key(b);
   });
   std::vector<Try> possible;
+  possible.reserve(all.size());
   double helps = 0;
   for (const std::size_t s : order) {
     if (!all[s].is_out() && !all[s].is_withheld) possible.push_back(tries[s]);
     helps += all[s].chance;
   }
   const std::vector<double> costs = expected_costs(possible);
-  tries_[failure] = possible;
+  tries_[failure] = std::move(possible);
   const double root = responsibility_.of(failure);
 
   std::size_t next = 0;
   for (const std::size_t s : order) {
     WeighedCandidate& weighed = weighed_.emplace_back();
     weighed.failure = failure;
+    weighed.level = levels_.of(failures_[failure]);
     weighed.candidate.strategy = all[s].strategy;
+    weighed.affected = exclusions_.affected(knowledge_.rules[all[s].strategy]);
     if (all[s].is_tried) {
       weighed.candidate.excluded = Condition::kTried;
     } else if (all[s].invalid) {
@@ -220,6 +233,8 @@ void PlanningStep::examine(std::size_t failure) {
       weighed.candidate.resolves = root * all[s].chance;
       weighed.candidate.value = root * std::min(1.0, helps) * stakes_[failure];
       weighed.candidate.cost = costs[next];
+      weighed.cost = parts(costs[next]);
+      weighed.only_revives = only_revives(knowledge_.rules[all[s].strategy], knowledge_);
       weighed.place = next++;
       weighed.worth =
           worth(weighed.candidate.value, weighed.candidate.cost, root * index(tries[s]));
@@ -232,6 +247,7 @@ std::vector<Try> PlanningStep::tries_of(std::size_t failure,
                                         const std::vector<StrategyChance>& chances) const {
   const Duration latency = knowledge_.signals.latency(failures_[failure]);
   std::vector<Try> all;
+  all.reserve(chances.size());
   for (const StrategyChance& each : chances) {
     const Strategy& strategy = knowledge_.rules[each.strategy];
     const Effort effort{strategy.impact, latency, redeployments(strategy), disruption(strategy)};
@@ -258,8 +274,9 @@ void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
   const RuleId rule = failures_[weighed.failure];
   const Strategy& strategy = knowledge_.rules[weighed.candidate.strategy];
   // What is known to be dead, and a safe stop, wait for nobody but who has the component already.
-  if (only_revives(strategy, knowledge_) || strategy.is_last_resort) {
-    if (const auto held = exclusions_.reserved(strategy)) exclude(weighed, *held);
+  if (weighed.only_revives || strategy.is_last_resort) {
+    if (const auto held = exclusions_.reserved(weighed.level, weighed.affected))
+      exclude(weighed, *held);
     return;
   }
   exclude_effect(weighed);
@@ -268,9 +285,10 @@ void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
   if (watchers_ && is_newborn(rule, knowledge_) && !need_not_wait &&
       watchers_->are_upstream_of(rule))
     return exclude(weighed, {Condition::kSuspect, likeliest_component(rule), rule});
-  if (const auto held = exclusions_.reserved(strategy)) return exclude(weighed, *held);
-  for (const ComponentId c : all_affected(strategy, knowledge_)) {
-    if (const auto obstacle = exclusions_.obstacle(reach_.place_of(c), strategy, chance))
+  if (const auto held = exclusions_.reserved(weighed.level, weighed.affected))
+    return exclude(weighed, *held);
+  for (const std::size_t place : weighed.affected) {
+    if (const auto obstacle = exclusions_.obstacle(place, strategy, chance))
       return exclude(weighed, *obstacle);
   }
   const auto& settling = knowledge_.states[rule].settling;
@@ -291,8 +309,8 @@ void PlanningStep::exclude(WeighedCandidate& weighed, const Exclusions::Obstacle
 
 // What makes no sense now may make sense once that is over which is being done to its component.
 void PlanningStep::exclude_invalid(WeighedCandidate& weighed, const Invalid& why) const {
-  const Strategy& strategy = knowledge_.rules[weighed.candidate.strategy];
-  if (const auto held = exclusions_.reserved(strategy)) return exclude(weighed, *held);
+  if (const auto held = exclusions_.reserved(weighed.level, weighed.affected))
+    return exclude(weighed, *held);
   weighed.candidate.excluded = why.is_unheard ? Condition::kUnheard : Condition::kInvalid;
   weighed.candidate.component = why.component;
   weighed.candidate.remark = why.reason;
@@ -329,24 +347,25 @@ void PlanningStep::exclude_effect(WeighedCandidate& weighed) const {
 
 // The dead are replaced side by side, whatever depends on whatever and however critical it is.
 void PlanningStep::revive() {
-  for (WeighedCandidate& weighed : weighed_) {
-    const Strategy& strategy = knowledge_.rules[weighed.candidate.strategy];
-    if (weighed.candidate.excluded || !only_revives(strategy, knowledge_)) continue;
-    if (has_choice_[weighed.failure]) {
-      weighed.candidate.excluded = Condition::kOneEach;
+  for (WeighedCandidate* weighed : best_first_) {
+    if (weighed->candidate.excluded || !weighed->only_revives) continue;
+    if (has_choice_[weighed->failure]) {
+      weighed->candidate.excluded = Condition::kOneEach;
       continue;
     }
-    for (const ComponentId c : strategy.components) {
-      if (const auto taken = exclusions_.taken(reach_.place_of(c))) exclude(weighed, *taken);
+    for (const ComponentId c : knowledge_.rules[weighed->candidate.strategy].components) {
+      if (const auto taken = exclusions_.taken(reach_.place_of(c))) exclude(*weighed, *taken);
     }
-    if (!weighed.candidate.excluded) choose(weighed);
+    if (!weighed->candidate.excluded) choose(*weighed);
   }
 }
 
 void PlanningStep::choose(const WeighedCandidate& weighed) {
   has_choice_[weighed.failure] = true;
   sides_.push_back({tries_[weighed.failure], {weighed.place}});
-  exclusions_.add(knowledge_.rules[weighed.candidate.strategy]);
+  using enum Exclusions::Disturbance;
+  exclusions_.add(failures_[weighed.failure], weighed.affected,
+                  weighed.only_revives ? kNone : kFromUpstream);
 }
 
 // Does what was chosen before stand against it? Then it is excluded.
@@ -355,9 +374,8 @@ bool PlanningStep::is_taken(WeighedCandidate& weighed) const {
     weighed.candidate.excluded = Condition::kOneEach;
     return true;
   }
-  for (const ComponentId c :
-       all_affected(knowledge_.rules[weighed.candidate.strategy], knowledge_)) {
-    const auto conflict = exclusions_.conflict(reach_.place_of(c));
+  for (const std::size_t place : weighed.affected) {
+    const auto conflict = exclusions_.conflict(place);
     if (!conflict) continue;
     exclude(weighed, *conflict);
     return true;
@@ -367,11 +385,10 @@ bool PlanningStep::is_taken(WeighedCandidate& weighed) const {
 
 void PlanningStep::select(Criticality level) {
   std::vector<WeighedCandidate*> open;
-  for (WeighedCandidate& weighed : weighed_) {
-    const Strategy& strategy = knowledge_.rules[weighed.candidate.strategy];
-    const bool is_next = !weighed.candidate.excluded && levels_.of(strategy.rule) == level &&
-                         !only_revives(strategy, knowledge_);
-    if (is_next && !is_taken(weighed)) open.push_back(&weighed);
+  for (WeighedCandidate* weighed : best_first_) {
+    const bool is_next =
+        !weighed->candidate.excluded && weighed->level == level && !weighed->only_revives;
+    if (is_next && !is_taken(*weighed)) open.push_back(weighed);
   }
 
   const std::vector<WeighedCandidate*> chosen = weigh_together(open, chosen_together(open));
@@ -388,9 +405,7 @@ std::vector<PlanningStep::WeighedCandidate*> PlanningStep::chosen_together(
   BitRows near(open.size(), reach_.size());
   std::vector<Item> items;
   for (std::size_t e = 0; e < open.size(); ++e) {
-    for (const ComponentId c :
-         all_affected(knowledge_.rules[open[e]->candidate.strategy], knowledge_)) {
-      const std::size_t place = reach_.place_of(c);
+    for (const std::size_t place : open[e]->affected) {
       set(takes[e], place);
       add(near[e], reach_.upstream(place));
       add(near[e], reach_.downstream(place));
@@ -434,6 +449,7 @@ std::vector<PlanningStep::WeighedCandidate*> PlanningStep::weigh_together(
 // Of the components that the rule's strategies adapt, the one that the untried ones are most likely
 // to help at.
 ComponentId PlanningStep::likeliest_component(RuleId rule) const {
+  if (knowledge_.rules[rule].components.size() == 1) return knowledge_.rules[rule].components[0];
   std::pair<std::int64_t, ComponentId> best{-1, {}};
   for (const ComponentId c : knowledge_.rules[rule].components) {
     double chance = 0;
@@ -452,6 +468,7 @@ ComponentId PlanningStep::likeliest_component(RuleId rule) const {
 
 std::vector<Suspect> PlanningStep::suspects(std::size_t failure) const {
   std::vector<Suspect> all;
+  all.reserve(BayesPlanner::kSuspects);
   const RuleId rule = failures_[failure];
   all.push_back({{}, rule, responsibility_.of(failure)});
   responsibility_.for_each_share(failure, [&](std::size_t j, double share) {
@@ -473,18 +490,20 @@ std::vector<Suspect> PlanningStep::suspects(std::size_t failure) const {
 
 std::vector<Decision> PlanningStep::decisions() {
   std::vector<Decision> found;
+  found.reserve(planned_.size());
   std::vector<std::size_t> place(failures_.size(), failures_.size());
-  for (WeighedCandidate& weighed : weighed_) {
-    std::size_t& at = place[weighed.failure];
+  for (WeighedCandidate* weighed : best_first_) {
+    std::size_t& at = place[weighed->failure];
     if (at == failures_.size()) {
       at = found.size();
-      found.push_back({failures_[weighed.failure], {}, true, {}, suspects(weighed.failure)});
+      found.push_back({failures_[weighed->failure], {}, true, {}, suspects(weighed->failure)});
+      found.back().candidates.reserve(chances_[weighed->failure].size());
     }
     Decision& decision = found[at];
-    const auto& excluded = weighed.candidate.excluded;
-    if (!excluded) decision.chosen = weighed.candidate.strategy;
+    const auto& excluded = weighed->candidate.excluded;
+    if (!excluded) decision.chosen = weighed->candidate.strategy;
     decision.is_spent &= excluded == Condition::kTried || excluded == Condition::kInvalid;
-    decision.candidates.push_back(std::move(weighed.candidate));
+    decision.candidates.push_back(std::move(weighed->candidate));
   }
   return found;
 }

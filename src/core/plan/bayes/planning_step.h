@@ -27,9 +27,13 @@ class PlanningStep {
   // A strategy of a failure that is to be decided about.
   struct WeighedCandidate {
     Candidate candidate;
-    std::size_t failure = 0;  // index in failures_
-    std::int64_t worth = 0;   // plan/ties.h
-    std::size_t place = 0;    // among tries_ of the failure
+    std::size_t failure = 0;    // index in failures_
+    Criticality level{};        // of the failure
+    std::int64_t worth = 0;     // plan/ties.h
+    std::int64_t cost = 0;      // the same
+    std::size_t place = 0;      // among tries_ of the failure
+    bool only_revives = false;  // plan/bayes/seen_down.h
+    Exclusions::Places affected;
   };
 
   std::vector<std::vector<StrategyChance>> all_chances() const;
@@ -40,6 +44,7 @@ class PlanningStep {
   std::vector<std::optional<ComponentId>> all_unheard() const;
   std::optional<ComponentId> unheard_behind(std::size_t failure) const;
   void find_stakes();
+  void examine_all();
   void examine(std::size_t failure);
   std::vector<Try> tries_of(std::size_t failure, const std::vector<StrategyChance>& chances) const;
   double disruption(const Strategy& strategy) const;
@@ -63,6 +68,7 @@ class PlanningStep {
   const CostWeights& weights_;
   std::vector<RuleId> planned_;
   std::vector<RuleId> suspicious_;
+  std::vector<RuleId> awaited_;  // of these
   Reach reach_;
   FailurePaths paths_;
   std::optional<Watchers> watchers_;  // while a failure is newborn
@@ -76,6 +82,7 @@ class PlanningStep {
   Exclusions exclusions_;
   std::vector<double> stakes_;  // by failure: W_i + sum_k share(i -> k) W_k
   std::vector<WeighedCandidate> weighed_;
+  std::vector<WeighedCandidate*> best_first_;
   std::vector<bool> has_choice_;         // by failure
   std::vector<std::vector<Try>> tries_;  // by failure: what is left, in the order of u/c
   std::vector<Side> sides_;              // of what was chosen so far

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
+#include <utility>
 
 namespace culprit::plan {
 namespace {
@@ -15,31 +15,47 @@ std::vector<ComponentId> each_once(std::vector<ComponentId> components) {
   return components;
 }
 
-// For each of 64 bits, in how many words it was set: 32 numbers' worth of binary digits, added a
-// word at a time.
+// For each of 64 bits, in how many words it was set: 32 numbers' worth of binary digits, to which
+// words are added two at a time. So what is carried on does not depend on what they are.
 class BitCounts {
  public:
-  void add(Word bits) {
-    for (std::size_t digit = 0; bits != 0; ++digit) {
-      const Word carry = digits_[digit] & bits;
-      digits_[digit] ^= bits;
-      bits = carry;
+  void add(Word bits, std::uint32_t times) {
+    for (std::size_t digit = 0; times != 0; ++digit, times >>= 1) {
+      if ((times & 1) != 0) add_at(digit, bits);
     }
   }
   std::size_t of(std::size_t bit) const {
     std::size_t count = 0;
-    for (std::size_t digit = 0; digit < digits_.size(); ++digit)
-      count |= static_cast<std::size_t>(digits_[digit] >> bit & 1) << digit;
+    for (std::size_t d = 0; d < digits_.size(); ++d)
+      count += static_cast<std::size_t>((digits_[d] >> bit & 1) + (waiting_[d] >> bit & 1)) << d;
     return count;
   }
 
  private:
+  void add_at(std::size_t digit, Word bits) {
+    for (; has_waiting_[digit]; ++digit) {
+      const Word sum = digits_[digit];
+      const Word other = std::exchange(waiting_[digit], 0);
+      has_waiting_[digit] = false;
+      digits_[digit] = sum ^ other ^ bits;
+      bits = (sum & other) | (sum & bits) | (other & bits);
+    }
+    waiting_[digit] = bits;
+    has_waiting_[digit] = true;
+  }
+
   std::array<Word, 32> digits_{};
+  std::array<Word, 32> waiting_{};  // for a second one to add
+  std::array<bool, 32> has_waiting_{};
 };
 
 Reach::Sccs sccs_of(const Knowledge& knowledge) {
+  const Condensation& graph = knowledge.graph.condensation();
   Reach::Sccs sccs(knowledge.rules.components.size());
-  for (std::size_t c = 0; c < sccs.size(); ++c) sccs[c] = knowledge.graph.scc_of(ComponentId(c));
+  for (std::size_t c = 0; c < sccs.size(); ++c) {
+    if (const auto vertex = knowledge.graph.vertex_of(ComponentId(c)))
+      sccs[c] = graph.scc_of(*vertex);
+  }
   return sccs;
 }
 
@@ -55,66 +71,52 @@ std::vector<std::uint32_t> members_of(std::size_t size, const Reach::Sccs& sccs)
 }  // namespace
 
 Reach::Reach(const Knowledge& knowledge, std::vector<ComponentId> components)
-    : Reach(std::move(components)) {
-  find(knowledge.graph.condensation(), sccs_of(knowledge));
-}
+    : Reach(knowledge.graph.condensation(), sccs_of(knowledge), std::move(components)) {}
 
 Reach::Reach(const Condensation& graph, const Sccs& sccs, std::vector<ComponentId> components)
-    : Reach(std::move(components)) {
-  find(graph, sccs);
-}
-
-Reach::Reach(std::vector<ComponentId> components)
     : components_(each_once(std::move(components))),
+      places_(sccs.size(), kAbsent),
       upstream_(components_.size(), components_.size()),
       downstream_(components_.size(), components_.size()),
-      dependents_(components_.size(), 0) {}
-
-void Reach::find(const Condensation& graph, const Sccs& sccs) {
+      dependents_(components_.size(), 0) {
+  for (std::size_t p = 0; p < components_.size(); ++p)
+    places_[components_[p].index] = static_cast<std::uint32_t>(p);
   const std::vector<std::uint32_t> members = members_of(graph.size(), sccs);
-  // By the order of their SCCs, so that a pass can begin at its first.
-  std::vector<std::size_t> order;
-  for (std::size_t p = 0; p < components_.size(); ++p) {
-    if (sccs[components_[p].index]) order.push_back(p);
-  }
-  const auto scc_at = [&](std::size_t place) { return *sccs[components_[place].index]; };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(scc_at(a), a) < std::pair(scc_at(b), b);
-  });
+  const auto scc_at = [&](std::size_t place) { return sccs[components_[place].index]; };
 
   std::vector<Word> own(graph.size(), 0);      // which of the 64 are in the SCC
   std::vector<Word> reached(graph.size(), 0);  // which are in it or upstream of it
-  for (std::size_t begin = 0; begin < order.size(); begin += kWordBits) {
-    const std::size_t end = std::min(order.size(), begin + kWordBits);
-    for (std::size_t i = begin; i < end; ++i) own[scc_at(order[i])] |= Word{1} << (i - begin);
-    std::fill(reached.begin(), reached.end(), 0);
+  for (std::size_t begin = 0; begin < size(); begin += kWordBits) {
+    const std::size_t end = std::min(size(), begin + kWordBits);
+    auto first = static_cast<Scc>(graph.size());
+    for (std::size_t p = begin; p < end; ++p) {
+      if (const auto scc = scc_at(p)) {
+        own[*scc] |= Word{1} << (p - begin);
+        first = std::min(first, *scc);
+      }
+    }
+    std::fill_n(reached.begin(), first, 0);
     BitCounts counts;
-    for (Scc scc = scc_at(order[begin]); scc < graph.size(); ++scc) {
+    for (Scc scc = first; scc < graph.size(); ++scc) {
       Word bits = own[scc];
       for (const Scc producer : graph.producers(scc)) bits |= reached[producer];
       reached[scc] = bits;
-      for (std::uint32_t m = 0; m < members[scc]; ++m) counts.add(bits);
+      if (bits != 0) counts.add(bits, members[scc]);
     }
-    for (std::size_t i = begin; i < end; ++i) dependents_[order[i]] = counts.of(i - begin) - 1;
-    for (const std::size_t consumer : order) {
-      const Scc scc = scc_at(consumer);
-      Word bits = reached[scc];
-      if (members[scc] == 1) bits &= ~own[scc];
-      for (; bits != 0; bits &= bits - 1) {
-        const std::size_t producer =
-            order[begin + static_cast<std::size_t>(std::countr_zero(bits))];
-        set(upstream_[consumer], producer);
-        set(downstream_[producer], consumer);
+    for (std::size_t consumer = 0; consumer < size(); ++consumer) {
+      const auto scc = scc_at(consumer);
+      if (!scc) continue;
+      const Word itself = members[*scc] == 1 ? own[*scc] : 0;
+      upstream_[consumer][begin / kWordBits] = reached[*scc] & ~itself;
+    }
+    for (std::size_t p = begin; p < end; ++p) {
+      if (const auto scc = scc_at(p)) {
+        dependents_[p] = counts.of(p - begin) - 1;
+        own[*scc] = 0;
       }
     }
-    for (std::size_t i = begin; i < end; ++i) own[scc_at(order[i])] = 0;
   }
-}
-
-std::size_t Reach::place_of(ComponentId component) const {
-  const auto found = std::lower_bound(components_.begin(), components_.end(), component);
-  assert(found != components_.end() && *found == component);
-  return static_cast<std::size_t>(found - components_.begin());
+  downstream_ = transposed(upstream_, size());
 }
 
 }  // namespace culprit::plan

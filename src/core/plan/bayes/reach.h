@@ -4,6 +4,7 @@
 // consumers: with e edges and n components that is e * n / 64 steps, whatever the paths are.
 #pragma once
 
+#include <cassert>
 #include <vector>
 
 #include "knowledge/condensation.h"
@@ -23,7 +24,10 @@ class Reach {
   std::size_t size() const { return components_.size(); }
   ComponentId operator[](std::size_t place) const { return components_[place]; }
   // @pre it is one of the components
-  std::size_t place_of(ComponentId component) const;
+  std::size_t place_of(ComponentId component) const {
+    assert(places_[component.index] != kAbsent);
+    return places_[component.index];
+  }
 
   // The places of those that `place` depends on: itself only through a circle.
   std::span<const Word> upstream(std::size_t place) const { return upstream_[place]; }
@@ -33,10 +37,10 @@ class Reach {
   std::size_t dependents(std::size_t place) const { return dependents_[place]; }
 
  private:
-  explicit Reach(std::vector<ComponentId> components);
-  void find(const Condensation& graph, const Sccs& sccs);
+  static constexpr std::uint32_t kAbsent = static_cast<std::uint32_t>(-1);
 
   std::vector<ComponentId> components_;  // ascending, each once
+  std::vector<std::uint32_t> places_;    // in components_, by ComponentId
   BitRows upstream_;
   BitRows downstream_;
   std::vector<std::size_t> dependents_;

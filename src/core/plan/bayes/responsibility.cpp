@@ -17,8 +17,10 @@ Responsibility::Responsibility(const Knowledge& knowledge, const Failures& failu
       failures_(failures),
       against_others_(failures.size()),
       claims_(failures.size(), 0) {
-  for (std::size_t i = 0; i < failures.size(); ++i)
-    against_others_[i] = root_probability(own(i), explained(i));
+  for (std::size_t i = 0; i < failures.size(); ++i) {
+    own_.push_back(is_seen_down(failures[i], knowledge) ? kSeenDown : kCoincidence);
+    against_others_[i] = root_probability(own_[i], explained(i));
+  }
   root_ = against_others_;
   for (const auto& circle : failures.circles()) {
     if (circle.size() > 1) divide(circle);
@@ -38,7 +40,7 @@ bool Responsibility::is_explained_by(std::size_t i, std::size_t j) const {
 }
 
 bool Responsibility::is_enough(std::size_t j, std::size_t i) const {
-  return root_probability(own(i), kappa(j, i)) < 0.5;
+  return root_probability(own_[i], kappa(j, i)) < 0.5;
 }
 
 std::optional<std::size_t> Responsibility::dead_in_circle(std::size_t i) const {
@@ -58,10 +60,6 @@ double Responsibility::explained(std::size_t i) const {
   double unexplained = 1;
   for_each(failures_.causes(i), [&](std::size_t j) { unexplained *= 1 - kappa(j, i); });
   return 1 - unexplained;
-}
-
-double Responsibility::own(std::size_t i) const {
-  return is_seen_down(failures_[i], knowledge_) ? kSeenDown : kCoincidence;
 }
 
 void Responsibility::divide(const std::vector<std::size_t>& circle) {
@@ -85,7 +83,7 @@ double Responsibility::weight(std::size_t i, const std::vector<std::size_t>& cir
   const RuleState& state = knowledge_.states[rule];
   const double delay = seconds(state.first_detected() - first) / seconds(knowledge_.rules.cycle);
   double weight =
-      std::max(kLeast, still_there(rule, knowledge_)) * (own(i) / kCoincidence) / (1 + delay);
+      std::max(kLeast, still_there(rule, knowledge_)) * (own_[i] / kCoincidence) / (1 + delay);
   for (const std::size_t k : circle) {
     if (k != i) weight *= std::max(kLeast, kappa(i, k)) / Coupling::kUsual;
   }

@@ -74,12 +74,12 @@ class Responsibility {
  private:
   bool is_enough(std::size_t j, std::size_t i) const;
   double explained(std::size_t i) const;
-  double own(std::size_t i) const;
   void divide(const std::vector<std::size_t>& circle);
   double weight(std::size_t i, const std::vector<std::size_t>& circle, Time first) const;
 
   const Knowledge& knowledge_;
   const Failures& failures_;
+  std::vector<double> own_;  // pi_i
   std::vector<double> against_others_;
   std::vector<double> root_;
   std::vector<double> claims_;  // of failure i: the sum of kappa(j -> i) R_j over its causes

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "plan/bayes/suspicion.h"
 #include "plan/bayes/test_scene.h"
 
 namespace culprit::plan {
@@ -20,7 +21,7 @@ double responsibility(Scene& scene, const std::string& rule) {
     all.insert(all.end(), touched.begin(), touched.end());
   }
   const Reach reach(*scene, all);
-  const Failures failures(*scene, reach, FailurePaths(*scene, reach));
+  const Failures failures(*scene, reach, FailurePaths(*scene, reach, suspicious_rules(*scene)));
   return Responsibility(*scene, failures).of(failures.index_of(scene.rule(rule)));
 }
 
@@ -134,7 +135,7 @@ TEST(Responsibility, SharesWhatIsExplained) {
   scene.fail("A").fail("B").fail("C");
   std::vector<ComponentId> all{scene.component("a"), scene.component("b"), scene.component("c")};
   const Reach reach(*scene, all);
-  const Failures failures(*scene, reach, FailurePaths(*scene, reach));
+  const Failures failures(*scene, reach, FailurePaths(*scene, reach, suspicious_rules(*scene)));
   const Responsibility r(*scene, failures);
   EXPECT_NEAR(r.share(0, 2) + r.share(1, 2), 1 - r.of(2), 1e-12);
   EXPECT_NEAR(r.share(0, 2) / r.share(1, 2), r.of(0) / r.of(1), 1e-9);

@@ -19,6 +19,7 @@ std::vector<StrategyChance> strategy_chances(RuleId rule, const Knowledge& knowl
   const RuleState& state = knowledge.states[rule];
   const bool is_down = is_seen_down(rule, knowledge);
   std::vector<StrategyChance> all;
+  all.reserve(strategies.size());
   double sum = 0;
   for (std::size_t s = 0; s < strategies.size(); ++s) {
     const Strategy& strategy = knowledge.rules[strategies[s]];

@@ -56,6 +56,14 @@ bool is_suspicious(RuleId rule, const Knowledge& knowledge) {
          std::any_of(watched.components.begin(), watched.components.end(), is_down);
 }
 
+std::vector<RuleId> suspicious_rules(const Knowledge& knowledge) {
+  std::vector<RuleId> all;
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
+    if (is_suspicious(RuleId(r), knowledge)) all.emplace_back(r);
+  }
+  return all;
+}
+
 Symptom symptom_of(RuleId rule, const Knowledge& knowledge) {
   const auto& inputs = knowledge.rules[rule].inputs;
   const bool reads_values = std::any_of(inputs.begin(), inputs.end(), [&](InputId id) {
@@ -77,15 +85,6 @@ Duration silence_to_tell(RuleId rule, const Knowledge& knowledge) {
     if (!knowledge.signals[id].known) longest = kLongestSilence;
   }
   return std::min(longest, kLongestSilence);
-}
-
-bool looks_well(RuleId rule, const Knowledge& knowledge) {
-  const RuleState& state = knowledge.states[rule];
-  if (state.phase != RulePhase::kQuiet) return false;
-  // In its COOLDOWN, or after ON_CHANGE.
-  const bool is_true =
-      state.detection.history.empty() && state.detection.trigger.known && state.detection.trigger.b;
-  return !is_true && !is_suspicious(rule, knowledge);
 }
 
 bool is_young(RuleId failure, const Knowledge& knowledge) {

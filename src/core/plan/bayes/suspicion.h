@@ -42,8 +42,8 @@ Symptom symptom_of(RuleId rule, const Knowledge& knowledge);
 Duration silence_to_tell(RuleId rule, const Knowledge& knowledge);
 inline constexpr Duration kLongestSilence = std::chrono::seconds(10);
 
-// It is quiet and not suspicious, or nobody knows.
-bool looks_well(RuleId rule, const Knowledge& knowledge);
+// All that are, ascending.
+std::vector<RuleId> suspicious_rules(const Knowledge& knowledge);
 
 // A bad value that was detected less than kLongestWait ago: what it is the effect of may only not
 // have been detected yet.

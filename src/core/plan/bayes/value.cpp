@@ -25,6 +25,7 @@ void StillThere::fails(const Try& tried) {
 
 std::vector<double> expected_costs(std::span<const Try> tries) {
   std::vector<double> expected;
+  expected.reserve(tries.size());
   for (std::size_t s = 0; s < tries.size(); ++s) {
     double cost = tries[s].cost;
     StillThere still_there;
