@@ -49,6 +49,7 @@ class Condensation {
     return std::span(sccs_.producers).subspan(first[scc], first[scc + 1] - first[scc]);
   }
 
+  // What the search finds.
   struct Sccs {
     std::vector<Scc> of;                        // by vertex
     std::vector<std::uint32_t> first_producer;  // by SCC, and the end

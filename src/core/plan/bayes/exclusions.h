@@ -13,7 +13,8 @@ namespace culprit::plan {
 std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
                                                 std::span<const RuleId> suspicious);
 
-// Those of the suspicious rules of which a failure of `failures` still waits to see whether they fail.
+// Those of the suspicious rules for which a failure of `failures` still waits, to see whether they
+// fail.
 std::vector<RuleId> awaited(std::span<const RuleId> suspicious, std::span<const RuleId> failures,
                             const Knowledge& knowledge);
 
