@@ -36,7 +36,7 @@ const BinaryOperator* binary_operator(const Token& token) {
 
 // Moved one by one: a list in braces would copy whole trees.
 template <class... Children>
-void adopt(Expression& parent, Children... children) {
+void adopt(Expression& parent, Children&&... children) {
   parent.children.reserve(sizeof...(children));
   (parent.children.push_back(std::move(children)), ...);
 }
@@ -110,15 +110,15 @@ class ExpressionParser {
           const auto blank = unit_behind_blank(token, unit);
           if (blank) return fail(blank->code, blank->span, blank->cause, blank->remedy, blank->fix);
         }
-        e.literal = token.literal;
+        e.literal = token.value();
         return e;
       case Token::Kind::kDuration:
       case Token::Kind::kString:
-        e.literal = token.literal;
+        e.literal = token.value();
         return e;
       case Token::Kind::kIdentifier:
         if (token.text == "true" || token.text == "false") {
-          e.literal = token.literal;
+          e.literal = token.value();
           return e;
         }
         if (token.text == "not" && continues(scanner_.peek())) {
@@ -127,16 +127,17 @@ class ExpressionParser {
                       Edit{{token.span.begin, scanner_.position()}, "!"});
         }
         e.kind = Kind::kName;
-        e.name = {token.text, token.span};
+        e.name = {std::string(token.text), token.span};
         return scanner_.peek().is("(") ? call(std::move(e), depth) : std::optional(std::move(e));
       case Token::Kind::kSymbol:
         if (token.is("(")) return parenthesis(token, depth);
         if (token.is("/")) return topic_for_value(token);
         break;
       case Token::Kind::kBad: {
-        const bool is_unclosed = token.fix && token.fix->text == "\"";
-        return fail(Code::kBadToken, token.span, token.text,
-                    is_unclosed ? "write a '\"' where the text ends" : "", token.fix);
+        const auto& [cause, fix] = *token.complaint;
+        const bool is_unclosed = fix && fix->text == "\"";
+        return fail(Code::kBadToken, token.span, cause,
+                    is_unclosed ? "write a '\"' where the text ends" : "", fix);
       }
       case Token::Kind::kEnd:
         break;
@@ -235,10 +236,10 @@ class ExpressionParser {
     return e;
   }
 
-  bool expect(std::string_view symbol, const std::string& what) {
+  bool expect(std::string_view symbol, std::string_view what) {
     const Token token = scanner_.next();
     if (token.is(symbol)) return true;
-    fail(Code::kSyntax, token.span, "expected " + what, "");
+    fail(Code::kSyntax, token.span, "expected " + std::string(what), "");
     return false;
   }
 

@@ -20,6 +20,8 @@ constexpr std::array<std::string_view, 45> kReservedWords = {
     "REMAP",     "CONTAINER",  "HOST"};
 
 bool is_reserved(std::string_view word) {
+  // Most names have something else in them.
+  if (word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_") != std::string_view::npos) return false;
   return std::find(kReservedWords.begin(), kReservedWords.end(), word) != kReservedWords.end();
 }
 
@@ -46,7 +48,8 @@ std::string filled(std::string_view name) {
   return out;
 }
 
-std::string upper_case(std::string text) {
+std::string upper_case(std::string_view word) {
+  std::string text(word);
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return std::toupper(c); });
   return text;
@@ -62,7 +65,8 @@ bool is_nearly(const Token& token, std::string_view word) {
 constexpr const char* kCloseIt = "write a '\"' where the text ends";
 
 bool is_unclosed(const Token& token) {
-  return token.kind == Token::Kind::kBad && token.fix && token.fix->text == "\"";
+  return token.kind == Token::Kind::kBad && token.complaint->fix &&
+         token.complaint->fix->text == "\"";
 }
 
 }  // namespace
@@ -70,8 +74,8 @@ bool is_unclosed(const Token& token) {
 std::span<const std::string_view> reserved_words() { return kReservedWords; }
 
 std::optional<Name> LineReader::identifier(Scanner& s, std::string_view what) {
-  Token token = s.next();
-  if (token.kind == Token::Kind::kIdentifier) return Name{std::move(token.text), token.span};
+  const Token token = s.next();
+  if (token.kind == Token::Kind::kIdentifier) return Name{std::string(token.text), token.span};
   fail_token(token, what, "a name is made of letters, digits and '_', and begins with no digit");
   return std::nullopt;
 }
@@ -89,7 +93,7 @@ std::optional<Name> LineReader::declared_name(Scanner& s, std::string_view what)
 std::optional<Name> LineReader::name_or_text(Scanner& s, std::string_view what) {
   if (const std::uint32_t at = s.position();
       at < source_.text().size() && source_.text()[at] == '"') {
-    if (const Token token = s.peek(); is_unclosed(token)) {
+    if (const Token& token = s.peek(); is_unclosed(token)) {
       fail_token(token, what, "");
       return std::nullopt;
     }
@@ -118,11 +122,11 @@ std::optional<Name> LineReader::ros_name(Scanner& s, std::string_view what) {
   return std::nullopt;
 }
 
-std::optional<Name> LineReader::text(Scanner& s, std::string_view what, std::string remedy) {
-  Token token = s.next();
+std::optional<Name> LineReader::text(Scanner& s, std::string_view what, std::string_view remedy) {
+  const Token token = s.next();
   if (token.kind == Token::Kind::kString)
-    return Name{std::move(std::get<std::string>(token.literal)), token.span};
-  fail_token(token, what, std::move(remedy));
+    return Name{std::get<std::string>(token.value()), token.span};
+  fail_token(token, what, std::string(remedy));
   return std::nullopt;
 }
 
@@ -133,7 +137,7 @@ std::optional<Duration> LineReader::duration(Scanner& s, std::string_view what) 
   std::string remedy = "a duration is a number and its unit, as in 500ms or 2s";
   std::optional<Edit> fix;
   const Token unit = s.peek();
-  const std::string one_word = std::string(source_.text(token.span)) + unit.text;
+  const std::string one_word = std::string(source_.text(token.span)).append(unit.text);
   if (unit.kind == Token::Kind::kIdentifier && parse_duration(one_word)) {
     remedy = "write " + one_word + ", without the blank";
     fix = {{token.span.begin, unit.span.end}, one_word};
@@ -214,7 +218,8 @@ bool LineReader::fail_token(const Token& token, std::string_view expected, std::
                             std::optional<Edit> fix) {
   if (token.kind == Token::Kind::kBad) {
     if (is_unclosed(token)) remedy = kCloseIt;
-    return fail(Code::kBadToken, token.span, token.text, std::move(remedy), token.fix);
+    const auto& [cause, its_fix] = *token.complaint;
+    return fail(Code::kBadToken, token.span, cause, std::move(remedy), its_fix);
   }
   const std::string got = token.kind == Token::Kind::kEnd
                               ? ""
@@ -227,7 +232,7 @@ bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_v
                                    std::string remedy, Code code) {
   if (token.kind == Token::Kind::kBad) return fail_token(token, "", "");
   if (std::find(known.begin(), known.end(), token.text) != known.end()) {
-    return fail(code, token.span, token.text + " is given twice", "keep one of them");
+    return fail(code, token.span, std::string(token.text) + " is given twice", "keep one of them");
   }
   std::string list;
   for (const std::string_view word : known) list += (list.empty() ? "" : ", ") + std::string(word);
@@ -243,7 +248,7 @@ bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_v
 }
 
 bool LineReader::line_ends(Scanner& s) {
-  const Token token = s.peek();
+  const Token& token = s.peek();
   if (token.kind == Token::Kind::kEnd) return true;
   if (token.kind == Token::Kind::kBad) return fail_token(token, "", "");
   struct Slip {

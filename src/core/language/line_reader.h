@@ -38,7 +38,7 @@ class LineReader {
   std::optional<syntax::Name> component_reference(Scanner& s);
   std::optional<syntax::Name> ros_name(Scanner& s, std::string_view what);
   // A quoted text, unescaped; its span has the quotes.
-  std::optional<syntax::Name> text(Scanner& s, std::string_view what, std::string remedy);
+  std::optional<syntax::Name> text(Scanner& s, std::string_view what, std::string_view remedy);
 
   std::optional<Duration> duration(Scanner& s, std::string_view what);
   std::optional<Duration> positive_duration(Scanner& s, std::string_view what);

@@ -67,7 +67,7 @@ class Parser {
     };
     const Token head = s.next();
     if (head.kind == Token::Kind::kBad) {
-      read_.fail(Code::kBadToken, head.span, head.text, "", head.fix);
+      read_.fail(Code::kBadToken, head.span, head.complaint->cause, "", head.complaint->fix);
       return broken();
     }
     for (const Statement& candidate : kStatements) {
@@ -83,13 +83,13 @@ class Parser {
     }
     std::vector<std::string_view> keywords;
     for (const Statement& known : kStatements) keywords.push_back(known.keyword);
-    std::string upper = head.text;
+    std::string upper(head.text);
     std::transform(upper.begin(), upper.end(), upper.begin(),
                    [](unsigned char c) { return std::toupper(c); });
     const bool lower_case = std::find(keywords.begin(), keywords.end(), upper) != keywords.end();
     std::string near = lower_case ? upper : closest(upper, keywords);
     if (near.empty()) near = word_of_other_tools(upper);
-    const std::string word = head.text.empty() ? std::string(source_.text(head.span)) : head.text;
+    const std::string word(source_.text(head.span));
     read_.fail(Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
                !near.empty() ? "did you mean " + near + "?"
                              : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY "
@@ -117,7 +117,7 @@ class Parser {
   }
 
   bool has_colon(Scanner& s) {
-    const Token token = s.peek();
+    const Token& token = s.peek();
     if (!token.is(":")) return false;
     read_.fail(Code::kExtraText, token.span, "no ':' stands behind the word of a statement",
                "remove the ':'", Edit{token.span, ""});
@@ -130,16 +130,19 @@ class Parser {
     const Token name = s.next();
     if (name.kind != Token::Kind::kIdentifier) return;
     if (keyword == "CONST")
-      into_->broken_declarations.push_back({Broken::kConstant, {name.text, name.span}});
+      into_->broken_declarations.push_back(
+          {Broken::kConstant, {std::string(name.text), name.span}});
     if (keyword == "COMPONENT")
-      into_->broken_declarations.push_back({Broken::kComponent, {name.text, name.span}});
+      into_->broken_declarations.push_back(
+          {Broken::kComponent, {std::string(name.text), name.span}});
     if (keyword == "SIGNAL")
-      into_->broken_declarations.push_back({Broken::kSignal, {name.text, name.span}});
+      into_->broken_declarations.push_back({Broken::kSignal, {std::string(name.text), name.span}});
   }
 
   // The paper's and our own documentation write <name> where a name is to be put in; people copy
   // that.
   bool has_placeholder(const Scanner& s) {
+    if (source_.text({s.taken(), line_.end}).find('<') == std::string_view::npos) return false;
     const Span rest = s.rest();
     const std::string_view text = source_.text(rest);
     for (auto open = text.find('<'); open != std::string_view::npos;
@@ -198,7 +201,7 @@ class Parser {
     if (!name) return false;
     syntax::Component component{std::move(*name), {}, {}};
     while (!s.at_end()) {
-      const Token clause = s.peek();
+      const Token& clause = s.peek();
       if (clause.text == "NODE" && !component.node) {
         s.next();
         component.node = read_.ros_name(s, "the node's full name");
@@ -332,7 +335,7 @@ class Parser {
     syntax::Signal signal{std::move(*name), {}, {}, {}};
     if (!signal_source(s, signal)) return false;
     while (!s.at_end()) {
-      const Token clause = s.peek();
+      const Token& clause = s.peek();
       if (clause.text == "STALE" && !signal.stale) {
         s.next();
         signal.stale = read_.positive_duration(s, "how old a value may become");
@@ -488,7 +491,8 @@ class Parser {
     const Token level = s.next();
     if (level.text == "CRITICAL" || level.text == "FATAL") {
       // The nearest word would be NON_CRITICAL.
-      return read_.fail(Code::kSyntax, level.span, "there is no criticality " + level.text,
+      return read_.fail(Code::kSyntax, level.span,
+                        "there is no criticality " + std::string(level.text),
                         "did you mean ERROR? It is the highest", Edit{level.span, "ERROR"});
     }
     if (level.text == "ERROR" || level.text == "FAILURE") {
@@ -508,8 +512,7 @@ class Parser {
   }
 
   bool policy(Scanner& s, syntax::Policies& policies) {
-    const Token clause = s.peek();
-    s.next();
+    const Token clause = s.next();
     if (clause.text == "FOR" && !policies.hold_for) {
       policies.hold_for = read_.positive_duration(s, "how long the trigger must hold");
       return policies.hold_for.has_value();
@@ -645,14 +648,15 @@ class Parser {
   bool unknown_adaptation(const Token& word) {
     if (word.kind != Token::Kind::kIdentifier)
       return read_.fail_token(word, "what to do with the component", "");
-    std::string plain = word.text;
+    std::string plain(word.text);
     std::transform(plain.begin(), plain.end(), plain.begin(),
                    [](unsigned char c) { return std::tolower(c); });
     if (plain.starts_with("action_")) plain.erase(0, 7);  // as in the reference's dialect
     const std::string near =
         syntax::adaptation_type(plain) ? plain : closest(plain, syntax::adaptation_keywords());
     return read_.fail(
-        Code::kUnknownAdaptation, word.span, "there is no adaptation '" + word.text + "'",
+        Code::kUnknownAdaptation, word.span,
+        "there is no adaptation '" + std::string(word.text) + "'",
         near.empty()
             ? "known: set_parameter increase_parameter decrease_parameter change_communication "
               "activate deactivate restart redeploy start stop change_mode call"
@@ -660,11 +664,11 @@ class Parser {
         replacement(word.span, near));
   }
 
-  bool inside_rule(const std::string& keyword) {
+  bool inside_rule(std::string_view keyword) {
     if (is_in_rule_) return true;
     stray_part_ = true;
     return read_.fail(
-        Code::kOutOfPlace, keyword_, keyword + " belongs to a RULE",
+        Code::kOutOfPlace, keyword_, std::string(keyword) + " belongs to a RULE",
         into_->rules.empty()
             ? "put a RULE line before it"
             : "put a RULE line before it: INCLUDE, TEMPLATE and USE end the one above");
@@ -696,11 +700,28 @@ class Parser {
   Span template_keyword_;
 };
 
+// For what large files have many of: a vector that grows moves all that it has, again and again.
+void reserve(syntax::File& file, const Source& source) {
+  std::size_t components = 0, dependencies = 0, signals = 0, rules = 0;
+  for (std::uint32_t number = 1; number <= source.line_count(); ++number) {
+    const std::string_view line = trimmed(source.text(source.line(number)));
+    components += line.starts_with("COMPONENT") ? 1 : 0;
+    dependencies += line.starts_with("DEPENDENCY") ? 1 : 0;
+    signals += line.starts_with("SIGNAL") ? 1 : 0;
+    rules += line.starts_with("RULE") ? 1 : 0;
+  }
+  file.components.reserve(components);
+  file.dependencies.reserve(dependencies);
+  file.signals.reserve(signals);
+  file.rules.reserve(rules);
+}
+
 }  // namespace
 
 syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics,
                    std::vector<Lexeme>* lexemes) {
   syntax::File file;
+  reserve(file, source);
   Parser(source, file, diagnostics, lexemes).parse(0, [](std::uint32_t, bool) { return false; });
   return file;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <type_traits>
 
 namespace culprit {
 namespace {
@@ -37,10 +38,38 @@ std::uint32_t symbol_length(std::string_view text) {
 }
 
 Token bad(Span span, std::string message, std::optional<Edit> fix = {}) {
-  return {Token::Kind::kBad, span, std::move(message), {}, std::move(fix)};
+  Token token{Token::Kind::kBad, false, span, {}, {}};
+  token.complaint = {std::move(message), std::move(fix)};
+  return token;
+}
+
+// @pre the scanner has found its escapes to be known ones
+std::string unescaped(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char c = text[i];
+    if (c == '\\') {
+      c = text[++i];
+      if (c == 'n') c = '\n';
+      if (c == 't') c = '\t';
+    }
+    out += c;
+  }
+  return out;
 }
 
 }  // namespace
+
+syntax::Literal Token::value() const {
+  const auto owned = [](auto borrowed) -> syntax::Literal {
+    if constexpr (std::is_same_v<decltype(borrowed), std::string_view>)
+      return unescaped(borrowed);
+    else
+      return borrowed;
+  };
+  return std::visit(owned, literal);
+}
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 
@@ -101,10 +130,6 @@ Token Scanner::next() {
   return token;
 }
 
-void Scanner::enter(Lexeme::Kind kind, Span span) {
-  if (record_ != nullptr) record_->push_back({kind, span});
-}
-
 const Token& Scanner::peek() const {
   if (!peeked_) peeked_ = scan();
   return *peeked_;
@@ -112,7 +137,7 @@ const Token& Scanner::peek() const {
 
 Token Scanner::scan() const {
   const std::uint32_t at = skip_blanks();
-  if (at == end_) return {Token::Kind::kEnd, {at, at}, "", {}};
+  if (at == end_) return {Token::Kind::kEnd, false, {at, at}, {}, {}};
   const char c = text_[at];
   const bool fraction = c == '.' && at + 1 < end_ && is_digit(text_[at + 1]);
   if (is_digit(c) || fraction) return number(at);
@@ -128,7 +153,7 @@ Token Scanner::identifier(std::uint32_t at) const {
   if (end < end_ && text_[end] == '{' && allows_holes()) return with_holes(at);
   if (end - at > kMaxName) return bad({at, end}, "this name is longer than 255 characters");
   const std::string_view text = text_.substr(at, end - at);
-  Token token{Token::Kind::kIdentifier, {at, end}, std::string(text), {}};
+  Token token{Token::Kind::kIdentifier, false, {at, end}, text, {}};
   // Keywords of expressions; elsewhere the text serves.
   if (text == "true" || text == "false") token.literal = text == "true";
   return token;
@@ -145,9 +170,7 @@ Token Scanner::with_holes(std::uint32_t at) const {
   if (end < end_ && text_[end] == '{')
     return bad({end, end + 1}, "a parameter stands in braces, as in {name}");
   if (end - at > kMaxName) return bad({at, end}, "this name is longer than 255 characters");
-  Token token{Token::Kind::kIdentifier, {at, end}, std::string(text_.substr(at, end - at)), {}};
-  token.has_hole = true;
-  return token;
+  return {Token::Kind::kIdentifier, true, {at, end}, text_.substr(at, end - at), {}};
 }
 
 Token Scanner::number(std::uint32_t at) const {
@@ -178,13 +201,13 @@ Token Scanner::number(std::uint32_t at) const {
   const std::string_view text = text_.substr(at, end - at);
   if (end > number_end) {
     if (const auto duration = parse_duration(text))
-      return {Token::Kind::kDuration, {at, end}, "", *duration};
+      return {Token::Kind::kDuration, false, {at, end}, {}, *duration};
     return bad({at, end}, "'" + std::string(text) + "' is neither a number nor a duration");
   }
   const char* last = text_.data() + number_end;
   if (std::int64_t i = 0; whole) {
     if (std::from_chars(text_.data() + at, last, i).ec == std::errc()) {
-      return {Token::Kind::kNumber, {at, end}, "", i};
+      return {Token::Kind::kNumber, false, {at, end}, {}, i};
     }
     return bad({at, end}, "this whole number does not fit in 64 bits");
   }
@@ -192,24 +215,16 @@ Token Scanner::number(std::uint32_t at) const {
   if (std::from_chars(text_.data() + at, last, d).ec != std::errc() || !std::isfinite(d)) {
     return bad({at, end}, "this number is out of range");
   }
-  return {Token::Kind::kNumber, {at, end}, "", d};
+  return {Token::Kind::kNumber, false, {at, end}, {}, d};
 }
 
 Token Scanner::quoted(std::uint32_t at) const {
-  std::string out;
   for (std::uint32_t i = at + 1; i < end_; ++i) {
-    char c = text_[i];
-    if (c == '"') return {Token::Kind::kString, {at, i + 1}, "", std::move(out)};
-    if (c == '\\' && i + 1 < end_) {
-      c = text_[++i];
-      if (c == 'n')
-        c = '\n';
-      else if (c == 't')
-        c = '\t';
-      else if (c != '"' && c != '\\')
-        return bad({i - 1, i + 1}, "unknown escape in a string; known: \\\" \\\\ \\n \\t");
-    }
-    out += c;
+    if (text_[i] == '"')
+      return {Token::Kind::kString, false, {at, i + 1}, {}, text_.substr(at + 1, i - at - 1)};
+    if (text_[i] != '\\' || i + 1 == end_) continue;
+    if (std::string_view("nt\"\\").find(text_[++i]) == std::string_view::npos)
+      return bad({i - 1, i + 1}, "unknown escape in a string; known: \\\" \\\\ \\n \\t");
   }
   return unclosed(at);
 }
@@ -222,7 +237,7 @@ Token Scanner::unclosed(std::uint32_t at) const {
 
 Token Scanner::symbol(std::uint32_t at) const {
   if (const std::uint32_t length = symbol_length(text_.substr(at, std::min(2u, end_ - at)))) {
-    return {Token::Kind::kSymbol, {at, at + length}, std::string(text_.substr(at, length)), {}};
+    return {Token::Kind::kSymbol, false, {at, at + length}, text_.substr(at, length), {}};
   }
   return meaningless(at);
 }
@@ -266,7 +281,7 @@ syntax::Name Scanner::next_name() {
     if (token.kind == Token::Kind::kString) {
       at_ = token.span.end;
       enter(Lexeme::Kind::kName, token.span);
-      return {std::get<std::string>(token.literal), token.span};
+      return {std::get<std::string>(token.value()), token.span};
     }
   }
   std::uint32_t end = begin;

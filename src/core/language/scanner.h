@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "language/diagnostic.h"
@@ -18,25 +19,32 @@
 
 namespace culprit {
 
+// It borrows its text: it is valid as long as what was scanned.
 struct Token {
   enum class Kind : std::uint8_t {
     kEnd,         // of the line
     kIdentifier,  // [A-Za-z_][A-Za-z0-9_]*
     kNumber,      // literal is an int64 or a double
     kDuration,
-    kString,
+    kString,  // literal is what stands between the quotes, which value() unescapes
     kSymbol,  // an operator or a parenthesis; text says which
-    kBad      // text says what is wrong with it
+    kBad      // complaint says what is wrong with it
+  };
+  struct Complaint {
+    std::string cause;
+    std::optional<Edit> fix = std::nullopt;  // that makes it a good one
   };
   Kind kind = Kind::kEnd;
-  Span span;
-  std::string text;  // identifier, symbol, or the message of kBad
-  syntax::Literal literal;
-  std::optional<Edit> fix = std::nullopt;  // that makes a kBad one good
   // A kIdentifier with a template's parameter in it: may become any kind of token.
   bool has_hole = false;
+  Span span;
+  std::string_view text;  // of an identifier or a symbol; else empty
+  std::variant<bool, std::int64_t, double, std::string_view, Duration> literal;
+  std::optional<Complaint> complaint = std::nullopt;
 
   bool is(std::string_view symbol) const { return kind == Kind::kSymbol && text == symbol; }
+  // What a literal, true or false stands for.
+  syntax::Literal value() const;
 };
 
 // A piece of a line as its reader took it, for those who care how the text was written.
@@ -101,7 +109,9 @@ class Scanner {
   Token with_holes(std::uint32_t at) const;
   Token symbol(std::uint32_t at) const;
   Token meaningless(std::uint32_t at) const;
-  void enter(Lexeme::Kind kind, Span span);
+  void enter(Lexeme::Kind kind, Span span) {
+    if (record_ != nullptr) record_->push_back({kind, span});
+  }
 
   std::string_view text_;
   std::uint32_t at_;

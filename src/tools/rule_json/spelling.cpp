@@ -54,7 +54,7 @@ std::string spelled(std::string_view name) {
 
 Json text_to_json(std::string_view text) {
   const Token token = Scanner(text, whole(text)).next();
-  const std::string& value = std::get<std::string>(token.literal);
+  const std::string value = std::get<std::string>(token.value());
   return value_or_spelling(value, text, in_quotes(value));
 }
 

@@ -125,7 +125,7 @@ class CourseReader {
     }
     if (!negative && is_truth) return Value(token.text == "true");
     if (!negative && token.kind == Token::Kind::kString)
-      return Value(std::get<std::string>(token.literal));
+      return Value(std::get<std::string>(token.value()));
     read_.fail_token(token, "a value", "a value is true, false, a number, or a text in quotes");
     return std::nullopt;
   }

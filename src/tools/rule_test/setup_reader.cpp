@@ -202,7 +202,7 @@ bool SetupReader::at(Scanner& s) {
 
 void fail_unknown_statement(LineReader& read, const Source& source, const Token& head,
                             const std::vector<std::string_view>& keywords) {
-  std::string upper = head.text;
+  std::string upper(head.text);
   std::transform(upper.begin(), upper.end(), upper.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   const bool lower_case = std::find(keywords.begin(), keywords.end(), upper) != keywords.end();

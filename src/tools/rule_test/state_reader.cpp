@@ -31,7 +31,7 @@ class StateReader {
   bool statement(Scanner& s) {
     const Token head = s.next();
     if (head.kind == Token::Kind::kBad)
-      return read_.fail(Code::kBadToken, head.span, head.text, "");
+      return read_.fail(Code::kBadToken, head.span, head.complaint->cause, "");
     const auto is_one_of = [&](const auto& keywords) {
       return std::find(keywords.begin(), keywords.end(), head.text) != keywords.end();
     };
@@ -41,7 +41,7 @@ class StateReader {
     constexpr std::array<std::string_view, 4> kOfTests = {"RULES", "TEST", "ADAPTATION", "EXPECT"};
     if (is_one_of(kOfTests))
       return read_.fail(Code::kOutOfPlace, head.span,
-                        head.text + " belongs into a test, and this is a state",
+                        std::string(head.text) + " belongs into a test, and this is a state",
                         "remove the line: a state says only how the robot is");
     std::vector<std::string_view> keywords = SetupReader::keywords();
     keywords.insert(keywords.end(), {"STRATEGY", "RUN"});

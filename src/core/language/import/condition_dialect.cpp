@@ -185,7 +185,7 @@ class ConditionDialect {
     const bool is_whole = token.span == word.span;
     const bool is_truth = token.text == "true" || token.text == "false";
     if (is_whole && (token.kind == Token::Kind::kNumber || is_truth)) {
-      e.literal = token.literal;
+      e.literal = token.value();
       present().remarks.notes.push_back("the reference takes " + word.text +
                                         " for a name, and finds no value of it; it is read as "
                                         "written");

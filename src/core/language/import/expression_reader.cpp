@@ -54,7 +54,7 @@ class ExpressionReader {
 
  private:
   const BinaryOperator* binary_operator() const {
-    const Token token = scanner_.peek();
+    const Token& token = scanner_.peek();
     if (token.kind != Token::Kind::kSymbol) return nullptr;
     for (const BinaryOperator& candidate : kBinary) {
       if (candidate.symbol == token.text) return &candidate;
@@ -102,11 +102,11 @@ class ExpressionReader {
     Expression e;
     switch (token.kind) {
       case Token::Kind::kNumber:
-        e.literal = token.literal;
+        e.literal = token.value();
         note_number(token);
         return e;
       case Token::Kind::kString:
-        e.literal = token.literal;
+        e.literal = token.value();
         return e;
       case Token::Kind::kIdentifier:
         return name(token);
@@ -114,7 +114,7 @@ class ExpressionReader {
         if (token.is("(")) return parenthesis(token, depth);
         break;
       case Token::Kind::kBad:
-        return fail(token.span, token.text);
+        return fail(token.span, token.complaint->cause);
       case Token::Kind::kDuration:
       case Token::Kind::kEnd:
         break;
@@ -125,14 +125,14 @@ class ExpressionReader {
   std::optional<Expression> name(const Token& token) {
     Expression e;
     if (token.text == "true" || token.text == "false") {
-      e.literal = token.literal;
+      e.literal = token.value();
       return e;
     }
     e.kind = Kind::kName;
-    e.name = {token.text, token.span};
+    e.name = {std::string(token.text), token.span};
     if (scanner_.peek().is("("))
       return fail(token.span,
-                  "the reference has no functions, so '" + token.text + "(' is no text of it");
+                  "the reference has no functions, so '" + e.name.text + "(' is no text of it");
     return e;
   }
 
