@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <set>
 #include <tuple>
-#include <unordered_set>
 
 #include "language/compiler.h"
 #include "language/condition_checks.h"
@@ -13,6 +12,7 @@
 #include "language/facts.h"
 #include "language/likely_slips.h"
 #include "language/parser.h"
+#include "language/place_index.h"
 #include "language/rule_checks.h"
 #include "language/rule_memory.h"
 #include "language/typing.h"
@@ -36,14 +36,17 @@ class Checker {
     memory_ = &memory;
     text_ = text;
     ++memory.check;
-    rules_.strategies.reserve(memory.strategies.size());
   }
 
   RuleSet check() {
     rules_.components.reserve(file_.components.size());
     rules_.signals.reserve(file_.signals.size());
     rules_.rules.reserve(file_.rules.size());
+    rule_names_.reserve(file_.rules.size());
     conditions_.reserve(file_.rules.size());
+    std::size_t strategies = 0;
+    for (const syntax::Rule& rule : file_.rules) strategies += rule.strategies.size();
+    rules_.strategies.reserve(strategies);
     header();
     symbols_.declare(file_);
     constants();
@@ -199,9 +202,12 @@ class Checker {
   }
 
   void check_name(const syntax::Rule& written) {
-    if (!rule_names_.insert(written.name.text).second) {
-      report(Code::kDuplicateName, written.name.span,
-             "there is a rule '" + written.name.text + "' already", "give this rule another name");
+    const std::string& name = written.name.text;
+    if (!place_of(name, rules_.rules, rule_names_)) {
+      rule_names_.add(name_hash(name), rules_.rules.size());
+    } else {
+      report(Code::kDuplicateName, written.name.span, "there is a rule '" + name + "' already",
+             "give this rule another name");
     }
   }
 
@@ -307,16 +313,17 @@ class Checker {
       }
     }
     rules_.rules.push_back(std::move(rule));
-    std::set<std::string> names;
+    PlaceIndex names;  // of its strategies
     for (const syntax::Strategy& strategy : written.strategies) {
       if (strategy.name.text.empty()) continue;
-      if (!names.insert(strategy.name.text).second) {
+      if (place_of(strategy.name.text, rules_.strategies, names)) {
         report(
             Code::kDuplicateName, strategy.name.span,
             "rule '" + written.name.text + "' has a strategy '" + strategy.name.text + "' already",
             "give this strategy another name");
         continue;
       }
+      names.add(name_hash(strategy.name.text), rules_.strategies.size());
       add_strategy(strategy, id);
     }
     sort_unique(rules_.rules[id.index].components);
@@ -548,7 +555,7 @@ class Checker {
   std::vector<Diagnostic>& diagnostics_;
   RuleSet rules_;
   Symbols symbols_;
-  std::unordered_set<std::string_view> rule_names_;
+  PlaceIndex rule_names_;
   std::vector<RuleConditions> conditions_;  // of each rule that has a trigger
   RuleMemory* memory_ = nullptr;  // of the last check and for the next one; null: nobody wants it
   std::string_view text_;         // of the file, where there is a memory

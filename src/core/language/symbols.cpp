@@ -69,36 +69,42 @@ void enter(std::vector<Use>& uses, Use use) {
     uses.push_back(std::move(use));
 }
 
-// No argument holds a zero byte.
-std::string key_of(const std::vector<std::string>& command) {
-  std::string key = "launch";
-  for (const std::string& argument : command) (key += '\0') += argument;
-  return key;
+// For PlaceIndex, which folds what comes of it.
+std::size_t mixed(std::size_t hash, std::size_t more) {
+  hash = (hash ^ more) * 0x9E3779B97F4A7C15;
+  return hash ^ (hash >> 29);
+}
+
+std::size_t command_hash(const std::vector<std::string>& command) {
+  std::size_t hash = command.size();
+  for (const std::string& argument : command) hash = mixed(hash, name_hash(argument));
+  return hash;
+}
+
+std::size_t parameter_hash(ComponentId component, std::string_view name) {
+  return mixed(name_hash(name), component.index);
+}
+
+std::size_t input_hash(const Input& input) {
+  std::size_t hash = static_cast<std::size_t>(input.kind);
+  for (const std::uint32_t id : {input.topic.index, input.signal.index, input.component.index,
+                                 input.parameter.index, input.diagnostic.index})
+    hash = mixed(hash, id);
+  return mixed(hash, static_cast<std::size_t>(input.window.count()));
+}
+
+bool is_same_input(const Input& a, const Input& b) {
+  return a.kind == b.kind && a.topic == b.topic && a.signal == b.signal &&
+         a.component == b.component && a.parameter == b.parameter && a.diagnostic == b.diagnostic &&
+         a.window == b.window;
 }
 
 }  // namespace
 
-Symbols::InputKey::InputKey(const Input& input)
-    : kind(input.kind),
-      topic(input.topic.index),
-      signal(input.signal.index),
-      component(input.component.index),
-      parameter(input.parameter.index),
-      diagnostic(input.diagnostic.index),
-      window(input.window.count()) {}
-
-std::size_t Symbols::InputKeyHash::operator()(const InputKey& key) const noexcept {
-  std::uint64_t hash = static_cast<std::uint64_t>(key.kind);
-  for (const std::uint64_t part :
-       {std::uint64_t{key.topic}, std::uint64_t{key.signal}, std::uint64_t{key.component},
-        std::uint64_t{key.parameter}, std::uint64_t{key.diagnostic},
-        static_cast<std::uint64_t>(key.window)})
-    hash = (hash ^ part) * 0x9E3779B97F4A7C15 + (hash >> 32);
-  return hash ^ (hash >> 29);
-}
-
 bool Symbols::first_declaration(const syntax::Name& name, const char* what) {
-  if (declared_.insert(name.text).second) return true;
+  const auto component = place_of(name.text, rules_.components, components_);
+  const bool is_component = component && rules_.components[*component].declared;
+  if (!is_component && !known_signal(name.text) && !constants_.contains(name.text)) return true;
   diagnostics_.push_back({Code::kDuplicateName, Severity::kError, name.span,
                           "'" + name.text + "' is declared already",
                           std::string("give this ") + what + " another name"});
@@ -106,10 +112,9 @@ bool Symbols::first_declaration(const syntax::Name& name, const char* what) {
 }
 
 void Symbols::declare(const syntax::File& file) {
-  declared_.reserve(file.constants.size() + file.components.size() + file.signals.size());
   components_.reserve(file.components.size());
   components_by_node_.reserve(file.components.size());
-  by_owner_.reserve(file.components.size());
+  components_by_launch_.reserve(file.components.size());
   signals_.reserve(file.signals.size());
   for (const syntax::Constant& c : file.constants) {
     // Its value follows, in file order: a constant may use the ones before it.
@@ -123,7 +128,12 @@ void Symbols::declare(const syntax::File& file) {
   }
   for (const syntax::BrokenDeclaration& broken : file.broken_declarations) declare_broken(broken);
   for (const auto& [constant, value] : constants_) declared_values_.push_back(constant);
-  std::sort(declared_values_.begin(), declared_values_.end());
+}
+
+const std::vector<std::string_view>& Symbols::sorted_values() {
+  if (!std::exchange(are_values_sorted_, true))
+    std::sort(declared_values_.begin(), declared_values_.end());
+  return declared_values_;
 }
 
 void Symbols::declare_component(const syntax::Component& written) {
@@ -134,13 +144,18 @@ void Symbols::declare_component(const syntax::Component& written) {
                       written.is_required,
                       written.lifecycle,
                       written.is_respawned};
-  const ComponentId id(rules_.components.size());
   if (written.node) {
-    const auto [owner, is_first] = components_by_node_.emplace(written.node->text, id);
-    if (!is_first) {
-      diagnostics_.push_back({Code::kDuplicateName, Severity::kError, written.node->span,
-                              "this node is component '" + rules_[owner->second].name + "' already",
-                              "declare each node once"});
+    const std::string& node = written.node->text;
+    const auto first = components_by_node_.find(name_hash(node), [&](std::uint32_t place) {
+      return rules_.components[place].node == node;
+    });
+    if (first) {
+      diagnostics_.push_back(
+          {Code::kDuplicateName, Severity::kError, written.node->span,
+           "this node is component '" + rules_.components[*first].name + "' already",
+           "declare each node once"});
+    } else {
+      components_by_node_.add(name_hash(node), rules_.components.size());
     }
   }
   declare_launch(written, component);
@@ -148,8 +163,23 @@ void Symbols::declare_component(const syntax::Component& written) {
   if (!written.unit && !written.engine) declared_host(written);
   declare_engine(written, component);
   declare_composition(written, component);
-  declared_components_.push_back(components_.emplace(component.name, id).first->first);
+  declared_components_.push_back(written.name.text);
+  add_component(std::move(component));
+}
+
+ComponentId Symbols::add_component(Component component) {
+  const ComponentId id(rules_.components.size());
+  components_.add(name_hash(component.name), id.index);
   rules_.components.push_back(std::move(component));
+  return id;
+}
+
+SignalId Symbols::add_signal(Signal signal, std::optional<Type> type) {
+  const SignalId id(rules_.signals.size());
+  signals_.add(name_hash(signal.name), id.index);
+  signal_types_.push_back(types_.add(type));
+  rules_.signals.push_back(std::move(signal));
+  return id;
 }
 
 // The first component that has the same owner; null: the one that is being declared.
@@ -157,6 +187,16 @@ const Component* Symbols::other_of_owner(std::string owner) {
   const auto [first, is_new] =
       by_owner_.emplace(std::move(owner), ComponentId(rules_.components.size()));
   return is_new ? nullptr : &rules_[first->second];
+}
+
+// The same for those with a LAUNCH command.
+const Component* Symbols::other_of_launch(const std::vector<std::string>& command) {
+  const auto first = components_by_launch_.find(command_hash(command), [&](std::uint32_t place) {
+    return rules_.components[place].launch == command;
+  });
+  if (first) return &rules_.components[*first];
+  components_by_launch_.add(command_hash(command), rules_.components.size());
+  return nullptr;
 }
 
 // ENV, SETUP and CWD are a launch command's, and of nothing else that starts it.
@@ -188,7 +228,7 @@ void Symbols::declare_launch(const syntax::Component& written, Component& compon
   };
   if (is_for_launch("SETUP", written.setup)) component.setup = whole_path(*written.setup);
   if (is_for_launch("CWD", written.folder)) component.folder = whole_path(*written.folder);
-  const auto* same = component.launch.empty() ? nullptr : other_of_owner(key_of(component.launch));
+  const auto* same = component.launch.empty() ? nullptr : other_of_launch(component.launch);
   if (same != nullptr)
     diagnostics_.push_back({Code::kTwoOwners, Severity::kWarning, written.launch->span,
                             "component '" + same->name +
@@ -390,10 +430,8 @@ void Symbols::declare_signal(const syntax::Signal& s) {
     }
     signal.range = {s.range->low, s.range->high};
   }
-  const SignalId id(rules_.signals.size());
-  declared_values_.push_back(signals_.emplace(signal.name, id).first->first);
-  signal_types_.push_back(types_.add(s.range ? std::optional(Type::kDouble) : std::nullopt));
-  rules_.signals.push_back(std::move(signal));
+  declared_values_.push_back(s.name.text);
+  add_signal(std::move(signal), s.range ? std::optional(Type::kDouble) : std::nullopt);
 }
 
 // There is an error, so the rule set will not be used; only the names have to be there.
@@ -405,19 +443,13 @@ void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
       constants_.try_emplace(name, Constant{{}, true});
       return;
     case Broken::kComponent:
-      if (const auto [entry, is_new] =
-              components_.try_emplace(name, ComponentId(rules_.components.size()));
-          is_new) {
-        declared_components_.push_back(entry->first);
-        // Whether it has a LAUNCH command is not known, so nobody may miss it.
-        rules_.components.push_back({name, "", {""}, true});
-      }
+      if (place_of(name, rules_.components, components_)) return;
+      declared_components_.push_back(name);
+      // Whether it has a LAUNCH command is not known, so nobody may miss it.
+      add_component({name, "", {""}, true});
       return;
     case Broken::kSignal:
-      if (signals_.try_emplace(name, SignalId(rules_.signals.size())).second) {
-        rules_.signals.push_back({name, LookedUp{}, Type::kDouble, {}, {}});
-        signal_types_.push_back(types_.add(std::nullopt));
-      }
+      if (!known_signal(name)) add_signal({name, LookedUp{}, Type::kDouble, {}, {}});
       return;
   }
 }
@@ -468,40 +500,45 @@ ComponentId Symbols::component(const syntax::Name& name) {
   return id;
 }
 
-std::optional<ComponentId> Symbols::known_component(const std::string& name) const {
-  const auto found = components_.find(name);
-  if (found != components_.end()) return found->second;
+std::optional<ComponentId> Symbols::known_component(std::string_view name) const {
+  auto found = place_of(name, rules_.components, components_);
   // A full node name may stand for the component that is declared with it.
-  const auto declared = components_by_node_.find(name);
-  return declared != components_by_node_.end() && name.starts_with('/')
-             ? std::optional(declared->second)
-             : std::nullopt;
+  if (!found && name.starts_with('/'))
+    found = components_by_node_.find(name_hash(name), [&](std::uint32_t place) {
+      return rules_.components[place].node == name;
+    });
+  return found ? std::optional(ComponentId(*found)) : std::nullopt;
+}
+
+std::optional<SignalId> Symbols::known_signal(std::string_view name) const {
+  const auto found = place_of(name, rules_.signals, signals_);
+  return found ? std::optional(SignalId(*found)) : std::nullopt;
+}
+
+std::optional<ParameterId> Symbols::known_parameter(ComponentId component,
+                                                    std::string_view name) const {
+  const auto found = parameters_.find(parameter_hash(component, name), [&](std::uint32_t place) {
+    const Parameter& known = rules_.parameters[place];
+    return known.component == component && known.name == name;
+  });
+  return found ? std::optional(ParameterId(*found)) : std::nullopt;
 }
 
 ComponentId Symbols::known_or_new_component(const syntax::Name& name) {
   if (const auto known = known_component(name.text)) return *known;
   report_undeclared(name, "component", declared_components_);
-  const ComponentId id(rules_.components.size());
   const bool is_node = name.text.starts_with('/');
-  rules_.components.push_back({name.text, is_node ? name.text : "", {}, false});
-  components_[name.text] = id;
-  return id;
+  return add_component({name.text, is_node ? name.text : "", {}, false});
 }
 
 SignalId Symbols::signal(const syntax::Name& name) {
-  const auto found = signals_.find(name.text);
-  if (found != signals_.end()) {
-    const SignalId id = found->second;
-    if (uses_ != nullptr) enter(uses_->signals, {name.text, id, id, traits_of(id)});
-    return id;
+  if (const auto id = known_signal(name.text)) {
+    if (uses_ != nullptr) enter(uses_->signals, {name.text, *id, *id, traits_of(*id)});
+    return *id;
   }
   if (uses_ != nullptr) uses_->has_report = true;  // infer_types() has asked for all of them
-  report_undeclared(name, "signal", declared_values_);
-  const SignalId id(rules_.signals.size());
-  rules_.signals.push_back({name.text, LookedUp{}, Type::kDouble, {}, {}});
-  signal_types_.push_back(types_.add(std::nullopt));
-  signals_[name.text] = id;
-  return id;
+  report_undeclared(name, "signal", sorted_values());
+  return add_signal({name.text, LookedUp{}, Type::kDouble, {}, {}});
 }
 
 bool Symbols::is_looked_up(const std::string& signal) {
@@ -511,9 +548,9 @@ bool Symbols::is_looked_up(const std::string& signal) {
 }
 
 bool Symbols::looks_up(const std::string& signal) const {
-  const auto found = signals_.find(signal);
-  return strictness_ == Strictness::kLenient && found != signals_.end() &&
-         std::holds_alternative<LookedUp>(rules_[found->second].source);
+  const auto found = known_signal(signal);
+  return strictness_ == Strictness::kLenient && found &&
+         std::holds_alternative<LookedUp>(rules_[*found].source);
 }
 
 std::string Symbols::forget_near_miss(const std::string& signal) {
@@ -536,37 +573,55 @@ void Symbols::drop_forgotten_reports() {
   forgotten_reports_.clear();
 }
 
+namespace {
+
+// The entry of `table` that is called so; a new one, if none is.
+template <class Entry>
+std::uint32_t known_or_new(const std::string& name, std::vector<Entry>& table,
+                           PlaceIndex& by_name) {
+  if (const auto known = place_of(name, table, by_name)) return *known;
+  by_name.add(name_hash(name), table.size());
+  table.push_back({name});
+  return static_cast<std::uint32_t>(table.size() - 1);
+}
+
+}  // namespace
+
 TopicId Symbols::topic(const std::string& name) {
-  const auto [found, is_new] = topics_.emplace(name, TopicId(rules_.topics.size()));
-  if (is_new) rules_.topics.push_back({name});
-  if (uses_ != nullptr) uses_->topics.push_back({name, found->second, found->second});
-  return found->second;
+  const TopicId id(known_or_new(name, rules_.topics, topics_));
+  if (uses_ != nullptr) uses_->topics.push_back({name, id, id});
+  return id;
 }
 
 DiagnosticId Symbols::diagnostic(const std::string& name) {
-  const auto [found, is_new] = level_names_.emplace(name, DiagnosticId(rules_.diagnostics.size()));
-  if (is_new) rules_.diagnostics.push_back({name});
-  if (uses_ != nullptr) uses_->diagnostics.push_back({name, found->second, found->second});
-  return found->second;
+  const DiagnosticId id(known_or_new(name, rules_.diagnostics, level_names_));
+  if (uses_ != nullptr) uses_->diagnostics.push_back({name, id, id});
+  return id;
 }
 
 ParameterId Symbols::parameter(ComponentId component, const std::string& name) {
-  const auto [found, is_new] =
-      parameters_.emplace(std::pair(component, name), ParameterId(rules_.parameters.size()));
-  if (is_new) {
+  const auto known = known_parameter(component, name);
+  const ParameterId id = known.value_or(ParameterId(rules_.parameters.size()));
+  if (!known) {
+    parameters_.add(parameter_hash(component, name), id.index);
     rules_.parameters.push_back({component, name});
     parameter_types_.push_back(types_.add(std::nullopt));
   }
-  const ParameterId id = found->second;
   if (uses_ != nullptr) uses_->parameters.push_back({component, name, id, id, type_of(id)});
   return id;
 }
 
 InputId Symbols::input(const Input& wanted) {
-  const auto [found, is_new] = inputs_.emplace(InputKey(wanted), InputId(rules_.inputs.size()));
-  if (is_new) rules_.inputs.push_back(wanted);
-  if (uses_ != nullptr) uses_->inputs.push_back({wanted, found->second, found->second});
-  return found->second;
+  const std::size_t hash = input_hash(wanted);
+  const auto known = inputs_.find(
+      hash, [&](std::uint32_t place) { return is_same_input(rules_.inputs[place], wanted); });
+  const InputId id(known.value_or(static_cast<std::uint32_t>(rules_.inputs.size())));
+  if (!known) {
+    inputs_.add(hash, id.index);
+    rules_.inputs.push_back(wanted);
+  }
+  if (uses_ != nullptr) uses_->inputs.push_back({wanted, id, id});
+  return id;
 }
 
 // ---- What was asked before
@@ -625,8 +680,8 @@ bool Symbols::answers_the_same(const Uses& uses) const {
     assert(owner != uses.components.end());
     const auto component = known_component(owner->name.text);
     if (!component) return std::nullopt;
-    const auto found = parameters_.find({*component, p.name});
-    return found == parameters_.end() ? std::nullopt : type_of(found->second);
+    const auto found = known_parameter(*component, p.name);
+    return found ? type_of(*found) : std::nullopt;
   };
   return std::all_of(uses.constants.begin(), uses.constants.end(),
                      [&](const Uses::OfConstant& c) {
@@ -645,8 +700,8 @@ bool Symbols::answers_the_same(const Uses& uses) const {
                      }) &&
          std::all_of(uses.signals.begin(), uses.signals.end(),
                      [&](const Uses::OfSignal& s) {
-                       const auto found = signals_.find(s.name);
-                       return found != signals_.end() && s.traits == traits_of(found->second);
+                       const auto found = known_signal(s.name);
+                       return found && s.traits == traits_of(*found);
                      }) &&
          std::all_of(uses.parameters.begin(), uses.parameters.end(),
                      [&](const Uses::OfParameter& p) { return p.type == type_of_parameter(p); });
@@ -694,7 +749,7 @@ void Symbols::ask_again(Uses& uses, std::uint32_t moved_by) {
     c.name.span.end += moved_by;
     renew(c, component(c.name));
   }
-  for (auto& s : uses.signals) renew(s, signals_.at(s.name));
+  for (auto& s : uses.signals) renew(s, *known_signal(s.name));
   for (auto& t : uses.topics) renew(t, topic(t.name));
   for (auto& d : uses.diagnostics) renew(d, diagnostic(d.name));
   for (auto& p : uses.parameters) {

@@ -5,16 +5,15 @@
 // name that is nearly a declared one is reported in any case: most often it is a slip.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "language/diagnostic.h"
+#include "language/place_index.h"
 #include "language/rule_set.h"
 #include "language/syntax.h"
 #include "language/type_classes.h"
@@ -147,6 +146,7 @@ class Symbols {
   bool first_declaration(const syntax::Name& name, const char* what);
   void declare_component(const syntax::Component& component);
   const Component* other_of_owner(std::string owner);
+  const Component* other_of_launch(const std::vector<std::string>& command);
   void declare_launch(const syntax::Component& written, Component& component);
   std::string declared_host(const syntax::Component& written);
   void declare_engine(const syntax::Component& written, Component& component);
@@ -155,9 +155,14 @@ class Symbols {
   void declare_signal(const syntax::Signal& signal);
   void report_undeclared(const syntax::Name& name, const char* what,
                          const std::vector<std::string_view>& declared);
+  const std::vector<std::string_view>& sorted_values();
   std::string near_name(const std::string& name, const std::vector<std::string_view>& declared);
   bool looks_up(const std::string& signal) const;
-  std::optional<ComponentId> known_component(const std::string& name) const;
+  std::optional<ComponentId> known_component(std::string_view name) const;
+  std::optional<SignalId> known_signal(std::string_view name) const;
+  std::optional<ParameterId> known_parameter(ComponentId component, std::string_view name) const;
+  ComponentId add_component(Component component);
+  SignalId add_signal(Signal signal, std::optional<Type> type = std::nullopt);
   ComponentId known_or_new_component(const syntax::Name& name);
   Uses::OfComponent::Traits traits_of(ComponentId id) const;
   Uses::OfSignal::Traits traits_of(SignalId id) const;
@@ -165,29 +170,18 @@ class Symbols {
   RuleSet& rules_;
   Strictness strictness_;
   std::vector<Diagnostic>& diagnostics_;
-  std::unordered_set<std::string> declared_;
   std::unordered_map<std::string, Constant> constants_;
-  std::unordered_map<std::string, ComponentId> components_;
-  std::unordered_map<std::string, ComponentId> components_by_node_;
-  std::unordered_map<std::string, ComponentId> by_owner_;  // a command, a unit or a container
-  std::unordered_map<std::string, SignalId> signals_;
-  std::unordered_map<std::string, TopicId> topics_;
-  std::unordered_map<std::string, DiagnosticId> level_names_;
-  std::map<std::pair<ComponentId, std::string>, ParameterId> parameters_;
-  struct InputKey {
-    explicit InputKey(const Input& input);
-    bool operator==(const InputKey&) const = default;
-    Input::Kind kind;
-    std::uint32_t topic, signal, component, parameter, diagnostic;
-    std::int64_t window;
-  };
-  struct InputKeyHash {
-    std::size_t operator()(const InputKey& key) const noexcept;
-  };
-  std::unordered_map<InputKey, InputId, InputKeyHash> inputs_;
-  // What undeclared names may have been meant to be; views into the keys of the maps above.
+  // Of the tables of rules_.
+  PlaceIndex components_, signals_, topics_, level_names_;  // by name
+  PlaceIndex components_by_node_;                           // of those that are declared, the first
+  PlaceIndex components_by_launch_;                         // likewise
+  PlaceIndex parameters_;                                   // by component and name
+  PlaceIndex inputs_;                                       // by all but type and use
+  std::unordered_map<std::string, ComponentId> by_owner_;   // a unit or a container
+  // What undeclared names may have been meant to be; views into the tree and the keys above.
   std::vector<std::string_view> declared_components_;
   std::vector<std::string_view> declared_values_;  // constants and signals
+  bool are_values_sorted_ = false;                 // they are once somebody asks
   std::size_t comparisons_left_ = kMaxComparisons;
   struct NearMiss {
     std::string near;
