@@ -19,6 +19,12 @@ void emit(const Typed& e, Program& program) {
   program.code.push_back({e.op, operand});
 }
 
+std::size_t node_count(const Typed& e) {
+  std::size_t count = 1;
+  for (const Typed& child : e.children) count += node_count(child);
+  return count;
+}
+
 bool is_comparison(Op op) {
   switch (op) {
     case Op::kLessInt:
@@ -39,7 +45,8 @@ bool is_plain_input(const Typed& e) {
 
 // The number that an input is compared with, as the monitor counts: durations in seconds.
 double threshold(const Typed& constant) {
-  const Slot slot = evaluate(compile(constant), {});
+  const bool is_plain = constant.op == Op::kConstant;
+  const Slot slot = is_plain ? constant.constant.slot : evaluate(compile(constant), {});
   if (constant.type == Type::kDouble) return slot.d;
   return constant.type == Type::kDuration ? seconds(Duration(slot.i)) : static_cast<double>(slot.i);
 }
@@ -49,6 +56,7 @@ double threshold(const Typed& constant) {
 Program compile(const Typed& expression) {
   Program program;
   program.type = expression.type;
+  program.code.reserve(node_count(expression));
   emit(expression, program);
   return program;
 }

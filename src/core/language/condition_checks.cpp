@@ -222,10 +222,10 @@ void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
   if (acts_on_edges || rule.never_fires || !is_small_enough(rule.trigger) ||
       !reads_life(rule.trigger, rules))
     return;
-  if (is_never(false, rule.trigger, rules)) return;  // it is always true, and that is said
   Facts facts(rules);
   live(rule.trigger, rules, facts);
   if (facts.assume(rule.trigger, false)) return;
+  if (is_never(false, rule.trigger, rules)) return;  // it is always true, and that is said
   diagnostics.push_back(
       {Code::kTrueWhenWell, Severity::kWarning, rule.trigger.span,
        "this is true while all is well: everything is there, and messages come",

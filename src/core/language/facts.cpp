@@ -87,6 +87,7 @@ void Facts::know(InputId input, ValueSet set) {
     values = std::move(set);
     return;
   }
+  if (values_.empty()) values_.reserve(4);
   values_.emplace_back(input, std::move(set));
 }
 
@@ -208,19 +209,29 @@ bool Facts::differ(const Typed& left, const Typed& right) {
 }
 
 bool Facts::narrow(const Typed& e, const ValueSet& set) {
-  const Typed& leaf = e.op == Op::kIntToDouble ? e.children[0] : e;
-  if (leaf.op == Op::kConstant && leaf.type == Type::kBool)
-    return !is_empty(intersection(only_value(leaf.constant, leaf.type), set));
-  if (leaf.op != Op::kInput) return !is_empty(intersection(values_of(e), set));
-  ValueSet narrowed = intersection(values_of(leaf.input), set);
-  const bool is_whole = leaf.type == Type::kInt || leaf.type == Type::kDuration;
-  if (is_whole) narrowed = whole_numbers(std::get<Interval>(narrowed));
+  if (const auto* interval = std::get_if<Interval>(&set)) return narrow(e, *interval);
+  ValueSet narrowed = intersection(values_of(e), set);
   const bool possible = !is_empty(narrowed);
-  know(leaf.input, std::move(narrowed));
+  if (e.op == Op::kInput) know(e.input, std::move(narrowed));
   return possible;
 }
 
-Interval Facts::interval_of(const Typed& e) const { return std::get<Interval>(values_of(e)); }
+// Most of what is known is of numbers, which need no set that might be of something else.
+bool Facts::narrow(const Typed& e, const Interval& interval) {
+  const Typed& leaf = e.op == Op::kIntToDouble ? e.children[0] : e;
+  if (leaf.op != Op::kInput) return !is_empty(intersection(interval_of(e), interval));
+  Interval narrowed = intersection(interval_of(leaf), interval);
+  const bool is_whole = leaf.type == Type::kInt || leaf.type == Type::kDuration;
+  if (is_whole) narrowed = whole_numbers(narrowed);
+  know(leaf.input, narrowed);
+  return !is_empty(narrowed);
+}
+
+Interval Facts::interval_of(const Typed& e) const {
+  const ValueSet* known = e.op == Op::kInput ? find(e.input) : nullptr;
+  if (known != nullptr) return std::get<Interval>(*known);
+  return std::get<Interval>(values_of(e));
+}
 
 ValueSet Facts::values_of(const Typed& e) const {
   switch (e.op) {

@@ -42,6 +42,7 @@ class Facts {
   bool order(const Typed& left, const Typed& right, Order order);
   bool differ(const Typed& left, const Typed& right);
   bool narrow(const Typed& expression, const ValueSet& set);
+  bool narrow(const Typed& number, const Interval& interval);
   void join(const Facts& other);
   ValueSet values_of(const Typed& expression) const;
   Interval interval_of(const Typed& expression) const;

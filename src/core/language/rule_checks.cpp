@@ -130,6 +130,7 @@ void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnost
          adaptation.span, "strategy '" + strategy.name.text + "' contradicts itself: " + why,
          "split it into two strategies, or remove one of the adaptations"});
   };
+  if (strategy.adaptations.size() < 2) return;
   std::map<std::string_view, Done> done_by_component;
   for (const syntax::Adaptation& adaptation : strategy.adaptations) {
     Done& done = done_by_component[adaptation.component.text];
@@ -226,9 +227,10 @@ void check_circles(const syntax::File& file, const RuleSet& rules,
     std::size_t component;
     std::size_t next = 0;
   };
+  std::vector<Visit> path;
   for (std::size_t start = 0; start < count; ++start) {
     if (marks[start] != Mark::kNew) continue;
-    std::vector<Visit> path{{start}};
+    path.push_back({start});
     marks[start] = Mark::kOpen;
     while (!path.empty()) {
       Visit& here = path.back();

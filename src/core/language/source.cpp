@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
 namespace culprit {
 
@@ -30,9 +32,8 @@ Source::Source(std::string text, std::vector<Source> files, std::vector<Piece> p
 
 void Source::find_lines() {
   line_starts_.push_back(0);
-  for (std::size_t i = 0; i < text_.size(); ++i) {
-    if (text_[i] == '\n') line_starts_.push_back(static_cast<std::uint32_t>(i + 1));
-  }
+  for (auto end = text_.find('\n'); end != std::string::npos; end = text_.find('\n', end + 1))
+    line_starts_.push_back(static_cast<std::uint32_t>(end + 1));
 }
 
 std::size_t Source::file_count() const { return parts_ ? parts_->files.size() : 1; }
@@ -62,6 +63,9 @@ Expected<Source> Source::read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{"cannot read rule file '" + path + "': " + std::strerror(errno)};
   std::string text;
+  std::error_code error;
+  if (const auto size = std::filesystem::file_size(path, error); !error && size <= kMaxSize)
+    text.reserve(size);
   char block[1 << 16];
   while (file.read(block, sizeof block) || file.gcount() > 0) {
     text.append(block, static_cast<std::size_t>(file.gcount()));

@@ -18,7 +18,7 @@ bool is_numeric(Type type) { return type == Type::kInt || type == Type::kDouble;
 bool is_exact(Type type) { return type == Type::kInt || type == Type::kDuration; }
 
 template <class... Children>
-Typed node(Op op, Type type, Children... children) {
+Typed node(Op op, Type type, Children&&... children) {
   Typed typed;
   typed.op = op;
   typed.type = type;
@@ -77,9 +77,7 @@ Op member(const Family& family, Type type) {
 class Typer {
  public:
   Typer(const Expression& whole, Symbols& symbols, std::vector<Diagnostic>& diagnostics)
-      : symbols_(symbols),
-        diagnostics_(diagnostics),
-        names_broken_constant_(names_broken_constant(whole)) {}
+      : whole_(whole), symbols_(symbols), diagnostics_(diagnostics) {}
 
   std::optional<Typed> type(const Expression& e) {
     auto typed = type_of(e);
@@ -130,7 +128,7 @@ class Typer {
       return fail(Code::kUnknownName, e.span, "signal '" + e.name.text + "' is not declared",
                   "did you mean '" + near + "'?", Edit{e.span, near});
     }
-    if (names_broken_constant_) return std::nullopt;  // which would have told
+    if (names_broken_constant(whole_)) return std::nullopt;  // which would have told
     return fail(Code::kUnknownType, e.span, "nothing tells what kind of value this is",
                 "compare it with a constant; a text needs quotes: \"" + e.name.text + "\"");
   }
@@ -508,9 +506,9 @@ class Typer {
                        [&](const Expression& child) { return names_broken_constant(child); });
   }
 
+  const Expression& whole_;
   Symbols& symbols_;
   std::vector<Diagnostic>& diagnostics_;
-  const bool names_broken_constant_;
 };
 
 }  // namespace

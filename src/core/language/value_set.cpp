@@ -11,10 +11,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kExact = 9007199254740992.0;  // 2^53
 
-bool is_empty_interval(const Interval& i) {
-  return i.low > i.high || (i.low == i.high && (i.is_low_open || i.is_high_open));
-}
-
 Interval meet(const Interval& a, const Interval& b) {
   Interval out = a;
   if (b.low > a.low || (b.low == a.low && b.is_low_open)) {
@@ -141,13 +137,19 @@ ValueSet only_value(const Constant& constant, Type type) {
   return exact({number, number});
 }
 
+bool is_empty(const Interval& i) {
+  return i.low > i.high || (i.low == i.high && (i.is_low_open || i.is_high_open));
+}
+
 bool is_empty(const ValueSet& set) {
-  if (const auto* interval = std::get_if<Interval>(&set)) return is_empty_interval(*interval);
+  if (const auto* interval = std::get_if<Interval>(&set)) return is_empty(*interval);
   if (const auto* texts = std::get_if<TextSet>(&set))
     return !texts->is_complement && texts->texts.empty();
   const auto& truth = std::get<TruthSet>(set);
   return !truth.may_be_true && !truth.may_be_false;
 }
+
+Interval intersection(const Interval& a, const Interval& b) { return meet(a, b); }
 
 ValueSet intersection(const ValueSet& a, const ValueSet& b) {
   assert(a.index() == b.index());

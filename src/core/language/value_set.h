@@ -44,6 +44,8 @@ ValueSet all_values(Type type);
 ValueSet only_value(const Constant& constant, Type type);
 
 bool is_empty(const ValueSet& set);
+bool is_empty(const Interval& interval);
+Interval intersection(const Interval& a, const Interval& b);
 // @pre both sets are of the same kind
 ValueSet intersection(const ValueSet& a, const ValueSet& b);
 // The smallest set that holds both. @pre both sets are of the same kind
