@@ -169,7 +169,11 @@ class Launched : public Kept {
 class Respawned : public Launched {
  public:
   Respawned() : Launched("RESPAWNED") { begin_launcher(); }
-  ~Respawned() override { end_launcher(); }
+  // With what it has forked and what is no process of the program yet: nobody would find that later.
+  ~Respawned() override {
+    if (launcher_ != 0) kill(-launcher_, SIGKILL);
+    end_launcher();
+  }
   bool start() override {
     // A culprit that never saw the launcher waits for it: a person has to start that again.
     if (!is_alive(launcher_) && processes().empty()) begin_launcher();
