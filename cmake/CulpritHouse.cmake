@@ -121,7 +121,7 @@ endif()
 # culprit_library(<floor>/<folder> [USES <folder>...] [PACKAGES <target>...]
 #                 [TEST_USES <folder>...] [TEST_PACKAGES <target>...] [TEST_SERIAL] [TEST_WAITS]
 #                 [TEST_LABELS <label>...] [TEST_CASES n] [TEST_ALONE <pattern>...]
-#                 [TEST_UNSANITIZED <pattern>...]
+#                 [TEST_UNSANITIZED <pattern>...] [TEST_ONE_THREAD <file>...]
 #                 [LIVE_TEST_USES <folder>...] [LIVE_PROCESSORS n])
 #
 # Builds the library <folder> of src/<floor>/<folder>/**.cpp, but for its tests and programs (*_main.cpp); the library
@@ -132,9 +132,11 @@ endif()
 # machine of its own (in_own_machine.sh) or runs alone, and carries the label "live". The label "threads" is for tests that the thread sanitizer repeats;
 # "soak", which all of lab/ has, for those that the address sanitizer repeats only in `make soak`. TEST_ALONE, as --gtest_filter= takes it, are tests that need a
 # process of their own where otherwise many share one (culprit_add_shards); TEST_UNSANITIZED, of the laboratory, those that no sanitizer runs: their results
-# are statistics.
+# are statistics. TEST_ONE_THREAD, beside the label "threads", are the files <file>_test.cpp whose tests neither have nor call what has a second thread or takes
+# a lock: the thread sanitizer can find nothing there. It has them in a program of their own, <folder>_one_thread_test, for `make soak`. A new file is looked at
+# by the thread sanitizer until it is named here.
 function(culprit_library path)
-  cmake_parse_arguments(ARG "TEST_SERIAL;TEST_WAITS" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES;TEST_ALONE;TEST_UNSANITIZED;LIVE_TEST_USES;LIVE_PROCESSORS" ${ARGN})
+  cmake_parse_arguments(ARG "TEST_SERIAL;TEST_WAITS" "" "USES;PACKAGES;TEST_PACKAGES;TEST_USES;TEST_LABELS;TEST_CASES;TEST_ALONE;TEST_UNSANITIZED;TEST_ONE_THREAD;LIVE_TEST_USES;LIVE_PROCESSORS" ${ARGN})
   get_filename_component(folder ${path} NAME)
   if(path MATCHES "^lab/")
     list(APPEND ARG_TEST_LABELS soak)
@@ -186,6 +188,12 @@ function(culprit_library path)
     target_link_libraries(${folder}_testing PUBLIC ${with} ${ARG_TEST_PACKAGES} GTest::gtest GTest::gmock rapidcheck
                                             PRIVATE culprit_test_options)
     list(APPEND with ${folder}_testing)
+  endif()
+  if(ARG_TEST_ONE_THREAD AND CULPRIT_SANITIZE STREQUAL "thread")
+    list(TRANSFORM ARG_TEST_ONE_THREAD PREPEND ${dir}/)
+    list(TRANSFORM ARG_TEST_ONE_THREAD APPEND _test.cpp)
+    list(REMOVE_ITEM tests ${ARG_TEST_ONE_THREAD})
+    culprit_test(${folder}_one_thread_test SOURCES ${ARG_TEST_ONE_THREAD} USES ${with} PACKAGES ${ARG_TEST_PACKAGES})
   endif()
   if(tests)
     set(manner "")

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 
 constexpr std::int64_t kAbsurd = std::int64_t{1} << 60;
 
-Guid writer(std::uint8_t kind, std::uint8_t participant = 1) {
+Guid writer_of_kind(std::uint8_t kind, std::uint8_t participant = 1) {
   Guid guid;
   guid.bytes[0] = 1;
   guid.bytes[11] = participant;
@@ -25,9 +25,9 @@ Guid writer(std::uint8_t kind, std::uint8_t participant = 1) {
   guid.bytes[15] = kind;
   return guid;
 }
-const Guid kCamera = writer(0x03);
-const Guid kDiscovery = writer(0xc2);
-const Guid kService = writer(0x03, 2);
+const Guid kCamera = writer_of_kind(0x03);
+const Guid kDiscovery = writer_of_kind(0xc2);
+const Guid kService = writer_of_kind(0x03, 2);
 
 // One of ours.
 Guid reader(std::uint8_t number) {
@@ -155,7 +155,7 @@ TEST_F(Filter, WhatFragmentsTakeIsBounded) {
   EXPECT_EQ(came, DatagramFilter::kReliableOfOne / 1'000'000);
   EXPECT_TRUE(passes(from(kDiscovery).data(kDiscovery, came + 1))) << "it is still heard";
   for (std::uint8_t participant = 3; participant < 200; ++participant) {
-    const Guid other = writer(0xc2, participant);
+    const Guid other = writer_of_kind(0xc2, participant);
     filter.know(other.prefix());
     came += passes(from(other).fragment(other, 1, 1, 1000, 3'000'000)) ? 3 : 0;
   }
@@ -190,7 +190,7 @@ TEST_F(Filter, ALossyCameraIsNeverTooMuch) {
 TEST_F(Filter, AllCamerasTogetherAreBounded) {
   int came = 0;
   for (std::uint8_t participant = 3; participant < 100; ++participant) {
-    const Guid camera = writer(0x03, participant);
+    const Guid camera = writer_of_kind(0x03, participant);
     filter.begin_hearing(camera, kPictures, DatagramFilter::Reading::kBestEffort);
     came += passes(from(camera).fragment(camera, 1, 1, 60'000, 6'000'000)) ? 1 : 0;
   }
@@ -200,7 +200,7 @@ TEST_F(Filter, AllCamerasTogetherAreBounded) {
 // It is silent only for us: too large, or lost in part, or behind a forged number.
 TEST_F(Filter, AWriterWhoseSamplesAreNotDeliveredIsNotSilent) {
   int signs = 0;
-  const Guid lidar = writer(0x03, 9);
+  const Guid lidar = writer_of_kind(0x03, 9);
   filter.begin_hearing(lidar, kPictures, DatagramFilter::Reading::kBestEffort,
                        std::make_shared<const std::function<void()>>([&] { ++signs; }));
   for (std::int64_t sequence = 1; sequence <= 10; ++sequence) {
@@ -218,7 +218,7 @@ TEST_F(Filter, AWriterWhoseSamplesAreNotDeliveredIsNotSilent) {
 // Else strangers could use the budget up.
 TEST_F(Filter, WritersThatNobodyHearsTakeNothing) {
   for (std::uint8_t participant = 3; participant < 200; ++participant) {
-    const Guid stranger = writer(participant % 2 == 0 ? 0x03 : 0xc2, participant);
+    const Guid stranger = writer_of_kind(participant % 2 == 0 ? 0x03 : 0xc2, participant);
     EXPECT_TRUE(passes(from(stranger).fragment(stranger, 1, 1, 60'000, 3'000'000)));
   }
   EXPECT_TRUE(passes(from(kCamera).fragment(kCamera, 1, 1, 60'000, 30'000'000)));
@@ -226,7 +226,7 @@ TEST_F(Filter, WritersThatNobodyHearsTakeNothing) {
 }
 
 TEST_F(Filter, AWriterThatIsHeardNoMoreFreesWhatItTook) {
-  const Guid other = writer(0x03, 9);
+  const Guid other = writer_of_kind(0x03, 9);
   for (int i = 0; i < 10; ++i) {
     EXPECT_TRUE(passes(from(kCamera).fragment(kCamera, 1, 1, 60'000, 30'000'000)));
     filter.end_hearing(kCamera, kPictures);
@@ -282,7 +282,7 @@ TEST_F(Filter, WhatSeveralReadersHearIsAddressedToAll) {
 
 TEST_F(Filter, OfAWriterThatNobodyHearsMostIsTakenOut) {
   filter.begin_to_address();
-  const Guid stranger = writer(0x03, 9);
+  const Guid stranger = writer_of_kind(0x03, 9);
   int passed_on = 0;
   for (std::int64_t second = 0; second < 3; ++second, now += 1s) {
     for (std::int64_t i = 1; i <= 100; ++i)
@@ -319,14 +319,14 @@ TEST_F(Filter, WhatIsAddressedToSomebodyStays) {
 
 TEST_F(Filter, DiscoveryIsHeardByTheMiddleware) {
   filter.begin_to_address();
-  for (const Guid& guid : {kDiscovery, writer(0xc2, 9), writer(0x43, 9)}) {
+  for (const Guid& guid : {kDiscovery, writer_of_kind(0xc2, 9), writer_of_kind(0x43, 9)}) {
     EXPECT_TRUE(passes(from(guid).data(guid, 1).heartbeat(guid, 1, 1)));
     EXPECT_EQ(addressee(20), 0);
   }
 }
 
 TEST_F(Filter, NothingIsAddressedWhileReadersChange) {
-  const Guid stranger = writer(0x03, 9);
+  const Guid stranger = writer_of_kind(0x03, 9);
   EXPECT_TRUE(passes(from(stranger).data(stranger, 1))) << "not yet";
   filter.begin_to_address();
   {
@@ -365,7 +365,7 @@ class HandingFilter : public Filter {
   TestDatagram timed() const { return from(kScan).submessage(0x09, 0, kTime); }
 
   const Bytes kTime{5, 0, 0, 0, 0, 0, 0, 0x80};
-  const Guid kScan = writer(0x03, 4);
+  const Guid kScan = writer_of_kind(0x03, 4);
   const Guid kScans = reader(3);
   std::vector<std::int64_t> handed;
   std::chrono::sys_time<std::chrono::nanoseconds> sent;
@@ -437,7 +437,7 @@ TEST_F(HandingFilter, WhatASecondReaderHearsIsLeftToTheMiddleware) {
 
 // A forged number made its reader deaf to it.
 TEST_F(HandingFilter, AWriterWhoseSamplesArePassedOverIsNotSilent) {
-  const Guid forged = writer(0x03, 5);
+  const Guid forged = writer_of_kind(0x03, 5);
   int told = 0;
   filter.begin_hearing(forged, kScans, DatagramFilter::Reading::kBestEffort,
                        std::make_shared<const std::function<void()>>([&told] { ++told; }),
@@ -481,12 +481,12 @@ class DiscoveringFilter : public Filter {
   }
 
   static Guid announcer(EndpointRole role, std::uint8_t participant = 1) {
-    Guid guid = writer(0xc2, participant);
+    Guid guid = writer_of_kind(0xc2, participant);
     guid.bytes[14] = role == EndpointRole::kReader ? 4 : 3;
     return guid;
   }
   static Guid endpoint(std::uint8_t number, std::uint8_t kind = 0x03) {
-    Guid guid = writer(kind);
+    Guid guid = writer_of_kind(kind);
     guid.bytes[14] = number;
     return guid;
   }

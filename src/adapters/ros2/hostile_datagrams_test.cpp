@@ -15,7 +15,7 @@
 namespace culprit::ros2 {
 namespace {
 
-constexpr std::int64_t kAbsurd = std::int64_t{1} << 60;
+constexpr std::int64_t kFarAhead = std::int64_t{1} << 60;
 const Bytes kSmall{0, 1, 0, 0, 1, 2, 3, 4};
 
 std::size_t resident_bytes() {
@@ -113,10 +113,11 @@ class HostileDatagrams : public testing::Test {
 
 TEST_F(HostileDatagrams, AbsurdSequenceNumbersMakeNobodyDeaf) {
   for (const Guid& each : writers()) {
-    attacker.send(TestDatagram(each.prefix()).gap(each, 1, kAbsurd).bytes());
-    attacker.send(TestDatagram(each.prefix()).heartbeat(each, kAbsurd, kAbsurd, 1 << 30).bytes());
-    attacker.send(TestDatagram(each.prefix()).heartbeat(each, 1, kAbsurd, 1 << 29).bytes());
-    attacker.send(TestDatagram(each.prefix()).data(each, kAbsurd).bytes());
+    attacker.send(TestDatagram(each.prefix()).gap(each, 1, kFarAhead).bytes());
+    attacker.send(
+        TestDatagram(each.prefix()).heartbeat(each, kFarAhead, kFarAhead, 1 << 30).bytes());
+    attacker.send(TestDatagram(each.prefix()).heartbeat(each, 1, kFarAhead, 1 << 29).bytes());
+    attacker.send(TestDatagram(each.prefix()).data(each, kFarAhead).bytes());
   }
   EXPECT_TRUE(speaks());
   EXPECT_TRUE(discovers());
