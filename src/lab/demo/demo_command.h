@@ -1,7 +1,9 @@
 // culprit-lab demo: culprit heals a live exemplar, for people to look at.
 #pragma once
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}
 
 namespace culprit::lab {
 

@@ -4,9 +4,11 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "terminal/command.h"
+
+namespace CLI {
+class App;
+}
 
 namespace culprit::lab {
 

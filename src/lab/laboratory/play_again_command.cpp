@@ -3,6 +3,8 @@
 #include <cmath>
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "base/text_file.h"
 #include "laboratory/commands.h"
 #include "laboratory/play_again.h"

@@ -9,8 +9,7 @@
 #include <map>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "exemplars/node_command_line.h"
 #include "exemplars/suave/function_process.h"
 #include "exemplars/suave/mission_process.h"
 #include "exemplars/suave/vehicle_process.h"
@@ -45,33 +44,30 @@ int main(int argc, char** argv) {
                                                              {"follow", Function::kFollow},
                                                              {"motion", Function::kMotion},
                                                              {"recharge", Function::kRecharge}};
-  CLI::App app("One process of the SUAVE exemplar's robot.");
-  std::string name;
-  NodeOptions options;
-  app.add_option("name", name, "Which one")
-      ->required()
-      ->check(CLI::IsMember({"vehicle", "mission", "search", "follow", "motion", "recharge"}));
-  app.add_option("--speed", options.speed, "Robot seconds in a second, 1 unless given")
-      ->envname("SUAVE_SPEED")
-      ->check(CLI::Range(0.01, 100.0));
-  app.add_option("--seed", options.seed, "Of the mission, 1 unless given")->envname("SUAVE_SEED");
-  std::string mission = "standard";
-  app.add_option("--mission", mission, "standard, or extended: the battery runs low")
-      ->envname("SUAVE_MISSION")
-      ->check(CLI::IsMember({"standard", "extended"}))
-      ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  const NodeCommandLine line{
+      .about = "One process of the SUAVE exemplar's robot.",
+      .names = {"vehicle", "mission", "search", "follow", "motion", "recharge"},
+      .environment = "SUAVE",
+      .seed_of = "mission",
+      .option = "mission",
+      .option_environment = "SUAVE_MISSION",
+      .option_help = "standard, or extended: the battery runs low",
+      .choices = {"standard", "extended"}};
+  int exit_code = 0;
+  const auto given = parse(line, argc, argv, exit_code);
+  if (!given) return exit_code;
+  const NodeOptions options{.speed = given->speed, .seed = given->seed};
 
   // The newest: only it publishes what a live manager can rely on.
   const model::Generation& generation = **model::find_generation("new");
-  const model::MissionPlan& plan = **model::find_mission_plan(mission);
+  const model::MissionPlan& plan = **model::find_mission_plan(given->option);
   return run([&](ros2::Executor& executor, ros2::Context& context) {
-    const auto function = kFunctions.find(name);
+    const auto function = kFunctions.find(given->name);
     if (function != kFunctions.end()) {
       FunctionProcess process(function->second, options, generation);
       return run_process(process, executor, context);
     }
-    if (name == "vehicle") {
+    if (given->name == "vehicle") {
       VehicleProcess process(options, generation, plan);
       return run_process(process, executor, context);
     }

@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "exemplars/node_command_line.h"
 #include "exemplars/sunset/camera_node.h"
 #include "exemplars/sunset/crash_at_start.h"
 #include "exemplars/sunset/depth_node.h"
@@ -64,22 +64,24 @@ int run(Member member, const NodeOptions& options) {
 int main(int argc, char** argv) {
   std::map<std::string, Member> members;
   for (const Member member : kMembers) members.emplace(name_of(member), member);
+  std::vector<std::string> names;
+  for (const auto& [name, member] : members) names.push_back(name);
 
-  CLI::App app("One process of the SUNSET exemplar's robot.");
-  std::string name;
-  NodeOptions options;
-  app.add_option("name", name, "Which one")->required()->check(CLI::IsMember(members));
-  app.add_option("--speed", options.speed, "Robot seconds in a second, 1 unless given")
-      ->envname("SUNSET_SPEED")
-      ->check(CLI::Range(0.01, 100.0));
-  app.add_option("--seed", options.seed, "Of the flight, 1 unless given")->envname("SUNSET_SEED");
-  app.add_option("--state", options.state,
-                 "Folder where parameters outlive the process; without it they do not")
-      ->envname("SUNSET_STATE");
-  CLI11_PARSE(app, argc, argv);
-
-  if (take_crash(options.state, name)) return fail(name + " crashes at its start, as it was told");
-  return run(members.at(name), options);
+  const NodeCommandLine line{
+      .about = "One process of the SUNSET exemplar's robot.",
+      .names = names,
+      .environment = "SUNSET",
+      .seed_of = "flight",
+      .option = "state",
+      .option_environment = "SUNSET_STATE",
+      .option_help = "Folder where parameters outlive the process; without it they do not"};
+  int exit_code = 0;
+  const auto given = parse(line, argc, argv, exit_code);
+  if (!given) return exit_code;
+  const NodeOptions options{.speed = given->speed, .seed = given->seed, .state = given->option};
+  if (take_crash(options.state, given->name))
+    return fail(given->name + " crashes at its start, as it was told");
+  return run(members.at(given->name), options);
 }
 
 }  // namespace

@@ -1,0 +1,36 @@
+// The command line of sunset-node and suave-node: which process of a live robot this one is. CLI11, which reads it, takes
+// longer to compile than the rest of such a program; so both have it from here.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace culprit {
+
+// What one of the programs takes. Beside a name, --speed and --seed each has one option of its own.
+struct NodeCommandLine {
+  std::string about;                   // "One process of the SUNSET exemplar's robot."
+  std::vector<std::string> names;      // of the processes
+  std::string environment;             // "SUNSET": --speed may be given as SUNSET_SPEED, too
+  std::string seed_of;                 // "flight"
+  std::string option;                  // "state"
+  std::string option_environment;      // "SUNSET_STATE"
+  std::string option_help;             // for --help
+  std::vector<std::string> choices{};  // of that option; the first unless given. None: any text
+};
+
+struct NodeArguments {
+  std::string name;
+  double speed = 1;  // robot seconds in a second
+  std::uint64_t seed = 1;
+  std::string option;  // the value of the program's own one
+};
+
+// Nothing if the program is to end: it was asked for --help, or given what it does not know, which is told. Then
+// `exit_code` is with what.
+std::optional<NodeArguments> parse(const NodeCommandLine& line, int argc, char** argv,
+                                   int& exit_code);
+
+}  // namespace culprit
