@@ -106,6 +106,7 @@ double cpu_percent(int pid, std::chrono::seconds length) {
   const auto begin = std::chrono::steady_clock::now();
   std::this_thread::sleep_for(length);
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+  if (usage_of(pid).resident_mib == 0) return std::nan("");
   return 100 * (usage_of(pid).cpu_seconds - before) / passed.count();
 }
 

@@ -60,7 +60,7 @@ class Child {
   int pid_;
 };
 
-// Percent of one core, over `length`.
+// Percent of one core, over `length`. Not a number if the process ended meanwhile, so that its claim is missed.
 double cpu_percent(int pid, std::chrono::seconds length);
 
 // A ROS 2 context whose executor has a thread.

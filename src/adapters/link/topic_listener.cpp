@@ -9,43 +9,55 @@ Expected<std::unique_ptr<TopicListener>> TopicListener::open(NodeEntry& self,
                                                              const std::string& type, Keys keys,
                                                              PayloadUse use, Callbacks callbacks) {
   std::unique_ptr<TopicListener> listener(
-      new TopicListener(self, topic, type, keys, use, std::move(callbacks)));
-  const Qos qos{.reliability = Reliability::kBestEffort, .depth = 1, .keys = keys};
-  auto now = RawSubscription::create(
-      self, topic, type, qos, use,
-      [raw = listener.get()](const Sample& sample) {
-        raw->callbacks_.on_arrival(sample);
-        raw->read(sample);
-      },
-      listener->callbacks_.on_unheard);
+      new TopicListener(self, topic, type, keys, is_whole(use), std::move(callbacks)));
+  auto now = listener->subscribe(use);
   if (!now) return Error{now.error()};
   listener->now_ = std::move(*now);
   return listener;
 }
 
+Expected<std::unique_ptr<RawSubscription>> TopicListener::subscribe(PayloadUse use) {
+  const Qos qos{.reliability = Reliability::kBestEffort, .depth = 1, .keys = keys_};
+  return RawSubscription::create(
+      self_, topic_, type_, qos, use,
+      [this](const Sample& sample) {
+        callbacks_.on_arrival(sample);
+        read(sample);
+      },
+      callbacks_.on_unheard);
+}
+
 TopicListener::TopicListener(NodeEntry& self, std::string topic, std::string type, Keys keys,
-                             PayloadUse use, Callbacks callbacks)
+                             bool reads, Callbacks callbacks)
     : self_(self),
       topic_(std::move(topic)),
       type_(std::move(type)),
       keys_(keys),
-      use_(use),
+      reads_(reads),
       callbacks_(std::move(callbacks)) {}
 
 Expected<void> TopicListener::publisher_offers(const Qos& offered) {
   const bool latches = offered.durability == Durability::kTransientLocal &&
                        offered.reliability == Reliability::kReliable;
-  if (!latches || latched_ || use_ != PayloadUse::kWhole) return {};
+  if (!latches || latched_ || !reads_) return {};
   const Qos qos{.durability = Durability::kTransientLocal, .depth = 1, .keys = keys_};
-  auto latched = RawSubscription::create(self_, topic_, type_, qos, use_,
+  auto latched = RawSubscription::create(self_, topic_, type_, qos, PayloadUse::kWhole,
                                          [this](const Sample& sample) { read(sample); });
   if (!latched) return Error{latched.error()};
   latched_ = std::move(*latched);
   return {};
 }
 
+// Both hear until the first is gone; what is no news is passed over.
+Expected<void> TopicListener::hurry() {
+  auto now = subscribe(reads_ ? PayloadUse::kWhole : PayloadUse::kBeginning);
+  if (!now) return Error{now.error()};
+  now_ = std::move(*now);
+  return {};
+}
+
 void TopicListener::read(const Sample& sample) {
-  if (use_ != PayloadUse::kWhole) return;
+  if (!reads_) return;
   const MutexLock lock(mutex_);
   if (is_news(sample.identity)) callbacks_.on_message(sample);
 }

@@ -24,8 +24,7 @@ class TopicListener {
   struct Callbacks {
     // A sample came now: of the best effort reader, so each is a beat of the topic's rhythm.
     SampleCallback on_arrival;
-    // A sample to read, newer than what its writer was heard to say before. Needs kWhole; one at a
-    // time.
+    // A sample to read, newer than what its writer was heard to say before. Needs kWhole or kWholeLater; one at a time.
     SampleCallback on_message;
     // Samples came that cannot be put together (ReaderOptions).
     std::function<void()> on_unheard;
@@ -41,9 +40,13 @@ class TopicListener {
   // A publisher offers this. If it latches, what it published before is read, too.
   Expected<void> publisher_offers(const Qos& offered);
 
+  // From now on samples come at once: kWhole where kWholeLater was asked for. For a topic whose samples prove large.
+  Expected<void> hurry();
+
  private:
-  TopicListener(NodeEntry& self, std::string topic, std::string type, Keys keys, PayloadUse use,
+  TopicListener(NodeEntry& self, std::string topic, std::string type, Keys keys, bool reads,
                 Callbacks callbacks);
+  Expected<std::unique_ptr<RawSubscription>> subscribe(PayloadUse use);
   void read(const Sample& sample);
   bool is_news(const SampleIdentity& identity) CULPRIT_REQUIRES(mutex_);
 
@@ -51,7 +54,7 @@ class TopicListener {
   const std::string topic_;
   const std::string type_;
   const Keys keys_;
-  const PayloadUse use_;
+  const bool reads_;  // what samples say
   const Callbacks callbacks_;
   Mutex mutex_;
   std::unordered_map<Guid, std::int64_t> last_read_ CULPRIT_GUARDED_BY(mutex_);  // by writer

@@ -23,6 +23,11 @@ RecordedTopic text_topic(const char* name) {
   return {name, std::string(ros2::msg::String::kType), "", "string data\n", {ros2::Qos{}}};
 }
 
+void stamp(RingMessage& message) {
+  message.at = live_now();
+  if (message.received == 0) message.received = wall_now();
+}
+
 MessageRing::Limits limits_of(const Recorder::Options& options) {
   const std::size_t large = Recorder::large_share(options.memory);
   const std::size_t latched = Recorder::latched_share(options.memory);
@@ -70,15 +75,13 @@ Recorder::SharedTopic Recorder::topic_of(const RingMessage& message) {
 
 void Recorder::take(RingMessage message, Share share) {
   if (message.topic == kNoTopic) return;
-  message.at = live_now();
-  message.received = wall_now();
+  stamp(message);
   ring_.push(std::move(message), share);
 }
 
 void Recorder::take_latched(RingMessage message, const ros2::Guid& publisher, Share share) {
   if (message.topic == kNoTopic) return;
-  message.at = live_now();
-  message.received = wall_now();
+  stamp(message);
   ring_.latch(message, publisher);
   ring_.push(std::move(message), share);
 }

@@ -66,7 +66,7 @@ class Recorder {
   // Gives the number of the topic; the same for the same name, type and hash. What else is said of it replaces what was
   // said before, but for recordings that know it already. kNoTopic: there are too many; what is said of it is not kept.
   std::size_t add_topic(RecordedTopic topic);
-  // `number`, `at` and `received` are filled in.
+  // `number` and `at` are filled in, and `received`, if it is not said, with the same moment.
   void take(RingMessage message, Share share = Share::kSmall);
   // Likewise of a latched topic, whose last message stays.
   void take_latched(RingMessage message, const ros2::Guid& publisher, Share share);

@@ -33,10 +33,13 @@ class RobotTap::Listening {
 
   Expected<void> open(ros2::NodeEntry& self, const std::string& type, ros2::Keys keys) {
     auto listener = ros2::TopicListener::open(
-        self, topic_, type, keys, ros2::PayloadUse::kWhole,
-        {.on_arrival = [](const ros2::Sample&) {},
+        self, topic_, type, keys, ros2::PayloadUse::kWholeLater,
+        {.on_arrival =
+             [this](const ros2::Sample& sample) {
+               if (sample.size > kSmall) want_to_hurry();
+             },
          .on_message = [this](const ros2::Sample& sample) { take(sample); },
-         .on_unheard = {}});
+         .on_unheard = [this] { want_to_hurry(); }});
     if (!listener) return Error{listener.error()};
     listener_ = std::move(*listener);
     return {};
@@ -49,12 +52,20 @@ class RobotTap::Listening {
       is_latched_ = true;
   }
 
+  Expected<void> hurry() { return listener_->hurry(); }
+
  private:
+  void want_to_hurry() {
+    if (!hurries_.exchange(true))
+      tap_.tasks_->post([&tap = tap_, topic = topic_] { tap.hurry(topic); });
+  }
+
   void take(const ros2::Sample& sample) {
     if (sample.payload.size() > kLarge) is_large_ = true;
     if (is_large_ && may_be_given_up_ && is_too_much(sample.payload.size())) return;
     RingMessage message{.topic = number_,
                         .sequence = static_cast<std::uint32_t>(sample.identity.sequence),
+                        .received = nanoseconds_of(sample.received),
                         .sent = nanoseconds_of(sample.sent),
                         .payload = {sample.payload.begin(), sample.payload.end()}};
     const Share share = is_large_ ? Share::kLarge : Share::kSmall;
@@ -91,6 +102,7 @@ class RobotTap::Listening {
   const std::size_t number_;  // in the recorder
   const bool may_be_given_up_;
   std::atomic<bool> is_latched_ = false;
+  std::atomic<bool> hurries_ = false;
   bool is_large_ = false;
   bool is_given_up_ = false;
   Time measured_since_ = kNever;
@@ -231,6 +243,13 @@ RecordedTopic RobotTap::describe(const std::string& topic, const TopicUse& use,
   RecordedTopic about{topic, first.type, first.type_hash, std::move(definition), {}};
   for (const auto& [node, endpoint] : use.publishers) about.offers.push_back(endpoint.qos);
   return about;
+}
+
+// If it cannot be, it goes on as it was.
+void RobotTap::hurry(const std::string& topic) {
+  const auto found = topics_.find(topic);
+  if (found != topics_.end() && found->second.listening != nullptr)
+    (void)found->second.listening->hurry();
 }
 
 void RobotTap::give_up(const std::string& topic, double bytes_per_second) {

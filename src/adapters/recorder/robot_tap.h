@@ -5,6 +5,10 @@
 // before (link/topic_listener.h). What a type looks like is found as for rules (link/type_finder.h), before its topic is
 // heard; if it is found nowhere, its messages are kept all the same, and that is said once.
 //
+// A topic whose messages are small has time: what came is taken together every few hundredths of a second, since to wake a
+// thread for each message is most of what recording it costs. A message of more than kSmall bytes, or one that cannot be put
+// together, ends that for its topic.
+//
 // A message of more than kLarge bytes makes its topic a large one, which is kept in memory of its own. One that nobody
 // named and that would not fit there for the time that is recorded is not heard any more, and that is said once.
 #pragma once
@@ -26,7 +30,8 @@ namespace culprit::recorder {
 
 class RobotTap {
  public:
-  static constexpr std::size_t kLarge = 64 * 1024;  // bytes
+  static constexpr std::size_t kSmall = 16 * 1024;  // bytes
+  static constexpr std::size_t kLarge = 64 * 1024;
   // So many are heard at a time: each costs memory, and the network decides how many there are.
   static constexpr std::size_t kMostHeard = 2000;
 
@@ -67,6 +72,7 @@ class RobotTap {
                  const Expected<ros2::MessageLibrary*>& library);
   RecordedTopic describe(const std::string& topic, const TopicUse& use,
                          std::optional<std::string> definition) const;
+  void hurry(const std::string& topic);
   void give_up(const std::string& topic, double bytes_per_second);
   void graph_changed();
   void tell_graph();

@@ -34,18 +34,22 @@ struct RobotTaps : testing::Test {
   }
 
   // Messages of `topic` in a recording made now.
-  std::size_t recorded(const std::string& topic) {
+  std::size_t recorded(const std::string& topic) { return sizes_recorded(topic).size(); }
+  // Their sizes, in the order in which they came.
+  std::vector<std::size_t> sizes_recorded(const std::string& topic) {
+    std::vector<std::size_t> sizes;
     const auto made = recorder.record_now("test", ros2::kPatience);
-    if (!made) return 0;
+    if (!made) return sizes;
     const std::string written = "messages: " + made->string();
     written_down.wait_for_one(
         [&](const std::string& text) { return text.find(written) != std::string::npos; });
     auto file = bag::BagFile::open(*made);
-    if (!file) return 0;
-    std::size_t count = 0;
-    for (bag::BagMessage message; file->next(message);)
-      count += file->contents().topics()[message.topic].name == topic ? 1 : 0;
-    return count;
+    if (!file) return sizes;
+    for (bag::BagMessage message; file->next(message);) {
+      if (file->contents().topics()[message.topic].name == topic)
+        sizes.push_back(message.bytes.size());
+    }
+    return sizes;
   }
   // Publishes again and again until `is_enough`; false if it never is.
   bool publish_until(ros2::RawPublisher& from, const ros2::Bytes& payload,
@@ -98,6 +102,25 @@ TEST_F(RobotTaps, GiveUpWhatIsTooLargeAndSayItOnce) {
       << "a message of an unknown type is kept";
   EXPECT_THAT(said.all(), SizeIs(2));
   EXPECT_THAT(said.all(), testing::Contains(HasSubstr("my_msgs/msg/Odd is not known")));
+}
+
+// A topic that begins small and becomes large is heard another way from then on.
+TEST_F(RobotTaps, HearWhatBecomesLargeOnTheWay) {
+  const auto scan = publisher("/scan", "std_msgs/msg/String");
+  const auto hears = tap({}, 1'000'000);
+  const auto of_size = [](std::size_t size) {  // so that nothing has to be filled up
+    return ros2::encode(ros2::msg::String{std::string(size, 'x')});
+  };
+  EXPECT_TRUE(publish_until(*scan, of_size(99), [&] { return recorded("/scan") > 3; }));
+  const std::vector<std::size_t> sizes = {99, RobotTap::kSmall + 99, 39'999, 99, 39'999};
+  for (const std::size_t size : sizes) {
+    const std::size_t wanted = of_size(size).size();
+    const auto is_there = [&] {
+      const auto all = sizes_recorded("/scan");
+      return !all.empty() && all.back() == wanted;
+    };
+    EXPECT_TRUE(publish_until(*scan, of_size(size), is_there)) << size;
+  }
 }
 
 TEST_F(RobotTaps, KeepWhatIsNamedHoweverLargeItIs) {

@@ -211,9 +211,8 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
       const ReceiveThread::Place place{address, port, is_multicast, udp().receiveBufferSize,
                                        largest};
       const auto opened = reception_.thread->open(
-          place,
-          [this, receiver, locator](std::span<std::uint8_t> datagram, const UdpAddress& from) {
-            came(*receiver, datagram, locator, from, Haste::kNow);
+          place, [this, receiver, locator](const ReceiveThread::Datagram& datagram) {
+            came(*receiver, datagram, locator, Haste::kNow);
           });
       if (opened) continue;
       reception_.thread->close(port);
@@ -232,10 +231,10 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
       const ReceiveThread::Place place{
           own_addresses().front(), static_cast<std::uint16_t>(port), false,
           udp().receiveBufferSize, max_recv_buffer_size(),           Haste::kSoon};
-      const auto opened = reception_.thread->open(
-          place, [this](std::span<std::uint8_t> datagram, const UdpAddress& from) {
+      const auto opened =
+          reception_.thread->open(place, [this](const ReceiveThread::Datagram& datagram) {
             if (Receiver* receiver = patient_)
-              came(*receiver, datagram, patient_locator_, from, Haste::kSoon);
+              came(*receiver, datagram, patient_locator_, Haste::kSoon);
           });
       if (!opened) continue;
       *reception_.patient_port = place.port;
@@ -263,10 +262,12 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     }
   }
 
-  void came(Receiver& receiver, std::span<std::uint8_t> datagram, const Locator& local,
-            const UdpAddress& from, Haste haste) const {
-    reception_.sources->heard(datagram, from, live_now());
-    const ByteView passed = reception_.filter->pass(datagram, DatagramFilter::Clock::now());
+  void came(Receiver& receiver, const ReceiveThread::Datagram& datagram, const Locator& local,
+            Haste haste) const {
+    const UdpAddress& from = datagram.from;
+    reception_.sources->heard(datagram.bytes, from, live_now());
+    const ByteView passed =
+        reception_.filter->pass(datagram.bytes, DatagramFilter::Clock::now(), datagram.received);
     if (passed.empty()) return;
     Locator remote;
     remote.kind = LOCATOR_KIND_UDPv4;

@@ -69,13 +69,13 @@ class DatagramFilter::Submessage {
     return static_cast<std::int64_t>((std::uint64_t{high} << 32) | low);
   }
   // Nothing: what was sent before does not count, and no other time is said.
-  std::optional<std::chrono::sys_time<std::chrono::nanoseconds>> read_time() {
+  std::optional<SystemTime> read_time() {
     if ((flags & 2) != 0) return std::nullopt;
     const auto seconds = read<std::uint32_t>();
     const std::uint64_t fraction = read<std::uint32_t>();  // of 2^32 (RTPS 2.3 §9.3.2)
     const auto ns = (fraction * 1'000'000'000 + (std::uint64_t{1} << 31)) >> 32;
-    return std::chrono::sys_time<std::chrono::nanoseconds>(
-        std::chrono::seconds(seconds) + std::chrono::nanoseconds(static_cast<std::int64_t>(ns)));
+    return SystemTime(std::chrono::seconds(seconds) +
+                      std::chrono::nanoseconds(static_cast<std::int64_t>(ns)));
   }
   // A writer of the participant that sent the datagram.
   Guid read_writer() {
@@ -144,7 +144,8 @@ class DatagramFilter::Submessage {
   bool is_ok_ = true;
 };
 
-ByteView DatagramFilter::pass(std::span<std::uint8_t> datagram, Clock::time_point now) {
+ByteView DatagramFilter::pass(std::span<std::uint8_t> datagram, Clock::time_point now,
+                              SystemTime received) {
   std::vector<OnUnheard> unheard;
   std::vector<Handed> handed;
   std::vector<EndpointNews> news;
@@ -152,7 +153,7 @@ ByteView DatagramFilter::pass(std::span<std::uint8_t> datagram, Clock::time_poin
   ByteView passed;
   {
     const MutexLock lock(mutex_);
-    passed = look_at(datagram, now);
+    passed = look_at(datagram, now, received);
     unheard.swap(unheard_);
     handed.swap(handed_);
     news.swap(news_);
@@ -164,12 +165,14 @@ ByteView DatagramFilter::pass(std::span<std::uint8_t> datagram, Clock::time_poin
   return passed;
 }
 
-ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_point now) {
+ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_point now,
+                                 SystemTime received) {
   if (!is_header(datagram)) {
     refused_ = {refused_.count + 1, "it is no RTPS message"};
     return {};
   }
   Course course{};
+  course.received = received;
   GuidPrefix& source = course.source;
   std::copy_n(datagram.data() + 8, source.bytes.size(), source.bytes.begin());
   const bool addresses = addresses_ && changes_ == 0;
@@ -372,7 +375,8 @@ bool DatagramFilter::hand_over(Readers::Reader& reader, std::span<const std::uin
   const Submessage::Sample sample = body.read_sample();
   if (sample.sequence <= reader.last) return true;  // best effort readers pass over what is older
   reader.last = sample.sequence;
-  handed_.push_back({reader.on_whole, {sample.writer, sample.sequence, *course.sent, body.rest()}});
+  handed_.push_back({reader.on_whole,
+                     {sample.writer, sample.sequence, *course.sent, course.received, body.rest()}});
   return true;
 }
 

@@ -49,6 +49,7 @@
 #include "ros2/cdr.h"
 #include "ros2/endpoint_info.h"
 #include "ros2/guid.h"
+#include "ros2/system_time.h"
 
 namespace culprit::ros2 {
 
@@ -71,8 +72,8 @@ class DatagramFilter {
   static constexpr std::size_t kLargestOfAll = 32u << 20;
 
   // What may be passed on of `datagram`, in which it takes out or addresses what has to be; empty if
-  // nothing may. `now` never goes back by much.
-  ByteView pass(std::span<std::uint8_t> datagram, Clock::time_point now);
+  // nothing may. `now` never goes back by much. `received`: when it came, which may be a moment earlier.
+  ByteView pass(std::span<std::uint8_t> datagram, Clock::time_point now, SystemTime received);
 
   // `reader`, of this participant, begins to hear the writer, or ends. Of a writer that no reader
   // hears nothing is known, and nothing has to be.
@@ -85,8 +86,9 @@ class DatagramFilter {
   struct Whole {
     Guid writer;
     std::int64_t sequence = 0;
-    std::chrono::sys_time<std::chrono::nanoseconds> sent;  // by the writer's clock
-    ByteView payload;                                      // with its encapsulation
+    SystemTime sent;      // by the writer's clock
+    SystemTime received;  // by ours
+    ByteView payload;     // with its encapsulation
   };
   using OnWhole = std::shared_ptr<const std::function<void(const Whole&)>>;
   // Best effort: `on_unheard` is called from pass(), without locks, for each further sample of
@@ -148,10 +150,11 @@ class DatagramFilter {
   struct Course {
     GuidPrefix source;
     GuidPrefix destination;  // zero: all
-    std::optional<std::chrono::sys_time<std::chrono::nanoseconds>> sent;
+    SystemTime received;
+    std::optional<SystemTime> sent;
   };
 
-  ByteView look_at(std::span<std::uint8_t> datagram, Clock::time_point now)
+  ByteView look_at(std::span<std::uint8_t> datagram, Clock::time_point now, SystemTime received)
       CULPRIT_REQUIRES(mutex_);
   bool address(std::span<std::uint8_t> submessage, const Course& course, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);

@@ -53,7 +53,7 @@ class Filter : public testing::Test {
   std::size_t pass(const TestDatagram& datagram) { return pass(datagram.bytes()); }
   std::size_t pass(Bytes bytes) {
     buffer = std::move(bytes);
-    passed = filter.pass(buffer, now);
+    passed = filter.pass(buffer, now, kReceived);
     return passed.size();
   }
   // To whom the submessage at `position` of what was passed on is addressed: an entity's number.
@@ -66,6 +66,8 @@ class Filter : public testing::Test {
     const auto before = filter.refused().count;
     return pass(datagram) == datagram.bytes().size() && filter.refused().count == before;
   }
+
+  static constexpr SystemTime kReceived{std::chrono::seconds(7)};
 
   DatagramFilter filter;
   DatagramFilter::Clock::time_point now{};
@@ -357,6 +359,7 @@ class HandingFilter : public Filter {
                                EXPECT_EQ(sample.writer, kScan);
                                handed.push_back(sample.sequence);
                                sent = sample.sent;
+                               received = sample.received;
                                payload.assign(sample.payload.begin(), sample.payload.end());
                              }));
     filter.begin_to_address();
@@ -368,7 +371,8 @@ class HandingFilter : public Filter {
   const Guid kScan = writer_of_kind(0x03, 4);
   const Guid kScans = reader(3);
   std::vector<std::int64_t> handed;
-  std::chrono::sys_time<std::chrono::nanoseconds> sent;
+  SystemTime sent;
+  SystemTime received;
   Bytes payload;
 };
 
@@ -376,6 +380,7 @@ TEST_F(HandingFilter, WhatIsPlainIsHandedOverAndTheMiddlewareNeverSeesIt) {
   EXPECT_EQ(pass(timed().data(kScan, 7)), 0u);
   EXPECT_EQ(handed, std::vector<std::int64_t>{7});
   EXPECT_EQ(sent.time_since_epoch(), 5500ms);
+  EXPECT_EQ(received, kReceived);
   EXPECT_EQ(payload, (Bytes{0, 1, 0, 0, 7, 0, 0, 0}));
   EXPECT_EQ(filter.refused().count, 0u);
 }

@@ -120,9 +120,7 @@ class RawType final : public dds::TopicDataType {
   bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
     auto& incoming = *static_cast<Incoming*>(data);
     incoming.size = payload->length;
-    if (incoming.use == PayloadUse::kHeader) return true;
-    const std::size_t most = incoming.use == PayloadUse::kWhole ? incoming.size : kBeginningSize;
-    incoming.bytes.assign(payload->data, payload->data + std::min(incoming.size, most));
+    incoming.bytes.assign(payload->data, payload->data + given_of(incoming.use, incoming.size));
     return true;
   }
 

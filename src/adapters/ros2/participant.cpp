@@ -250,11 +250,10 @@ class Reader::Impl final : public dds::DataReaderListener {
   }
 
   void hand(const DatagramFilter::Whole& sample) {
-    const std::size_t most = options_.payload == PayloadUse::kHeader ? 0 : kBeginningSize;
-    on_sample_({.payload = sample.payload.first(std::min(sample.payload.size(), most)),
+    on_sample_({.payload = sample.payload.first(given_of(options_.payload, sample.payload.size())),
                 .size = sample.payload.size(),
                 .sent = sample.sent,
-                .received = std::chrono::system_clock::now(),
+                .received = sample.received,
                 .identity = {sample.writer, sample.sequence},
                 .related = {}});
   }

@@ -11,6 +11,7 @@
 // and meeting an older one there can abort the process; UDP costs a few microseconds more.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -28,6 +29,7 @@
 #include "ros2/guid.h"
 #include "ros2/options.h"
 #include "ros2/qos.h"
+#include "ros2/system_time.h"
 
 namespace culprit::ros2 {
 
@@ -57,8 +59,6 @@ struct ParticipantGone {
 using DiscoveryEvent = std::variant<ParticipantInfo, EndpointInfo, ParticipantGone, EndpointGone>;
 using DiscoveryCallback = std::function<void(DiscoveryEvent)>;
 
-using SystemTime = std::chrono::sys_time<std::chrono::nanoseconds>;
-
 // A sample as it came. `payload` is gone when the callback returns.
 struct Sample {
   ByteView
@@ -80,13 +80,28 @@ using MatchCallback = std::function<void(const Guid& remote, Match)>;
 // is most of what hearing a topic costs. They come before whatever was said later to others.
 // kBeginning: of each payload only so much that a std_msgs/Header at its beginning is whole, unless its
 // frame has an absurd name.
-// kBeginningLater: as much, and samples may come as late as those of kHeader.
-enum class PayloadUse : std::uint8_t { kWhole, kHeader, kBeginning, kBeginningLater };
+// kBeginningLater, kWholeLater: as much as without "Later", and samples may come as late as those of kHeader. Not for large
+// ones: what comes meanwhile has to lie in the socket, or it is lost.
+enum class PayloadUse : std::uint8_t {
+  kWhole,
+  kWholeLater,
+  kHeader,
+  kBeginning,
+  kBeginningLater,
+};
 // Whether samples may come late.
 constexpr bool has_time(PayloadUse use) {
-  return use == PayloadUse::kHeader || use == PayloadUse::kBeginningLater;
+  return use != PayloadUse::kWhole && use != PayloadUse::kBeginning;
+}
+constexpr bool is_whole(PayloadUse use) {
+  return use == PayloadUse::kWhole || use == PayloadUse::kWholeLater;
 }
 inline constexpr std::size_t kBeginningSize = 512;  // bytes
+// So much is given of a payload of `size` bytes.
+constexpr std::size_t given_of(PayloadUse use, std::size_t size) {
+  if (use == PayloadUse::kHeader) return 0;
+  return is_whole(use) ? size : std::min(size, kBeginningSize);
+}
 
 struct ReaderOptions {
   std::string topic;  // DDS names

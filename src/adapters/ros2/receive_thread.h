@@ -9,8 +9,9 @@
 //
 // What costs most is to wake it. So some sockets have time (Haste::kSoon): they are read whenever the
 // thread is awake anyway, and if so much comes that this would be cheaper, every kSoon instead of with
-// each datagram. What lies in them is always handed on before what came to the other sockets after
-// it: who hears something there has heard all that was said before.
+// each datagram, or every kSooner where much comes, for a socket has little room. What lies in them is always handed on
+// before what came to the other sockets after it: who hears something there has heard all that was said before. When each
+// datagram came is told by the kernel.
 #pragma once
 
 #include <chrono>
@@ -25,6 +26,7 @@
 #include "base/expected.h"
 #include "base/mutex.h"
 #include "ros2/datagram_sources.h"
+#include "ros2/system_time.h"
 
 namespace culprit::ros2 {
 
@@ -37,11 +39,16 @@ class ReceiveThread {
   static constexpr std::size_t kMostKept = 4 << 20;  // bytes, of each socket
   static constexpr std::uint32_t kLargest = 65'536;  // bytes; UDP carries less
   static constexpr std::chrono::milliseconds kSoon{20};
+  static constexpr std::chrono::milliseconds kSooner{4};
   static constexpr const char* kName = "culprit-receive";  // of the thread, as `top -H` shows it
 
-  // Called on the thread that receives, one at a time. It may write into `datagram`, which is gone
-  // when it returns.
-  using OnDatagram = std::function<void(std::span<std::uint8_t> datagram, const UdpAddress& from)>;
+  struct Datagram {
+    std::span<std::uint8_t> bytes;
+    UdpAddress from;
+    SystemTime received;
+  };
+  // Called on the thread that receives, one at a time. It may write into what came, which is gone when it returns.
+  using OnDatagram = std::function<void(const Datagram&)>;
 
   ReceiveThread();
   ~ReceiveThread();
@@ -77,9 +84,8 @@ class ReceiveThread {
 
   void run();
   // Hands on what came to one that waits for nobody, at most kBatch datagrams, and keeps the rest. Before that, all that came to the patient ones.
-  static void take_urgent(Socket& socket, Batch& batch, const Sockets& patient,
-                          Batch& patient_batch);
-  static void take_patient(const Sockets& patient, Batch& batch);
+  void take_urgent(Socket& socket, Batch& batch, const Sockets& patient, Batch& patient_batch);
+  void take_patient(const Sockets& patient, Batch& batch);
   void arm(bool is_armed) CULPRIT_REQUIRES(mutex_);
 
   const int wait_fd_;  // of epoll
@@ -90,6 +96,7 @@ class ReceiveThread {
   Sockets sockets_ CULPRIT_GUARDED_BY(mutex_);
   std::uint64_t rounds_ CULPRIT_GUARDED_BY(mutex_) = 0;  // odd: one is under way
   bool is_armed_ CULPRIT_GUARDED_BY(mutex_) = true;      // patient sockets wake the thread
+  std::chrono::milliseconds next_look_ = kSoon;          // at patient sockets; of the thread
   std::thread thread_;                                   // begun under the mutex, joined without it
 };
 

@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/live_clock.h"
 #include "ros2/live_test.h"
 
 namespace culprit::ros2 {
@@ -56,9 +57,9 @@ struct Listener {
     while (true) {
       const std::uint16_t port = unused_port();
       if (thread.open({.ip = kThisMachine, .port = port, .haste = haste},
-                      [this, name](std::span<std::uint8_t> datagram, const UdpAddress& from) {
-                        sender = from.port;
-                        heard.add(name + std::string(datagram.begin(), datagram.end()));
+                      [this, name](const ReceiveThread::Datagram& datagram) {
+                        sender = datagram.from.port;
+                        heard.add(name + std::string(datagram.bytes.begin(), datagram.bytes.end()));
                       }))
         return port;
     }
@@ -86,10 +87,10 @@ TEST(ReceiveThread, APortIsTakenOnce) {
   Listener ears;
   const std::uint16_t port = ears.open("");
   EXPECT_TRUE(ears.thread.is_open(port));
-  EXPECT_FALSE(ears.thread.open({.ip = kThisMachine, .port = port}, [](auto, const auto&) {}));
+  EXPECT_FALSE(ears.thread.open({.ip = kThisMachine, .port = port}, [](const auto&) {}));
   ears.thread.close(port);
   EXPECT_FALSE(ears.thread.is_open(port));
-  EXPECT_TRUE(ears.thread.open({.ip = kThisMachine, .port = port}, [](auto, const auto&) {}));
+  EXPECT_TRUE(ears.thread.open({.ip = kThisMachine, .port = port}, [](const auto&) {}));
 }
 
 TEST(ReceiveThread, NothingIsHeardOfAPortThatWasClosed) {
@@ -99,7 +100,7 @@ TEST(ReceiveThread, NothingIsHeardOfAPortThatWasClosed) {
     auto alive = std::make_shared<std::atomic<bool>>(true);
     const std::uint16_t port = unused_port();
     if (!ears.thread.open({.ip = kThisMachine, .port = port},
-                          [alive](auto, const auto&) { EXPECT_TRUE(*alive); }))
+                          [alive](const auto&) { EXPECT_TRUE(*alive); }))
       continue;
     for (int i = 0; i < 20; ++i) speaker.say(port, "x");
     ears.thread.close(port);
@@ -138,6 +139,31 @@ TEST(ReceiveThread, WhatHasTimeComesByItself) {
   EXPECT_THAT(ears.heard.all(), SizeIs(100));
 }
 
+TEST(ReceiveThread, ItIsKnownWhenWhatHasTimeCame) {
+  constexpr auto kMuchLater = std::chrono::milliseconds(5);
+  EventLog<SystemTime> received;
+  std::atomic<bool> was_late = false;  // handed on
+  const auto hears = [&](const ReceiveThread::Datagram& datagram) {
+    const SystemTime now = std::chrono::system_clock::now();
+    EXPECT_LE(datagram.received, now);
+    was_late = was_late || now - datagram.received > kMuchLater;
+    received.add(datagram.received);
+  };
+  ReceiveThread ears;
+  const Voice speaker;
+  std::uint16_t port = unused_port();
+  while (!ears.open({.ip = kThisMachine, .port = port, .haste = Haste::kSoon}, hears))
+    port = unused_port();
+  const SystemTime begin = std::chrono::system_clock::now();
+  // Until so much came that the thread looks from time to time only.
+  for (const Time end = live_now() + kPatience; !was_late && live_now() < end;) {
+    speaker.say(port, "x");
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(was_late);
+  for (const SystemTime each : received.all()) EXPECT_GE(each, begin);
+}
+
 TEST(ReceiveThread, OnePortMayFloodAndAnotherIsHeard) {
   for (const Haste haste : {Haste::kSoon, Haste::kNow}) {
     for (const std::string text : {"x", ""}) {
@@ -146,7 +172,7 @@ TEST(ReceiveThread, OnePortMayFloodAndAnotherIsHeard) {
       const Voice speaker;
       const std::uint16_t flooded = unused_port();
       ASSERT_TRUE(ears.thread.open({.ip = kThisMachine, .port = flooded, .haste = haste},
-                                   [&](auto, const auto&) { ++flood; }));
+                                   [&](const auto&) { ++flood; }));
       const std::uint16_t urgent = ears.open("");
       std::atomic<bool> stop = false;
       std::thread flooder([&] {
@@ -168,9 +194,9 @@ struct HeldListener : Listener {
     while (true) {
       const std::uint16_t port = unused_port();
       if (thread.open({.ip = kThisMachine, .port = port},
-                      [this, name, stops](std::span<std::uint8_t> datagram, const UdpAddress&) {
+                      [this, name, stops](const ReceiveThread::Datagram& datagram) {
                         const std::string text =
-                            name + std::string(datagram.begin(), datagram.end());
+                            name + std::string(datagram.bytes.begin(), datagram.bytes.end());
                         heard.add(text);
                         if (stops.contains(text)) go_on.acquire();
                       }))
@@ -238,7 +264,7 @@ TEST(ReceiveThread, WhatIsTooLongIsCut) {
   EventLog<std::size_t> sizes;
   ASSERT_TRUE(ears.thread.open(
       {.ip = kThisMachine, .port = port, .largest = 100},
-      [&](std::span<std::uint8_t> datagram, const UdpAddress&) { sizes.add(datagram.size()); }));
+      [&](const ReceiveThread::Datagram& datagram) { sizes.add(datagram.bytes.size()); }));
   for (const std::size_t size : {99u, 100u, 60'000u}) speaker.say(port, std::string(size, 'x'));
   ASSERT_TRUE(sizes.wait_for_count(3));
   EXPECT_THAT(sizes.all(), ElementsAre(99, 100, 100));
@@ -251,7 +277,7 @@ TEST(ReceiveThread, GroupsAreHeard) {
   inet_pton(AF_INET, "239.255.0.77", &group);
   const std::uint16_t port = unused_port();
   ASSERT_TRUE(ears.thread.open({.ip = group, .port = port, .is_shared = true},
-                               [&](auto, const auto&) { ears.heard.add("x"); }));
+                               [&](const auto&) { ears.heard.add("x"); }));
   for (int twice = 0; twice < 2; ++twice) ears.thread.join(port, group, kThisMachine);
   const int descriptor = socket(AF_INET, SOCK_DGRAM, 0);
   setsockopt(descriptor, IPPROTO_IP, IP_MULTICAST_IF, &kThisMachine, sizeof kThisMachine);
