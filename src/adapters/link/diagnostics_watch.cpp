@@ -9,7 +9,7 @@ Expected<std::unique_ptr<DiagnosticsWatch>> DiagnosticsWatch::create(NodeEntry& 
   if (!watch->reading_.is_wanted()) return watch;
   constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
   auto subscription = RawSubscription::create(
-      self, "/diagnostics", msg::DiagnosticArray::kType, kQos, PayloadUse::kWhole,
+      self, "/diagnostics", msg::DiagnosticArray::kType, kQos, PayloadUse::kWholeLater,
       [raw = watch.get()](const Sample& sample) { raw->on_sample(sample); });
   if (!subscription) return Error{subscription.error()};
   watch->subscription_ = std::move(*subscription);
