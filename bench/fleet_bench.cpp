@@ -31,10 +31,11 @@ namespace fs = std::filesystem;
 using namespace fleet;
 
 constexpr int kRobots = 10'000;
-constexpr int kDecisions = 20;         // of a robot in a day
-constexpr int kVisitsPerDecision = 3;  // detected, resolved, and later what it proves (member.h)
-constexpr int kBeats = 96;             // a day; the fleet's priors are asked for then, too
-constexpr int kPools = 144;            // a day: the sums are made anew
+constexpr int kDecisions = 20;  // of a robot in a day
+// A failure, its end and what that proves are told together (member.h); one in four takes longer than they are gathered.
+constexpr double kVisitsPerDecision = 1.25;
+constexpr int kBeats = 36;   // a day; the fleet's priors are asked for then, too
+constexpr int kPools = 144;  // a day: the sums are made anew
 constexpr double kDay = 86'400;
 constexpr int kCores = 2;
 

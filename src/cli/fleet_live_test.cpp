@@ -50,7 +50,7 @@ struct FleetOfPrograms : testing::Test {
                                  postgres->address("rover").text, "--fleet-name", name});
   }
   bool eventually(const std::string& query) const {
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < 1200; ++i) {
       if (!postgres->query(query).empty()) return true;
       std::this_thread::sleep_for(100ms);
     }

@@ -219,7 +219,7 @@ TEST_F(Fleet, NothingIsLostOrCountedTwiceByOneThatIsKilledAtAnyInstant) {
   for (int kills = 0; kills < 12; ++kills) {
     const pid_t child = fork();
     if (child == 0) {
-      Member::Pace pace{1ms, 1ms, 1h, 1h, 10ms, 10ms};
+      Member::Pace pace{1ms, 1ms, 1ms, 1h, 1h, 10ms, 10ms};
       Member member({postgres->address("rover"), journal, "robot", "", "machine", pace});
       member.begin(*check(Source("rules", kFleetRules)).rules, {});
       TestJournal writer(journal);
@@ -252,14 +252,11 @@ TEST_F(Fleet, NothingIsLostOrCountedTwiceByOneThatIsKilledAtAnyInstant) {
 
 // A member, and all that it says.
 struct Listening {
+  static constexpr Member::Pace kHurried{1ms, 1ms, 1ms, 1h, 1ms, 1ms, 5ms};
+
   explicit Listening(const TestPostgres& postgres, const fs::path& journal,
-                     const std::string& login = "rover")
-      : member({postgres.address(login),
-                journal,
-                "rover 7",
-                "",
-                "machine",
-                {1ms, 1ms, 1h, 1ms, 1ms, 5ms}}) {
+                     const std::string& login = "rover", Member::Pace pace = kHurried)
+      : member({postgres.address(login), journal, "rover 7", "", "machine", pace}) {
     member.begin(rules, {[this](PriorsTold told) {
                            const std::lock_guard lock(mutex);
                            priors.push_back(std::move(told));
@@ -352,6 +349,34 @@ TEST_F(Fleet, TroubleIsSaidOnceAndNothingIsLost) {
     EXPECT_TRUE(robot.eventually(is_told)) << each.said;
     EXPECT_EQ(robot.times(each.said), 1);
   }
+}
+
+// A connection is what costs.
+TEST_F(Fleet, NewsWaitsForMoreUnlessAPersonHasToLook) {
+  constexpr Member::Pace kPatient{1ms, 1h, 1ms, 1h, 1h, 1ms, 5ms};
+  TestJournal journal(folder / "a.journal");
+  journal.begins();
+  const Listening robot(*postgres, journal.path(), "rover", kPatient);
+  const auto count = [&](const std::string& what) {
+    return text_in(postgres->query("SELECT count(*) FROM culprit." + what)[0][0]);
+  };
+  EXPECT_TRUE(robot.eventually([&] { return count("robot") == "1"; }));
+  journal.event("failure_detected", R"(,"rule":"Silent","criticality":"ERROR")");
+  journal.outcome("restart", false);
+  const auto is_kept = [&] {
+    const auto outbox = Outbox::open(outbox_beside(journal.path()), "machine");
+    return outbox && outbox->news() && *outbox->news() == Outbox::News::kSome;
+  };
+  EXPECT_TRUE(robot.eventually(is_kept));
+  for (int looks = 0; looks < 10; ++looks) {
+    const_cast<Member&>(robot.member).happened();
+    std::this_thread::sleep_for(5ms);
+  }
+  EXPECT_EQ(count("failure"), "0");
+  EXPECT_EQ(sums(), Counts{});
+  journal.event("rule_exhausted", R"(,"rule":"Silent")");
+  EXPECT_TRUE(robot.eventually([&] { return count("failure WHERE exhausted") == "1"; }));
+  EXPECT_EQ(sums(), (Counts{0, 1}));
 }
 
 TEST_F(Fleet, WhoeverDoesNotAnswerIsNotWaitedFor) {

@@ -22,6 +22,7 @@ struct Member::State {
   void run();
   void work();
   void fail_to_keep(const std::string& why);
+  bool is_to_be_told(Time now);
   Expected<void> visit();
   void listen();
   void tell(const PriorsTold& news);
@@ -54,6 +55,7 @@ struct Member::State {
   std::uint64_t heard_session = 0;
   PriorsTold told;           // in this session
   Time read_at = kLongAgo;   // the journal is not read before
+  Time tell_at = kNever;     // what is news
   Time visit_at = kLongAgo;  // not before
   Time beat_at = kLongAgo;
   Time ask_at = kLongAgo;
@@ -179,18 +181,25 @@ void Member::State::work() {
   if (!tail.run() || stop) return;
   tell_of_dropped();
   const Time now = live_now();
-  if (now < visit_at) return;
-  const auto waiting = outbox->waiting(1);
-  const bool has_reason = now >= beat_at || now >= ask_at || (waiting && !waiting->empty());
-  if (!has_reason) return;
+  const bool is_due = is_to_be_told(now);
+  if (now < visit_at || (!is_due && now < beat_at && now < ask_at)) return;
   const auto visited = visit();
   if (stop) return;
+  if (visited) tell_at = kNever;
   failures = visited ? 0 : failures + 1;
   const Duration retry =
       std::min(options.pace.retry_most, options.pace.retry * (1 << std::min(failures, 10)) / 2);
   visit_at = later(live_now(), jittered(visited ? options.pace.visit : retry));
   tell_of("the fleet's database is not told what is learned: ", said_of_database,
           visited ? "" : visited.error(), "the fleet's database is told again what is learned");
+}
+
+// News waits for more, unless somebody has to look.
+bool Member::State::is_to_be_told(Time now) {
+  const auto news = outbox->news();
+  if (!news || *news == Outbox::News::kNone) return false;
+  if (tell_at == kNever) tell_at = later(now, jittered(options.pace.gather));
+  return *news == Outbox::News::kUrgent || now >= tell_at;
 }
 
 void Member::State::fail_to_keep(const std::string& why) {

@@ -3,8 +3,9 @@
 //
 // All of it happens on a thread of its own, which the robot never waits for. That thread reads the
 // journal, as any other reader does, keeps what it amounts to beside it (outbox.h), and visits the
-// database when there is news, and now and then. While the database is away, slow, full or of
-// another version the robot is managed as before; that is said once, and nothing is lost.
+// database when there is news, and now and then. A visit costs the database mostly a connection, so a failure
+// and its end half a minute later are told in one; where a person has to look, at once. While the database is away,
+// slow, full or of another version the robot is managed as before; that is said once, and nothing is lost.
 #pragma once
 
 #include <condition_variable>
@@ -25,9 +26,10 @@ class Member {
   // How long it takes until ...
   struct Pace {
     Duration read = std::chrono::seconds(1);        // the journal is read after something happened
+    Duration gather = std::chrono::seconds(25);     // news is told, with what came since
     Duration visit = std::chrono::seconds(10);      // the database is visited again
-    Duration beat = std::chrono::minutes(15);       // it is visited though there is no news
-    Duration ask = std::chrono::minutes(15);        // it is asked for the fleet's priors again
+    Duration beat = std::chrono::minutes(40);       // it is visited though there is no news
+    Duration ask = std::chrono::minutes(40);        // it is asked for the fleet's priors again
     Duration retry = std::chrono::seconds(10);      // it is tried again, at first
     Duration retry_most = std::chrono::minutes(5);  // and later
   };

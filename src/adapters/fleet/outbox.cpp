@@ -238,6 +238,17 @@ Expected<void> Outbox::bound() {
       "(SELECT 1 FROM failure WHERE run = run.id)");
 }
 
+Expected<Outbox::News> Outbox::news() const {
+  const auto found = database_.number(
+      "SELECT CASE WHEN EXISTS (SELECT 1 FROM failure WHERE is_sent = 0 AND is_exhausted AND ended "
+      "= 0) THEN 2 "
+      "WHEN EXISTS (SELECT 1 FROM failure WHERE is_sent = 0) OR EXISTS (SELECT 1 FROM outcome "
+      "WHERE is_sent = 0) THEN 1 "
+      "ELSE 0 END");
+  if (!found) return Error{found.error()};
+  return static_cast<News>(*found);
+}
+
 Expected<Waiting> Outbox::waiting(int most) const {
   Waiting waiting;
   const std::string limit = " ORDER BY rowid LIMIT " + std::to_string(most);

@@ -76,6 +76,9 @@ class Outbox {
                       const std::map<StrategyName, std::string>& definitions,
                       const std::vector<Failure>& failures);
 
+  // Whether something was not sent yet; kUrgent: a rule's strategies are exhausted, so that a person has to look.
+  enum class News : std::uint8_t { kNone, kSome, kUrgent };
+  Expected<News> news() const;
   // What was not sent yet, oldest first: at most so many of each.
   Expected<Waiting> waiting(int most) const;
   // It was sent as it is here; what changed since goes again.

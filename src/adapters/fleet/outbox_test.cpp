@@ -54,6 +54,24 @@ TEST(Outbox, WhatChangedWhileItWasSentGoesAgain) {
   EXPECT_TRUE(rest.failures.empty());
 }
 
+TEST(Outbox, ARuleThatIsExhaustedIsUrgentUntilItIsSentOrOver) {
+  const test::TestFolder folder;
+  Outbox outbox = std::move(*Outbox::open(folder / "o", "one"));
+  EXPECT_EQ(*outbox.news(), Outbox::News::kNone);
+  ASSERT_TRUE(outbox.keep(kRun, {{{"R", "s"}, {1, 0}}}, {}, {}));
+  EXPECT_EQ(*outbox.news(), Outbox::News::kSome);
+  Failure failure = failure_at(7);
+  failure.ended = 0;
+  failure.is_exhausted = true;
+  ASSERT_TRUE(outbox.keep(kRun, {}, {}, {failure}));
+  EXPECT_EQ(*outbox.news(), Outbox::News::kUrgent);
+  ASSERT_TRUE(outbox.sent(*outbox.waiting(10)));
+  EXPECT_EQ(*outbox.news(), Outbox::News::kNone);
+  failure.ended = 8;
+  ASSERT_TRUE(outbox.keep(kRun, {}, {}, {failure}));
+  EXPECT_EQ(*outbox.news(), Outbox::News::kSome);
+}
+
 TEST(Outbox, AnOlderCountTakesNothingBack) {
   const test::TestFolder folder;
   Outbox outbox = std::move(*Outbox::open(folder / "o", "one"));
