@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <malloc.h>
 #include <set>
 #include <unistd.h>
 
@@ -20,6 +21,8 @@ constexpr Duration kProbePeriod = std::chrono::milliseconds(400);
 constexpr Duration kAskPeriod = std::chrono::milliseconds(100);
 constexpr Duration kPublishPeriod = std::chrono::seconds(1);
 constexpr Duration kReminder = std::chrono::minutes(1);
+// So long after the robot changed, what that took of the memory is given back.
+constexpr auto kGivesBack = std::chrono::seconds(10);
 // One that ends, or is ended, needs no person.
 constexpr Duration kSettles = std::chrono::seconds(2);
 
@@ -235,9 +238,20 @@ Expected<void> Link::watch_parameter_events() {
   return {};
 }
 
+// To discover a robot takes more memory than to know it, and the allocator keeps what is free between what is not. Once for
+// all that changes within a while.
+void Link::give_memory_back_soon() {
+  if (std::exchange(gives_memory_back_, true)) return;
+  tasks_.post_at(Executor::Clock::now() + kGivesBack, [this] {
+    gives_memory_back_ = false;
+    malloc_trim(0);
+  });
+}
+
 // ---- observations
 
 void Link::on_change(const GraphChange& change) {
+  give_memory_back_soon();
   if (const auto* joined = std::get_if<NodeJoined>(&change)) {
     on_joined(joined->node);
   } else if (const auto* left = std::get_if<NodeLeft>(&change)) {

@@ -115,6 +115,7 @@ class Link {
   Expected<void> watch_parameter_events();
 
   void on_change(const GraphChange& change);
+  void give_memory_back_soon();
   void on_joined(const GraphNode& node);
   void on_left(const std::string& node, bool was_lost);
   void on_system(const std::string& manager, const GraphEndpoint& service);
@@ -170,6 +171,7 @@ class Link {
   std::unique_ptr<LeaseLink> lease_;
   std::unique_ptr<NeighbourHosts> hosts_;
   Time looked_at_hosts_ = kLongAgo;  // on the executor's thread
+  bool gives_memory_back_ = false;   // soon
 
   mutable Mutex mutex_;
   // A component's node that others have the name of.
