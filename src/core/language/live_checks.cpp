@@ -125,11 +125,12 @@ class LiveChecks {
       const std::string program = c->launch.empty() ? "" : c->launch.front();
       const Composition composed = c->composed.value_or(Composition{});
       const auto& [place, text] =
-          each->clause == Clause::kSetup        ? std::pair(written.setup, c->setup)
-          : each->clause == Clause::kFolder     ? std::pair(written.folder, c->folder)
-          : each->clause == Clause::kPlugin     ? std::pair(written.plugin, composed.plugin)
-          : each->clause == Clause::kParameters ? std::pair(written.parameters, composed.parameters)
-                                                : std::pair(written.launch, program);
+          each->clause == Clause::kSetup    ? std::pair(written.setup, c->setup)
+          : each->clause == Clause::kFolder ? std::pair(written.folder, c->folder)
+          : each->clause == Clause::kPlugin ? std::pair(written.plugin, composed.plugin)
+          : each->clause == Clause::kParameters
+              ? std::pair(written.parameters, composed.parameters)
+              : std::pair(Seldom<syntax::Name>(written.launch), program);
       if (place && text == each->text) warn(Code::kCannotLaunch, place->span, each->why, "");
     }
   }

@@ -30,7 +30,7 @@ class Mover {
   void move(syntax::Name& name) const { move(name.span); }
   void move(syntax::Number& number) const { move(number.span); }
   void move(syntax::Expression& e) const {
-    auto& [kind, span, literal, name, op, children] = e;
+    auto& [kind, op, span, literal, name, children] = e;
     move(span);
     move(name);
     move(children);
@@ -46,9 +46,10 @@ class Mover {
            is_users_unit, engine, engine_container, host, container, plugin, package, parameters,
            remaps, lifecycle] = c;
     move(name);
-    for (auto* part :
-         {&node, &launch, &setup, &environment, &folder, &unit, &engine, &engine_container, &host,
-          &container, &plugin, &package, &parameters, &remaps})
+    move(node);
+    move(launch);
+    for (auto* part : {&setup, &environment, &folder, &unit, &engine, &engine_container, &host,
+                       &container, &plugin, &package, &parameters, &remaps})
       move(*part);
   }
   void move(syntax::Dependency& d) const {
@@ -163,6 +164,10 @@ class Mover {
  private:
   template <class T>
   void move(std::optional<T>& part) const {
+    if (part) move(*part);
+  }
+  template <class T>
+  void move(Seldom<T>& part) const {
     if (part) move(*part);
   }
   template <class T>

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/ids.h"
+#include "base/seldom.h"
 #include "base/units.h"
 #include "language/program.h"
 #include "language/syntax.h"
@@ -65,11 +66,11 @@ struct Component {
   std::vector<std::string> environment{};  // "NAME=value"
   std::string folder{};                    // where it runs; empty: where culprit does
 
-  std::optional<SystemdUnit> unit{};  // that runs it: systemd is asked to start and to end it
+  Seldom<SystemdUnit> unit{};  // that runs it: systemd is asked to start and to end it
 
-  std::optional<Composition> composed{};  // its container is asked to load and to unload it
+  Seldom<Composition> composed{};  // its container is asked to load and to unload it
 
-  std::optional<EngineContainer> engine{};  // that runs it: its engine is asked likewise
+  Seldom<EngineContainer> engine{};  // that runs it: its engine is asked likewise
 
   // Whether somebody else runs it, whose word of its process is proof.
   bool has_owner() const { return unit || engine; }

@@ -31,15 +31,26 @@ Lexeme::Kind lexeme_kind(Token::Kind kind) {
 
 // Of the symbol that `text`, one or two characters, begins with; 0 if with none.
 std::uint32_t symbol_length(std::string_view text) {
-  constexpr std::array<std::string_view, 7> kPairs = {"<=", ">=", "==", "!=", "&&", "||", ".."};
-  constexpr std::string_view kSingles = "<>!-+*/%()?:,=";
-  if (text.size() == 2 && std::find(kPairs.begin(), kPairs.end(), text) != kPairs.end()) return 2;
-  return kSingles.find(text[0]) != std::string_view::npos ? 1 : 0;
+  const char first = text[0];
+  const char second = text.size() == 2 ? text[1] : '\0';
+  switch (first) {
+    case '<':
+    case '>':
+    case '=':
+    case '!':
+      return second == '=' ? 2 : 1;
+    case '&':
+    case '|':
+    case '.':
+      return second == first ? 2 : 0;
+    default:
+      return std::string_view("-+*/%()?:,").find(first) != std::string_view::npos ? 1 : 0;
+  }
 }
 
 Token bad(Span span, std::string message, std::optional<Edit> fix = {}) {
   Token token{Token::Kind::kBad, false, span, {}, {}};
-  token.complaint = {std::move(message), std::move(fix)};
+  token.complaint = Token::Complaint{std::move(message), std::move(fix)};
   return token;
 }
 

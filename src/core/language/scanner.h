@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/seldom.h"
 #include "language/diagnostic.h"
 #include "language/source.h"
 #include "language/syntax.h"
@@ -40,7 +41,7 @@ struct Token {
   Span span;
   std::string_view text;  // of an identifier or a symbol; else empty
   std::variant<bool, std::int64_t, double, std::string_view, Duration> literal;
-  std::optional<Complaint> complaint = std::nullopt;
+  Seldom<Complaint> complaint{};
 
   bool is(std::string_view symbol) const { return kind == Kind::kSymbol && text == symbol; }
   // What a literal, true or false stands for.

@@ -213,7 +213,7 @@ void Symbols::declare_launch(const syntax::Component& written, Component& compon
              "write the program and its arguments; close every quote");
     }
   }
-  const auto is_for_launch = [&](const char* word, const std::optional<syntax::Name>& what) {
+  const auto is_for_launch = [&](const char* word, const Seldom<syntax::Name>& what) {
     if (what && !written.launch)
       report(*what,
              std::string(word) + " is for a LAUNCH, and component '" + written.name.text +

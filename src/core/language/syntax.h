@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/seldom.h"
 #include "base/units.h"
 #include "base/value.h"
 #include "language/source.h"
@@ -56,10 +57,10 @@ struct Expression {
     kCall          // name(children...)
   };
   Kind kind = Kind::kLiteral;
+  Operator op = Operator::kNot;
   Span span;
   Literal literal;
   Name name;
-  Operator op = Operator::kNot;
   std::vector<Expression> children;
 };
 
@@ -86,21 +87,21 @@ struct Component {
   Name name;
   std::optional<Name> node;
   std::optional<Name> launch;  // the quoted text, unescaped
-  std::optional<Name> setup{};
-  std::optional<Name> environment{};  // likewise
-  std::optional<Name> folder{};
+  Seldom<Name> setup{};
+  Seldom<Name> environment{};  // likewise
+  Seldom<Name> folder{};
   bool is_required = false;
   bool is_respawned = false;
-  std::optional<Name> unit{};
+  Seldom<Name> unit{};
   bool is_users_unit = false;
-  std::optional<Name> engine{};  // "docker" or "podman"
-  std::optional<Name> engine_container{};
-  std::optional<Name> host{};       // the computer that runs it, as ssh is told: "robot@rover2"
-  std::optional<Name> container{};  // the node that loads it
-  std::optional<Name> plugin{};
-  std::optional<Name> package{};
-  std::optional<Name> parameters{};
-  std::optional<Name> remaps{};  // "a:=b c:=d"
+  Seldom<Name> engine{};  // "docker" or "podman"
+  Seldom<Name> engine_container{};
+  Seldom<Name> host{};       // the computer that runs it, as ssh is told: "robot@rover2"
+  Seldom<Name> container{};  // the node that loads it
+  Seldom<Name> plugin{};
+  Seldom<Name> package{};
+  Seldom<Name> parameters{};
+  Seldom<Name> remaps{};  // "a:=b c:=d"
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
 };
 
@@ -157,11 +158,10 @@ bool names_parameter(AdaptationType type);
 struct Adaptation {
   Name component;
   AdaptationType type = AdaptationType::kSetParameter;
-  Name subject;  // parameter, mode or service; empty for types without one
-  Name topic;    // change_communication
-  std::optional<Name>
-      request{};  // call: what the service is asked, as `ros2 service call` takes it
-  std::optional<Expression> value;
+  Name subject;            // parameter, mode or service; empty for types without one
+  Name topic;              // change_communication
+  Seldom<Name> request{};  // call: what the service is asked, as `ros2 service call` takes it
+  Seldom<Expression> value;
   Number impact;
   Span span;
 };
@@ -170,7 +170,7 @@ struct Strategy {
   Name name;
   Number probability;
   Number confidence;
-  std::optional<Expression> when;
+  Seldom<Expression> when;
   std::vector<Adaptation> adaptations;
   bool is_last_resort = false;
   bool has_broken_adaptation = false;

@@ -99,6 +99,10 @@ class Writer {
     out_ << (part ? "]" : " ");
   }
   template <class T>
+  void put(const Seldom<T>& part) {
+    put(part ? std::optional<T>(*part) : std::nullopt);
+  }
+  template <class T>
   void put(const std::vector<T>& parts) {
     out_ << '{';
     for (const T& part : parts) put(part);
