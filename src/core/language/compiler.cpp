@@ -19,10 +19,11 @@ void emit(const Typed& e, Program& program) {
   program.code.push_back({e.op, operand});
 }
 
-std::size_t node_count(const Typed& e) {
-  std::size_t count = 1;
-  for (const Typed& child : e.children) count += node_count(child);
-  return count;
+// How much emit() will enter.
+void count(const Typed& e, std::size_t& nodes, std::size_t& constants) {
+  ++nodes;
+  if (e.op == Op::kConstant) ++constants;
+  for (const Typed& child : e.children) count(child, nodes, constants);
 }
 
 bool is_comparison(Op op) {
@@ -56,7 +57,10 @@ double threshold(const Typed& constant) {
 Program compile(const Typed& expression) {
   Program program;
   program.type = expression.type;
-  program.code.reserve(node_count(expression));
+  std::size_t nodes = 0, constants = 0;
+  count(expression, nodes, constants);
+  program.code.reserve(nodes);
+  program.constants.reserve(constants);
   emit(expression, program);
   return program;
 }

@@ -29,12 +29,12 @@ Interval declared_range(const Signal& signal) {
   return signal.range ? Interval{signal.range->low, signal.range->high} : Interval{};
 }
 
-ValueSet first_values(const Input& input, const RuleSet& rules) {
+// @pre its type is a number
+Interval first_interval(const Input& input, const RuleSet& rules) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   switch (input.kind) {
     case Input::Kind::kSignal:
-      if (input.type != Type::kDouble) break;
-      return declared_range(rules[input.signal]);
+      return input.type == Type::kDouble ? declared_range(rules[input.signal]) : Interval{};
     case Input::Kind::kMin:
     case Input::Kind::kMax:
       return declared_range(rules[input.signal]);
@@ -42,26 +42,31 @@ ValueSet first_values(const Input& input, const RuleSet& rules) {
       return with_rounding(declared_range(rules[input.signal]));
     case Input::Kind::kStddev: {
       const Interval range = declared_range(rules[input.signal]);
-      return Interval{0, with_rounding({0, range.high - range.low}).high};
+      return {0, with_rounding({0, range.high - range.low}).high};
     }
     case Input::Kind::kRate:
     case Input::Kind::kAge:
     case Input::Kind::kPhi:
-      return Interval{0, kInfinity};
+      return {0, kInfinity};
     case Input::Kind::kLevel:
-      return Interval{0, 3};
+      return {0, 3};
     case Input::Kind::kLifecycle:
-      return TextSet{
-          {"unconfigured", "inactive", "active", "finalized", "unknown", "in transition"}, false};
     case Input::Kind::kAlive:
     case Input::Kind::kParameter:
     case Input::Kind::kChanged:
       break;
   }
-  return all_values(input.type);
+  return {};
 }
 
 bool is_number(Type type) { return type != Type::kBool && type != Type::kString; }
+
+ValueSet first_values(const Input& input, const RuleSet& rules) {
+  if (is_number(input.type)) return first_interval(input, rules);
+  if (input.kind != Input::Kind::kLifecycle) return all_values(input.type);
+  return TextSet{{"unconfigured", "inactive", "active", "finalized", "unknown", "in transition"},
+                 false};
+}
 
 bool is_single(const Interval& i) { return i.low == i.high; }
 bool is_single(const TextSet& t) { return !t.is_complement && t.texts.size() == 1; }
@@ -79,16 +84,6 @@ Interval all_but(const Interval& single, const Interval& of) {
 ValueSet Facts::values_of(InputId input) const {
   const ValueSet* known = find(input);
   return known != nullptr ? *known : first_values((*rules_)[input], *rules_);
-}
-
-void Facts::know(InputId input, ValueSet set) {
-  for (auto& [known, values] : values_) {
-    if (known != input) continue;
-    values = std::move(set);
-    return;
-  }
-  if (values_.empty()) values_.reserve(4);
-  values_.emplace_back(input, std::move(set));
 }
 
 const ValueSet* Facts::find(InputId input) const {
@@ -131,12 +126,11 @@ bool Facts::assume(const Typed& e, bool truth) {
 
 template <class First, class Second>
 bool Facts::either(First first, Second second) {
-  Facts a = *this;
-  Facts b = *this;
-  const bool is_first_possible = first(a);
-  const bool is_second_possible = second(b);
-  if (is_first_possible && is_second_possible) a.join(b);
-  *this = is_first_possible ? std::move(a) : std::move(b);
+  Facts other = *this;
+  const bool is_first_possible = first(*this);
+  const bool is_second_possible = second(other);
+  if (is_first_possible && is_second_possible) join(other);
+  if (!is_first_possible) *this = std::move(other);
   return is_first_possible || is_second_possible;
 }
 
@@ -227,9 +221,14 @@ bool Facts::narrow(const Typed& e, const Interval& interval) {
   return !is_empty(narrowed);
 }
 
+Interval Facts::interval_of(InputId number) const {
+  const ValueSet* known = find(number);
+  return known != nullptr ? std::get<Interval>(*known) : first_interval((*rules_)[number], *rules_);
+}
+
 Interval Facts::interval_of(const Typed& e) const {
-  const ValueSet* known = e.op == Op::kInput ? find(e.input) : nullptr;
-  if (known != nullptr) return std::get<Interval>(*known);
+  if (e.op == Op::kInput) return interval_of(e.input);
+  if (e.op == Op::kConstant) return only_number(e.constant, e.type);
   return std::get<Interval>(values_of(e));
 }
 

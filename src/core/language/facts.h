@@ -29,7 +29,8 @@ class Facts {
 
   ValueSet values_of(InputId input) const;
   // `set` holds all values that the input has from now on.
-  void know(InputId input, ValueSet set);
+  template <class Set>
+  void know(InputId input, Set set);
 
  private:
   // A comparison as "left before right", "left not after right" or "left equals right".
@@ -45,6 +46,7 @@ class Facts {
   bool narrow(const Typed& number, const Interval& interval);
   void join(const Facts& other);
   ValueSet values_of(const Typed& expression) const;
+  Interval interval_of(InputId number) const;
   Interval interval_of(const Typed& expression) const;
 
   const ValueSet* find(InputId input) const;  // null: not more is known than at first
@@ -53,6 +55,17 @@ class Facts {
   // Of inputs of which more is known than at first. They are few, for expressions are small.
   std::vector<std::pair<InputId, ValueSet>> values_;
 };
+
+template <class Set>
+void Facts::know(InputId input, Set set) {
+  for (auto& [known, values] : values_) {
+    if (known != input) continue;
+    values = std::move(set);
+    return;
+  }
+  if (values_.empty()) values_.reserve(4);
+  values_.emplace_back(input, std::move(set));
+}
 
 // Expressions larger than this are not reasoned about, so that checking a hostile file takes time
 // in proportion to its size.

@@ -70,8 +70,9 @@ class Parser {
       read_.fail(Code::kBadToken, head.span, head.complaint->cause, "", head.complaint->fix);
       return broken();
     }
+    const char first = head.text.empty() ? '\0' : head.text.front();  // which most differ in
     for (const Statement& candidate : kStatements) {
-      if (head.text != candidate.keyword) continue;
+      if (candidate.keyword.front() != first || candidate.keyword != head.text) continue;
       keyword_ = head.span;
       const Scanner behind_keyword = s;
       if (has_placeholder(s) || has_colon(s) || !(this->*candidate.parse)(s) ||

@@ -191,11 +191,11 @@ const Component* Symbols::other_of_owner(std::string owner) {
 
 // The same for those with a LAUNCH command.
 const Component* Symbols::other_of_launch(const std::vector<std::string>& command) {
-  const auto first = components_by_launch_.find(command_hash(command), [&](std::uint32_t place) {
-    return rules_.components[place].launch == command;
-  });
+  const std::size_t hash = command_hash(command);
+  const auto first = components_by_launch_.find(
+      hash, [&](std::uint32_t place) { return rules_.components[place].launch == command; });
   if (first) return &rules_.components[*first];
-  components_by_launch_.add(command_hash(command), rules_.components.size());
+  components_by_launch_.add(hash, rules_.components.size());
   return nullptr;
 }
 
@@ -324,7 +324,6 @@ void Symbols::declare_composition(const syntax::Component& written, Component& c
     diagnostics_.push_back(
         {code, Severity::kError, where.span, std::move(cause), std::move(remedy)});
   };
-  const std::string self = "component '" + written.name.text + "'";
   if (!written.container) {
     for (const auto& [word, what] : {std::pair("PLUGIN", &written.plugin),
                                      {"PACKAGE", &written.package},
@@ -336,6 +335,7 @@ void Symbols::declare_composition(const syntax::Component& written, Component& c
     }
     return;
   }
+  const std::string self = "component '" + written.name.text + "'";
   Composition composed{written.container->text, {}, {}};
   const char* other = written.launch         ? "LAUNCH"
                       : written.unit         ? "UNIT"

@@ -208,7 +208,7 @@ class Typer {
     }
   }
 
-  std::optional<Typed> logic(const Expression& e, Op op, Typed left, Typed right) {
+  std::optional<Typed> logic(const Expression& e, Op op, Typed&& left, Typed&& right) {
     if (left.type == Type::kBool && right.type == Type::kBool) {
       return node(op, Type::kBool, std::move(left), std::move(right));
     }
@@ -219,7 +219,8 @@ class Typer {
                 "compare it with something, as in x > 0");
   }
 
-  std::optional<Typed> compare(const Expression& e, const Family& family, Typed left, Typed right) {
+  std::optional<Typed> compare(const Expression& e, const Family& family, Typed&& left,
+                               Typed&& right) {
     const Type a = left.type;
     const Type b = right.type;
     if (!alike(left, right))

@@ -122,17 +122,13 @@ ValueSet all_values(Type type) {
 }
 
 ValueSet only_value(const Constant& constant, Type type) {
-  switch (type) {
-    case Type::kBool:
-      return TruthSet{constant.slot.b, !constant.slot.b};
-    case Type::kString:
-      return TextSet{{constant.text}, false};
-    case Type::kDouble:
-      return Interval{constant.slot.d, constant.slot.d};
-    case Type::kInt:
-    case Type::kDuration:
-      break;
-  }
+  if (type == Type::kBool) return TruthSet{constant.slot.b, !constant.slot.b};
+  if (type == Type::kString) return TextSet{{constant.text}, false};
+  return only_number(constant, type);
+}
+
+Interval only_number(const Constant& constant, Type type) {
+  if (type == Type::kDouble) return {constant.slot.d, constant.slot.d};
   const auto number = static_cast<double>(constant.slot.i);
   return exact({number, number});
 }

@@ -42,6 +42,8 @@ using ValueSet = std::variant<Interval, TextSet, TruthSet>;
 ValueSet all_values(Type type);
 // The one value of a constant of that type.
 ValueSet only_value(const Constant& constant, Type type);
+// The same. @pre the type is a number
+Interval only_number(const Constant& constant, Type type);
 
 bool is_empty(const ValueSet& set);
 bool is_empty(const Interval& interval);
